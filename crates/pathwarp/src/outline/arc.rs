@@ -1,0 +1,268 @@
+//! Elliptical arcs in the form that affine maps keep: a centre and two conjugate semi-axes.
+//!
+//! P(θ) = c + cos θ · a + sin θ · b. With a ⟂ b these are the ellipse's own axes; any affine map takes (c, a, b) to its images
+//! and leaves θ alone, so nested SVG transforms cost no accuracy.
+
+use kurbo::{Affine, CubicBez, Point, Rect, Vec2};
+use std::f64::consts::{PI, TAU};
+
+/// An arc of an ellipse, run over `t` in [0, 1] at constant angular speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EllipticArc {
+    /// First point, kept beside the ellipse so that neighbours meet to the last bit.
+    pub p0: Point,
+    /// Last point.
+    pub p1: Point,
+    /// Centre of the ellipse.
+    pub center: Point,
+    /// First conjugate semi-axis.
+    pub a: Vec2,
+    /// Second conjugate semi-axis.
+    pub b: Vec2,
+    /// Angle of the first point, radians.
+    pub start: f64,
+    /// Angle swept, radians; positive from `a` to `b`.
+    pub sweep: f64,
+}
+
+impl EllipticArc {
+    /// The arc of an ellipse from angle `start` through `sweep` (radians).
+    #[must_use]
+    pub fn new(center: Point, a: Vec2, b: Vec2, start: f64, sweep: f64) -> Self {
+        let at = |th: f64| center + a * th.cos() + b * th.sin();
+        let p0 = at(start);
+        // A whole turn closes exactly.
+        let p1 = if (sweep.abs() - TAU).abs() < 1e-14 { p0 } else { at(start + sweep) };
+        Self { p0, p1, center, a, b, start, sweep }
+    }
+
+    /// The arc of SVG's `A` command, by the conversion in the SVG 2 specification, §B.2.4 and §B.2.5. `None` where the command
+    /// draws a straight line (a zero radius) or nothing (coincident ends).
+    #[must_use]
+    pub fn from_svg(
+        p0: Point,
+        radii: Vec2,
+        x_rotation_degrees: f64,
+        large: bool,
+        sweep: bool,
+        p1: Point,
+    ) -> Option<Self> {
+        let (mut rx, mut ry) = (radii.x.abs(), radii.y.abs());
+        if p0 == p1 || rx == 0.0 || ry == 0.0 || !(rx * ry * x_rotation_degrees).is_finite() {
+            return None;
+        }
+        let (sin, cos) = x_rotation_degrees.to_radians().sin_cos();
+        // (B.5.1) half the chord, in the ellipse's own axes
+        let h = (p0 - p1) / 2.0;
+        let (x1, y1) = (cos * h.x + sin * h.y, cos * h.y - sin * h.x);
+        // (B.5.8) radii too small to reach are scaled up
+        let lambda = (x1 / rx).powi(2) + (y1 / ry).powi(2);
+        if lambda > 1.0 {
+            rx *= lambda.sqrt();
+            ry *= lambda.sqrt();
+        }
+        // (B.5.2) the centre, written with the normalised chord so that tiny or huge radii do not overflow
+        let (u, v) = (x1 / rx, y1 / ry);
+        let d = u * u + v * v;
+        let k = ((1.0 - d).max(0.0) / d).sqrt() * if large == sweep { -1.0 } else { 1.0 };
+        let (cu, cv) = (k * v, -k * u);
+        let mid = p0.midpoint(p1);
+        let center = mid + Vec2::new(cos * rx * cu - sin * ry * cv, sin * rx * cu + cos * ry * cv);
+        // (B.5.5), (B.5.6) the angles
+        let th0 = (v - cv).atan2(u - cu);
+        let th1 = (-v - cv).atan2(-u - cu);
+        let mut delta = (th1 - th0).rem_euclid(TAU);
+        if !sweep {
+            delta -= TAU;
+        }
+        // Half a turn sits on rem_euclid's seam only through rounding; a zero sweep cannot be meant (the ends differ).
+        if delta.abs() < 1e-12 || (delta.abs() - TAU).abs() < 1e-12 {
+            delta = if lambda >= 1.0 { PI.copysign(delta) } else { return None };
+        }
+        Some(Self {
+            p0,
+            p1,
+            center,
+            a: Vec2::new(cos * rx, sin * rx),
+            b: Vec2::new(-sin * ry, cos * ry),
+            start: th0,
+            sweep: delta,
+        })
+    }
+
+    /// The point at `t` in [0, 1]. The ends are exact.
+    #[inline]
+    #[must_use]
+    pub fn eval(&self, t: f64) -> Point {
+        if t == 0.0 {
+            return self.p0;
+        }
+        if t == 1.0 {
+            return self.p1;
+        }
+        let (s, c) = (self.start + t * self.sweep).sin_cos();
+        self.center + self.a * c + self.b * s
+    }
+
+    /// The derivative with respect to `t`.
+    #[inline]
+    #[must_use]
+    pub fn deriv(&self, t: f64) -> Vec2 {
+        let (s, c) = (self.start + t * self.sweep).sin_cos();
+        (self.b * c - self.a * s) * self.sweep
+    }
+
+    /// The same arc run backwards.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self { p0: self.p1, p1: self.p0, start: self.start + self.sweep, sweep: -self.sweep, ..*self }
+    }
+
+    /// The image under an affine map, exact.
+    #[must_use]
+    pub fn transformed(&self, m: Affine) -> Self {
+        let linear = |v: Vec2| {
+            let [a, b, c, d, ..] = m.as_coeffs();
+            Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
+        };
+        Self {
+            p0: m * self.p0,
+            p1: m * self.p1,
+            center: m * self.center,
+            a: linear(self.a),
+            b: linear(self.b),
+            ..*self
+        }
+    }
+
+    /// The smallest box with sides along the axes that holds the arc.
+    #[must_use]
+    pub fn bounding_box(&self) -> Rect {
+        let mut r = Rect::from_points(self.p0, self.p1);
+        // Extreme in x where −a.x sin θ + b.x cos θ = 0, and half a turn on; likewise in y.
+        for extreme in [self.b.x.atan2(self.a.x), self.b.y.atan2(self.a.y)] {
+            for th in [extreme, extreme + PI] {
+                let ahead = if self.sweep >= 0.0 { th - self.start } else { self.start - th }.rem_euclid(TAU);
+                if ahead <= self.sweep.abs() {
+                    r = r.union_pt(self.center + self.a * th.cos() + self.b * th.sin());
+                }
+            }
+        }
+        r
+    }
+
+    /// The part between `t0` and `t1`.
+    #[must_use]
+    pub fn subsegment(&self, t0: f64, t1: f64) -> Self {
+        Self {
+            p0: self.eval(t0),
+            p1: self.eval(t1),
+            start: self.start + t0 * self.sweep,
+            sweep: (t1 - t0) * self.sweep,
+            ..*self
+        }
+    }
+
+    /// One cubic with the arc's ends and end tangents, handles (4/3)·tan(Δ/4): for sweeps up to a quarter turn or so.
+    #[must_use]
+    pub fn to_cubic(&self) -> CubicBez {
+        // Past a half turn the tangent's pole is near; such arcs are cut by `to_cubics`.
+        let k = 4.0 / 3.0 * (self.sweep.clamp(-PI, PI) / 4.0).tan() / self.sweep;
+        let (d0, d1) = (self.deriv(0.0), self.deriv(1.0));
+        CubicBez::new(self.p0, self.p0 + d0 * k, self.p1 - d1 * k, self.p1)
+    }
+
+    /// Cubics that stay within `tolerance` of the arc.
+    pub fn to_cubics(&self, tolerance: f64) -> impl Iterator<Item = CubicBez> + '_ {
+        // A cubic for the sweep φ misses a unit circle by (2/27)·sin⁶(φ/4)/cos²(φ/4) at most, of order φ⁶ (Goldapp 1991).
+        let radius = self.a.hypot().max(self.b.hypot());
+        let mut n = (self.sweep.abs() / (PI / 2.0) - 1e-9).ceil().max(1.0);
+        let miss = |n: f64| {
+            let (s, c) = (self.sweep / n / 4.0).sin_cos();
+            2.0 / 27.0 * s.powi(6) / (c * c) * radius
+        };
+        if miss(n) > tolerance {
+            const MOST: f64 = 1000.0;
+            n = (n * (miss(n) / tolerance).powf(1.0 / 6.0)).ceil().clamp(n, MOST);
+        }
+        (0..n as usize).map(move |i| self.subsegment(i as f64 / n, (i + 1) as f64 / n).to_cubic())
+    }
+
+    pub(super) fn is_finite(&self, limit: f64) -> bool {
+        [
+            self.p0.x,
+            self.p0.y,
+            self.p1.x,
+            self.p1.y,
+            self.center.x,
+            self.center.y,
+            self.a.x,
+            self.a.y,
+            self.b.x,
+            self.b.y,
+        ]
+        .iter()
+        .all(|v| v.abs() < limit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn svg(p0: (f64, f64), r: (f64, f64), rot: f64, large: bool, sweep: bool, p1: (f64, f64)) -> EllipticArc {
+        EllipticArc::from_svg(p0.into(), r.into(), rot, large, sweep, p1.into()).unwrap()
+    }
+
+    #[test]
+    fn endpoint_form_agrees_with_its_ends_and_flags() {
+        for large in [false, true] {
+            for sweep in [false, true] {
+                let a = svg((10.0, 20.0), (30.0, 15.0), 25.0, large, sweep, (42.0, 27.0));
+                for (t, p) in [(1e-9, a.p0), (1.0 - 1e-9, a.p1)] {
+                    assert!(a.eval(t).distance(p) < 1e-6, "{large} {sweep} {t}: {:?}", a.eval(t));
+                }
+                assert_eq!(a.sweep > 0.0, sweep);
+                assert_eq!(a.sweep.abs() > PI, large);
+            }
+        }
+    }
+
+    #[test]
+    fn radii_too_small_give_a_half_ellipse_about_the_middle() {
+        let a = svg((0.0, 0.0), (1.0, 1.0), 0.0, false, true, (10.0, 0.0));
+        assert!((a.sweep - PI).abs() < 1e-9);
+        assert!(a.center.distance(Point::new(5.0, 0.0)) < 1e-12);
+        assert!(a.eval(0.5).distance(Point::new(5.0, -5.0)) < 1e-12);
+    }
+
+    #[test]
+    fn affine_images_are_exact_and_the_derivative_is_the_difference_quotient() {
+        let m = Affine::new([1.3, 0.4, -0.7, 0.9, 5.0, -3.0]);
+        let a = svg((10.0, 20.0), (30.0, 15.0), 25.0, true, false, (42.0, 27.0));
+        let b = a.transformed(m);
+        for i in 0..=16 {
+            let t = f64::from(i) / 16.0;
+            assert!(b.eval(t).distance(m * a.eval(t)) < 1e-12);
+            let h = 1e-6;
+            let slope = (a.eval(t + h) - a.eval(t - h)) / (2.0 * h);
+            if i > 0 && i < 16 {
+                assert!((slope - a.deriv(t)).hypot() < 1e-6);
+            }
+            assert!(a.bounding_box().inflate(1e-9, 1e-9).contains(a.eval(t)));
+        }
+    }
+
+    #[test]
+    fn cubics_stay_within_the_tolerance() {
+        let a = EllipticArc::new(Point::ORIGIN, Vec2::new(100.0, 0.0), Vec2::new(0.0, 100.0), 0.3, TAU);
+        for tol in [1.0, 0.1, 1e-3, 1e-6] {
+            let worst = a
+                .to_cubics(tol)
+                .flat_map(|c| (0..=50).map(move |i| kurbo::ParamCurve::eval(&c, f64::from(i) / 50.0)))
+                .map(|p| (p.to_vec2().hypot() - 100.0).abs())
+                .fold(0.0, f64::max);
+            assert!(worst <= tol, "{tol}: {worst}");
+        }
+    }
+}
