@@ -1,6 +1,15 @@
 //! Plane deformations of vector paths, given back as clean Bézier curves.
+//!
+//! The way of the data: an [`Outline`] (lines, quadratics, cubics and true arcs) and a [`map::Map`] of the plane go into
+//! [`refit::warp_path`]; a [`kurbo::BezPath`] within a stated distance of the true image comes out.
+//!
+//! This crate is pure: no I/O, no globals, no printing.
+
 mod error;
+pub mod map;
 pub mod outline;
+pub mod refit;
+
 pub use error::{Error, GeometryError};
 pub use kurbo;
 pub use outline::{Outline, Seg, Subpath};

@@ -7,7 +7,6 @@ use svgtypes::{PathParser, PathSegment};
 /// The path, or what is wrong with the data and the part before the fault.
 pub(super) fn parse(data: &str) -> Result<Outline, (String, Outline)> {
     let mut b = Builder::default();
-    let mut start = Point::ORIGIN;
     // The handle that the smooth commands mirror.
     let mut cubic: Option<Point> = None;
     let mut quad: Option<Point> = None;
@@ -20,10 +19,7 @@ pub(super) fn parse(data: &str) -> Result<Outline, (String, Outline)> {
         let point = |abs: bool, x: f64, y: f64| if abs { Point::new(x, y) } else { Point::new(at.x + x, at.y + y) };
         let (mut next_cubic, mut next_quad) = (None, None);
         match seg {
-            PathSegment::MoveTo { abs, x, y } => {
-                start = point(abs, x, y);
-                b.move_to(start);
-            }
+            PathSegment::MoveTo { abs, x, y } => b.move_to(point(abs, x, y)),
             PathSegment::LineTo { abs, x, y } => b.line_to(point(abs, x, y)),
             PathSegment::HorizontalLineTo { abs, x } => b.line_to(Point::new(point(abs, x, 0.0).x, at.y)),
             PathSegment::VerticalLineTo { abs, y } => b.line_to(Point::new(at.x, point(abs, 0.0, y).y)),
@@ -73,7 +69,7 @@ mod tests {
             use svgtypes::SimplePathSegment as S;
             match s.unwrap() {
                 S::LineTo { x, y } | S::CurveTo { x, y, .. } | S::Quadratic { x, y, .. } => {
-                    theirs.push(Point::new(x, y))
+                    theirs.push(Point::new(x, y));
                 }
                 S::MoveTo { .. } | S::ClosePath => {}
             }

@@ -1,0 +1,230 @@
+//! Maps one after another.
+
+use super::{AffineMap, Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier};
+use kurbo::{Affine, Point};
+use std::sync::Arc;
+
+/// Maps composed, the first applied first. Neighbouring affine and projective steps are folded into one.
+#[derive(Clone, Default)]
+pub struct Chain {
+    steps: Vec<Arc<dyn Map>>,
+}
+
+impl Chain {
+    /// Composes `steps`, folding what folds.
+    #[must_use]
+    pub fn new(steps: impl IntoIterator<Item = Arc<dyn Map>>) -> Self {
+        let mut chain = Self::default();
+        for s in steps {
+            chain.push(s);
+        }
+        chain
+    }
+
+    /// Adds a step at the end.
+    pub fn push(&mut self, step: Arc<dyn Map>) {
+        let class = step.class();
+        if class == Class::Affine(Affine::IDENTITY) {
+            return;
+        }
+        let folded: Option<Arc<dyn Map>> = match (self.steps.last().map(Map::class), class) {
+            (Some(Class::Affine(a)), Class::Affine(b)) => Some(Arc::new(AffineMap(b * a))),
+            (Some(Class::Affine(a)), Class::Projective(b)) => Some(Arc::new(b.after(&a.into()))),
+            (Some(Class::Projective(a)), Class::Affine(b)) => Some(Arc::new(Homography::from(b).after(&a))),
+            (Some(Class::Projective(a)), Class::Projective(b)) => Some(Arc::new(b.after(&a))),
+            _ => None,
+        };
+        if let Some(f) = folded {
+            self.steps.pop();
+            if f.class() != Class::Affine(Affine::IDENTITY) {
+                self.steps.push(f);
+            }
+        } else {
+            self.steps.push(step);
+        }
+    }
+
+    /// The steps that are left after folding.
+    #[must_use]
+    pub fn steps(&self) -> &[Arc<dyn Map>] {
+        &self.steps
+    }
+}
+
+/// A later step's level, pulled back through the steps before it.
+fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
+    match (level, before) {
+        (l, []) => l.clone(),
+        (Level::Line { a, b, c }, [only]) if matches!(only.class(), Class::Affine(_)) => {
+            let Class::Affine(m) = only.class() else { return level.clone() };
+            let [ma, mb, mc, md, me, mf] = m.as_coeffs();
+            Level::Line { a: a * ma + b * mb, b: a * mc + b * md, c: a * me + b * mf + c }
+        }
+        _ => {
+            let (level, before) = (level.clone(), before.to_vec());
+            Level::Field(Arc::new(move |p| level.at(before.iter().fold(p, |q, m| m.point(q)))))
+        }
+    }
+}
+
+impl Map for Chain {
+    fn jet(&self, p: Point) -> Jet {
+        let mut it = self.steps.iter();
+        let Some(first) = it.next() else { return AffineMap::IDENTITY.jet(p) };
+        it.fold(first.jet(p), |j, m| j.then(&m.jet(j.p)))
+    }
+
+    fn point(&self, p: Point) -> Point {
+        self.steps.iter().fold(p, |q, m| m.point(q))
+    }
+
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        let Some((first, rest)) = self.steps.split_first() else {
+            return AffineMap::IDENTITY.jets(ps, out);
+        };
+        first.jets(ps, out);
+        /// Points handed on at a time, small enough for the stack.
+        const BATCH: usize = 16;
+        for m in rest {
+            for chunk in out.chunks_mut(BATCH) {
+                let (mut at, mut outer) = ([Point::ORIGIN; BATCH], [Jet::default(); BATCH]);
+                let n = chunk.len();
+                for (a, j) in at.iter_mut().zip(chunk.iter()) {
+                    *a = j.p;
+                }
+                m.jets(&at[..n], &mut outer[..n]);
+                for (j, o) in chunk.iter_mut().zip(&outer) {
+                    *j = j.then(o);
+                }
+            }
+        }
+    }
+
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        let Some((first, rest)) = self.steps.split_first() else {
+            out.copy_from_slice(ps);
+            return;
+        };
+        first.points(ps, out);
+        const BATCH: usize = 16;
+        for m in rest {
+            for chunk in out.chunks_mut(BATCH) {
+                let mut at = [Point::ORIGIN; BATCH];
+                at[..chunk.len()].copy_from_slice(chunk);
+                m.points(&at[..chunk.len()], chunk);
+            }
+        }
+    }
+
+    fn class(&self) -> Class {
+        match self.steps.as_slice() {
+            [] => Class::Affine(Affine::IDENTITY),
+            [one] => one.class(),
+            _ => Class::Smooth,
+        }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        for (i, m) in self.steps.iter().enumerate() {
+            let mut own = Creases::default();
+            m.creases(&mut own);
+            for c in own.items() {
+                out.push(Crease { level: pull_back(&c.level, &self.steps[..i]), kind: c.kind });
+            }
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        let mut at = inside;
+        let mut any = false;
+        let mut steps = Vec::with_capacity(self.steps.len());
+        for m in &self.steps {
+            let b = m.branch(at);
+            any |= b.is_some();
+            at = m.point(at);
+            steps.push(b.unwrap_or_else(|| m.clone()));
+        }
+        any.then(|| Arc::new(Self { steps }) as Arc<dyn Map>)
+    }
+
+    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        self.steps.iter().try_fold(curve.clone(), |c, m| m.image_of(&c))
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        let back: Option<Vec<_>> = self.steps.iter().rev().map(Map::inverse).collect();
+        back.map(|steps| Arc::new(Self::new(steps)) as Arc<dyn Map>)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Formula, Real};
+    use crate::outline::Seg;
+    use kurbo::Line;
+
+    struct Shear;
+    impl Formula for Shear {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x + y * y * 0.1, y)
+        }
+    }
+
+    fn affine(c: [f64; 6]) -> Arc<dyn Map> {
+        Arc::new(AffineMap(Affine::new(c)))
+    }
+
+    fn tilt() -> Homography {
+        Homography::from_unit_square([(0.0, 0.0).into(), (1.0, 0.0).into(), (0.8, 0.9).into(), (0.1, 1.0).into()])
+            .unwrap()
+    }
+
+    #[test]
+    fn affine_and_projective_neighbours_fold() {
+        let c = Chain::new([
+            affine([2.0, 0.0, 0.0, 1.0, 0.0, 0.0]),
+            Arc::new(tilt()),
+            affine([1.0, 0.3, 0.0, 1.0, 5.0, 0.0]),
+        ]);
+        assert_eq!(c.steps().len(), 1);
+        let p = Point::new(0.2, 0.3);
+        let by_hand = Affine::new([1.0, 0.3, 0.0, 1.0, 5.0, 0.0]) * tilt().point(Point::new(0.4, 0.3));
+        assert!(c.point(p).distance(by_hand) < 1e-14);
+        let back = Chain::new([affine([2.0, 0.0, 0.0, 2.0, 0.0, 0.0]), affine([0.5, 0.0, 0.0, 0.5, 0.0, 0.0])]);
+        assert_eq!(back.class(), Class::Affine(Affine::IDENTITY));
+    }
+
+    #[test]
+    fn jets_batches_and_single_values_agree() {
+        let c = Chain::new([Arc::new(Shear) as Arc<dyn Map>, Arc::new(tilt()), Arc::new(Shear)]);
+        let ps: Vec<Point> = (0..40).map(|i| Point::new(f64::from(i) * 0.01, 0.3)).collect();
+        let (mut jets, mut points) = (vec![Jet::default(); 40], vec![Point::ORIGIN; 40]);
+        c.jets(&ps, &mut jets);
+        c.points(&ps, &mut points);
+        for i in 0..40 {
+            assert_eq!(jets[i], c.jet(ps[i]));
+            assert!(jets[i].p.distance(points[i]) < 1e-15 && c.point(ps[i]) == points[i]);
+            let h = 1e-6;
+            let dx =
+                (c.point(ps[i] + kurbo::Vec2::new(h, 0.0)) - c.point(ps[i] - kurbo::Vec2::new(h, 0.0))) / (2.0 * h);
+            assert!((dx - jets[i].dx).hypot() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_later_horizon_is_found_in_the_source_plane() {
+        // The horizon of the second step lies at x = 4 there, at x = 2 in the source, and at x = 2 − y²/20 with a shear first.
+        let far = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.25, 0.0, 1.0]] };
+        let scaled = Chain { steps: vec![affine([2.0, 0.0, 0.0, 1.0, 0.0, 0.0]), Arc::new(far)] };
+        let seg = Seg::Line(Line::new((0.0, 1.0), (3.0, 1.0)));
+        let mut cr = Creases::default();
+        scaled.creases(&mut cr);
+        assert!(cr.first_undefined(&seg).unwrap().distance((2.0, 1.0).into()) < 1e-12);
+        let sheared = Chain { steps: vec![Arc::new(Shear), affine([2.0, 0.0, 0.0, 1.0, 0.0, 0.0]), Arc::new(far)] };
+        let mut cr = Creases::default();
+        sheared.creases(&mut cr);
+        assert!(cr.first_undefined(&seg).unwrap().distance((1.9, 1.0).into()) < 1e-12);
+        assert!(!cr.defined_at((1.95, 1.0).into()) && cr.defined_at((1.85, 1.0).into()));
+    }
+}

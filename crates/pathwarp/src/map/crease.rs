@@ -1,0 +1,190 @@
+//! Where a map is not smooth, and where it is not defined.
+//!
+//! Both are level sets φ(x, y) = 0 in the source plane, so that a chain can pull a later map's crease back through the
+//! earlier maps: φ ∘ F. A path is split where it crosses them.
+
+use crate::outline::Seg;
+use kurbo::{Point, common::solve_cubic};
+use std::fmt;
+use std::sync::Arc;
+
+/// A function of the plane whose zero set is the crease.
+#[derive(Clone)]
+pub enum Level {
+    /// a·x + b·y + c: a straight crease, crossed exactly.
+    Line {
+        /// Coefficient of x.
+        a: f64,
+        /// Coefficient of y.
+        b: f64,
+        /// Constant term.
+        c: f64,
+    },
+    /// Any continuous function.
+    Field(Arc<dyn Fn(Point) -> f64 + Send + Sync>),
+}
+
+impl fmt::Debug for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line { a, b, c } => write!(f, "{a}·x + {b}·y + {c}"),
+            Self::Field(_) => f.write_str("field"),
+        }
+    }
+}
+
+impl Level {
+    /// The function's value.
+    #[must_use]
+    pub fn at(&self, p: Point) -> f64 {
+        match self {
+            Self::Line { a, b, c } => a * p.x + b * p.y + c,
+            Self::Field(f) => f(p),
+        }
+    }
+
+    /// Adds the parameters in (0, 1) where `seg` meets the zero set: exactly for a straight one and Bézier pieces, by
+    /// bracketing between samples otherwise.
+    pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) {
+        let mut add = |t: f64| {
+            if t > 0.0 && t < 1.0 {
+                out.push(t);
+            }
+        };
+        match (self, seg) {
+            (Self::Line { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
+                let c = seg.to_cubic();
+                let [q0, q1, q2, q3] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.at(p));
+                // Bernstein to power basis.
+                let roots = solve_cubic(q0, 3.0 * (q1 - q0), 3.0 * (q2 - 2.0 * q1 + q0), q3 - 3.0 * q2 + 3.0 * q1 - q0);
+                roots.into_iter().for_each(add);
+            }
+            _ => {
+                /// Finer than any wiggle a cubic's image usually has; a crease touched and left between two samples is missed.
+                const SAMPLES: u32 = 64;
+                let f = |t: f64| self.at(seg.eval(t));
+                let mut prev = (0.0, f(0.0));
+                for i in 1..=SAMPLES {
+                    let t = f64::from(i) / f64::from(SAMPLES);
+                    let here = (t, f(t));
+                    if here.1 == 0.0 {
+                        add(t);
+                    } else if prev.1 * here.1 < 0.0 {
+                        add(bisect(f, prev, here));
+                    }
+                    prev = here;
+                }
+            }
+        }
+    }
+}
+
+fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64 {
+    // Halving 60 times leaves nothing of a unit interval.
+    for _ in 0..60 {
+        let t = 0.5 * (lo.0 + hi.0);
+        let v = f(t);
+        if v == 0.0 {
+            return t;
+        }
+        if (v < 0.0) == (lo.1 < 0.0) {
+            lo = (t, v);
+        } else {
+            hi = (t, v);
+        }
+    }
+    0.5 * (lo.0 + hi.0)
+}
+
+/// What happens at a crease.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CreaseKind {
+    /// The map is continuous but its derivative jumps.
+    Kink,
+    /// The map is defined only where the level is positive.
+    Edge,
+}
+
+/// One crease.
+#[derive(Debug, Clone)]
+pub struct Crease {
+    /// Where.
+    pub level: Level,
+    /// What happens there.
+    pub kind: CreaseKind,
+}
+
+impl Crease {
+    /// A place where the derivative jumps.
+    #[must_use]
+    pub fn kink(level: Level) -> Self {
+        Self { level, kind: CreaseKind::Kink }
+    }
+
+    /// The edge of where the map is defined (level > 0).
+    #[must_use]
+    pub fn edge(level: Level) -> Self {
+        Self { level, kind: CreaseKind::Edge }
+    }
+}
+
+/// The creases of a map.
+#[derive(Debug, Clone, Default)]
+pub struct Creases {
+    items: Vec<Crease>,
+}
+
+impl Creases {
+    /// Adds one.
+    pub fn push(&mut self, c: Crease) {
+        self.items.push(c);
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn items(&self) -> &[Crease] {
+        &self.items
+    }
+
+    /// Whether `p` lies where the map is defined.
+    #[must_use]
+    pub fn defined_at(&self, p: Point) -> bool {
+        self.items.iter().all(|c| c.kind != CreaseKind::Edge || c.level.at(p) > 0.0)
+    }
+
+    /// The parameters in (0, 1), sorted, at which `seg` must be split so that the map is smooth on every part. Parameters
+    /// closer than 1e-9 to each other or to the ends are one.
+    #[must_use]
+    pub fn splits(&self, seg: &Seg) -> Vec<f64> {
+        /// Below this a part would be shorter than rounding can place it.
+        const APART: f64 = 1e-9;
+        let mut ts = Vec::new();
+        for c in &self.items {
+            if c.kind == CreaseKind::Kink {
+                c.level.crossings(seg, &mut ts);
+            }
+        }
+        ts.sort_by(f64::total_cmp);
+        ts.retain(|t| *t > APART && *t < 1.0 - APART);
+        ts.dedup_by(|b, a| *b - *a < APART);
+        ts
+    }
+
+    /// The first place on `seg` where the map is not defined.
+    #[must_use]
+    pub fn first_undefined(&self, seg: &Seg) -> Option<Point> {
+        let mut ts = Vec::new();
+        for c in &self.items {
+            if c.kind == CreaseKind::Edge {
+                if c.level.at(seg.start()) <= 0.0 {
+                    return Some(seg.start());
+                }
+                c.level.crossings(seg, &mut ts);
+                if c.level.at(seg.end()) <= 0.0 {
+                    ts.push(1.0);
+                }
+            }
+        }
+        ts.into_iter().min_by(f64::total_cmp).map(|t| seg.eval(t))
+    }
+}

@@ -1,0 +1,118 @@
+//! Maps of the plane, numbers only: what a deformation is once its parameters are settled.
+//!
+//! [`Map`] is the trait; [`Formula`] the short way to write one (a formula over any [`Real`], derivatives come from dual
+//! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
+
+mod affine;
+mod chain;
+mod crease;
+mod dual;
+mod formula;
+mod homography;
+mod jet;
+mod rational;
+
+pub use affine::AffineMap;
+pub use chain::Chain;
+pub use crease::{Crease, CreaseKind, Creases, Level};
+pub use dual::{Dual, Real};
+pub use formula::Formula;
+pub use homography::Homography;
+pub use jet::Jet;
+pub use rational::RationalBezier;
+
+use kurbo::{Affine, Point};
+use std::sync::Arc;
+
+/// What kind of map it is: the kinds that keep lines need no refitting, and fold in a [`Chain`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Class {
+    /// Control points map exactly.
+    Affine(Affine),
+    /// Lines stay lines.
+    Projective(Homography),
+    /// Anything else.
+    Smooth,
+}
+
+/// A differentiable map of the plane, in root user units, y down.
+///
+/// Only [`Map::jet`] is required. The others tell the refitter more (exactness, where the map is not smooth) or let it
+/// go faster (batches).
+pub trait Map: Send + Sync {
+    /// Value and both partial derivatives at `p`, in one evaluation. On a crease, either side's.
+    fn jet(&self, p: Point) -> Jet;
+
+    /// The value alone.
+    fn point(&self, p: Point) -> Point {
+        self.jet(p).p
+    }
+
+    /// A batch of jets: one virtual call, and a loop the compiler sees whole. `out` has the length of `ps`.
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        for (p, o) in ps.iter().zip(out) {
+            *o = self.jet(*p);
+        }
+    }
+
+    /// A batch of values. `out` has the length of `ps`.
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        for (p, o) in ps.iter().zip(out) {
+            *o = self.point(*p);
+        }
+    }
+
+    /// The kind of map.
+    fn class(&self) -> Class {
+        Class::Smooth
+    }
+
+    /// Adds the places where the map is not smooth, and the edges of where it is defined.
+    fn creases(&self, _out: &mut Creases) {}
+
+    /// For a map with creases: the smooth map that agrees with this one on the piece of the plane, cut at the creases, that
+    /// holds `inside`. Evaluated on the piece's edge it gives the limit from inside. `None`: the map itself is smooth.
+    fn branch(&self, _inside: Point) -> Option<Arc<dyn Map>> {
+        None
+    }
+
+    /// The exact image of a (rational) Bézier curve, where it is one again.
+    fn image_of(&self, _curve: &RationalBezier) -> Option<RationalBezier> {
+        None
+    }
+
+    /// The inverse map, where there is one.
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        None
+    }
+}
+
+impl<M: Map + ?Sized> Map for Arc<M> {
+    fn jet(&self, p: Point) -> Jet {
+        (**self).jet(p)
+    }
+    fn point(&self, p: Point) -> Point {
+        (**self).point(p)
+    }
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        (**self).jets(ps, out);
+    }
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        (**self).points(ps, out);
+    }
+    fn class(&self) -> Class {
+        (**self).class()
+    }
+    fn creases(&self, out: &mut Creases) {
+        (**self).creases(out);
+    }
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        (**self).branch(inside)
+    }
+    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        (**self).image_of(curve)
+    }
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        (**self).inverse()
+    }
+}
