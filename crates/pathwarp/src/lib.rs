@@ -5,9 +5,15 @@
 //!
 //! This crate is pure: no I/O, no globals, no printing.
 
+pub(crate) mod anchors;
+pub mod check;
+pub mod deform;
 mod error;
+pub mod fold;
 pub mod map;
 pub mod outline;
+pub mod param;
+pub mod recipe;
 pub mod refit;
 
 pub use error::{Error, GeometryError};
