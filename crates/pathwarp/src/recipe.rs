@@ -41,10 +41,9 @@ impl Recipe {
     pub fn build<'a>(
         &self,
         registry: &Registry,
-        frame: Frame,
-        artwork: impl Iterator<Item = &'a Outline> + Clone,
+        mut frame: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
-        let mut frame = frame;
         let mut map = Chain::default();
         let mut steps = Vec::with_capacity(self.steps.len());
         for (i, step) in self.steps.iter().enumerate() {
@@ -94,12 +93,13 @@ mod tests {
         let recipe = Recipe {
             steps: vec![step("affine", &[("scale-x", "2"), ("about", "0,0")]), step("affine", &[("move-x", "50%")])],
         };
-        let built =
-            recipe.build(&Registry::builtin(), Frame::new(art.bounding_box().unwrap()), std::iter::once(&art)).unwrap();
+        let built = recipe
+            .build(&Registry::builtin(), Frame::new(art.bounding_box().unwrap()), &std::iter::once(&art))
+            .unwrap();
         assert_eq!(built.map.point(Point::new(10.0, 5.0)), Point::new(120.0, 5.0));
         assert_eq!(built.map.steps().len(), 1);
         let unknown = Recipe { steps: vec![step("wobble", &[])] };
-        let e = unknown.build(&Registry::builtin(), Frame::new(Rect::ZERO), std::iter::once(&art)).err().unwrap();
+        let e = unknown.build(&Registry::builtin(), Frame::new(Rect::ZERO), &std::iter::once(&art)).err().unwrap();
         assert!(e.to_string().contains("shaper"), "{e}");
     }
 }

@@ -311,9 +311,9 @@ fn sides_path(n: &Net) -> BezPath {
 /// The eight curves of a net.
 fn rows_path(n: &Net) -> BezPath {
     let mut p = BezPath::new();
-    for i in 0..4 {
-        p.move_to(n[i][0]);
-        p.curve_to(n[i][1], n[i][2], n[i][3]);
+    for (i, row) in n.iter().enumerate() {
+        p.move_to(row[0]);
+        p.curve_to(row[1], row[2], row[3]);
         p.move_to(n[0][i]);
         p.curve_to(n[1][i], n[2][i], n[3][i]);
     }
