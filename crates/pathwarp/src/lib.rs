@@ -8,6 +8,7 @@
 pub(crate) mod anchors;
 pub mod check;
 pub mod deform;
+pub mod distance;
 mod error;
 pub mod fold;
 pub mod map;

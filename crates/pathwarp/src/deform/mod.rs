@@ -10,7 +10,7 @@ mod similitude;
 use crate::error::Error;
 use crate::map::Map;
 use crate::param::{Args, Frame, Param, Settings};
-use kurbo::{BezPath, Point};
+use kurbo::BezPath;
 use std::sync::Arc;
 
 /// The deformations of this crate, in the order `pathwarp list` shows them.
@@ -142,10 +142,8 @@ pub enum Role {
 pub struct Overlay {
     /// What it stands for.
     pub role: Role,
-    /// Its curve.
+    /// Its curve, run in the order in which the deformation uses its anchors.
     pub path: BezPath,
-    /// Its anchors, in the order the deformation uses them.
-    pub anchors: Vec<Point>,
 }
 
 /// The deformations a program knows.

@@ -157,8 +157,7 @@ impl Deformation for Shaper {
         };
         let map = compose(&anchors::to_standard("--base", &base)?, net, after);
 
-        let mut overlays =
-            vec![Overlay { role: Role::Cage, path: cage, anchors: corners.to_vec() }, overlay(Role::Base, &base)];
+        let mut overlays = vec![Overlay { role: Role::Cage, path: cage }, overlay(Role::Base, &base)];
         overlays.extend(target.iter().map(|t| overlay(Role::Target, t)));
         Ok(Built { map, notes, overlays })
     }
@@ -321,7 +320,7 @@ fn rows_path(n: &Net) -> BezPath {
 }
 
 fn overlay(role: Role, a: &Anchors) -> Overlay {
-    Overlay { role, path: a.outline().to_bez_path(0.0), anchors: a.points().to_vec() }
+    Overlay { role, path: a.outline().to_bez_path(0.0) }
 }
 
 fn wrapper(a: &Anchors) -> &'static str {

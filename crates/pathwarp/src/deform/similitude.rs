@@ -77,11 +77,7 @@ impl Deformation for Similitude {
             which: [1, 2],
             at: a,
         })?;
-        let overlay = |role, p: [Point; 2]| Overlay {
-            role,
-            path: Anchors::Two(p).outline().to_bez_path(0.0),
-            anchors: p.to_vec(),
-        };
+        let overlay = |role, p: [Point; 2]| Overlay { role, path: Anchors::Two(p).outline().to_bez_path(0.0) };
         Ok(Built {
             map: Arc::new(map),
             notes: Vec::new(),
