@@ -30,8 +30,9 @@ fn one_way(from: &Outline, to: &Outline) -> Option<f64> {
         .map(|p| {
             let mut best = dots.iter().map(|d| d.distance(p)).fold(f64::INFINITY, f64::min);
             // Neighbouring samples have neighbouring feet: starting with the last winner prunes nearly all the others.
-            let near = targets.get(last).into_iter();
-            for (i, (bounds, seg)) in near.map(|t| (last, t)).chain(targets.iter().enumerate()) {
+            let winner = last;
+            let near = targets.get(winner).into_iter();
+            for (i, (bounds, seg)) in near.map(|t| (winner, t)).chain(targets.iter().enumerate()) {
                 if box_distance(bounds, p) < best {
                     let d = to_segment(seg, p, best);
                     if d < best {
