@@ -29,6 +29,7 @@ impl EllipticArc {
     /// The arc of an ellipse from angle `start` through `sweep` (radians).
     #[must_use]
     pub fn new(center: Point, a: Vec2, b: Vec2, start: f64, sweep: f64) -> Self {
+        let (start, sweep) = (on_grid(start), on_grid(sweep));
         let at = |th: f64| center + a * th.cos() + b * th.sin();
         let p0 = at(start);
         // A whole turn closes exactly.
@@ -47,6 +48,10 @@ impl EllipticArc {
         sweep: bool,
         p1: Point,
     ) -> Option<Self> {
+        // Worked out from the smaller end, so that the arc drawn from either end is the same to the last bit.
+        if (p0.x, p0.y) > (p1.x, p1.y) {
+            return Self::from_svg(p1, radii, x_rotation_degrees, large, !sweep, p0).map(|a| a.reversed());
+        }
         let (mut rx, mut ry) = (radii.x.abs(), radii.y.abs());
         if p0 == p1 || rx == 0.0 || ry == 0.0 || !(rx * ry * x_rotation_degrees).is_finite() {
             return None;
@@ -85,8 +90,8 @@ impl EllipticArc {
             center,
             a: Vec2::new(cos * rx, sin * rx),
             b: Vec2::new(-sin * ry, cos * ry),
-            start: th0,
-            sweep: delta,
+            start: on_grid(th0),
+            sweep: on_grid(delta),
         })
     }
 
@@ -204,6 +209,13 @@ impl EllipticArc {
         .iter()
         .all(|v| v.abs() < limit)
     }
+}
+
+/// Angles are kept to multiples of 2⁻⁴⁸ (3.6e-15, a few roundings of a turn): their sums are then exact, and an arc reversed
+/// twice is the same to the last bit.
+fn on_grid(angle: f64) -> f64 {
+    const PER_RADIAN: f64 = (1u64 << 48) as f64;
+    (angle * PER_RADIAN).round() / PER_RADIAN
 }
 
 #[cfg(test)]

@@ -1,0 +1,196 @@
+//! One smooth source piece and its image: sampled eight parameters at a time, with one-sided tangents at its break points.
+
+use crate::map::{Jet, Map};
+use crate::outline::{EllipticArc, Seg};
+use kurbo::{Point, Vec2};
+
+/// Eight numbers side by side: what one pass of the fit works on (two AVX registers of four, or four SSE2 ones of two).
+pub(super) type Lane = [f64; 8];
+
+/// Eight points.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Lanes {
+    pub(super) x: Lane,
+    pub(super) y: Lane,
+}
+
+/// Below this share of its usual size a derivative says nothing about the direction of the curve.
+const VANISHING: f64 = 1e-9;
+
+/// Where one-sided directions are taken instead, as a share of the segment: far above rounding, and the direction there is
+/// off by about the same number of radians, a thousandth of the angle the joints are promised to.
+const BESIDE: f64 = 3e-7;
+
+/// How far beside the point a sharp turn is told from a smooth one.
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    /// Power basis, constant term first.
+    Poly([Vec2; 4]),
+    Arc(EllipticArc),
+}
+
+/// A source segment in its canonical direction under the smooth map that holds on it.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) seg: Seg,
+    form: Form,
+    pub(super) map: &'a dyn Map,
+    /// Length of the control polygon, the yardstick of the derivative.
+    size: f64,
+}
+
+/// A break point: a place on the image, with the tangents on both sides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct End {
+    pub(super) t: f64,
+    pub(super) p: Point,
+    /// Speed of the image with respect to the segment's parameter; zero where the derivative vanishes.
+    pub(super) speed: f64,
+    /// Unit tangent just before.
+    pub(super) into: Vec2,
+    /// Unit tangent just after.
+    pub(super) away: Vec2,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(seg: Seg, map: &'a dyn Map) -> Self {
+        let (form, size) = match seg {
+            Seg::Line(s) => (poly(&[s.p0, s.p1]), (s.p1 - s.p0).hypot()),
+            Seg::Quad(s) => (poly(&[s.p0, s.p1, s.p2]), (s.p1 - s.p0).hypot() + (s.p2 - s.p1).hypot()),
+            Seg::Cubic(s) => {
+                (poly(&[s.p0, s.p1, s.p2, s.p3]), (s.p1 - s.p0).hypot() + (s.p2 - s.p1).hypot() + (s.p3 - s.p2).hypot())
+            }
+            Seg::Arc(s) => (Form::Arc(s), s.a.hypot().max(s.b.hypot()) * s.sweep.abs()),
+        };
+        Self { seg, form, map, size }
+    }
+
+    /// Length of the control polygon.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Source points at eight parameters.
+    #[inline]
+    pub(super) fn points(&self, t: &Lane) -> Lanes {
+        let mut out = Lanes::default();
+        match &self.form {
+            Form::Poly([c0, c1, c2, c3]) => {
+                for i in 0..8 {
+                    let t = t[i];
+                    out.x[i] = ((c3.x * t + c2.x) * t + c1.x) * t + c0.x;
+                    out.y[i] = ((c3.y * t + c2.y) * t + c1.y) * t + c0.y;
+                }
+            }
+            Form::Arc(a) => {
+                for i in 0..8 {
+                    let p = a.eval(t[i]);
+                    (out.x[i], out.y[i]) = (p.x, p.y);
+                }
+            }
+        }
+        out
+    }
+
+    /// Images at eight parameters. `Err`: the source place where the map is not finite.
+    #[inline]
+    pub(super) fn images(&self, t: &Lane) -> Result<Lanes, Point> {
+        let s = self.points(t);
+        let mut source = [Point::ORIGIN; 8];
+        for i in 0..8 {
+            source[i] = Point::new(s.x[i], s.y[i]);
+        }
+        let mut image = [Point::ORIGIN; 8];
+        self.map.points(&source, &mut image);
+        let mut out = Lanes::default();
+        let mut sum = 0.0;
+        for i in 0..8 {
+            (out.x[i], out.y[i]) = (image[i].x, image[i].y);
+            sum += image[i].x + image[i].y;
+        }
+        // One test for all: the sum is finite only if every term is (terms too large to add up are too large to fit).
+        if sum.is_finite() { Ok(out) } else { Err(source[image.iter().position(|p| !p.is_finite()).unwrap_or(0)]) }
+    }
+
+    /// The image's point and derivative at one parameter.
+    pub(super) fn image(&self, t: f64) -> (Point, Vec2) {
+        let j = self.map.jet(self.seg.eval(t));
+        (j.p, j.push(self.seg.deriv(t)))
+    }
+
+    /// The break point at `t`. `node` is the image of a source node or crease, shared with the neighbours bit by bit.
+    pub(super) fn end(&self, t: f64, node: Option<Point>) -> Result<End, Point> {
+        let at = self.seg.eval(t);
+        self.end_with(t, node, self.map.jet(at), at)
+    }
+
+    /// As [`Source::end`], with the map's jet at the place known.
+    pub(super) fn end_with(&self, t: f64, node: Option<Point>, jet: Jet, at: Point) -> Result<End, Point> {
+        if !jet.is_finite() {
+            return Err(at);
+        }
+        let v = self.seg.deriv(t);
+        let d = jet.push(v);
+        let p = node.unwrap_or(jet.p);
+        let (n2, v2) = (d.hypot2(), v.hypot2());
+        let j2 = jet.dx.hypot2() + jet.dy.hypot2();
+        if n2 > VANISHING * VANISHING * j2 * v2 && v2 > (VANISHING * self.size).powi(2) {
+            let speed = n2.sqrt();
+            let u = d / speed;
+            return Ok(End { t, p, speed, into: u, away: u });
+        }
+        let away = self.beside(t, 1.0, jet);
+        let into = self.beside(t, -1.0, jet);
+        Ok(End { t, p, speed: 0.0, into, away })
+    }
+
+    /// The unit tangent just after (`side` = 1) or just before (−1) a place where the derivative vanishes: the image of the
+    /// first derivative of the source that does not (the k-th turns with (±1)^(k−1)); if the map kills that too, the
+    /// direction a little beside the place.
+    #[cold]
+    fn beside(&self, t: f64, side: f64, jet: Jet) -> Vec2 {
+        if let Form::Poly([_, c1, c2, c3]) = &self.form {
+            let v = *c1 + (*c2 * 2.0 + *c3 * (3.0 * t)) * t;
+            let a = *c2 * 2.0 + *c3 * (6.0 * t);
+            let b = *c3 * 6.0;
+            let small = (VANISHING * self.size) * 10.0;
+            if v.hypot() <= small {
+                let w = if a.hypot() > small { a * side } else { b };
+                let d = jet.push(w);
+                let whole = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() * w.hypot();
+                if d.hypot() > 1e-6 * whole {
+                    return d / d.hypot();
+                }
+            }
+        }
+        // Farther and farther away until there is a direction; a constant image has none.
+        let mut h = BESIDE;
+        while h < 1.0 {
+            let s = t + side * h;
+            let s = if (0.0..=1.0).contains(&s) { s } else { t - side * h };
+            let flip = if (s - t) * side < 0.0 { -1.0 } else { 1.0 };
+            let (_, d) = self.image(s);
+            let n = d.hypot();
+            if n > 0.0 && n.is_finite() {
+                // Beyond the segment's end there is nothing: the inner side's direction, mirrored as at a cusp or not, is
+                // never used by a piece of this segment.
+                return d * (flip / n);
+            }
+            h *= 30.0;
+        }
+        Vec2::ZERO
+    }
+}
+
+/// Power basis of a Bézier curve of degree 1 to 3.
+fn poly(p: &[Point]) -> Form {
+    let v = |i: usize| p[i].to_vec2();
+    Form::Poly(match p.len() {
+        2 => [v(0), p[1] - p[0], Vec2::ZERO, Vec2::ZERO],
+        3 => [v(0), (p[1] - p[0]) * 2.0, (p[2] - p[1]) - (p[1] - p[0]), Vec2::ZERO],
+        _ => {
+            let (d0, d1, d2) = (p[1] - p[0], p[2] - p[1], p[3] - p[2]);
+            [v(0), d0 * 3.0, (d1 - d0) * 3.0, (d2 - d1) - (d1 - d0)]
+        }
+    })
+}

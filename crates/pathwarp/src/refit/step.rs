@@ -1,0 +1,480 @@
+//! Where the pieces end: as few as the tolerance allows, of equal difficulty.
+//!
+//! The error of a piece goes with the sixth power of its length, so a piece with error e uses the share (e/tolerance)^(1/6)
+//! of what one piece can do: its difficulty. Difficulties add up along the curve. One attempt on the whole tells how many
+//! pieces are needed; the breaks then go to the quantiles of the difficulty measured so far, until every piece fits.
+
+use super::fit::{self, Frame, State};
+use super::source::{End, Lane, Lanes, Source};
+use super::split::Slow;
+use super::verify::{self, Candidate};
+use super::{Assurance, PathReport, Piece};
+use kurbo::{Line, Point, Vec2};
+
+/// Attempts on one smooth part at most.
+const MOST_ATTEMPTS: usize = 2000;
+/// Shorter stretches of the parameter than this are not split any more.
+const SHORTEST: f64 = 1e-8;
+/// Pieces planned at once.
+const MOST_PLANNED: usize = 8;
+/// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
+/// leading form s²(1−s)²((s−½)²−c) grows by four percent at most.
+const PLAIN: f64 = 0.95;
+/// A fit this good is not improved further.
+const ENOUGH: f64 = 0.77;
+
+/// Samples j/17 that are fitted (both sets symmetric about the middle).
+const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
+/// Samples j/17 that check the fit, between them.
+const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
+/// Spacing.
+const UNIT: f64 = 1.0 / 17.0;
+
+/// What came of fitting one piece to a stretch.
+#[derive(Debug, Clone, Copy)]
+enum Outcome {
+    Fits {
+        piece: Piece,
+        error: f64,
+    },
+    Misses {
+        /// The best try, if the budget ends here.
+        piece: Piece,
+        error: f64,
+        /// A place where the image nearly stops.
+        sharp: Option<f64>,
+    },
+}
+
+impl Outcome {
+    /// The share of one piece's capacity that the stretch takes.
+    fn difficulty(&self, tolerance: f64) -> f64 {
+        let (Self::Fits { error, .. } | Self::Misses { error, .. }) = self;
+        (error / tolerance).clamp(1e-3, 1e6).powf(1.0 / 6.0)
+    }
+}
+
+/// Fits one smooth part of a segment.
+pub(super) struct Stepper<'a> {
+    pub(super) source: Source<'a>,
+    pub(super) slow: Slow,
+    pub(super) tolerance: f64,
+    pub(super) attempts: usize,
+}
+
+impl Stepper<'_> {
+    /// Appends pieces for the stretch between two break points. `Err`: a source place where the map is not finite.
+    pub(super) fn cover(
+        &mut self,
+        from: End,
+        to: End,
+        out: &mut Vec<Piece>,
+        report: &mut PathReport,
+    ) -> Result<(), Point> {
+        let first = self.attempt(&from, &to)?;
+        if let Outcome::Fits { piece, error } = first {
+            self.accept(piece, error, out, report);
+            return Ok(());
+        }
+        let mut stack = vec![(from, to, Some(first))];
+        while let Some((from, to, known)) = stack.pop() {
+            let outcome = match known {
+                Some(o) => o,
+                None => self.attempt(&from, &to)?,
+            };
+            let (piece, error, sharp) = match outcome {
+                Outcome::Fits { piece, error } => {
+                    self.accept(piece, error, out, report);
+                    continue;
+                }
+                Outcome::Misses { piece, error, sharp } => (piece, error, sharp),
+            };
+            let h = to.t - from.t;
+            if self.attempts >= MOST_ATTEMPTS || h < SHORTEST {
+                report.over_budget.push(self.source.seg.eval(0.5 * (from.t + to.t)));
+                report.max_error = report.max_error.max(error);
+                report.assurance = report.assurance.min(Assurance::Checked);
+                out.push(piece);
+                continue;
+            }
+            let split = self.slow.inside(from.t, to.t).or(sharp);
+            if let Some(t) = split {
+                let mid = self.source.end(t, None)?;
+                stack.push((mid, to, None));
+                stack.push((from, mid, None));
+                continue;
+            }
+            self.plan(from, to, &outcome, &mut stack)?;
+        }
+        Ok(())
+    }
+
+    fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut PathReport) {
+        // What may hide between the samples, see PLAIN.
+        let bound = (error * 1.05).min(self.tolerance).max(error);
+        report.max_error = report.max_error.max(bound);
+        report.assurance = report.assurance.min(Assurance::Checked);
+        out.push(piece);
+    }
+
+    /// Covers a stretch that one piece does not fit by several of equal difficulty, and puts them on the stack.
+    fn plan(
+        &mut self,
+        from: End,
+        to: End,
+        whole: &Outcome,
+        stack: &mut Vec<(End, End, Option<Outcome>)>,
+    ) -> Result<(), Point> {
+        /// Placements tried with one number of pieces.
+        const ROUNDS: usize = 3;
+        let tol = self.tolerance;
+        let d = whole.difficulty(tol);
+        let mut n = (d.ceil() as usize).clamp(2, MOST_PLANNED);
+        let mut ends = [from; MOST_PLANNED + 1];
+        let mut got: [Option<Outcome>; MOST_PLANNED] = [None; MOST_PLANNED];
+        ends[n] = to;
+        for i in 1..n {
+            ends[i] = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64, None)?;
+        }
+        let mut round = 0;
+        loop {
+            let mut total = 0.0;
+            let mut good = true;
+            let mut sums = [0.0; MOST_PLANNED + 1];
+            for i in 0..n {
+                let o = match got[i] {
+                    Some(o) => o,
+                    None => self.attempt(&ends[i], &ends[i + 1])?,
+                };
+                got[i] = Some(o);
+                total += o.difficulty(tol);
+                sums[i + 1] = total;
+                good &= matches!(o, Outcome::Fits { .. });
+            }
+            round += 1;
+            let stuck = got[..n].iter().flatten().any(|o| matches!(o, Outcome::Misses { sharp: Some(_), .. }));
+            if good || stuck || self.attempts >= MOST_ATTEMPTS {
+                break;
+            }
+            let mut next = n;
+            if total > n as f64 * 0.995 || round >= ROUNDS {
+                next = (n + 1).max(total.ceil() as usize);
+                round = 0;
+            }
+            if next > MOST_PLANNED {
+                break;
+            }
+            // Break points at the quantiles of the difficulty.
+            let old = ends;
+            let mut at = 0;
+            for i in 1..next {
+                let want = total * i as f64 / next as f64;
+                while at + 1 < n && sums[at + 1] < want {
+                    at += 1;
+                }
+                let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
+                ends[i] = self.source.end(old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0), None)?;
+            }
+            ends[next] = to;
+            got = [None; MOST_PLANNED];
+            n = next;
+        }
+        for i in (0..n).rev() {
+            stack.push((ends[i], ends[i + 1], got[i]));
+        }
+        Ok(())
+    }
+
+    fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
+        self.attempts += 1;
+        let (t0, h) = (from.t, to.t - from.t);
+        let at = |set: &Lane| -> Lane {
+            let mut t = [0.0; 8];
+            for i in 0..8 {
+                t[i] = t0 + h * (set[i] * UNIT);
+            }
+            t
+        };
+        let mut g = self.source.images(&at(&FITTED))?;
+        relative(&mut g, from.p);
+        let q = to.p - from.p;
+        let shape = Shape::of(&g, q);
+        if let Some(line) = straight(&g, q, from.p, to.p, &shape) {
+            return Ok(Outcome::Fits { piece: line, error: 0.0 });
+        }
+        // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
+        let hermite = [from.speed * h / 3.0, to.speed * h / 3.0];
+        let floor = hermite.map(|a| if a > 0.0 { a.min(1e-3 * shape.length) } else { 1e-5 * shape.length });
+        let frame = Frame { q, t0: from.away, t1: to.into, floor, length: shape.length };
+        let mut z = State { a: hermite[0].max(floor[0]), b: hermite[1].max(floor[1]), s: [0.0; 8] };
+        for i in 0..8 {
+            z.s[i] = FITTED[i] * UNIT;
+        }
+        let mut check = self.source.images(&at(&CHECKED))?;
+        relative(&mut check, from.p);
+        let job = Job { from, to, frame, g: &g, check: &check, careful: shape.sharp || self.slow_inside(from, to) };
+        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0)
+            && let Some(o) = hermite_exact(&job, hermite)
+        {
+            return Ok(o);
+        }
+        let tol = self.tolerance;
+        let mut f = fit::fit(&frame, &g, z, ENOUGH * tol);
+        let mut error = f.error;
+        let mut best = (f.error, f.z.a, f.z.b);
+        for stage in 0..3 {
+            if error <= tol {
+                let e = self.check(&job, &f.z)?;
+                if e <= tol {
+                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&f.z)), error: e });
+                }
+                error = e;
+                best = (e, f.z.a, f.z.b);
+            }
+            if stage == 0 {
+                if f.error <= ENOUGH * tol {
+                    f = fit::fit(&frame, &g, f.z, 0.0);
+                    error = error.max(f.error);
+                    if f.error <= tol {
+                        error = f.error;
+                        continue;
+                    }
+                }
+            } else if stage == 2 {
+                break;
+            }
+            // Minimax: worth it only where it can bring the error below the tolerance.
+            const REACH: f64 = 1.9;
+            if error > REACH * tol {
+                break;
+            }
+            let other = State { s: between(&f.z.s), ..f.z };
+            let (z, e) = fit::lawson(&frame, [&g, &check], [f.z, other], 4);
+            f = fit::Fit { z: z[0], error: e };
+            error = e;
+            if e < best.0 {
+                best = (e, z[0].a, z[0].b);
+            }
+            if e > tol {
+                break;
+            }
+        }
+        let sharp = if shape.sharp { self.sharpest(from, to, shape.length) } else { None };
+        let z = State { a: best.1, b: best.2, ..f.z };
+        let error = best.0.max(tol * 1.0001);
+        Ok(Outcome::Misses { piece: Piece::Cubic(job.cubic(&z)), error, sharp })
+    }
+
+    fn slow_inside(&self, from: &End, to: &End) -> bool {
+        self.slow.all().iter().any(|t| *t > from.t && *t < to.t)
+    }
+
+    /// The error of a state: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
+    fn check(&self, job: &Job<'_>, z: &State) -> Result<f64, Point> {
+        let mut s0 = z.s;
+        let mut s1 = between(&z.s);
+        let d0 = job.frame.distances(job.g, z.a, z.b, &mut s0, 1);
+        let d1 = job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
+        let error = fit::largest(&d0).max(fit::largest(&d1)).sqrt();
+        if error > self.tolerance {
+            return Ok(error);
+        }
+        let sound = job.sound(z, &s0, &s1);
+        if !job.careful && sound && error <= PLAIN * self.tolerance {
+            return Ok(error);
+        }
+        let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
+        let mut feet = [(0.0, 0.0); 18];
+        feet[17] = (1.0, 1.0);
+        for i in 0..8 {
+            feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
+            feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
+        }
+        verify::dense(&self.source, &c, &feet, &self.slow, self.tolerance).map(|e| e.max(error))
+    }
+
+    /// Where the image is slowest within the stretch, if it nearly stops there.
+    #[cold]
+    fn sharpest(&self, from: &End, to: &End, length: f64) -> Option<f64> {
+        /// Samples of the search; a cusp is then closed in on by golden sections.
+        const SAMPLES: usize = 48;
+        let h = to.t - from.t;
+        let speed = |tau: f64| self.source.image(from.t + h * tau).1.hypot() * h;
+        let mut best = (0, f64::INFINITY);
+        for i in 1..SAMPLES {
+            let v = speed(i as f64 / SAMPLES as f64);
+            if v < best.1 {
+                best = (i, v);
+            }
+        }
+        let (mut lo, mut hi) = ((best.0 as f64 - 1.0) / SAMPLES as f64, (best.0 as f64 + 1.0) / SAMPLES as f64);
+        const GOLD: f64 = 0.381_966_011_250_105;
+        for _ in 0..60 {
+            let (a, b) = (lo + GOLD * (hi - lo), hi - GOLD * (hi - lo));
+            if speed(a) <= speed(b) { hi = b } else { lo = a }
+        }
+        let tau = 0.5 * (lo + hi);
+        /// Faster than this share of the mean is no cusp.
+        const STOPS: f64 = 0.1;
+        /// Nearer to an end it is that end's own.
+        const INSIDE: f64 = 1e-4;
+        (speed(tau) < STOPS * length && tau > INSIDE && tau < 1.0 - INSIDE).then_some(from.t + h * tau)
+    }
+}
+
+/// The Hermite cubic, if the image is that to rounding: so maps that change little give cusps and coincident handles back as
+/// they were.
+#[cold]
+fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> Option<Outcome> {
+    /// Exact to rounding.
+    const EXACT: f64 = 1e-11;
+    let [c1, c2, c3] = job.frame.power(hermite[0], hermite[1]);
+    for (g, set) in [(job.g, &FITTED), (job.check, &CHECKED)] {
+        for i in 0..8 {
+            let s = set[i] * UNIT;
+            let c = (c1 + (c2 + c3 * s) * s) * s;
+            if (c - Vec2::new(g.x[i], g.y[i])).hypot() > EXACT * job.frame.length {
+                return None;
+            }
+        }
+    }
+    let z = State { a: hermite[0], b: hermite[1], s: [0.0; 8] };
+    Some(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error: 0.0 })
+}
+
+/// One attempt's data.
+struct Job<'a> {
+    from: &'a End,
+    to: &'a End,
+    frame: Frame,
+    g: &'a Lanes,
+    check: &'a Lanes,
+    careful: bool,
+}
+
+impl Job<'_> {
+    fn cubic(&self, z: &State) -> kurbo::CubicBez {
+        self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
+    }
+
+    /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, and its direction at every foot
+    /// is that of the image there.
+    fn sound(&self, z: &State, s0: &Lane, s1: &Lane) -> bool {
+        /// Feet may be this far from where an even pace would put them.
+        const UNEVEN: f64 = 0.18;
+        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+        let mut ok = [true; 8];
+        for i in 0..8 {
+            let drift = (s0[i] - FITTED[i] * UNIT).abs().max((s1[i] - CHECKED[i] * UNIT).abs());
+            let s = s0[i];
+            let (dx, dy) = ((c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x, (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y);
+            let (x, y) = (self.check.x[i] - self.g.x[i], self.check.y[i] - self.g.y[i]);
+            // The checked sample follows the fitted one in the first half and precedes it in the second.
+            let side = if i < 4 { 1.0 } else { -1.0 };
+            let along = (dx * x + dy * y) * side;
+            let order = (s1[i] - s0[i]) * side;
+            ok[i] = drift < UNEVEN
+                && order > 0.0
+                && along > 0.0
+                && 2.0 * along * along >= (dx * dx + dy * dy) * (x * x + y * y);
+        }
+        ok.iter().all(|b| *b)
+    }
+}
+
+/// Feet of the checked samples from those of the fitted ones, by linear interpolation.
+#[inline(always)]
+fn between(s: &Lane) -> Lane {
+    let third = (s[4] - s[3]) / 3.0;
+    [
+        0.5 * (s[0] + s[1]),
+        0.5 * (s[1] + s[2]),
+        0.5 * (s[2] + s[3]),
+        s[3] + third,
+        s[4] - third,
+        0.5 * (s[4] + s[5]),
+        0.5 * (s[5] + s[6]),
+        0.5 * (s[6] + s[7]),
+    ]
+}
+
+#[inline(always)]
+fn relative(g: &mut Lanes, to: Point) {
+    for i in 0..8 {
+        g.x[i] -= to.x;
+        g.y[i] -= to.y;
+    }
+}
+
+/// What the polyline through the samples looks like.
+struct Shape {
+    length: f64,
+    /// It turns by more than 60° at a sample, or its pace varies more than sixfold.
+    sharp: bool,
+}
+
+impl Shape {
+    #[inline(always)]
+    fn of(g: &Lanes, q: Vec2) -> Self {
+        let mut dx = [0.0; 9];
+        let mut dy = [0.0; 9];
+        dx[0] = g.x[0];
+        dy[0] = g.y[0];
+        for i in 1..8 {
+            dx[i] = g.x[i] - g.x[i - 1];
+            dy[i] = g.y[i] - g.y[i - 1];
+        }
+        dx[8] = q.x - g.x[7];
+        dy[8] = q.y - g.y[7];
+        let mut l = [0.0; 9];
+        for i in 0..9 {
+            l[i] = dx[i] * dx[i] + dy[i] * dy[i];
+        }
+        let mut bent = [false; 8];
+        for i in 0..8 {
+            let dot = dx[i] * dx[i + 1] + dy[i] * dy[i + 1];
+            bent[i] = dot <= 0.0 || 4.0 * dot * dot < l[i] * l[i + 1];
+        }
+        let mut length = 0.0;
+        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        for (i, l2) in l.iter().enumerate() {
+            let l = l2.sqrt();
+            length += l;
+            // Lengths per unit of the parameter: the end stretches are half as long, the middle one half as long again.
+            let pace = l * [2.0, 1.0, 1.0, 1.0, 2.0 / 3.0, 1.0, 1.0, 1.0, 2.0][i];
+            least = if pace < least { pace } else { least };
+            most = if pace > most { pace } else { most };
+        }
+        Self { length, sharp: bent.iter().any(|b| *b) || 6.0 * least < most }
+    }
+}
+
+/// The line between the ends, if the image is that line to rounding and runs along it one way.
+#[inline(always)]
+fn straight(g: &Lanes, q: Vec2, p0: Point, p1: Point, shape: &Shape) -> Option<Piece> {
+    /// Rounding of a coordinate after a map's arithmetic, relative to its size.
+    const ROUNDING: f64 = 4e-15;
+    let size = (p0.x.abs() + p0.y.abs()).max(p1.x.abs() + p1.y.abs());
+    let line = Some(Piece::Line(Line::new(p0, p1)));
+    if shape.length <= ROUNDING * size {
+        return line;
+    }
+    let n2 = q.hypot2();
+    let most = 1e-12 * n2 + ROUNDING * size * n2.sqrt();
+    let mut off = [0.0; 8];
+    for i in 0..8 {
+        off[i] = (g.x[i] * q.y - g.y[i] * q.x).abs();
+    }
+    if fit::largest(&off) > most {
+        return None;
+    }
+    let mut last = 0.0;
+    for i in 0..8 {
+        let along = g.x[i] * q.x + g.y[i] * q.y;
+        if along <= last {
+            return None;
+        }
+        last = along;
+    }
+    if last < n2 { line } else { None }
+}
