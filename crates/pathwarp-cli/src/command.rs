@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::{Outcome, common, compare, output, paths, render};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use pathwarp::deform::{Deformation, Info, Registry};
+use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::Step;
 use std::ffi::OsString;
