@@ -29,6 +29,9 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-cli", &["pathwarp", "pathwarp-svg", "pathwarp-raster"]);
     for name in ["pathwarp", "pathwarp-svg", "pathwarp-raster"] {
-        assert!(!of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")), "{name} prints");
+        assert!(
+            !of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")),
+            "{name} prints"
+        );
     }
 }

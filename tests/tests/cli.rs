@@ -8,7 +8,8 @@ use std::path::Path;
 use support::{artwork, expect_code, pathwarp_in, root, sample, words};
 
 const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z";
-const SQUARE: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='s' d='M0,0H100V100H0Z'/></svg>";
+const SQUARE: &str =
+    "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='s' d='M0,0H100V100H0Z'/></svg>";
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -44,7 +45,10 @@ fn help_list_completions_and_manual_know_every_deformation() {
             assert!(page.contains(info.name), "{} is not in {what}", info.name);
         }
         let (own, _) = expect_code(0, &["help", info.name]);
-        assert!(own.contains("Examples:") && info.params.iter().all(|p| own.contains(&format!("--{}", p.name))), "{own}");
+        assert!(
+            own.contains("Examples:") && info.params.iter().all(|p| own.contains(&format!("--{}", p.name))),
+            "{own}"
+        );
     }
 }
 
@@ -115,14 +119,17 @@ fn unreadable_input_is_3_and_names_the_place() {
 #[test]
 fn forbidden_geometry_is_4_and_leaves_the_old_file_alone() {
     let anchors = sample("anchors.svg").display().to_string();
-    let horizon = "0,0 100,0 60,40 0,100";
+    let horizon = "0,0 100,0 40,40 0,100";
     let dir = tempfile::tempdir().unwrap();
     let old = dir.path().join("out.svg");
     fs::write(&old, "precious").unwrap();
     for (args, parts) in [
         (vec!["--shaper", "M0,0 L10,0 L10,10 L0,10 L1,1"], vec!["not closed", "--shaper"]),
         (vec!["--shaper", "M0,0 L10,0 L10,10 Z"], vec!["3 anchors"]),
-        (vec!["--shaper", CAGE, "--target", &(anchors.clone() + "#target4-collinear")], vec!["one line", "target4-collinear"]),
+        (
+            vec!["--shaper", CAGE, "--target", &(anchors.clone() + "#target4-collinear")],
+            vec!["one line", "target4-collinear"],
+        ),
         (vec!["--shaper", CAGE, "--base", "5,5 5,5"], vec!["coincide", "--base"]),
         (vec!["--shaper", CAGE, "--base", "10,40 20,40 17,35 13,35"], vec!["s hits infinity at"]),
         (vec!["--shaper", CAGE, "--target", horizon], vec!["infinity"]),
@@ -142,7 +149,17 @@ fn a_shape_beyond_the_horizon_can_be_skipped() {
     let dir = tempfile::tempdir().unwrap();
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='near' d='M12,36 l4,0 0,3 z'/><path id='far' d='M0,0H100V100H0Z'/></svg>";
     let args = [
-        "shaper", "-", "--shaper", CAGE, "--base", "10,40 20,40 17,35 13,35", "--on-error", "skip", "-o", "out.svg", "--report",
+        "shaper",
+        "-",
+        "--shaper",
+        CAGE,
+        "--base",
+        "10,40 20,40 17,35 13,35",
+        "--on-error",
+        "skip",
+        "-o",
+        "out.svg",
+        "--report",
         "r.json",
     ];
     let out = pathwarp_in(dir.path(), &args, svg.as_bytes());
@@ -160,7 +177,10 @@ fn the_report_has_every_field() {
     let (svg, json) = (dir.path().join("o.svg"), dir.path().join("r.json"));
     let [input, cage] = [sample("monogram.svg"), sample("cages.svg")].map(|p| p.display().to_string());
     let cage = cage + "#flag";
-    expect_code(0, &["shaper", &input, "--shaper", &cage, "-o", svg.to_str().unwrap(), "--report", json.to_str().unwrap()]);
+    expect_code(
+        0,
+        &["shaper", &input, "--shaper", &cage, "-o", svg.to_str().unwrap(), "--report", json.to_str().unwrap()],
+    );
     let r: Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
     assert_eq!(r["tool"], "pathwarp");
     assert_eq!(r["steps"][0], "shaper");
@@ -202,7 +222,8 @@ fn several_inputs_go_to_a_folder_and_threads_change_nothing() {
     let inputs: Vec<String> = artwork().iter().map(|n| sample(n).display().to_string()).collect();
     let cage = sample("cages.svg").display().to_string() + "#flag";
     let run = |jobs: &str, dir: &Path| {
-        let mut args: Vec<&str> = vec!["shaper", "--shaper", &cage, "--jobs", jobs, "--quiet", "--out-dir", dir.to_str().unwrap()];
+        let mut args: Vec<&str> =
+            vec!["shaper", "--shaper", &cage, "--jobs", jobs, "--quiet", "--out-dir", dir.to_str().unwrap()];
         args.extend(inputs.iter().map(String::as_str));
         expect_code(0, &args);
     };
@@ -234,7 +255,8 @@ fn guides_in_the_document_stay_and_are_no_artwork() {
 
 #[test]
 fn explain_tells_the_corners() {
-    let (_, said) = expect_code(0, &["shaper", "samples/grid.svg", "--shaper", "samples/cages.svg#arch", "--explain", "-o", "-"]);
+    let (_, said) =
+        expect_code(0, &["shaper", "samples/grid.svg", "--shaper", "samples/cages.svg#arch", "--explain", "-o", "-"]);
     for part in ["bottom side of", "corners of", "base:", "target: none"] {
         assert!(said.contains(part), "{part} not in {said}");
     }
@@ -279,13 +301,14 @@ fn compare_tells_how_far_and_can_fail() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("a.svg"), SQUARE).unwrap();
     fs::write(dir.path().join("b.svg"), SQUARE.replace("M0,0H100V100", "M0,0H100V90")).unwrap();
-    let same = pathwarp_in(dir.path(), &["compare", "a.svg", "a.svg", "--max-distance", "1e-9", "--max-pixels", "0"], b"");
+    let same =
+        pathwarp_in(dir.path(), &["compare", "a.svg", "a.svg", "--max-distance", "1e-9", "--max-pixels", "0"], b"");
     assert_eq!(same.status.code(), Some(0), "{}", text(&same.stdout));
     let apart = pathwarp_in(dir.path(), &["compare", "--json", "a.svg", "b.svg", "--max-distance", "9.9"], b"");
     assert_eq!(apart.status.code(), Some(1));
     let c: Value = serde_json::from_slice(&apart.stdout).unwrap();
     assert!((c["max_distance"].as_f64().unwrap() - 10.0).abs() < 1e-9);
-    assert!((c["pixels"]["visible_share"].as_f64().unwrap() - 0.05).abs() < 0.005, "{c}");
+    assert!((c["pixels"]["visible_share"].as_f64().unwrap() - 0.1).abs() < 0.005, "{c}");
 }
 
 #[test]
@@ -297,7 +320,16 @@ fn render_and_preview_write_pictures() {
     let preview = dir.path().join("p.png");
     expect_code(
         0,
-        &["shaper", "samples/logo.svg", "--shaper", "samples/cages.svg#flag", "-o", "-", "--preview", preview.to_str().unwrap()],
+        &[
+            "shaper",
+            "samples/logo.svg",
+            "--shaper",
+            "samples/cages.svg#flag",
+            "-o",
+            "-",
+            "--preview",
+            preview.to_str().unwrap(),
+        ],
     );
     assert!(pathwarp_raster::decode_png(&fs::read(preview).unwrap()).unwrap().width() > 600);
 }

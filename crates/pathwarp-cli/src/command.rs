@@ -42,9 +42,9 @@ pub(crate) fn build(registry: &Registry) -> Command {
         .subcommand(render::command())
         .subcommand(compare::command())
         .subcommand(
-            Command::new("completions").about("Print completions for a shell").arg(
-                Arg::new("SHELL").required(true).value_parser(value_parser!(clap_complete::Shell)),
-            ),
+            Command::new("completions")
+                .about("Print completions for a shell")
+                .arg(Arg::new("SHELL").required(true).value_parser(value_parser!(clap_complete::Shell))),
         )
         .subcommand(Command::new("man").about("Print the manual page"))
 }

@@ -66,12 +66,14 @@ pub(crate) fn args() -> Vec<Arg> {
         Arg::new("tolerance")
             .long("tolerance")
             .value_name("D")
+            .allow_negative_numbers(true)
             .help("Largest distance between the true curve and the output, in user units; default 1e-4 of the artwork's diagonal"),
         flag("certify").help("Prove the distance where the deformation allows it, rather than measure it"),
         choice("merge", &["on", "off"]).help("Join pieces across smooth joints where that saves nodes [default: off]"),
         Arg::new("frame")
             .long("frame")
             .value_name("artwork|viewbox|X,Y,W,H")
+            .allow_hyphen_values(true)
             .help("The box that percentages and defaults refer to [default: artwork]"),
         Arg::new("select")
             .long("select")
@@ -139,13 +141,21 @@ impl Common {
                 _ => pathwarp_svg::Strokes::Auto,
             },
             text: if word("text") == "skip" { pathwarp_svg::TextMode::Skip } else { pathwarp_svg::TextMode::Outline },
-            gradients: if word("gradients") == "keep" { pathwarp_svg::Gradients::Keep } else { pathwarp_svg::Gradients::Fit },
+            gradients: if word("gradients") == "keep" {
+                pathwarp_svg::Gradients::Keep
+            } else {
+                pathwarp_svg::Gradients::Fit
+            },
             structure: match word("structure") {
                 "keep" => pathwarp_svg::Structure::Keep,
                 "flatten" => pathwarp_svg::Structure::Flatten,
                 _ => pathwarp_svg::Structure::Auto,
             },
-            on_error: if word("on-error") == "skip" { pathwarp_svg::OnError::Skip } else { pathwarp_svg::OnError::Stop },
+            on_error: if word("on-error") == "skip" {
+                pathwarp_svg::OnError::Skip
+            } else {
+                pathwarp_svg::OnError::Stop
+            },
             report: path("report"),
             preview: path("preview"),
             explain: m.get_flag("explain"),
@@ -180,7 +190,9 @@ fn frame(text: Option<&String>) -> Result<FrameChoice, Failure> {
                 Ok(&[x, y, w, h]) if w > 0.0 && h > 0.0 && (x + y + w + h).is_finite() => {
                     Ok(FrameChoice::Rect(Rect::new(x, y, x + w, y + h)))
                 }
-                _ => Err(Failure::usage(format!("--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive)"))),
+                _ => Err(Failure::usage(format!(
+                    "--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive)"
+                ))),
             }
         }
     }

@@ -14,7 +14,8 @@ use std::path::PathBuf;
 const VISIBLE: u8 = 16;
 
 pub(crate) fn command() -> Command {
-    let file = |name: &'static str| Arg::new(name).required(true).value_parser(value_parser!(PathBuf)).help("An SVG file");
+    let file =
+        |name: &'static str| Arg::new(name).required(true).value_parser(value_parser!(PathBuf)).help("An SVG file");
     let limit = |name: &'static str, value: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(f64)).help(help)
     };

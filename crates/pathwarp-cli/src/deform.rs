@@ -183,7 +183,11 @@ fn warp(
         selection,
         on_error: common.on_error,
         gradients: common.gradients,
-        ..WarpOptions::new(refit::Options { certify: common.certify, merge: common.merge, ..refit::Options::new(tolerance) })
+        ..WarpOptions::new(refit::Options {
+            certify: common.certify,
+            merge: common.merge,
+            ..refit::Options::new(tolerance)
+        })
     };
     let warped = doc.warp(&built.map, &options)?;
     let report = report(&doc, &built, &options, &warped, &display(input), target);

@@ -41,6 +41,7 @@ enum Outcome {
 
 /// Runs the program on the process's arguments.
 #[must_use]
+#[expect(clippy::needless_pass_by_value, reason = "a program gives its registry away here, once")]
 pub fn main_with(registry: Registry) -> ExitCode {
     run(&registry, std::env::args_os())
 }
@@ -54,7 +55,7 @@ pub fn command(registry: &Registry) -> clap::Command {
 /// Runs the program on `args`, the first of which is the program's name.
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
-    match dispatch(registry, args.into_iter().collect()) {
+    match dispatch(registry, &args.into_iter().collect::<Vec<_>>()) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Partly) => ExitCode::from(1),
         Err(failure) => {
@@ -64,7 +65,7 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
     }
 }
 
-fn dispatch(registry: &Registry, args: Vec<OsString>) -> Result<Outcome, Failure> {
+fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> {
     // `A … + B …`: every part after a lone + is a command line of its own, all but the first without inputs.
     let mut parts = args.split(|a| a == "+").map(<[OsString]>::to_vec);
     let first = parts.next().unwrap_or_default();

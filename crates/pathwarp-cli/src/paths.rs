@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::{Outcome, deform, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use pathwarp::outline::{Seg, Subpath};
 use pathwarp::kurbo::{CubicBez, Point};
+use pathwarp::outline::{Seg, Subpath};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -103,10 +103,22 @@ fn table(paths: &[Path]) -> String {
     for p in paths {
         let closed: Vec<&str> = p.strokes.iter().map(|s| if s.closed { "closed" } else { "open" }).collect();
         let all_same = closed.windows(2).all(|w| w[0] == w[1]);
-        let closed = if closed.is_empty() { "empty" } else if all_same { closed[0] } else { "mixed" };
+        let closed = if closed.is_empty() {
+            "empty"
+        } else if all_same {
+            closed[0]
+        } else {
+            "mixed"
+        };
         let anchors: Vec<String> = p.strokes.iter().map(|s| s.anchors.to_string()).collect();
-        let anchors = if anchors.len() > 6 { format!("{} in {}", p.strokes.iter().map(|s| s.anchors).sum::<usize>(), anchors.len()) } else { anchors.join("+") };
-        let bounds = p.bounds.map_or(String::new(), |b| b.map(|v| format!("{:.6}", v).trim_end_matches('0').trim_end_matches('.').to_owned()).join(" "));
+        let anchors = if anchors.len() > 6 {
+            format!("{} in {}", p.strokes.iter().map(|s| s.anchors).sum::<usize>(), anchors.len())
+        } else {
+            anchors.join("+")
+        };
+        let bounds = p.bounds.map_or(String::new(), |b| {
+            b.map(|v| format!("{v:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()).join(" ")
+        });
         let _ = write!(out, "{:width$}  {:8}  {closed:7}  {anchors:>7}  {bounds}", p.name, p.element);
         if let Some(l) = p.label.as_ref().or(p.title.as_ref()) {
             let _ = write!(out, "  ({l})");

@@ -24,8 +24,12 @@ impl<'a> References<'a> {
             return Ok(path.outline);
         }
         let (file, name) = split(reference);
-        let bytes = std::fs::read(&file)
-            .map_err(|e| Error::input(file.display().to_string(), format!("cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data or points")))?;
+        let bytes = std::fs::read(&file).map_err(|e| {
+            Error::input(
+                file.display().to_string(),
+                format!("cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data or points"),
+            )
+        })?;
         if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
             return points(&bytes).map_err(|e| Error::input(reference, e));
         }

@@ -13,7 +13,12 @@ pub(crate) fn command() -> Command {
     };
     Command::new("render")
         .about("Draw an SVG file as a PNG")
-        .arg(Arg::new("INPUT").required(true).value_parser(value_parser!(PathBuf)).help("An SVG file; - is standard input"))
+        .arg(
+            Arg::new("INPUT")
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .help("An SVG file; - is standard input"),
+        )
         .arg(
             Arg::new("out")
                 .short('o')
@@ -24,7 +29,13 @@ pub(crate) fn command() -> Command {
         )
         .arg(pixels("width", "Width in pixels"))
         .arg(pixels("height", "Height in pixels"))
-        .arg(Arg::new("scale").long("scale").value_name("S").value_parser(value_parser!(f32)).help("Pixels per px of the drawing"))
+        .arg(
+            Arg::new("scale")
+                .long("scale")
+                .value_name("S")
+                .value_parser(value_parser!(f32))
+                .help("Pixels per px of the drawing"),
+        )
         .group(ArgGroup::new("size").args(["width", "height", "scale"]))
         .arg(
             Arg::new("background")

@@ -6,7 +6,6 @@ const ERROR: Style = AnsiColor::Red.on_default().bold();
 const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const NOTE: Style = AnsiColor::Cyan.on_default().bold();
 
-#[expect(clippy::print_stderr, reason = "messages are what this module is for")]
 fn say(style: Style, label: &str, message: &str) {
     anstream::eprintln!("{style}{label}{style:#}: {message}");
 }

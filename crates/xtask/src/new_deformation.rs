@@ -14,7 +14,8 @@ pub(crate) fn run(root: &Path, name: &str) -> Result<String, Fault> {
         return Err(format!("`{name}` is not kebab-case, such as swirl or square-wave"));
     }
     let module = name.replace('-', "_");
-    if ["mod", "self", "super", "crate", "type", "match", "move", "loop", "box", "fn", "let"].contains(&module.as_str()) {
+    if ["mod", "self", "super", "crate", "type", "match", "move", "loop", "box", "fn", "let"].contains(&module.as_str())
+    {
         return Err(format!("`{name}` is a word of Rust's own; choose another"));
     }
     let folder = root.join("crates/pathwarp/src/deform");

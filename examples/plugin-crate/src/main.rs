@@ -48,11 +48,8 @@ impl Deformation for RippleDeformation {
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let map = Ripple {
-            center: s.point("center")?,
-            wavelength: s.number("wavelength")?,
-            height: s.number("height")?,
-        };
+        let map =
+            Ripple { center: s.point("center")?, wavelength: s.number("wavelength")?, height: s.number("height")? };
         Ok(Built::new(Arc::new(map)))
     }
 }
