@@ -158,7 +158,8 @@ impl Reader<'_> {
         match self.source.elements[e].tag.as_str() {
             "path" => return Some(Outline::from_svg_lossy(&self.source.attr(e, "d")?)).filter(|o| !o.is_empty()),
             "rect" => {
-                let r = Rect::from_origin_size((x("x")?, y("y")?), (x("width")?, y("height")?));
+                let (x0, y0) = (x("x")?, y("y")?);
+                let r = Rect::new(x0, y0, x0 + x("width")?, y0 + y("height")?);
                 if r.width() <= 0.0 || r.height() <= 0.0 {
                     return None;
                 }
