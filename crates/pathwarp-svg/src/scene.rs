@@ -172,7 +172,9 @@ pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Ve
         taken: HashMap::new(),
     };
     let (top, to_px) = b.root_group(tree, page);
-    let mut root = b.group(top, Affine::IDENTITY, Context { owner: None, role: Role::Paint });
+    // The viewport's own transform leads out of root user space; what is inside it lies there as it is.
+    let outside = if to_px.determinant() == 0.0 { Affine::IDENTITY } else { to_px.inverse() };
+    let mut root = b.group(top, outside, Context { owner: None, role: Role::Paint });
     root.transform = Affine::IDENTITY;
     let Builder { parts, clips, masks, tiles, unkeepable, .. } = b;
     let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
