@@ -161,6 +161,9 @@ fn warp(
     for step in &mut recipe.steps {
         if let Some(e) = registry.get(&step.deformation) {
             step.args.resolve_paths(e.info().params, |r| references.look_up(r))?;
+            step.args.resolve_files(e.info().params, |f| {
+                std::fs::read_to_string(f).map_err(|e| pathwarp::Error::input(f, format!("cannot be read: {e}")))
+            })?;
         }
     }
     let selection =
@@ -198,6 +201,9 @@ fn warp(
         Some(t) => output.push(Pending::new(t, warped.svg.as_bytes())?),
         None => to_stdout = Some(warped.svg.clone().into_bytes()),
     }
+    for (file, text) in built.steps.iter().flat_map(|s| &s.saves) {
+        output.push(Pending::new(Path::new(file), text.as_bytes())?);
+    }
     if let Some(file) = &common.preview {
         output.push(Pending::new(file, &preview::draw(&doc, &warped.svg, &built, &read_options(input))?)?);
     }
@@ -215,7 +221,8 @@ fn report(
     target: Option<&Path>,
 ) -> report::Input {
     let folds = folds(doc, &built.map, &options.selection);
-    let mut warnings = warped.warnings.clone();
+    let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
+    warnings.extend(warped.warnings.iter().cloned());
     let all = folds.iter().fold(Orientation::default(), |sum, (_, o)| sum.and(o));
     let mut shapes = Vec::with_capacity(warped.shapes.len());
     let mut folded = Vec::new();

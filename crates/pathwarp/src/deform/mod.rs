@@ -116,13 +116,17 @@ pub struct Built {
     pub notes: Vec<String>,
     /// What a preview draws over the artwork.
     pub overlays: Vec<Overlay>,
+    /// What the user should know: said as warnings, and in the report.
+    pub warnings: Vec<String>,
+    /// Files asked for by parameters of kind [`Save`](crate::param::Kind::Save): name and text.
+    pub saves: Vec<(String, String)>,
 }
 
 impl Built {
     /// Just a map.
     #[must_use]
     pub fn new(map: Arc<dyn Map>) -> Self {
-        Self { map, notes: Vec::new(), overlays: Vec::new() }
+        Self { map, notes: Vec::new(), overlays: Vec::new(), warnings: Vec::new(), saves: Vec::new() }
     }
 }
 

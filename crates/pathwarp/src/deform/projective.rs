@@ -73,9 +73,8 @@ impl Deformation for Projective {
         let target = four("--target", &target)?;
         let overlay = |role, q: [kurbo::Point; 4]| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
         Ok(Built {
-            map: Arc::new(anchors::projective("--target", base, target)?),
-            notes: Vec::new(),
             overlays: vec![overlay(Role::Base, base), overlay(Role::Target, target)],
+            ..Built::new(Arc::new(anchors::projective("--target", base, target)?))
         })
     }
 }

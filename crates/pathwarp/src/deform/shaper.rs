@@ -159,7 +159,7 @@ impl Deformation for Shaper {
 
         let mut overlays = vec![Overlay { role: Role::Cage, path: cage }, overlay(Role::Base, &base)];
         overlays.extend(target.iter().map(|t| overlay(Role::Target, t)));
-        Ok(Built { map, notes, overlays })
+        Ok(Built { notes, overlays, ..Built::new(map) })
     }
 }
 

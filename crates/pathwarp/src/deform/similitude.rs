@@ -79,9 +79,8 @@ impl Deformation for Similitude {
         })?;
         let overlay = |role, p: [Point; 2]| Overlay { role, path: Anchors::Two(p).outline().to_bez_path(0.0) };
         Ok(Built {
-            map: Arc::new(map),
-            notes: Vec::new(),
             overlays: vec![overlay(Role::Base, [a, b]), overlay(Role::Target, [p, q])],
+            ..Built::new(Arc::new(map))
         })
     }
 }

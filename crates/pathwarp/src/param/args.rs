@@ -14,11 +14,21 @@ pub struct NamedPath {
     pub outline: Outline,
 }
 
+/// A file that a user named.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedText {
+    /// The file as typed, for messages.
+    pub name: String,
+    /// What it holds.
+    pub text: String,
+}
+
 /// What was typed for each parameter, and the paths that path references turned out to be.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Args {
     typed: BTreeMap<String, Vec<String>>,
     paths: BTreeMap<String, NamedPath>,
+    files: BTreeMap<String, NamedText>,
 }
 
 impl Args {
@@ -73,6 +83,30 @@ impl Args {
             }
         }
         Ok(())
+    }
+
+    /// Reads every file that a parameter of kind [`Kind::File`] names, with `read`.
+    ///
+    /// # Errors
+    /// Whatever `read` says.
+    pub fn resolve_files(
+        &mut self,
+        params: &[Param],
+        mut read: impl FnMut(&str) -> Result<String, Error>,
+    ) -> Result<(), Error> {
+        for p in params.iter().filter(|p| p.kind == Kind::File) {
+            for name in self.typed.get(p.name).into_iter().flatten() {
+                if !self.files.contains_key(name) {
+                    let text = read(name)?;
+                    self.files.insert(name.clone(), NamedText { name: name.clone(), text });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn file(&self, name: &str) -> Option<&NamedText> {
+        self.files.get(name)
     }
 
     pub(super) fn looked_up(&self, reference: &str) -> Option<&NamedPath> {

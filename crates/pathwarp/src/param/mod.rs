@@ -7,7 +7,7 @@ mod args;
 mod settings;
 mod unit;
 
-pub use args::{Args, NamedPath};
+pub use args::{Args, NamedPath, NamedText};
 pub use settings::Settings;
 
 use kurbo::{Point, Rect};
@@ -44,6 +44,12 @@ pub enum Kind {
     Path,
     /// One of these words.
     Choice(&'static [&'static str]),
+    /// Any text: the deformation reads it itself. The words say what, e.g. `I,J:DX,DY`.
+    Text(&'static str),
+    /// A file whose text the deformation reads.
+    File,
+    /// A file that the deformation's data is saved to.
+    Save,
 }
 
 /// One parameter of a deformation.
@@ -153,6 +159,8 @@ impl Param {
             Kind::Point => "X,Y".into(),
             Kind::Path => "PATHREF".into(),
             Kind::Choice(words) => words.join("|"),
+            Kind::Text(what) => what.into(),
+            Kind::File | Kind::Save => "FILE".into(),
         }
     }
 }

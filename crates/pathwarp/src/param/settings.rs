@@ -1,6 +1,6 @@
 //! Typed, range-checked access to what was typed.
 
-use super::{Args, Frame, Kind, NamedPath, Param, args, unit};
+use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args, unit};
 use crate::error::Error;
 use crate::outline::Outline;
 use kurbo::Point;
@@ -123,6 +123,50 @@ impl<'a> Settings<'a> {
             .find(|w| **w == text)
             .copied()
             .ok_or_else(|| Error::usage(name, text, format!("is not one of {}", words.join(", "))))
+    }
+
+    /// The values of a text parameter, in the order they were typed; the default if none was.
+    #[must_use]
+    pub fn texts(&self, name: &str) -> Vec<&'a str> {
+        let typed = self.args.get(name);
+        if typed.is_empty() {
+            return self.param(name).and_then(|p| p.default).into_iter().collect();
+        }
+        typed.iter().map(String::as_str).collect()
+    }
+
+    /// A length within a text parameter, in user units: for deformations that read their own notation.
+    ///
+    /// # Errors
+    /// Not a length; the message names the parameter.
+    pub fn length_in(&self, name: &str, text: &str, axis: Axis) -> Result<f64, Error> {
+        unit::length(text, axis, self.frame).map_err(|e| Error::usage(name, text, e))
+    }
+
+    /// A place within a text parameter, percentages from the frame's left and top.
+    ///
+    /// # Errors
+    /// Not a place; the message names the parameter.
+    pub fn point_in(&self, name: &str, text: &str) -> Result<Point, Error> {
+        unit::point(text, self.frame).map_err(|e| Error::usage(name, text, e))
+    }
+
+    /// Plain points `x,y x,y …` within a text parameter, percentages from the frame's left and top.
+    ///
+    /// # Errors
+    /// Not points; the message names the parameter.
+    pub fn points_in(&self, name: &str, text: &str) -> Result<Vec<Point>, Error> {
+        unit::points(text, self.frame).map_err(|e| Error::usage(name, text, e))
+    }
+
+    /// The file that a parameter of kind [`Kind::File`] names, already read.
+    ///
+    /// # Errors
+    /// It was named but not read: [`Args::resolve_files`] was not called.
+    pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
+        let Some((file, _)) = self.text(name) else { return Ok(None) };
+        let unread = || Error::input(file, "cannot be read here");
+        self.args.file(file).map(Some).ok_or_else(unread)
     }
 
     /// The path referred to, if given.
