@@ -145,7 +145,7 @@ impl Document {
     }
 
     /// The painted shapes that `selection` means.
-    pub fn selected(&self, selection: &Selection) -> impl Iterator<Item = &Shape> {
+    pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
         let meant = self.meant(selection);
         self.shapes.iter().zip(meant).filter(|(s, meant)| *meant && s.painted).map(|(s, _)| s)
     }
