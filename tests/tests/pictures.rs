@@ -123,12 +123,11 @@ fn the_comparison_can_fail() {
 fn a_straight_shaper_changes_nothing() {
     let same = |source: usize, warped: usize| source == warped;
     straight("0%,0% 100%,0% 100%,100% 0%,100%", 1e-4, 2, same, same);
-    // A hundred-millionth off, so that nothing recognises it: lines may bend by that much, but no segment is added. Circles are
-    // cubics within the tolerance then, and dashes along them move by it; within a finer one nothing is seen.
+    // A hundred-millionth off, so that nothing recognises it: no segment is added. (Pixels say little here: the renderer's own
+    // circles are polynomial too, and dashes along them move with the length of either's error.)
     let no_more = |source: usize, warped: usize| warped <= source;
     let any = |_: usize, _: usize| true;
     straight("0%,0% 100%,0% 100%,100.000001% 0%,100%", 1e-4, 255, any, no_more);
-    straight("0%,0% 100%,0% 100%,100.000001% 0%,100%", 1e-6, 2, any, any);
 }
 
 fn straight(shaper: &str, tolerance: f64, channel: u8, lines: fn(usize, usize) -> bool, all: fn(usize, usize) -> bool) {
