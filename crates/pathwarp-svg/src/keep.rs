@@ -213,6 +213,11 @@ impl<'a> Keeper<'a, '_> {
     }
 
     fn group(&mut self, g: &Group) {
+        if let ([Node::Text { element: Some(e), .. }], false) = (g.children.as_slice(), g.filters.is_empty()) {
+            // Box units meant the box of the letters' places, which outlines do not have.
+            let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
+            self.edits.set_property(*e, "filter", list.join(" "));
+        }
         let scene = &self.job.document.scene;
         for f in &g.filters {
             self.writer.notes.add(crate::write::FILTERS, f.id());

@@ -140,6 +140,8 @@ pub(crate) struct Scene {
     pub(crate) clips: Vec<Clip>,
     pub(crate) masks: Vec<Mask>,
     pub(crate) tiles: Vec<Tile>,
+    /// What filters show by `feImage`, by the address of usvg's group (which the document keeps alive).
+    pub(crate) pictures: HashMap<usize, Group>,
     pub(crate) slots: Vec<Slot>,
     /// The parts written as each element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
@@ -161,6 +163,7 @@ struct Builder<'a> {
     clips: Vec<Clip>,
     masks: Vec<Mask>,
     tiles: Vec<Tile>,
+    pictures: HashMap<usize, Group>,
     clip_index: HashMap<DefKey, usize>,
     mask_index: HashMap<DefKey, usize>,
     unkeepable: Option<String>,
@@ -194,6 +197,7 @@ pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Ve
         clips: Vec::new(),
         masks: Vec::new(),
         tiles: Vec::new(),
+        pictures: HashMap::new(),
         clip_index: HashMap::new(),
         mask_index: HashMap::new(),
         unkeepable: source.unpatchable.clone(),
@@ -204,14 +208,14 @@ pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Ve
     let (top, to_px) = b.root_group(tree, page);
     b.top = Some(std::ptr::from_ref(top));
     let root = b.group(top, Affine::IDENTITY, Context { owner: None, role: Role::Paint, slot: None });
-    let Builder { parts, clips, masks, tiles, slots, unkeepable, .. } = b;
+    let Builder { parts, clips, masks, tiles, pictures, slots, unkeepable, .. } = b;
     let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
     for (i, p) in parts.iter().enumerate() {
         if let Some(e) = p.source {
             by_source.entry(e).or_default().push(i);
         }
     }
-    Scene { root, parts, clips, masks, tiles, slots, by_source, to_px, unkeepable }
+    Scene { root, parts, clips, masks, tiles, pictures, slots, by_source, to_px, unkeepable }
 }
 
 fn bits(m: Affine) -> [u64; 6] {
@@ -322,6 +326,11 @@ impl Builder<'_> {
         let clip = g.clip_path().map(|c| self.clip(c, frame, referrer, context.slot));
         let mask = g.mask().map(|m| self.mask(m, frame, referrer, context.slot));
         context.owner = owner;
+        for p in g.filters().iter().flat_map(|f| f.primitives()) {
+            if let usvg::filter::Kind::Image(image) = p.kind() {
+                self.picture(image.root());
+            }
+        }
         let markers = if context.owner.is_none() { self.marker_groups(g) } else { Vec::new() };
         let mut children = Vec::with_capacity(g.children().len());
         for (i, c) in g.children().iter().enumerate() {
@@ -597,6 +606,16 @@ impl Builder<'_> {
             self.group(pattern.root(), Affine::IDENTITY, Context { owner: None, role: Role::Pattern, slot: None });
         self.unkeepable = kept;
         self.tiles.push(Tile { pattern: pattern.clone(), root });
+    }
+
+    fn picture(&mut self, root: &usvg::Group) {
+        let key = std::ptr::from_ref(root) as usize;
+        if !self.pictures.contains_key(&key) {
+            let kept = self.unkeepable.take();
+            let group = self.group(root, Affine::IDENTITY, Context { owner: None, role: Role::Pattern, slot: None });
+            self.unkeepable = kept;
+            self.pictures.insert(key, group);
+        }
     }
 
     fn element_of_def(&self, id: &str, tag: &str) -> Option<ElementId> {

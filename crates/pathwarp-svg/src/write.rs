@@ -565,20 +565,33 @@ impl<'a> Writer<'a> {
         Some(path_data(&path, crate::number::MOST_DECIMALS.min(9)))
     }
 
+    /// A reference to a filter: the source's own, or one written here.
     fn filter(&mut self, f: &std::sync::Arc<usvg::filter::Filter>) -> String {
         let source = &self.job.document.source;
-        if self.in_source
-            && source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"))
-        {
-            self.notes.add(FILTERS, f.id());
+        self.notes.add(FILTERS, f.id());
+        let own = source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
+        if self.in_source && own {
             return format!("url(#{})", f.id());
         }
+        format!("url(#{})", self.filter_id(f))
+    }
+
+    /// The id of a filter written here, in user space.
+    pub(crate) fn filter_id(&mut self, f: &std::sync::Arc<usvg::filter::Filter>) -> String {
         let key = std::sync::Arc::as_ptr(f) as usize;
         if let Some(id) = self.filters.get(&key) {
-            return format!("url(#{id})");
+            return id.clone();
         }
-        self.notes.add("filters that cannot be written yet are left out", f.id());
-        "none".into()
+        let id = self.new_id(f.id());
+        self.filters.insert(key, id.clone());
+        let text = self.filter_element(f, &format!(" id=\"{}\"", escape(&id)));
+        self.define(&text);
+        id
+    }
+
+    /// How links are written where this stands.
+    pub(crate) fn link(&self) -> &'static str {
+        if self.in_source && !self.job.document.source.text.contains("xmlns:xlink=") { "href" } else { "xlink:href" }
     }
 
     fn image(&mut self, image: &usvg::Image) -> String {
@@ -606,11 +619,7 @@ impl<'a> Writer<'a> {
             usvg::ImageRendering::Pixelated => properties.push(("image-rendering", "pixelated".into())),
         }
         let style = properties.iter().map(|(n, v)| format!(" style=\"{n}:{v}\"")).collect::<String>();
-        let link = if self.in_source && !self.job.document.source.text.contains("xmlns:xlink=") {
-            "href"
-        } else {
-            "xlink:href"
-        };
+        let link = self.link();
         format!(
             "<{} width=\"{}\" height=\"{}\"{style} {link}=\"data:{kind};base64,{}\"/>",
             self.tag("image"),
