@@ -130,6 +130,11 @@ impl Document {
         Reader { source: &self.source, dpi: self.dpi, page: self.page }
     }
 
+    /// What an element's `transform` says.
+    pub(crate) fn own_transform(&self, e: ElementId) -> Affine {
+        self.reader().own_transform(e).unwrap_or_default()
+    }
+
     /// Everything that is painted, clips or masks, in painting order. Texts and `use` copies count once per path.
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
