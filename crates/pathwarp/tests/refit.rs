@@ -1,5 +1,7 @@
 //! The refit against an independent oracle: distances both ways by 2,000 samples a direction.
 
+#![allow(clippy::unwrap_used)]
+
 #[path = "../benches/support/mod.rs"]
 mod support;
 
