@@ -93,7 +93,7 @@ fn slope(r: &[f64; 4], v: f64) -> f64 {
 impl Map for Bicubic {
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let [x, y, dx, dy] = self.tables(u);
         Jet {
             p: Point::new(horner(&x, v), horner(&y, v)),
@@ -104,10 +104,17 @@ impl Map for Bicubic {
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let row = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
         let at = |c: &[[f64; 4]; 4]| ((row(c, 3) * v + row(c, 2)) * v + row(c, 1)) * v + row(c, 0);
         Point::new(at(&self.x), at(&self.y))
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
     }
 }
 
@@ -149,7 +156,7 @@ impl Default for Rational {
 impl Map for Rational {
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let f: [(f64, f64, f64); 3] = std::array::from_fn(|k| {
             let [r, s] = &self.c[k];
             let e = horner(s, v);
@@ -167,10 +174,17 @@ impl Map for Rational {
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let f = |k: usize| horner(&self.c[k][0], v) + u * horner(&self.c[k][1], v);
         let w = f(2);
         Point::new(f(0) / w, f(1) / w)
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
     }
 }
 

@@ -116,6 +116,12 @@ impl Map for Chain {
         }
     }
 
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for m in &self.steps {
+            m.lanes(x, y);
+        }
+    }
+
     fn class(&self) -> Class {
         match self.steps.as_slice() {
             [] => Class::Affine(Affine::IDENTITY),

@@ -62,6 +62,12 @@ impl<F: Formula> Map for F {
         self.f(p.x, p.y).into()
     }
 
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            (*x, *y) = self.f(*x, *y);
+        }
+    }
+
     fn class(&self) -> Class {
         Formula::class(self)
     }

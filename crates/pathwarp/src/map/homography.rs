@@ -119,6 +119,13 @@ impl Map for Homography {
         Point::new((m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r, (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r)
     }
 
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+
     fn class(&self) -> Class {
         self.as_affine().map_or(Class::Projective(*self), Class::Affine)
     }

@@ -62,6 +62,20 @@ pub trait Map: Send + Sync {
         }
     }
 
+    /// Eight values in place, coordinates apart: the layout the compiler turns into vector instructions. The refitter
+    /// samples through this.
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        let mut source = [Point::ORIGIN; 8];
+        for (p, (x, y)) in source.iter_mut().zip(x.iter().zip(y.iter())) {
+            *p = Point::new(*x, *y);
+        }
+        let mut image = [Point::ORIGIN; 8];
+        self.points(&source, &mut image);
+        for (p, (x, y)) in image.iter().zip(x.iter_mut().zip(y)) {
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+
     /// The kind of map.
     fn class(&self) -> Class {
         Class::Smooth
@@ -99,6 +113,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         (**self).points(ps, out);
+    }
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        (**self).lanes(x, y);
     }
     fn class(&self) -> Class {
         (**self).class()

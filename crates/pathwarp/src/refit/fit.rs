@@ -39,8 +39,8 @@ pub(super) struct Frame {
     pub(super) t1: Vec2,
     /// Smallest handles allowed.
     pub(super) floor: [f64; 2],
-    /// Length of the polyline through the samples.
-    pub(super) length: f64,
+    /// How far the samples get from the first point, more or less.
+    pub(super) size: f64,
 }
 
 /// A state of the fit.
@@ -119,7 +119,7 @@ impl Frame {
                 let better = d < best[i];
                 best[i] = if better { d } else { best[i] };
                 s[i] = if better { t } else { s[i] };
-                next[i] = (t - (rx * dx + ry * dy) * k).clamp(0.0, 1.0);
+                next[i] = unit(t - (rx * dx + ry * dy) * k);
             }
         }
         best
@@ -145,7 +145,7 @@ impl Frame {
         let mut da = (ab * bn - bb * an) / det;
         let mut db = (ab * an - aa * bn) / det;
         let longest = da.abs().max(db.abs());
-        let most = TRUST * self.length;
+        let most = TRUST * self.size;
         if longest > most {
             da *= most / longest;
             db *= most / longest;
@@ -161,6 +161,13 @@ impl Frame {
         }
         Some(((z.a + da).max(self.floor[0]) - z.a, (z.b + db).max(self.floor[1]) - z.b))
     }
+}
+
+/// Clamped to [0, 1]. Comparisons in this form are one instruction each.
+#[inline(always)]
+pub(super) fn unit(s: f64) -> f64 {
+    let s = if s > 0.0 { s } else { 0.0 };
+    if s < 1.0 { s } else { 1.0 }
 }
 
 #[inline(always)]
@@ -196,6 +203,8 @@ fn normal_equations(r: &Residuals, w: &Lane) -> ([f64; 5], f64, f64) {
 pub(super) struct Fit {
     pub(super) z: State,
     pub(super) error: f64,
+    /// The Newton step that is still to be taken by the feet.
+    pub(super) ds: Lane,
 }
 
 /// Fits from `z` until the largest residual is at most `enough`, or no longer improves.
@@ -204,16 +213,16 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, enough: f64) -> Fit {
     let mut r = frame.residuals(g, &z);
     let (mut sums, mut squares, mut error) = normal_equations(&r, &ones);
     if error <= enough {
-        return Fit { z, error };
+        return Fit { z, error, ds: r.ds };
     }
-    let mut best = Fit { z, error };
+    let mut best = Fit { z, error, ds: r.ds };
     let mut damping = DAMPING;
     for _ in 1..MOST_EVALUATIONS {
         let Some((da, db)) = frame.step(&sums, &z, damping) else { break };
         let mut next = State { a: z.a + da, b: z.b + db, s: z.s };
         for i in 0..8 {
             let s = z.s[i] + r.ds[i] + da * r.sa[i] + db * r.sb[i];
-            next.s[i] = s.clamp(0.0, 1.0);
+            next.s[i] = unit(s);
         }
         let rn = frame.residuals(g, &next);
         let (sn, sq, en) = normal_equations(&rn, &ones);
@@ -222,7 +231,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, enough: f64) -> Fit {
             let slow = sq > 0.98 * squares;
             (z, r, sums, squares, error) = (next, rn, sn, sq, en);
             if error < best.error {
-                best = Fit { z, error };
+                best = Fit { z, error, ds: r.ds };
             }
             if error <= enough || slow {
                 break;
@@ -262,7 +271,7 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
             z[h].a += da;
             z[h].b += db;
             for i in 0..8 {
-                z[h].s[i] = (z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]).clamp(0.0, 1.0);
+                z[h].s[i] = unit(z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]);
                 w[h][i] *= r[h].n[i].abs() / error + 1e-3;
             }
         }

@@ -95,21 +95,20 @@ impl<'a> Source<'a> {
     /// Images at eight parameters. `Err`: the source place where the map is not finite.
     #[inline]
     pub(super) fn images(&self, t: &Lane) -> Result<Lanes, Point> {
-        let s = self.points(t);
-        let mut source = [Point::ORIGIN; 8];
-        for i in 0..8 {
-            source[i] = Point::new(s.x[i], s.y[i]);
-        }
-        let mut image = [Point::ORIGIN; 8];
-        self.map.points(&source, &mut image);
-        let mut out = Lanes::default();
-        let mut sum = 0.0;
-        for i in 0..8 {
-            (out.x[i], out.y[i]) = (image[i].x, image[i].y);
-            sum += image[i].x + image[i].y;
-        }
+        let mut g = self.points(t);
+        self.map.lanes(&mut g.x, &mut g.y);
         // One test for all: the sum is finite only if every term is (terms too large to add up are too large to fit).
-        if sum.is_finite() { Ok(out) } else { Err(source[image.iter().position(|p| !p.is_finite()).unwrap_or(0)]) }
+        let mut sum = [0.0; 8];
+        for i in 0..8 {
+            sum[i] = g.x[i] + g.y[i];
+        }
+        if sum.iter().sum::<f64>().is_finite() { Ok(g) } else { Err(self.not_finite(t, &g)) }
+    }
+
+    #[cold]
+    fn not_finite(&self, t: &Lane, g: &Lanes) -> Point {
+        let i = (0..8).find(|&i| !(g.x[i] + g.y[i]).is_finite()).unwrap_or(0);
+        self.seg.eval(t[i])
     }
 
     /// The image's point and derivative at one parameter.

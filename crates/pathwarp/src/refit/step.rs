@@ -4,7 +4,7 @@
 //! of what one piece can do: its difficulty. Difficulties add up along the curve. One attempt on the whole tells how many
 //! pieces are needed; the breaks then go to the quantiles of the difficulty measured so far, until every piece fits.
 
-use super::fit::{self, Frame, State};
+use super::fit::{self, Fit, Frame, State};
 use super::source::{End, Lane, Lanes, Source};
 use super::split::Slow;
 use super::verify::{self, Candidate};
@@ -29,6 +29,8 @@ const ENOUGH: f64 = 0.77;
 const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
 /// Samples j/17 that check the fit, between them.
 const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
+/// Whether the checked sample follows (1) or precedes (−1) the fitted one of the same number.
+const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
 /// Spacing.
 const UNIT: f64 = 1.0 / 17.0;
 
@@ -190,101 +192,125 @@ impl Stepper<'_> {
     fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
-        let at = |set: &Lane| -> Lane {
-            let mut t = [0.0; 8];
-            for i in 0..8 {
-                t[i] = t0 + h * (set[i] * UNIT);
-            }
-            t
-        };
-        let mut g = self.source.images(&at(&FITTED))?;
-        relative(&mut g, from.p);
+        let tol = self.tolerance;
+        let g = self.samples(from, h, &FITTED)?;
         let q = to.p - from.p;
-        let shape = Shape::of(&g, q);
-        if let Some(line) = straight(&g, q, from.p, to.p, &shape) {
+        let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
+        let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
+        if let Some(line) = straight(&g, q, from.p, to.p, size) {
             return Ok(Outcome::Fits { piece: line, error: 0.0 });
         }
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
-        let hermite = [from.speed * h / 3.0, to.speed * h / 3.0];
-        let floor = hermite.map(|a| if a > 0.0 { a.min(1e-3 * shape.length) } else { 1e-5 * shape.length });
-        let frame = Frame { q, t0: from.away, t1: to.into, floor, length: shape.length };
+        let third = h * (1.0 / 3.0);
+        let hermite = [from.speed * third, to.speed * third];
+        let least = |a: f64| if a > 0.0 { a.min(1e-3 * size) } else { 1e-5 * size };
+        let floor = [least(hermite[0]), least(hermite[1])];
+        let frame = Frame { q, t0: from.away, t1: to.into, floor, size };
         let mut z = State { a: hermite[0].max(floor[0]), b: hermite[1].max(floor[1]), s: [0.0; 8] };
         for i in 0..8 {
             z.s[i] = FITTED[i] * UNIT;
         }
-        let mut check = self.source.images(&at(&CHECKED))?;
-        relative(&mut check, from.p);
-        let job = Job { from, to, frame, g: &g, check: &check, careful: shape.sharp || self.slow_inside(from, to) };
+        let mut f = fit::fit(&frame, &g, z, ENOUGH * tol);
+        let careful = self.slow.all().iter().any(|t| *t > t0 && *t < to.t);
+        let check = self.samples(from, h, &CHECKED)?;
+        let job = Job { from, to, frame, g: &g, check: &check, careful };
+        if f.error <= ENOUGH * tol {
+            let e = self.check(&job, &f)?;
+            if e <= tol {
+                let exact = (careful || hermite[0] == 0.0 || hermite[1] == 0.0).then(|| hermite_exact(&job, hermite));
+                return Ok(exact.flatten().unwrap_or(Outcome::Fits { piece: Piece::Cubic(job.cubic(&f.z)), error: e }));
+            }
+        }
+        self.improve(&job, &mut f, hermite)
+    }
+
+    /// Images at the given samples of the stretch, relative to its first point.
+    #[inline(always)]
+    fn samples(&self, from: &End, h: f64, set: &Lane) -> Result<Lanes, Point> {
+        let mut t = [0.0; 8];
+        for i in 0..8 {
+            t[i] = from.t + h * (set[i] * UNIT);
+        }
+        let mut g = self.source.images(&t)?;
+        for i in 0..8 {
+            g.x[i] -= from.p.x;
+            g.y[i] -= from.p.y;
+        }
+        Ok(g)
+    }
+
+    /// What else can be done where the first fit does not do.
+    #[inline(never)]
+    fn improve(&mut self, job: &Job<'_>, f: &mut Fit, hermite: [f64; 2]) -> Result<Outcome, Point> {
+        let tol = self.tolerance;
+        let frame = &job.frame;
+        let (from, to) = (job.from, job.to);
         if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0)
-            && let Some(o) = hermite_exact(&job, hermite)
+            && let Some(o) = hermite_exact(job, hermite)
         {
             return Ok(o);
         }
-        let tol = self.tolerance;
-        let mut f = fit::fit(&frame, &g, z, ENOUGH * tol);
+        if f.error <= ENOUGH * tol {
+            *f = fit::fit(frame, job.g, f.z, 0.0);
+        }
         let mut error = f.error;
-        let mut best = (f.error, f.z.a, f.z.b);
-        for stage in 0..3 {
-            if error <= tol {
-                let e = self.check(&job, &f.z)?;
-                if e <= tol {
-                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&f.z)), error: e });
-                }
-                error = e;
-                best = (e, f.z.a, f.z.b);
-            }
-            if stage == 0 {
-                if f.error <= ENOUGH * tol {
-                    f = fit::fit(&frame, &g, f.z, 0.0);
-                    error = error.max(f.error);
-                    if f.error <= tol {
-                        error = f.error;
-                        continue;
-                    }
-                }
-            } else if stage == 2 {
-                break;
-            }
-            // Minimax: worth it only where it can bring the error below the tolerance.
-            const REACH: f64 = 1.9;
-            if error > REACH * tol {
-                break;
-            }
+        if error <= tol {
+            error = self.check(job, f)?;
+        }
+        // Minimax: worth it only where it can bring the error below the tolerance.
+        const REACH: f64 = 1.9;
+        if error > tol && error <= REACH * tol {
             let other = State { s: between(&f.z.s), ..f.z };
-            let (z, e) = fit::lawson(&frame, [&g, &check], [f.z, other], 4);
-            f = fit::Fit { z: z[0], error: e };
-            error = e;
-            if e < best.0 {
-                best = (e, z[0].a, z[0].b);
-            }
-            if e > tol {
-                break;
+            let (z, e) = fit::lawson(frame, [job.g, job.check], [f.z, other], 4);
+            if e < error {
+                *f = Fit { z: z[0], error: e, ds: [1.0; 8] };
+                error = e;
+                if e <= tol {
+                    error = self.check(job, f)?;
+                }
             }
         }
+        let piece = Piece::Cubic(job.cubic(&f.z));
+        if error <= tol {
+            return Ok(Outcome::Fits { piece, error });
+        }
+        let shape = Shape::of(job.g, frame.q);
         let sharp = if shape.sharp { self.sharpest(from, to, shape.length) } else { None };
-        let z = State { a: best.1, b: best.2, ..f.z };
-        let error = best.0.max(tol * 1.0001);
-        Ok(Outcome::Misses { piece: Piece::Cubic(job.cubic(&z)), error, sharp })
+        Ok(Outcome::Misses { piece, error, sharp })
     }
 
-    fn slow_inside(&self, from: &End, to: &End) -> bool {
-        self.slow.all().iter().any(|t| *t > from.t && *t < to.t)
-    }
-
-    /// The error of a state: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
-    fn check(&self, job: &Job<'_>, z: &State) -> Result<f64, Point> {
-        let mut s0 = z.s;
-        let mut s1 = between(&z.s);
-        let d0 = job.frame.distances(job.g, z.a, z.b, &mut s0, 1);
-        let d1 = job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
-        let error = fit::largest(&d0).max(fit::largest(&d1)).sqrt();
+    /// The error of a fit: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
+    #[inline(always)]
+    fn check(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
+        let frame = &job.frame;
+        let z = &f.z;
+        let mut s0 = [0.0; 8];
+        let mut drift = [0.0; 8];
+        for i in 0..8 {
+            s0[i] = fit::unit(z.s[i] + f.ds[i]);
+            drift[i] = f.ds[i].abs();
+        }
+        // The normal residual is the distance up to κ·δ²/2, δ the way the foot has still to go.
+        let drift = fit::largest(&drift);
+        let mut error = f.error;
+        if drift * drift * frame.size > 0.02 * self.tolerance {
+            s0 = z.s;
+            error = fit::largest(&frame.distances(job.g, z.a, z.b, &mut s0, 2)).sqrt();
+        }
+        let mut s1 = between(&s0);
+        let d1 = frame.distances(job.check, z.a, z.b, &mut s1, 1);
+        let error = error.max(fit::largest(&d1).sqrt());
         if error > self.tolerance {
             return Ok(error);
         }
-        let sound = job.sound(z, &s0, &s1);
-        if !job.careful && sound && error <= PLAIN * self.tolerance {
+        if job.sound(z, &s0, &s1) && !job.careful && error <= PLAIN * self.tolerance {
             return Ok(error);
         }
+        self.dense(job, z, &s0, &s1, error)
+    }
+
+    #[inline(never)]
+    fn dense(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane, error: f64) -> Result<f64, Point> {
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
         let mut feet = [(0.0, 0.0); 18];
         feet[17] = (1.0, 1.0);
@@ -336,7 +362,7 @@ fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> Option<Outcome> {
         for i in 0..8 {
             let s = set[i] * UNIT;
             let c = (c1 + (c2 + c3 * s) * s) * s;
-            if (c - Vec2::new(g.x[i], g.y[i])).hypot() > EXACT * job.frame.length {
+            if (c - Vec2::new(g.x[i], g.y[i])).hypot() > EXACT * job.frame.size {
                 return None;
             }
         }
@@ -360,28 +386,38 @@ impl Job<'_> {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
     }
 
-    /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, and its direction at every foot
-    /// is that of the image there.
+    /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
+    /// that of the image there, and the image's pace varies little enough for the samples to have seen all of that.
+    #[inline(always)]
     fn sound(&self, z: &State, s0: &Lane, s1: &Lane) -> bool {
         /// Feet may be this far from where an even pace would put them.
         const UNEVEN: f64 = 0.18;
+        /// Paces may differ by this factor (squared).
+        const PACE: f64 = 36.0;
         let [c1, c2, c3] = self.frame.power(z.a, z.b);
-        let mut ok = [true; 8];
+        let mut margin = [0.0; 8];
+        let mut pace = [0.0; 8];
+        let mut slowness = [0.0; 8];
         for i in 0..8 {
-            let drift = (s0[i] - FITTED[i] * UNIT).abs().max((s1[i] - CHECKED[i] * UNIT).abs());
+            let a = UNEVEN - (s0[i] - FITTED[i] * UNIT).abs();
+            let b = UNEVEN - (s1[i] - CHECKED[i] * UNIT).abs();
             let s = s0[i];
             let (dx, dy) = ((c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x, (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y);
             let (x, y) = (self.check.x[i] - self.g.x[i], self.check.y[i] - self.g.y[i]);
+            let (d2, l2) = (dx * dx + dy * dy, x * x + y * y);
             // The checked sample follows the fitted one in the first half and precedes it in the second.
-            let side = if i < 4 { 1.0 } else { -1.0 };
-            let along = (dx * x + dy * y) * side;
-            let order = (s1[i] - s0[i]) * side;
-            ok[i] = drift < UNEVEN
-                && order > 0.0
-                && along > 0.0
-                && 2.0 * along * along >= (dx * dx + dy * dy) * (x * x + y * y);
+            let along = (dx * x + dy * y) * SIDE[i];
+            let order = (s1[i] - s0[i]) * SIDE[i];
+            let straight = 2.0 * along * along - d2 * l2;
+            // The least of all these, negated, for the one reduction there is.
+            let m = if a < b { a } else { b };
+            let m = if m < order { m } else { order };
+            let m = if m < along { m } else { along };
+            margin[i] = -(if m < straight { m } else { straight });
+            pace[i] = l2;
+            slowness[i] = -l2;
         }
-        ok.iter().all(|b| *b)
+        fit::largest(&margin) < 0.0 && fit::largest(&pace) < -PACE * fit::largest(&slowness)
     }
 }
 
@@ -399,14 +435,6 @@ fn between(s: &Lane) -> Lane {
         0.5 * (s[5] + s[6]),
         0.5 * (s[6] + s[7]),
     ]
-}
-
-#[inline(always)]
-fn relative(g: &mut Lanes, to: Point) {
-    for i in 0..8 {
-        g.x[i] -= to.x;
-        g.y[i] -= to.y;
-    }
 }
 
 /// What the polyline through the samples looks like.
@@ -454,30 +482,30 @@ impl Shape {
 
 /// The line between the ends, if the image is that line to rounding and runs along it one way.
 #[inline(always)]
-fn straight(g: &Lanes, q: Vec2, p0: Point, p1: Point, shape: &Shape) -> Option<Piece> {
+fn straight(g: &Lanes, q: Vec2, p0: Point, p1: Point, size: f64) -> Option<Piece> {
     /// Rounding of a coordinate after a map's arithmetic, relative to its size.
     const ROUNDING: f64 = 4e-15;
-    let size = (p0.x.abs() + p0.y.abs()).max(p1.x.abs() + p1.y.abs());
-    let line = Some(Piece::Line(Line::new(p0, p1)));
-    if shape.length <= ROUNDING * size {
-        return line;
-    }
-    let n2 = q.hypot2();
-    let most = 1e-12 * n2 + ROUNDING * size * n2.sqrt();
-    let mut off = [0.0; 8];
-    for i in 0..8 {
-        off[i] = (g.x[i] * q.y - g.y[i] * q.x).abs();
-    }
-    if fit::largest(&off) > most {
+    let from_origin = (p0.x.abs() + p0.y.abs()).max(p1.x.abs() + p1.y.abs());
+    let most = size * (1e-12 * size + ROUNDING * from_origin);
+    // One sample tells nearly all bent pieces.
+    if (g.x[2] * q.y - g.y[2] * q.x).abs() > most {
         return None;
+    }
+    straight_at_all(g, q, size, most, ROUNDING * from_origin).then_some(Piece::Line(Line::new(p0, p1)))
+}
+
+#[inline(never)]
+fn straight_at_all(g: &Lanes, q: Vec2, size: f64, most: f64, rounding: f64) -> bool {
+    if size <= rounding {
+        return g.x.iter().chain(&g.y).all(|v| v.abs() <= rounding);
     }
     let mut last = 0.0;
     for i in 0..8 {
         let along = g.x[i] * q.x + g.y[i] * q.y;
-        if along <= last {
-            return None;
+        if along <= last || (g.x[i] * q.y - g.y[i] * q.x).abs() > most {
+            return false;
         }
         last = along;
     }
-    if last < n2 { line } else { None }
+    last < q.hypot2()
 }
