@@ -244,7 +244,7 @@ fn warp_seg(
     let (canonical, flipped) = split::canonical(seg);
     let jets = if flipped { [jets[1], jets[0]] } else { jets };
     let first = pieces.len();
-    let whole = Source::new(canonical, map);
+    let whole = Source::new(&canonical, map);
     if whole.size() == 0.0 {
         // A segment that goes nowhere stays one: it carries line caps and markers.
         pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
@@ -260,7 +260,14 @@ fn warp_seg(
             None => (1.0, nodes[1]),
         };
         let branch = map.branch(canonical.eval(0.5 * (from.0 + to.0)));
-        let source = branch.as_ref().map_or(whole, |b| Source::new(canonical, b));
+        let inside;
+        let source = match &branch {
+            None => &whole,
+            Some(b) => {
+                inside = Source::new(&canonical, b);
+                &inside
+            }
+        };
         let end = |(t, p): (f64, Point), jet: &Jet| -> Result<End, Point> {
             if branch.is_none() && (t == 0.0 || t == 1.0) {
                 let at = if t == 0.0 { canonical.start() } else { canonical.end() };

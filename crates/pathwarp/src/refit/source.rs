@@ -1,7 +1,7 @@
 //! One smooth source piece and its image: sampled eight parameters at a time, with one-sided tangents at its break points.
 
 use crate::map::{Jet, Map};
-use crate::outline::{EllipticArc, Seg};
+use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 
 /// Eight numbers side by side: what one pass of the fit works on (two AVX registers of four, or four SSE2 ones of two).
@@ -21,20 +21,15 @@ const VANISHING: f64 = 1e-9;
 /// off by about the same number of radians, a thousandth of the angle the joints are promised to.
 const BESIDE: f64 = 3e-7;
 
-/// How far beside the point a sharp turn is told from a smooth one.
-#[derive(Debug, Clone, Copy)]
-enum Form {
-    /// Power basis, constant term first.
-    Poly([Vec2; 4]),
-    Arc(EllipticArc),
-}
-
 /// A source segment in its canonical direction under the smooth map that holds on it.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
-    pub(super) seg: Seg,
-    form: Form,
+    pub(super) seg: &'a Seg,
     pub(super) map: &'a dyn Map,
+    /// Power basis, constant term first; of no meaning for an arc.
+    c: [Vec2; 4],
+    /// Derivative at the end, which the power basis knows only up to rounding.
+    last: Vec2,
     /// Length of the control polygon, the yardstick of the derivative.
     size: f64,
 }
@@ -53,16 +48,39 @@ pub(super) struct End {
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(seg: Seg, map: &'a dyn Map) -> Self {
-        let (form, size) = match seg {
-            Seg::Line(s) => (poly(&[s.p0, s.p1]), (s.p1 - s.p0).hypot()),
-            Seg::Quad(s) => (poly(&[s.p0, s.p1, s.p2]), (s.p1 - s.p0).hypot() + (s.p2 - s.p1).hypot()),
-            Seg::Cubic(s) => {
-                (poly(&[s.p0, s.p1, s.p2, s.p3]), (s.p1 - s.p0).hypot() + (s.p2 - s.p1).hypot() + (s.p3 - s.p2).hypot())
+    #[inline]
+    pub(super) fn new(seg: &'a Seg, map: &'a dyn Map) -> Self {
+        let zero = Vec2::ZERO;
+        let (c, last, size) = match seg {
+            Seg::Line(s) => {
+                let d = s.p1 - s.p0;
+                ([s.p0.to_vec2(), d, zero, zero], d, d.hypot())
             }
-            Seg::Arc(s) => (Form::Arc(s), s.a.hypot().max(s.b.hypot()) * s.sweep.abs()),
+            Seg::Quad(s) => {
+                let (d0, d1) = (s.p1 - s.p0, s.p2 - s.p1);
+                ([s.p0.to_vec2(), d0 * 2.0, d1 - d0, zero], d1 * 2.0, d0.hypot() + d1.hypot())
+            }
+            Seg::Cubic(s) => {
+                let (d0, d1, d2) = (s.p1 - s.p0, s.p2 - s.p1, s.p3 - s.p2);
+                let c = [s.p0.to_vec2(), d0 * 3.0, (d1 - d0) * 3.0, (d2 - d1) - (d1 - d0)];
+                (c, d2 * 3.0, d0.hypot() + d1.hypot() + d2.hypot())
+            }
+            Seg::Arc(s) => ([zero; 4], s.deriv(1.0), s.a.hypot().max(s.b.hypot()) * s.sweep.abs()),
         };
-        Self { seg, form, map, size }
+        Self { seg, map, c, last, size }
+    }
+
+    /// The source's derivative.
+    #[inline]
+    pub(super) fn deriv(&self, t: f64) -> Vec2 {
+        match self.seg {
+            _ if t == 1.0 => self.last,
+            Seg::Arc(s) => s.deriv(t),
+            _ => {
+                let [_, c1, c2, c3] = self.c;
+                (c3 * (3.0 * t) + c2 * 2.0) * t + c1
+            }
+        }
     }
 
     /// Length of the control polygon.
@@ -71,29 +89,27 @@ impl<'a> Source<'a> {
     }
 
     /// Source points at eight parameters.
-    #[inline]
+    #[inline(always)]
     pub(super) fn points(&self, t: &Lane) -> Lanes {
         let mut out = Lanes::default();
-        match &self.form {
-            Form::Poly([c0, c1, c2, c3]) => {
-                for i in 0..8 {
-                    let t = t[i];
-                    out.x[i] = ((c3.x * t + c2.x) * t + c1.x) * t + c0.x;
-                    out.y[i] = ((c3.y * t + c2.y) * t + c1.y) * t + c0.y;
-                }
+        if let Seg::Arc(a) = self.seg {
+            for i in 0..8 {
+                let p = a.eval(t[i]);
+                (out.x[i], out.y[i]) = (p.x, p.y);
             }
-            Form::Arc(a) => {
-                for i in 0..8 {
-                    let p = a.eval(t[i]);
-                    (out.x[i], out.y[i]) = (p.x, p.y);
-                }
-            }
+            return out;
+        }
+        let [c0, c1, c2, c3] = self.c;
+        for i in 0..8 {
+            let t = t[i];
+            out.x[i] = ((c3.x * t + c2.x) * t + c1.x) * t + c0.x;
+            out.y[i] = ((c3.y * t + c2.y) * t + c1.y) * t + c0.y;
         }
         out
     }
 
     /// Images at eight parameters. `Err`: the source place where the map is not finite.
-    #[inline]
+    #[inline(always)]
     pub(super) fn images(&self, t: &Lane) -> Result<Lanes, Point> {
         let mut g = self.points(t);
         self.map.lanes(&mut g.x, &mut g.y);
@@ -114,7 +130,7 @@ impl<'a> Source<'a> {
     /// The image's point and derivative at one parameter.
     pub(super) fn image(&self, t: f64) -> (Point, Vec2) {
         let j = self.map.jet(self.seg.eval(t));
-        (j.p, j.push(self.seg.deriv(t)))
+        (j.p, j.push(self.deriv(t)))
     }
 
     /// The break point at `t`. `node` is the image of a source node or crease, shared with the neighbours bit by bit.
@@ -128,7 +144,7 @@ impl<'a> Source<'a> {
         if !jet.is_finite() {
             return Err(at);
         }
-        let v = self.seg.deriv(t);
+        let v = self.deriv(t);
         let d = jet.push(v);
         let p = node.unwrap_or(jet.p);
         let (n2, v2) = (d.hypot2(), v.hypot2());
@@ -148,10 +164,10 @@ impl<'a> Source<'a> {
     /// direction a little beside the place.
     #[cold]
     fn beside(&self, t: f64, side: f64, jet: Jet) -> Vec2 {
-        if let Form::Poly([_, c1, c2, c3]) = &self.form {
-            let v = *c1 + (*c2 * 2.0 + *c3 * (3.0 * t)) * t;
-            let a = *c2 * 2.0 + *c3 * (6.0 * t);
-            let b = *c3 * 6.0;
+        if !matches!(self.seg, Seg::Arc(_)) {
+            let v = self.deriv(t);
+            let a = self.c[2] * 2.0 + self.c[3] * (6.0 * t);
+            let b = self.c[3] * 6.0;
             let small = (VANISHING * self.size) * 10.0;
             if v.hypot() <= small {
                 let w = if a.hypot() > small { a * side } else { b };
@@ -179,17 +195,4 @@ impl<'a> Source<'a> {
         }
         Vec2::ZERO
     }
-}
-
-/// Power basis of a Bézier curve of degree 1 to 3.
-fn poly(p: &[Point]) -> Form {
-    let v = |i: usize| p[i].to_vec2();
-    Form::Poly(match p.len() {
-        2 => [v(0), p[1] - p[0], Vec2::ZERO, Vec2::ZERO],
-        3 => [v(0), (p[1] - p[0]) * 2.0, (p[2] - p[1]) - (p[1] - p[0]), Vec2::ZERO],
-        _ => {
-            let (d0, d1, d2) = (p[1] - p[0], p[2] - p[1], p[3] - p[2]);
-            [v(0), d0 * 3.0, (d1 - d0) * 3.0, (d2 - d1) - (d1 - d0)]
-        }
-    })
 }

@@ -22,6 +22,9 @@ const MOST_PLANNED: usize = 8;
 const PLAIN: f64 = 0.95;
 /// The same for the dense check, whose samples are four times as many.
 const DENSE: f64 = 0.995;
+/// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
+/// is let pass (κ about the inverse of the piece's size, δ a share of that size).
+const FLAT: f64 = 0.02;
 /// A fit this good is not improved further.
 const ENOUGH: f64 = 0.77;
 
@@ -31,6 +34,8 @@ const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
 const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
 /// Whether the checked sample follows (1) or precedes (−1) the fitted one of the same number.
 const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
+/// Paces along a piece may differ by this factor (squared) before its samples are thought too few.
+const PACE: f64 = 400.0;
 /// Spacing.
 const UNIT: f64 = 1.0 / 17.0;
 
@@ -60,7 +65,7 @@ impl Outcome {
 
 /// Fits one smooth part of a segment.
 pub(super) struct Stepper<'a> {
-    pub(super) source: Source<'a>,
+    pub(super) source: &'a Source<'a>,
     pub(super) slow: Slow,
     pub(super) tolerance: f64,
     pub(super) attempts: usize,
@@ -210,18 +215,15 @@ impl Stepper<'_> {
         for i in 0..8 {
             z.s[i] = FITTED[i] * UNIT;
         }
-        let mut f = fit::fit(&frame, &g, z, ENOUGH * tol);
-        let careful = self.slow.all().iter().any(|t| *t > t0 && *t < to.t);
+        let careful = !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
         let check = self.samples(from, h, &CHECKED)?;
         let job = Job { from, to, frame, g: &g, check: &check, careful };
-        if f.error <= ENOUGH * tol {
-            let e = self.check(&job, &f)?;
-            if e <= tol {
-                let exact = (careful || hermite[0] == 0.0 || hermite[1] == 0.0).then(|| hermite_exact(&job, hermite));
-                return Ok(exact.flatten().unwrap_or(Outcome::Fits { piece: Piece::Cubic(job.cubic(&f.z)), error: e }));
-            }
+        // Most pieces end here: the Hermite cubic does.
+        let (first, drift) = job.glance(&z);
+        if first <= PLAIN * tol && !careful && drift * drift * size <= FLAT * tol && hermite[0] > 0.0 && hermite[1] > 0.0 {
+            return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error: first });
         }
-        self.improve(&job, &mut f, hermite)
+        self.improve(&job, z, hermite)
     }
 
     /// Images at the given samples of the stretch, relative to its first point.
@@ -241,7 +243,7 @@ impl Stepper<'_> {
 
     /// What else can be done where the first fit does not do.
     #[inline(never)]
-    fn improve(&mut self, job: &Job<'_>, f: &mut Fit, hermite: [f64; 2]) -> Result<Outcome, Point> {
+    fn improve(&mut self, job: &Job<'_>, z: State, hermite: [f64; 2]) -> Result<Outcome, Point> {
         let tol = self.tolerance;
         let frame = &job.frame;
         let (from, to) = (job.from, job.to);
@@ -250,12 +252,29 @@ impl Stepper<'_> {
         {
             return Ok(o);
         }
-        if f.error <= ENOUGH * tol {
-            *f = fit::fit(frame, job.g, f.z, 0.0);
-        }
+        let mut f = fit::fit(frame, job.g, z, [ENOUGH * tol, tol]);
         let mut error = f.error;
         if error <= tol {
-            error = self.check(job, f)?;
+            error = self.check(job, &f)?;
+            if error > tol && f.error <= ENOUGH * tol {
+                f = fit::fit(frame, job.g, f.z, [0.0, tol]);
+                error = f.error;
+                if error <= tol {
+                    error = self.check(job, &f)?;
+                }
+            }
+        }
+        if error > tol && error < 5.0 * tol {
+            for k in [1.6, 0.625] {
+                let a = f.z.a * k;
+                let b = frame.slide(&f.z, a);
+                if !(b > frame.floor[1] && b < frame.size) { continue; }
+                let g = fit::fit(frame, job.g, State { a, b, s: f.z.s }, [ENOUGH * tol, tol]);
+                if g.error < 0.98 * error {
+                    let e = if g.error <= tol { self.check(job, &g)? } else { g.error };
+                    if e < error { error = e; f = g; }
+                }
+            }
         }
         // Minimax: worth it only where it can bring the error below the tolerance.
         const REACH: f64 = 1.9;
@@ -263,10 +282,10 @@ impl Stepper<'_> {
             let other = State { s: between(&f.z.s), ..f.z };
             let (z, e) = fit::lawson(frame, [job.g, job.check], [f.z, other], 4);
             if e < error {
-                *f = Fit { z: z[0], error: e, ds: [1.0; 8] };
+                f = Fit { z: z[0], error: e, ds: [1.0; 8] };
                 error = e;
                 if e <= tol {
-                    error = self.check(job, f)?;
+                    error = self.check(job, &f)?;
                 }
             }
         }
@@ -290,10 +309,9 @@ impl Stepper<'_> {
             s0[i] = fit::unit(z.s[i] + f.ds[i]);
             drift[i] = f.ds[i].abs();
         }
-        // The normal residual is the distance up to κ·δ²/2, δ the way the foot has still to go.
         let drift = fit::largest(&drift);
         let mut error = f.error;
-        if drift * drift * frame.size > 0.02 * self.tolerance {
+        if drift * drift * frame.size > FLAT * self.tolerance {
             s0 = z.s;
             error = fit::largest(&frame.distances(job.g, z.a, z.b, &mut s0, 2)).sqrt();
         }
@@ -318,7 +336,7 @@ impl Stepper<'_> {
             feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
             feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
         }
-        let e = verify::dense(&self.source, &c, &feet, &self.slow, self.tolerance)?.max(error);
+        let e = verify::dense(self.source, &c, &feet, &self.slow, self.tolerance)?.max(error);
         Ok(if e > DENSE * self.tolerance { e / DENSE } else { e })
     }
 
@@ -386,14 +404,53 @@ impl Job<'_> {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
     }
 
+    /// The largest normal residual of all samples at the feet that go with an even pace, and how far the feet have to move;
+    /// infinite where the samples are not [`Job::sound`].
+    #[inline(always)]
+    fn glance(&self, z: &State) -> (f64, f64) {
+        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+        let (g, c) = (self.g, self.check);
+        let mut worst = [0.0; 8];
+        let mut drift = [0.0; 8];
+        let mut margin = [0.0; 8];
+        let mut pace = [0.0; 8];
+        let mut slowness = [0.0; 8];
+        for i in 0..8 {
+            let residual = |s: f64, x: f64, y: f64| {
+                let rx = ((c3.x * s + c2.x) * s + c1.x) * s - x;
+                let ry = ((c3.y * s + c2.y) * s + c1.y) * s - y;
+                let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
+                let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
+                let d2 = dx * dx + dy * dy + f64::MIN_POSITIVE;
+                let n = rx * dy - ry * dx;
+                (n * n / d2, ((rx * dx + ry * dy) / d2).abs(), dx, dy, d2)
+            };
+            let (n0, s0, dx, dy, d2) = residual(FITTED[i] * UNIT, g.x[i], g.y[i]);
+            let (n1, s1, ..) = residual(CHECKED[i] * UNIT, c.x[i], c.y[i]);
+            worst[i] = if n0 > n1 { n0 } else { n1 };
+            drift[i] = if s0 > s1 { s0 } else { s1 };
+            let (x, y) = (c.x[i] - g.x[i], c.y[i] - g.y[i]);
+            let l2 = x * x + y * y;
+            let along = (dx * x + dy * y) * SIDE[i];
+            let straight = 2.0 * along * along - d2 * l2;
+            margin[i] = -(if along < straight { along } else { straight });
+            pace[i] = l2;
+            slowness[i] = -l2;
+        }
+        // Half the spacing each: feet cannot change order.
+        let drift = fit::largest(&drift);
+        let sound = fit::largest(&margin) < 0.0
+            && drift < 0.5 * UNIT
+            && fit::largest(&pace) < -PACE * fit::largest(&slowness);
+        if sound { (fit::largest(&worst).sqrt(), drift) } else { (f64::INFINITY, drift) }
+    }
+
     /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
     /// that of the image there, and the image's pace varies little enough for the samples to have seen all of that.
     #[inline(always)]
     fn sound(&self, z: &State, s0: &Lane, s1: &Lane) -> bool {
         /// Feet may be this far from where an even pace would put them.
         const UNEVEN: f64 = 0.18;
-        /// Paces may differ by this factor (squared).
-        const PACE: f64 = 36.0;
         let [c1, c2, c3] = self.frame.power(z.a, z.b);
         let mut margin = [0.0; 8];
         let mut pace = [0.0; 8];
@@ -467,16 +524,20 @@ impl Shape {
             bent[i] = dot <= 0.0 || 4.0 * dot * dot < l[i] * l[i + 1];
         }
         let mut length = 0.0;
-        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        let (mut least, mut most) = ((0, f64::INFINITY), 0.0f64);
         for (i, l2) in l.iter().enumerate() {
             let l = l2.sqrt();
             length += l;
             // Lengths per unit of the parameter: the end stretches are half as long, the middle one half as long again.
             let pace = l * [2.0, 1.0, 1.0, 1.0, 2.0 / 3.0, 1.0, 1.0, 1.0, 2.0][i];
-            least = if pace < least { pace } else { least };
-            most = if pace > most { pace } else { most };
+            if pace < least.1 {
+                least = (i, pace);
+            }
+            most = most.max(pace);
         }
-        Self { length, sharp: bent.iter().any(|b| *b) || 6.0 * least < most }
+        // At the ends it slows down where a handle is short, which is no sharp turn.
+        let slows = 6.0 * least.1 < most && (1..8).contains(&least.0);
+        Self { length, sharp: bent.iter().any(|b| *b) || slows }
     }
 }
 
