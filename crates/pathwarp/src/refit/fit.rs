@@ -233,9 +233,11 @@ pub(super) struct Fit {
 /// rough fit will do: it only tells how many pieces are needed.
 pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64; 2]) -> Fit {
     /// Far above.
-    const FAR: f64 = 1e9;
+    const FAR: f64 = 3.0;
     /// A step that promises less than this share of the sum of squares is not taken.
     const GAIN: f64 = 0.01;
+    /// The same far above what is wanted.
+    const ROUGH: f64 = 0.1;
     let ones = [1.0; 8];
     frame.settle(g, &mut z);
     let mut r = frame.residuals(g, &z);
@@ -243,11 +245,12 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
     let mut best = Fit { z, error, ds: r.ds };
     let mut trust = TRUST * frame.size;
     for k in 1..MOST_EVALUATIONS {
-        if best.error <= enough || (k > 4 && best.error > 3.0 * wanted) {
+        if best.error <= enough || (k > 4 && best.error > FAR * wanted) {
             break;
         }
         let Some((step, gain)) = Frame::gauss_newton(&sums) else { break };
-        if k > 2 && gain < GAIN * squares {
+        let worth = if best.error > FAR * wanted { ROUGH } else { GAIN };
+        if k > 1 && gain < worth * squares {
             break;
         }
         let (da, db, length) = frame.bent(step, &z, trust);
