@@ -4,7 +4,7 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, PathSeg, Point, Vec2};
-use pathwarp::map::{Jet, Map};
+use pathwarp::map::{Algebra, Jet, Map};
 use pathwarp::{Outline, Seg};
 
 /// The box the icons and the maps live in.
@@ -91,6 +91,10 @@ fn slope(r: &[f64; 4], v: f64) -> f64 {
 }
 
 impl Map for Bicubic {
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 6, rational: false })
+    }
+
     #[inline]
     fn jet(&self, p: Point) -> Jet {
         let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
@@ -154,6 +158,17 @@ impl Default for Rational {
 }
 
 impl Map for Rational {
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 4, rational: true })
+    }
+
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        std::array::from_fn(|i| {
+            let (u, v) = (x[i] * (1.0 / BOX), y[i] * (1.0 / BOX));
+            horner(&self.c[2][0], v) + u * horner(&self.c[2][1], v)
+        })
+    }
+
     #[inline]
     fn jet(&self, p: Point) -> Jet {
         let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));

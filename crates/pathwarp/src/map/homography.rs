@@ -1,6 +1,6 @@
 //! Projective maps of the plane.
 
-use super::{Class, Crease, Creases, Jet, Level, Map, RationalBezier};
+use super::{Algebra, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -139,6 +139,14 @@ impl Map for Homography {
 
     fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         Some(curve.mapped(|v| mul_vec(&self.m, v)))
+    }
+
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 1, rational: true })
+    }
+
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        std::array::from_fn(|i| self.w(Point::new(x[i], y[i])))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

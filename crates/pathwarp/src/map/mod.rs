@@ -95,10 +95,29 @@ pub trait Map: Send + Sync {
         None
     }
 
+    /// If the map is a quotient of polynomials, of what kind: enough to prove error bounds without writing the image out.
+    fn algebra(&self) -> Option<Algebra> {
+        None
+    }
+
+    /// The denominators of an [`Algebra`] map at eight places.
+    fn denominators(&self, _x: &[f64; 8], _y: &[f64; 8]) -> [f64; 8] {
+        [1.0; 8]
+    }
+
     /// The inverse map, where there is one.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         None
     }
+}
+
+/// (x, y) ↦ (X/W, Y/W) with polynomials X, Y, W.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Algebra {
+    /// The largest total degree (exponents of x and y together) of X, Y and W.
+    pub degree: usize,
+    /// Whether W is anything but 1. [`Map::denominators`] gives its values.
+    pub rational: bool,
 }
 
 impl<M: Map + ?Sized> Map for Arc<M> {
@@ -128,6 +147,12 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         (**self).image_of(curve)
+    }
+    fn algebra(&self) -> Option<Algebra> {
+        (**self).algebra()
+    }
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        (**self).denominators(x, y)
     }
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         (**self).inverse()

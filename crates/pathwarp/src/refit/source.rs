@@ -32,6 +32,8 @@ pub(super) struct Source<'a> {
     last: Vec2,
     /// Length of the control polygon, the yardstick of the derivative.
     size: f64,
+    /// Weights of an arc in its rational form, power basis; then `c` holds its numerators about the centre.
+    w: Option<[f64; 3]>,
 }
 
 /// A break point: a place on the image, with the tangents on both sides.
@@ -67,7 +69,78 @@ impl<'a> Source<'a> {
             }
             Seg::Arc(s) => ([zero; 4], s.deriv(1.0), s.a.hypot().max(s.b.hypot()) * s.sweep.abs()),
         };
-        Self { seg, map, c, last, size }
+        Self { seg, map, c, last, size, w: None }
+    }
+
+    /// For proofs, an arc of less than half a turn as a rational quadratic: the same curve, another parameter.
+    #[inline]
+    pub(super) fn rational_if(mut self, wanted: bool) -> Self {
+        let Seg::Arc(a) = self.seg else { return self };
+        if !wanted || a.sweep.abs() > 3.0 {
+            return self;
+        }
+        // With h half the sweep and s = sin h, c = cos h, in the axes of the middle angle: (c, −s), (1, 0), (c, s), the middle one
+        // of weight c. Power basis of the numerators and the denominator.
+        let (h, mid) = (0.5 * a.sweep, a.start + 0.5 * a.sweep);
+        let (s, c) = h.sin_cos();
+        let (sm, cm) = mid.sin_cos();
+        let (u, v) = (a.a * cm + a.b * sm, a.b * cm - a.a * sm);
+        self.c = [u * c - v * s, u * (2.0 * (1.0 - c)) + v * (2.0 * s), u * (2.0 * (c - 1.0)), Vec2::ZERO];
+        self.w = Some([1.0, 2.0 * (c - 1.0), 2.0 * (1.0 - c)]);
+        self.last = self.deriv_rational(1.0);
+        self
+    }
+
+    fn deriv_rational(&self, t: f64) -> Vec2 {
+        let [c0, c1, c2, _] = self.c;
+        let Some([w0, w1, w2]) = self.w else { return Vec2::ZERO };
+        let (n, dn) = ((c2 * t + c1) * t + c0, c2 * (2.0 * t) + c1);
+        let (w, dw) = ((w2 * t + w1) * t + w0, w2 * (2.0 * t) + w1);
+        (dn * w - n * dw) / (w * w)
+    }
+
+    /// The source's point.
+    pub(super) fn at(&self, t: f64) -> Point {
+        match (self.seg, self.w) {
+            (Seg::Arc(a), Some([w0, w1, w2])) if t > 0.0 && t < 1.0 => {
+                let [c0, c1, c2, _] = self.c;
+                a.center + ((c2 * t + c1) * t + c0) / ((w2 * t + w1) * t + w0)
+            }
+            _ => self.seg.eval(t),
+        }
+    }
+
+    /// The parameter here of what the segment has at `t`.
+    pub(super) fn param(&self, t: f64) -> f64 {
+        match (self.seg, self.w) {
+            (Seg::Arc(a), Some(_)) => {
+                // Half the angle from the middle has a tangent that is linear in the rational parameter.
+                let h = 0.25 * a.sweep;
+                0.5 + 0.5 * (h * (2.0 * t - 1.0)).tan() / h.tan()
+            }
+            _ => t,
+        }
+    }
+
+    /// Degree of the source as a quotient of polynomials, and whether it has a denominator.
+    pub(super) fn degree(&self) -> Option<(usize, bool)> {
+        match self.seg {
+            Seg::Line(_) => Some((1, false)),
+            Seg::Quad(_) => Some((2, false)),
+            Seg::Cubic(_) => Some((3, false)),
+            Seg::Arc(_) => self.w.map(|_| (2, true)),
+        }
+    }
+
+    /// The denominators of the image at eight parameters: the map's times the source's, the latter to the map's degree.
+    pub(super) fn denominators(&self, t: &Lane, points: &Lanes, power: i32) -> Lane {
+        let mut out = self.map.denominators(&points.x, &points.y);
+        if let Some([w0, w1, w2]) = self.w {
+            for i in 0..8 {
+                out[i] *= ((w2 * t[i] + w1) * t[i] + w0).powi(power);
+            }
+        }
+        out
     }
 
     /// The source's derivative.
@@ -75,6 +148,7 @@ impl<'a> Source<'a> {
     pub(super) fn deriv(&self, t: f64) -> Vec2 {
         match self.seg {
             _ if t == 1.0 => self.last,
+            Seg::Arc(_) if self.w.is_some() => self.deriv_rational(t),
             Seg::Arc(s) => s.deriv(t),
             _ => {
                 let [_, c1, c2, c3] = self.c;
@@ -93,6 +167,16 @@ impl<'a> Source<'a> {
     pub(super) fn points(&self, t: &Lane) -> Lanes {
         let mut out = Lanes::default();
         if let Seg::Arc(a) = self.seg {
+            if let Some([w0, w1, w2]) = self.w {
+                let [c0, c1, c2, _] = self.c;
+                for i in 0..8 {
+                    let t = t[i];
+                    let k = 1.0 / ((w2 * t + w1) * t + w0);
+                    out.x[i] = a.center.x + ((c2.x * t + c1.x) * t + c0.x) * k;
+                    out.y[i] = a.center.y + ((c2.y * t + c1.y) * t + c0.y) * k;
+                }
+                return out;
+            }
             for i in 0..8 {
                 let p = a.eval(t[i]);
                 (out.x[i], out.y[i]) = (p.x, p.y);
@@ -124,18 +208,18 @@ impl<'a> Source<'a> {
     #[cold]
     fn not_finite(&self, t: &Lane, g: &Lanes) -> Point {
         let i = (0..8).find(|&i| !(g.x[i] + g.y[i]).is_finite()).unwrap_or(0);
-        self.seg.eval(t[i])
+        self.at(t[i])
     }
 
     /// The image's point and derivative at one parameter.
     pub(super) fn image(&self, t: f64) -> (Point, Vec2) {
-        let j = self.map.jet(self.seg.eval(t));
+        let j = self.map.jet(self.at(t));
         (j.p, j.push(self.deriv(t)))
     }
 
     /// The break point at `t`. `node` is the image of a source node or crease, shared with the neighbours bit by bit.
     pub(super) fn end(&self, t: f64, node: Option<Point>) -> Result<End, Point> {
-        let at = self.seg.eval(t);
+        let at = self.at(t);
         self.end_with(t, node, self.map.jet(at), at)
     }
 

@@ -4,6 +4,7 @@
 //! of what one piece can do: its difficulty. Difficulties add up along the curve. One attempt on the whole tells how many
 //! pieces are needed; the breaks then go to the quantiles of the difficulty measured so far, until every piece fits.
 
+use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State};
 use super::source::{End, Lane, Lanes, Source};
 use super::split::Slow;
@@ -44,6 +45,7 @@ const UNIT: f64 = 1.0 / 17.0;
 enum Outcome {
     Fits {
         piece: Piece,
+        /// Proven, if there is something to prove it with.
         error: f64,
     },
     Misses {
@@ -58,16 +60,20 @@ enum Outcome {
 impl Outcome {
     /// The share of one piece's capacity that the stretch takes.
     fn difficulty(&self, tolerance: f64) -> f64 {
+        /// Eight pieces; also where nothing is known.
+        const MOST: f64 = 2.6e5;
         let (Self::Fits { error, .. } | Self::Misses { error, .. }) = self;
-        (error / tolerance).clamp(1e-3, 1e6).powf(1.0 / 6.0)
+        (error / tolerance).clamp(1e-3, MOST).powf(1.0 / 6.0)
     }
 }
 
 /// Fits one smooth part of a segment.
 pub(super) struct Stepper<'a> {
     pub(super) source: &'a Source<'a>,
-    pub(super) slow: Slow,
+    pub(super) slow: &'a Slow,
     pub(super) tolerance: f64,
+    /// What proofs need, if there are to be any.
+    pub(super) algebra: Option<Algebra>,
     pub(super) attempts: usize,
 }
 
@@ -100,7 +106,7 @@ impl Stepper<'_> {
             };
             let h = to.t - from.t;
             if self.attempts >= MOST_ATTEMPTS || h < SHORTEST {
-                report.over_budget.push(self.source.seg.eval(0.5 * (from.t + to.t)));
+                report.over_budget.push(self.source.at(0.5 * (from.t + to.t)));
                 report.max_error = report.max_error.max(error);
                 report.assurance = report.assurance.min(Assurance::Checked);
                 out.push(piece);
@@ -119,10 +125,15 @@ impl Stepper<'_> {
     }
 
     fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut PathReport) {
-        // What may hide between the samples, see PLAIN.
-        let bound = (error * 1.05).min(self.tolerance).max(error);
-        report.max_error = report.max_error.max(bound);
-        report.assurance = report.assurance.min(Assurance::Checked);
+        if self.algebra.is_some() {
+            report.max_error = report.max_error.max(error);
+            report.assurance = report.assurance.min(Assurance::Certified);
+        } else {
+            // What may hide between the samples, see PLAIN.
+            let bound = (error * 1.05).min(self.tolerance).max(error);
+            report.max_error = report.max_error.max(bound);
+            report.assurance = report.assurance.min(Assurance::Checked);
+        }
         out.push(piece);
     }
 
@@ -203,7 +214,7 @@ impl Stepper<'_> {
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
         let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
         if let Some(line) = straight(&g, q, from.p, to.p, size) {
-            return Ok(Outcome::Fits { piece: line, error: 0.0 });
+            return self.line(from, to, &g, line, size);
         }
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
         let third = h * (1.0 / 3.0);
@@ -220,10 +231,65 @@ impl Stepper<'_> {
         let job = Job { from, to, frame, g: &g, check: &check, careful };
         // Most pieces end here: the Hermite cubic does.
         let (first, drift) = job.glance(&z);
-        if first <= PLAIN * tol && !careful && drift * drift * size <= FLAT * tol && hermite[0] > 0.0 && hermite[1] > 0.0 {
-            return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error: first });
+        if first <= PLAIN * tol
+            && !careful
+            && drift * drift * size <= FLAT * tol
+            && hermite[0] > 0.0
+            && hermite[1] > 0.0
+        {
+            let error = if self.algebra.is_some() { self.proven(&job, &z, first)? } else { first };
+            if error <= tol {
+                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+            }
         }
         self.improve(&job, z, hermite)
+    }
+
+    /// A stretch whose image is straight to rounding.
+    #[cold]
+    fn line(&self, from: &End, to: &End, g: &Lanes, line: Piece, size: f64) -> Result<Outcome, Point> {
+        if self.algebra.is_none() || size == 0.0 {
+            return Ok(Outcome::Fits { piece: line, error: 0.0 });
+        }
+        let q = to.p - from.p;
+        let length = q.hypot();
+        let check = self.samples(from, to.t - from.t, &CHECKED)?;
+        let unit = if length > 0.0 { q / length } else { Vec2::ZERO };
+        let frame = Frame { q, t0: unit, t1: unit, floor: [0.0; 2], size };
+        let job = Job { from, to, frame, g, check: &check, careful: false };
+        let mut z = State { a: length / 3.0, b: length / 3.0, s: [0.0; 8] };
+        for i in 0..8 {
+            z.s[i] = fit::unit((g.x[i] * q.x + g.y[i] * q.y) / q.hypot2());
+        }
+        let error = self.proven(&job, &z, 0.0)?;
+        if error <= self.tolerance {
+            return Ok(Outcome::Fits { piece: line, error });
+        }
+        Ok(Outcome::Misses { piece: line, error, sharp: None })
+    }
+
+    /// The proven error of a state that was measured to have `error`; what it was measured at where there is nothing to prove
+    /// it with.
+    #[inline(never)]
+    fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
+        let Some(algebra) = &self.algebra else { return Ok(error) };
+        let mut s0 = z.s;
+        job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
+        let mut s1 = between(&s0);
+        job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
+        let mut feet = [0.0; 16];
+        for i in 0..8 {
+            feet[FITTED[i] as usize - 1] = s0[i];
+            feet[CHECKED[i] as usize - 1] = s1[i];
+        }
+        let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
+        certify::bound(self.source, algebra, &c, &feet)
+    }
+
+    /// The measured error, and if that will do, the proven one.
+    fn judge(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
+        let error = self.check(job, f)?;
+        if error <= self.tolerance { self.proven(job, &f.z, error) } else { Ok(error) }
     }
 
     /// Images at the given samples of the stretch, relative to its first point.
@@ -247,20 +313,22 @@ impl Stepper<'_> {
         let tol = self.tolerance;
         let frame = &job.frame;
         let (from, to) = (job.from, job.to);
-        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0)
-            && let Some(o) = hermite_exact(job, hermite)
-        {
-            return Ok(o);
+        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0) && hermite_exact(job, hermite) {
+            let error = self.proven(job, &State { a: hermite[0], b: hermite[1], s: z.s }, 0.0)?;
+            let z = State { a: hermite[0], b: hermite[1], ..z };
+            if error <= tol {
+                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+            }
         }
         let mut f = fit::fit(frame, job.g, z, [ENOUGH * tol, tol]);
         let mut error = f.error;
         if error <= tol {
-            error = self.check(job, &f)?;
+            error = self.judge(job, &f)?;
             if error > tol && f.error <= ENOUGH * tol {
                 f = fit::fit(frame, job.g, f.z, [0.0, tol]);
                 error = f.error;
                 if error <= tol {
-                    error = self.check(job, &f)?;
+                    error = self.judge(job, &f)?;
                 }
             }
         }
@@ -268,11 +336,16 @@ impl Stepper<'_> {
             for k in [1.6, 0.625] {
                 let a = f.z.a * k;
                 let b = frame.slide(&f.z, a);
-                if !(b > frame.floor[1] && b < frame.size) { continue; }
+                if !(b > frame.floor[1] && b < frame.size) {
+                    continue;
+                }
                 let g = fit::fit(frame, job.g, State { a, b, s: f.z.s }, [ENOUGH * tol, tol]);
                 if g.error < 0.98 * error {
-                    let e = if g.error <= tol { self.check(job, &g)? } else { g.error };
-                    if e < error { error = e; f = g; }
+                    let e = if g.error <= tol { self.judge(job, &g)? } else { g.error };
+                    if e < error {
+                        error = e;
+                        f = g;
+                    }
                 }
             }
         }
@@ -285,7 +358,7 @@ impl Stepper<'_> {
                 f = Fit { z: z[0], error: e, ds: [1.0; 8] };
                 error = e;
                 if e <= tol {
-                    error = self.check(job, &f)?;
+                    error = self.judge(job, &f)?;
                 }
             }
         }
@@ -336,7 +409,7 @@ impl Stepper<'_> {
             feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
             feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
         }
-        let e = verify::dense(self.source, &c, &feet, &self.slow, self.tolerance)?.max(error);
+        let e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
         Ok(if e > DENSE * self.tolerance { e / DENSE } else { e })
     }
 
@@ -372,7 +445,7 @@ impl Stepper<'_> {
 /// The Hermite cubic, if the image is that to rounding: so maps that change little give cusps and coincident handles back as
 /// they were.
 #[cold]
-fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> Option<Outcome> {
+fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> bool {
     /// Exact to rounding.
     const EXACT: f64 = 1e-11;
     let [c1, c2, c3] = job.frame.power(hermite[0], hermite[1]);
@@ -381,12 +454,11 @@ fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> Option<Outcome> {
             let s = set[i] * UNIT;
             let c = (c1 + (c2 + c3 * s) * s) * s;
             if (c - Vec2::new(g.x[i], g.y[i])).hypot() > EXACT * job.frame.size {
-                return None;
+                return false;
             }
         }
     }
-    let z = State { a: hermite[0], b: hermite[1], s: [0.0; 8] };
-    Some(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error: 0.0 })
+    true
 }
 
 /// One attempt's data.
@@ -439,9 +511,8 @@ impl Job<'_> {
         }
         // Half the spacing each: feet cannot change order.
         let drift = fit::largest(&drift);
-        let sound = fit::largest(&margin) < 0.0
-            && drift < 0.5 * UNIT
-            && fit::largest(&pace) < -PACE * fit::largest(&slowness);
+        let sound =
+            fit::largest(&margin) < 0.0 && drift < 0.5 * UNIT && fit::largest(&pace) < -PACE * fit::largest(&slowness);
         if sound { (fit::largest(&worst).sqrt(), drift) } else { (f64::INFINITY, drift) }
     }
 
