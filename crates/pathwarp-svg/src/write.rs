@@ -138,6 +138,11 @@ impl<'a> Writer<'a> {
 
     /// A group; `extra` attributes make it stay even where it does nothing.
     pub(crate) fn group(&mut self, g: &Group, extra: &str) -> String {
+        self.group_with(g, extra, "")
+    }
+
+    /// A group with `lead` as the first of its content.
+    pub(crate) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
             properties.push(("opacity", short(f64::from(g.opacity))));
@@ -173,9 +178,9 @@ impl<'a> Writer<'a> {
         head.push_str(&self.attributes(&properties));
         let inner = self.nodes(&g.children);
         if head.is_empty() {
-            return inner;
+            return format!("{lead}{inner}");
         }
-        format!("<{0}{head}>{inner}</{0}>", self.tag("g"))
+        format!("<{0}{head}>{lead}{inner}</{0}>", self.tag("g"))
     }
 
     fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
