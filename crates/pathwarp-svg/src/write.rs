@@ -355,17 +355,25 @@ impl<'a> Writer<'a> {
             SpreadMethod::Reflect => out.push_str(" spreadMethod=\"reflect\""),
             SpreadMethod::Repeat => out.push_str(" spreadMethod=\"repeat\""),
         }
-        out.push('>');
-        for s in g.stops() {
-            let c = s.color();
-            let mut properties = vec![("stop-color", format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue))];
-            if s.opacity().get() < 1.0 || self.styled {
-                properties.push(("stop-opacity", short(s.opacity().get().into())));
+        let source = &self.job.document.source;
+        let gradient = |e: ElementId| source.elements[e].tag.ends_with("Gradient");
+        let own = source.by_id.get(g.id()).is_some_and(|v| v.len() == 1 && gradient(v[0]));
+        if self.in_source && own {
+            // The stops stay with the original.
+            let _ = write!(out, " {}=\"#{}\"/>", self.link(), escape(g.id()));
+        } else {
+            out.push('>');
+            for s in g.stops() {
+                let c = s.color();
+                let mut properties = vec![("stop-color", format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue))];
+                if s.opacity().get() < 1.0 || self.styled {
+                    properties.push(("stop-opacity", short(s.opacity().get().into())));
+                }
+                let offset = short(s.offset().get().into());
+                let _ = write!(out, "<{} offset=\"{offset}\"{}/>", self.tag("stop"), self.attributes(&properties));
             }
-            let offset = short(s.offset().get().into());
-            let _ = write!(out, "<{} offset=\"{offset}\"{}/>", self.tag("stop"), self.attributes(&properties));
+            let _ = write!(out, "</{}>", self.tag(tag));
         }
-        let _ = write!(out, "</{}>", self.tag(tag));
         self.define(&out);
         self.servers.insert(key, id.clone());
         format!("url(#{id})")

@@ -9,10 +9,9 @@ use pathwarp::outline::Seg;
 use pathwarp_svg::{Document, ReadOptions, Selection};
 
 fn fault(data: &[u8]) -> String {
-    match Document::read(data, "f.svg", &options()) {
-        Err(e @ Error::Input { .. }) => e.to_string(),
-        other => panic!("{other:?}"),
-    }
+    let e = Document::read(data, "f.svg", &options()).unwrap_err();
+    assert!(matches!(e, Error::Input { .. }), "{e:?}");
+    e.to_string()
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! What the tests share: maps that look nonlinear and are not, drawings as text, and pictures to compare.
-#![allow(dead_code, unreachable_pub)]
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{Formula, Real};
