@@ -9,9 +9,9 @@ use pathwarp::outline::Seg;
 use pathwarp_svg::{Document, ReadOptions, Selection};
 
 fn fault(data: &[u8]) -> String {
-    let e = Document::read(data, "f.svg", &options()).unwrap_err();
-    assert!(matches!(e, Error::Input { .. }), "{e:?}");
-    e.to_string()
+    let read = Document::read(data, "f.svg", &options());
+    assert!(matches!(read, Err(Error::Input { .. })), "{read:?}");
+    read.err().map(|e| e.to_string()).unwrap_or_default()
 }
 
 #[test]
