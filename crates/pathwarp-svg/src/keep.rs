@@ -213,7 +213,9 @@ impl<'a> Keeper<'a, '_> {
     }
 
     fn group(&mut self, g: &Group) {
-        if let ([Node::Text { element: Some(e), .. }], false) = (g.children.as_slice(), g.filters.is_empty()) {
+        if let ([n @ Node::Text { element: Some(e), .. }], false) = (g.children.as_slice(), g.filters.is_empty())
+            && self.changed(n)
+        {
             // Box units meant the box of the letters' places, which outlines do not have.
             let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
             self.edits.set_property(*e, "filter", list.join(" "));
@@ -391,9 +393,7 @@ impl<'a> Keeper<'a, '_> {
             let inner = self.writer.group(g, "");
             format!("<{0}{head}>{title}{inner}</{0}>", self.writer.tag("g"))
         } else {
-            let mark = "\u{1}";
-            head.push_str(mark);
-            self.writer.group(g, &head).replacen(&format!("{mark}>"), &format!(">{title}"), 1).replacen(mark, "", 1)
+            self.writer.group_with(g, &head, &title)
         };
         self.edits.replace(e, text);
     }

@@ -88,8 +88,8 @@ pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usv
         font_resolver: fonts::resolver(options.generic_families.clone(), missing.clone()),
         ..usvg::Options::default()
     };
-    // Glyphs of a COLR or SVG font may need fonts in turn, but only text asks for one.
-    if text.contains("text") || text.contains("ENTITY") || text.contains("image") {
+    // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
+    if ["<text", ":text", "ENTITY", "image/svg", ".svg"].iter().any(|t| text.contains(t)) {
         usvg.fontdb = fonts::database(options.system_fonts, &options.fonts);
     }
     if options.base_dir.is_none() {

@@ -251,22 +251,25 @@ impl Builder<'_> {
     /// The group that holds root user space, and the transform from there to px.
     fn root_group<'t>(&self, tree: &'t usvg::Tree, page: Size) -> (&'t usvg::Group, Affine) {
         let by_source = self.reader.view_box_transform(0, page);
-        let plain = by_source == Affine::IDENTITY
-            && self.reader.source.attr(0, "transform").is_none()
-            && !self.reader.source.text.contains("background-color");
-        // usvg wraps everything in a group exactly when the root has a transform of its own.
-        if let ([usvg::Node::Group(g)], false) = (tree.root().children(), plain)
+        let [usvg::Node::Group(g)] = tree.root().children() else { return (tree.root(), by_source) };
+        // usvg wraps everything in a group exactly when the root has a transform or a background of its own.
+        let moved =
+            f32_bits(by_source) != f32_bits(Affine::IDENTITY) || self.reader.source.attr(0, "transform").is_some();
+        let backed = self.reader.source.text.contains("background-color")
             && g.id().is_empty()
-        {
-            let t = geometry::affine(g.transform());
-            if near(by_source, t) {
-                return (g, by_source);
-            }
-            if g.transform().is_identity() || self.reader.source.text.contains("transform") {
-                return (g, t);
-            }
+            && g.transform().is_identity()
+            && matches!(g.children().first(), Some(usvg::Node::Path(p)) if p.id().is_empty());
+        if !moved && !backed {
+            return (tree.root(), by_source);
         }
-        (tree.root(), Affine::IDENTITY)
+        let t = geometry::affine(g.transform());
+        // usvg centres the drawing in f32, where numbers of the page's size cancel.
+        let slack = 1e-6 * (page.width + page.height + 1.0);
+        let (a, b) = (by_source.as_coeffs(), t.as_coeffs());
+        let agree =
+            near(Affine::new([a[0], a[1], a[2], a[3], 0.0, 0.0]), Affine::new([b[0], b[1], b[2], b[3], 0.0, 0.0]));
+        let agree = agree && (a[4] - b[4]).abs() <= slack && (a[5] - b[5]).abs() <= slack;
+        (g, if agree { by_source } else { t })
     }
 
     /// The one element that an id stands for.

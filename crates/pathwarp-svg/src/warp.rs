@@ -200,9 +200,12 @@ impl Document {
         let elements = selection.resolve(&self.source);
         for s in &self.scene.slots {
             let outer = written(&self.scene, &out, s.outer, s.frame);
-            let moved = match meant.get(s.parts.clone()) {
-                Some(parts) if !parts.is_empty() => parts.iter().all(|m| *m),
-                _ => s.owner.or(s.element).map_or(selection.is_everything(), |e| elements[e]),
+            // What stands in tiles and in filters' pictures is never bent and has no say.
+            let mut own = s.parts.clone().filter(|&i| self.scene.parts[i].role != Role::Pattern).peekable();
+            let moved = if own.peek().is_some() {
+                own.all(|i| meant[i])
+            } else {
+                s.owner.or(s.element).map_or(selection.is_everything(), |e| elements[e])
             };
             let fit = (moved && usable(s.frame) && usable(outer))
                 .then(|| paint::fit(s.area, s.frame, outer, map))

@@ -138,6 +138,11 @@ impl<'a> Writer<'a> {
 
     /// A group; `extra` attributes make it stay even where it does nothing.
     pub(crate) fn group(&mut self, g: &Group, extra: &str) -> String {
+        self.group_with(g, extra, "")
+    }
+
+    /// A group with `lead` as the first of its content.
+    pub(crate) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
             properties.push(("opacity", short(f64::from(g.opacity))));
@@ -173,9 +178,9 @@ impl<'a> Writer<'a> {
         head.push_str(&self.attributes(&properties));
         let inner = self.nodes(&g.children);
         if head.is_empty() {
-            return inner;
+            return format!("{lead}{inner}");
         }
-        format!("<{0}{head}>{inner}</{0}>", self.tag("g"))
+        format!("<{0}{head}>{lead}{inner}</{0}>", self.tag("g"))
     }
 
     fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
@@ -350,17 +355,25 @@ impl<'a> Writer<'a> {
             SpreadMethod::Reflect => out.push_str(" spreadMethod=\"reflect\""),
             SpreadMethod::Repeat => out.push_str(" spreadMethod=\"repeat\""),
         }
-        out.push('>');
-        for s in g.stops() {
-            let c = s.color();
-            let mut properties = vec![("stop-color", format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue))];
-            if s.opacity().get() < 1.0 || self.styled {
-                properties.push(("stop-opacity", short(s.opacity().get().into())));
+        let source = &self.job.document.source;
+        let gradient = |e: ElementId| source.elements[e].tag.ends_with("Gradient");
+        let own = source.by_id.get(g.id()).is_some_and(|v| v.len() == 1 && gradient(v[0]));
+        if self.in_source && own {
+            // The stops stay with the original.
+            let _ = write!(out, " {}=\"#{}\"/>", self.link(), escape(g.id()));
+        } else {
+            out.push('>');
+            for s in g.stops() {
+                let c = s.color();
+                let mut properties = vec![("stop-color", format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue))];
+                if s.opacity().get() < 1.0 || self.styled {
+                    properties.push(("stop-opacity", short(s.opacity().get().into())));
+                }
+                let offset = short(s.offset().get().into());
+                let _ = write!(out, "<{} offset=\"{offset}\"{}/>", self.tag("stop"), self.attributes(&properties));
             }
-            let offset = short(s.offset().get().into());
-            let _ = write!(out, "<{} offset=\"{offset}\"{}/>", self.tag("stop"), self.attributes(&properties));
+            let _ = write!(out, "</{}>", self.tag(tag));
         }
-        let _ = write!(out, "</{}>", self.tag(tag));
         self.define(&out);
         self.servers.insert(key, id.clone());
         format!("url(#{id})")
