@@ -1,1 +1,46 @@
-//! Placeholder.
+//! SVG drawings, warped in place.
+//!
+//! A [`Document`] is an SVG file: usvg tells what it paints, the source text keeps its bytes. [`Document::warp`] bends every
+//! shape by a map of root user space (the coordinates inside the root `<svg>`) and gives the file back with ids, classes,
+//! styles, titles, groups and formatting as they were.
+//!
+//! ```
+//! use pathwarp::map::{Formula, Real};
+//! use pathwarp::refit;
+//! use pathwarp_svg::{Document, ReadOptions, WarpOptions};
+//!
+//! struct Wave;
+//! impl Formula for Wave {
+//!     fn f<S: Real>(&self, x: S, y: S) -> (S, S) { (x, y + (x / 20.0).sin() * 5.0) }
+//! }
+//!
+//! let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 50'><rect id='a' width='90' height='40'/></svg>";
+//! let document = Document::read(svg.as_bytes(), "example.svg", &ReadOptions::default())?;
+//! let warped = document.warp(&Wave, &WarpOptions::new(refit::Options::new(0.01)))?;
+//! assert!(warped.svg.contains("<path id='a' d=\"M"));
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
+
+mod document;
+mod edit;
+mod filter;
+mod fonts;
+mod geometry;
+mod keep;
+mod number;
+mod options;
+mod paint;
+mod read;
+mod scene;
+mod select;
+mod source;
+mod stroke;
+mod warp;
+mod write;
+
+pub use document::{Document, NamedPath, Shape};
+pub use fonts::GenericFamilies;
+pub use options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
+pub use read::{ReadOptions, parse_tree};
+pub use select::Selection;
+pub use warp::{ShapeReport, Skipped, Warped};

@@ -4,12 +4,14 @@
 //! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
 
 mod affine;
+mod bernstein;
 mod chain;
 mod crease;
 mod dual;
 mod formula;
 mod homography;
 mod jet;
+pub mod net;
 mod rational;
 
 pub use affine::AffineMap;
@@ -19,6 +21,7 @@ pub use dual::{Dual, Real};
 pub use formula::Formula;
 pub use homography::Homography;
 pub use jet::Jet;
+pub use net::BicubicNet;
 pub use rational::RationalBezier;
 
 use kurbo::{Affine, Point};

@@ -186,7 +186,7 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
                 Seg::Line(l) => pieces.push(Piece::Line(l)),
                 Seg::Arc(a) => {
                     pieces.extend(a.to_cubics(options.tolerance).map(Piece::Cubic));
-                    out.note(options.tolerance, Assurance::Certified);
+                    out.note(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
                 }
                 other => pieces.push(Piece::Cubic(other.to_cubic())),
             }

@@ -1,0 +1,400 @@
+//! Patches the source text in place: whatever can stay an element stays that element, with all its owner gave it.
+
+use crate::edit::Edits;
+use crate::number::{escape, matrix, short};
+use crate::scene::{Group, Node, Referrer};
+use crate::source::{ElementId, Source, is_shape};
+use crate::warp::{Notes, Skipped, StrokeDone};
+use crate::write::{Job, Writer, dashes, part_data, stroke_scale};
+use pathwarp::kurbo::Affine;
+use std::collections::{BTreeMap, BTreeSet};
+use usvg::Paint;
+
+/// The attributes that say where a shape is, and are gone when it has become a path.
+const GEOMETRY: [&str; 14] = ["d", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r", "x1", "y1", "x2", "y2"];
+
+struct Keeper<'a, 'w> {
+    edits: Edits<'a>,
+    source: &'a Source,
+    job: Job<'a>,
+    writer: &'w mut Writer<'a>,
+}
+
+/// The patched text, or why there is none.
+pub(crate) fn write(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes) -> Result<String, String> {
+    let source = &job.document.source;
+    let mut writer = Writer::new(*job, true, skipped, notes);
+    let mut k = Keeper { edits: Edits::new(source), source, job: *job, writer: &mut writer };
+    k.clips()?;
+    k.masks()?;
+    k.group(&job.document.scene.root);
+    k.slots();
+    let edits = k.edits;
+    let defs = std::mem::take(&mut writer.defs);
+    finish(source, edits, &defs, &writer.tag("defs"))
+}
+
+/// Adds the new definitions to the file's own, or at its end, where they push no title from first place.
+fn finish(source: &Source, mut edits: Edits<'_>, defs: &str, tag: &str) -> Result<String, String> {
+    if defs.is_empty() {
+        return Ok(if edits.is_empty() { source.text.clone() } else { edits.apply() });
+    }
+    let home = source.elements.iter().position(|e| e.tag == "defs" && e.parent == Some(0) && e.close.is_some());
+    match home {
+        Some(home) => edits.wrap_content(home, String::new(), defs.to_owned()),
+        None if source.elements[0].close.is_some() => {
+            edits.wrap_content(0, String::new(), format!("<{tag}>\n{defs}</{tag}>\n"));
+        }
+        None => return Err("its root element is empty".into()),
+    }
+    Ok(edits.apply())
+}
+
+impl<'a> Keeper<'a, '_> {
+    fn tag(&self, e: ElementId) -> &'a str {
+        &self.source.elements[e].tag
+    }
+
+    fn done(&self, part: usize) -> bool {
+        self.job.outcomes[part].done().is_some()
+    }
+
+    /// Clip paths: the first frame's version stays in its place, others get definitions of their own.
+    fn clips(&mut self) -> Result<(), String> {
+        let scene = &self.job.document.scene;
+        let mut placed = BTreeSet::new();
+        for (i, c) in scene.clips.iter().enumerate() {
+            let def = self.def(&c.id, "clipPath");
+            if !self.writer.changes(c.parts.clone()) {
+                // A viewport's edge has no definition; everything else is where it was.
+                self.writer.clip_ids[i] = def.map(|_| c.id.clone());
+                continue;
+            }
+            let viewport =
+                c.referrers.iter().any(|r| r.owner.is_none() && r.element.is_some_and(|e| self.tag(e) == "svg"));
+            match def {
+                None if viewport => self.viewport(i)?,
+                Some(def) if placed.insert(def) => {
+                    self.writer.clip_ids[i] = Some(c.id.clone());
+                    let units = self.source.attr(def, "clipPathUnits");
+                    if units.is_none_or(|u| u != "objectBoundingBox") && self.plain_clip(&c.root) {
+                        self.group(&c.root);
+                    } else {
+                        let head = self.kept_attributes(def, &["clipPathUnits", "transform", "clip-path"]);
+                        let text = self.writer.clip(i, &head);
+                        self.edits.replace(def, text);
+                    }
+                }
+                _ => {
+                    let id = self.writer.clip_id(i);
+                    self.point(&c.referrers, "clip-path", &id)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn masks(&mut self) -> Result<(), String> {
+        let scene = &self.job.document.scene;
+        let mut placed = BTreeSet::new();
+        for (i, m) in scene.masks.iter().enumerate() {
+            let def = self.def(&m.id, "mask");
+            if !self.writer.changes(m.parts.clone()) {
+                self.writer.mask_ids[i] = def.map(|_| m.id.clone());
+                continue;
+            }
+            match def {
+                Some(def) if placed.insert(def) => {
+                    self.writer.mask_ids[i] = Some(m.id.clone());
+                    let units = self.source.attr(def, "maskContentUnits");
+                    let plain = units.is_none_or(|u| u != "objectBoundingBox") && self.writer.mask_edge(i).is_none();
+                    if plain {
+                        for (name, value) in self.writer.mask_region(i) {
+                            self.edits.set_attr(def, name, value);
+                        }
+                        self.group(&m.root);
+                    } else {
+                        let gone = ["maskUnits", "maskContentUnits", "x", "y", "width", "height", "mask", "mask-type"];
+                        let head = self.kept_attributes(def, &gone);
+                        let text = self.writer.mask(i, &head);
+                        self.edits.replace(def, text);
+                    }
+                }
+                _ => {
+                    let id = self.writer.mask_id(i);
+                    self.point(&m.referrers, "mask", &id)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Filtered elements and images move along with their transforms.
+    fn slots(&mut self) {
+        for (s, placed) in self.job.document.scene.slots.iter().zip(self.job.slots) {
+            if let (None, Some(e)) = (s.owner, s.element)
+                && placed.fit != Affine::IDENTITY
+            {
+                let own = self.job.document.own_transform(e);
+                self.edits.set_attr(e, "transform", matrix(own * placed.fit));
+            }
+        }
+    }
+
+    fn def(&self, id: &str, tag: &str) -> Option<ElementId> {
+        self.source.by_id.get(id)?.iter().copied().rfind(|&e| self.tag(e) == tag)
+    }
+
+    /// Points all that referred to the old definition to the new one.
+    fn point(&mut self, referrers: &[Referrer], property: &'static str, id: &str) -> Result<(), String> {
+        for r in referrers {
+            match (r.owner, r.element) {
+                // It is written anew and asks for the right one itself.
+                (Some(_), _) => {}
+                (None, Some(e)) if self.tag(e) == "use" => {}
+                (None, Some(e)) => self.edits.set_property(e, property, format!("url(#{id})")),
+                (None, None) => return Err(format!("a {property} on an element that cannot be told from others")),
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a clip path holds only shapes of its own that stay one path each.
+    fn plain_clip(&self, g: &Group) -> bool {
+        g.children.iter().all(|n| match n {
+            Node::Group(g) => g.owner.is_none() && self.plain_clip(g),
+            Node::Part(i) => {
+                let p = &self.job.document.scene.parts[*i];
+                p.source.is_some() && p.owner.is_none()
+            }
+            Node::Image(_) | Node::Text { .. } => false,
+        })
+    }
+
+    /// A nested viewport cuts its content along straight edges in one place. Warped content must not be cut there: the
+    /// viewport lets everything through, and if it did cut something, its warped edge becomes a clip path around it.
+    fn viewport(&mut self, i: usize) -> Result<(), String> {
+        let c = &self.job.document.scene.clips[i];
+        let svgs: BTreeSet<ElementId> =
+            c.referrers.iter().filter_map(|r| r.element).filter(|&e| self.tag(e) == "svg").collect();
+        for e in svgs {
+            self.edits.set_property(e, "overflow", "visible".into());
+            if !self.fits(e, c.parts.clone()) {
+                if self.source.attr(e, "transform").is_some() {
+                    return Err("a nested viewport with a transform of its own cuts its content".into());
+                }
+                let id = self.writer.clip_id(i);
+                let g = self.writer.tag("g");
+                self.edits.insert_before(e, &format!("<{g} clip-path=\"url(#{})\">", escape(&id)));
+                self.edits.insert_after(e, &format!("</{g}>"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all that `e` holds lies inside the box of these parts.
+    fn fits(&self, e: ElementId, edge: std::ops::Range<usize>) -> bool {
+        let scene = &self.job.document.scene;
+        let Some(edge) = scene.parts.get(edge.start).and_then(|p| p.outline().bounding_box()) else { return false };
+        let inside = self.source.elements[e].range.clone();
+        scene.parts.iter().all(|p| {
+            let of = p.owner.or(p.source).is_some_and(|s| inside.contains(&self.source.elements[s].range.start));
+            let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get() * s.miterlimit().get()));
+            let reach = reach * crate::warp::stretch(p.frame);
+            !of || p.outline().bounding_box().is_none_or(|b| edge.union(b.inflate(reach, reach)) == edge)
+        })
+    }
+
+    /// The element's attributes but for those that are written anew.
+    fn kept_attributes(&self, e: ElementId, gone: &[&str]) -> String {
+        let el = &self.source.elements[e];
+        let kept = el.attrs.iter().filter(|a| !gone.contains(&a.name.as_str()));
+        kept.map(|a| format!(" {}", &self.source.text[a.range.clone()])).collect()
+    }
+
+    fn group(&mut self, g: &Group) {
+        if let ([Node::Text { element: Some(e), .. }], false) = (g.children.as_slice(), g.filters.is_empty()) {
+            // Box units meant the box of the letters' places, which outlines do not have.
+            let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
+            self.edits.set_property(*e, "filter", list.join(" "));
+        }
+        let scene = &self.job.document.scene;
+        for f in &g.filters {
+            self.writer.notes.add(crate::write::FILTERS, f.id());
+        }
+        // Shapes with markers: the shape and its copies, in painting order.
+        let mut marked: BTreeMap<ElementId, Vec<&Node>> = BTreeMap::new();
+        for n in &g.children {
+            match n {
+                Node::Group(c) => match c.owner {
+                    Some(e) if self.tag(e) == "use" => self.copy(e, c),
+                    Some(e) if is_shape(self.tag(e)) => marked.entry(e).or_default().push(n),
+                    _ => self.group(c),
+                },
+                Node::Text { element: Some(e), content } => self.text(*e, content),
+                Node::Text { element: None, .. } => {}
+                Node::Image(_) => self.image(g),
+                Node::Part(i) => match (scene.parts[*i].owner, scene.parts[*i].source) {
+                    (Some(e), _) if is_shape(self.tag(e)) => marked.entry(e).or_default().push(n),
+                    (None, Some(e)) if self.done(*i) => self.shape(e, *i),
+                    _ => {}
+                },
+            }
+        }
+        for (e, nodes) in marked {
+            if nodes.iter().any(|n| self.changed(n)) {
+                let content = nodes.iter().map(|n| self.writer.node(n)).collect();
+                self.fragment(e, content);
+                for name in ["marker-start", "marker-mid", "marker-end"] {
+                    self.edits.set_style(e, name, "none".into());
+                }
+            }
+        }
+    }
+
+    fn changed(&self, n: &Node) -> bool {
+        match n {
+            Node::Part(i) => self.done(*i),
+            Node::Group(g) => g.children.iter().any(|n| self.changed(n)),
+            Node::Text { content, .. } => content.children.iter().any(|n| self.changed(n)),
+            Node::Image(_) => false,
+        }
+    }
+
+    fn image(&mut self, g: &Group) {
+        let id = g.source.map_or_else(|| "an image".to_owned(), |e| self.source.display_name(e));
+        self.writer
+            .skipped
+            .push(Skipped { id, why: "images are not bent yet; it is placed by the best affine fit".into() });
+    }
+
+    /// A shape element stays; only where its stroke has become an outline it turns into a group of two paths.
+    fn shape(&mut self, e: ElementId, i: usize) {
+        let job = self.job;
+        let p = &job.document.scene.parts[i];
+        let Some(done) = job.outcomes[i].done() else { return };
+        if let (StrokeDone::Outlined(_), Some(_)) = (&done.stroke, &p.stroke) {
+            let content = self.writer.part(i);
+            self.fragment(e, content);
+            return;
+        }
+        let tag = self.tag(e);
+        if tag != "path" {
+            self.edits.rename(e, "path");
+            for name in GEOMETRY.into_iter().chain(["points"]) {
+                self.edits.remove_attr(e, name);
+            }
+            // A rule for the old name no longer holds, one for the new name does.
+            if self.source.css_mentions(tag) || self.source.css_mentions("path") || self.source.css.contains('[') {
+                for (name, value) in self.writer.properties(i) {
+                    self.edits.set_style(e, name, value);
+                }
+            }
+        }
+        self.edits.set_attr(e, "d", part_data(p, Some(done)));
+        let fit = done.fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
+        for (name, paint) in
+            [("fill", p.fill.as_ref().map(usvg::Fill::paint)), ("stroke", p.stroke.as_ref().map(usvg::Stroke::paint))]
+        {
+            if let (Some(_), Some(paint)) = (fit, paint.filter(|p| !matches!(p, Paint::Color(_)))) {
+                let paint = self.writer.paint(paint, p, Some(done));
+                self.edits.set_property(e, name, paint);
+            }
+        }
+        // Without a box, a paint server in box units gave way to a colour; now that there may be one, it must not come back.
+        let flat = p.local.bounding_box().is_some_and(|b| b.width() == 0.0 || b.height() == 0.0);
+        if flat && self.source.text.contains("objectBoundingBox") | self.source.text.contains("Gradient") {
+            for (name, value) in self.writer.properties(i) {
+                if matches!(name, "fill" | "stroke") {
+                    self.edits.set_property(e, name, value);
+                }
+            }
+        }
+        let scale = stroke_scale(Some(done));
+        if let Some(s) = p.stroke.as_ref().filter(|_| (scale - 1.0).abs() > 1e-9) {
+            self.edits.set_property(e, "stroke-width", short(f64::from(s.width().get()) * scale));
+            if s.dasharray().is_some() {
+                self.edits.set_property(e, "stroke-dasharray", dashes(s, scale));
+                if s.dashoffset() != 0.0 {
+                    self.edits.set_property(e, "stroke-dashoffset", short(f64::from(s.dashoffset()) * scale));
+                }
+            }
+        }
+    }
+
+    /// A shape element as a group: its attributes and children stay, its geometry becomes `content`.
+    fn fragment(&mut self, e: ElementId, content: String) {
+        self.edits.rename(e, "g");
+        for name in GEOMETRY.into_iter().chain(["points"]) {
+            self.edits.remove_attr(e, name);
+        }
+        self.edits.wrap_content(e, String::new(), content);
+    }
+
+    fn text(&mut self, e: ElementId, content: &Group) {
+        if !content.children.iter().any(|n| self.changed(n)) {
+            return;
+        }
+        let said = self.said(e);
+        let inner = self.writer.group(content, "");
+        let title = self.writer.tag("title");
+        let title = if said.is_empty() { String::new() } else { format!("<{title}>{}</{title}>", escape(&said)) };
+        self.edits.rename(e, "g");
+        for name in ["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"] {
+            self.edits.remove_attr(e, name);
+        }
+        if !said.is_empty() && self.source.attr(e, "aria-label").is_none() {
+            self.edits.set_attr(e, "aria-label", said);
+        }
+        self.edits.set_content(e, format!("{title}{inner}"));
+    }
+
+    /// The words of a text, tags taken out.
+    fn said(&self, e: ElementId) -> String {
+        let el = &self.source.elements[e];
+        let Some(close) = &el.close else { return String::new() };
+        let mut out = String::new();
+        let mut tag = false;
+        for c in self.source.text[el.open_end..close.start].chars() {
+            match c {
+                '<' => tag = true,
+                '>' => tag = false,
+                c if !tag => out.push(c),
+                _ => {}
+            }
+        }
+        let plain = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
+        let out = plain.iter().fold(out, |o, (from, to)| o.replace(from, to));
+        out.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    /// A `use` whose copy no longer is one: a group with the same name, written from what it showed.
+    fn copy(&mut self, e: ElementId, g: &Group) {
+        if !g.children.iter().any(|n| self.changed(n)) && self.job.options.selection.is_everything() {
+            return;
+        }
+        let styled = self.source.has_css();
+        let kept =
+            |name: &str| name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
+        let el = &self.source.elements[e];
+        let mut head: String = el
+            .attrs
+            .iter()
+            .filter(|a| kept(&a.name) || matches!(a.namespace, crate::source::Namespace::Inkscape))
+            .map(|a| format!(" {}", &self.source.text[a.range.clone()]))
+            .collect();
+        let title = self.writer.tag("title");
+        let title = el.title.as_ref().map_or(String::new(), |t| format!("<{title}>{}</{title}>", escape(t)));
+        let text = if styled && self.source.attr(e, "class").or(self.source.attr(e, "id")).is_some() {
+            // What its class says is in the resolved group already and must not count twice.
+            head.push_str(" style=\"opacity:1;clip-path:none;mask:none;filter:none;mix-blend-mode:normal\"");
+            let inner = self.writer.group(g, "");
+            format!("<{0}{head}>{title}{inner}</{0}>", self.writer.tag("g"))
+        } else {
+            let mark = "\u{1}";
+            head.push_str(mark);
+            self.writer.group(g, &head).replacen(&format!("{mark}>"), &format!(">{title}"), 1).replacen(mark, "", 1)
+        };
+        self.edits.replace(e, text);
+    }
+}

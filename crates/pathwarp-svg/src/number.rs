@@ -1,0 +1,163 @@
+//! Numbers and path data as text: rounded once, shortest form.
+
+use pathwarp::kurbo::{Affine, BezPath, PathEl, Point};
+use std::fmt::Write as _;
+
+/// More decimals than this say nothing in an f64.
+pub(crate) const MOST_DECIMALS: u8 = 14;
+
+/// Appends `v` rounded to `decimals`, without trailing zeros and never as `-0`.
+pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
+    let start = out.len();
+    // Writing to a String cannot fail.
+    let _ = write!(out, "{v:.*}", usize::from(decimals.min(MOST_DECIMALS)));
+    if out[start..].contains('.') {
+        let kept = out.trim_end_matches('0').trim_end_matches('.').len();
+        out.truncate(kept);
+    }
+    if &out[start..] == "-0" {
+        out.truncate(start);
+        out.push('0');
+    }
+}
+
+/// `v` with nine significant digits: for lengths, offsets and matrices.
+pub(crate) fn short(v: f64) -> String {
+    significant(v, 9)
+}
+
+/// `v` with as many significant digits as asked for.
+pub(crate) fn significant(v: f64, digits: i32) -> String {
+    let mut out = String::new();
+    if v == 0.0 || !v.is_finite() {
+        out.push('0');
+    } else {
+        let size = v.abs().log10().floor() as i32 + 1;
+        let decimals = (digits - size).clamp(0, 30);
+        let _ = write!(out, "{v:.*}", decimals as usize);
+        if out.contains('.') {
+            out.truncate(out.trim_end_matches('0').trim_end_matches('.').len());
+        }
+        if out == "-0" {
+            out = "0".into();
+        }
+    }
+    out
+}
+
+/// `matrix(…)` with digits enough for f32 readers and f64 ones.
+pub(crate) fn matrix(m: Affine) -> String {
+    let c: Vec<String> = m.as_coeffs().iter().map(|v| significant(*v, 15)).collect();
+    format!("matrix({})", c.join(" "))
+}
+
+/// The `d` attribute: absolute commands.
+pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
+    let mut out = String::with_capacity(path.elements().len() * 24);
+    let point = |out: &mut String, p: Point| {
+        push(out, p.x, decimals);
+        out.push(',');
+        push(out, p.y, decimals);
+    };
+    let mut at = Point::ORIGIN;
+    // Cubics that differ from a quadratic by less than rounding are one.
+    let near = 0.1 * 0.1_f64.powi(i32::from(decimals));
+    for el in path.elements() {
+        if !out.is_empty() {
+            out.push(' ');
+        }
+        match *el {
+            PathEl::MoveTo(p) => {
+                out.push('M');
+                point(&mut out, p);
+            }
+            PathEl::LineTo(p) => {
+                out.push('L');
+                point(&mut out, p);
+            }
+            PathEl::QuadTo(a, p) => {
+                out.push('Q');
+                point(&mut out, a);
+                out.push(' ');
+                point(&mut out, p);
+            }
+            PathEl::CurveTo(a, b, p) if quadratic(at, a, b, p).is_some_and(|q| q.1 < near) => {
+                if let Some((q, _)) = quadratic(at, a, b, p) {
+                    out.push('Q');
+                    point(&mut out, q);
+                    out.push(' ');
+                    point(&mut out, p);
+                }
+            }
+            PathEl::CurveTo(a, b, p) => {
+                out.push('C');
+                point(&mut out, a);
+                out.push(' ');
+                point(&mut out, b);
+                out.push(' ');
+                point(&mut out, p);
+            }
+            PathEl::ClosePath => out.push('Z'),
+        }
+        at = el.end_point().unwrap_or(at);
+    }
+    out
+}
+
+/// The quadratic nearest to a cubic, and how far its handle is off; `None` for a handle that would not be finite.
+fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)> {
+    let from_start = p0 + (p1 - p0) * 1.5;
+    let from_end = p3 + (p2 - p3) * 1.5;
+    let q = from_start.midpoint(from_end);
+    q.is_finite().then(|| (q, from_start.distance(from_end)))
+}
+
+/// Text made safe for an attribute value in double quotes, and for element content.
+pub(crate) fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\n' => out.push_str("&#10;"),
+            '\r' => out.push_str("&#13;"),
+            '\t' => out.push_str("&#9;"),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shortest_form_without_minus_zero() {
+        let n = |v, d| {
+            let mut s = String::new();
+            push(&mut s, v, d);
+            s
+        };
+        assert_eq!(n(1.50, 3), "1.5");
+        assert_eq!(n(-0.0001, 2), "0");
+        assert_eq!(n(100.0, 2), "100");
+        assert_eq!(n(1e6 + 0.001, 3), "1000000.001");
+        assert_eq!(short(0.000_012_345), "0.000012345");
+        assert_eq!(short(1234.5), "1234.5");
+        assert_eq!(short(-1e-40), "0");
+    }
+
+    #[test]
+    fn raised_quadratics_come_down_again() {
+        let q = pathwarp::kurbo::QuadBez::new((0.0, 0.0), (1.0, 7.0), (10.0, 0.0)).raise();
+        let mut p = BezPath::new();
+        p.move_to(q.p0);
+        p.curve_to(q.p1, q.p2, q.p3);
+        p.curve_to((11.0, 1.0), (12.0, 0.0), (13.0, 5.0));
+        p.close_path();
+        assert_eq!(path_data(&p, 3), "M0,0 Q1,7 10,0 C11,1 12,0 13,5 Z");
+    }
+}

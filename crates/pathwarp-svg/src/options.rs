@@ -1,0 +1,98 @@
+//! How a document is warped.
+
+use crate::select::Selection;
+use pathwarp::refit;
+
+/// What becomes of strokes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Strokes {
+    /// Scaled where that is right within 2 % of the width all along the shape, outlined elsewhere.
+    #[default]
+    Auto,
+    /// The centre line is warped, the width stays.
+    Keep,
+    /// The width (and dashes) grow with the map's mean local scale.
+    Scale,
+    /// The stroke becomes a filled outline, which is warped.
+    Outline,
+}
+
+/// What becomes of text.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum TextMode {
+    /// Its outlines are warped.
+    #[default]
+    Outline,
+    /// It stays as it is.
+    Skip,
+}
+
+/// How the file is written.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Structure {
+    /// Patched in place; written anew only where that is impossible, with a warning.
+    #[default]
+    Auto,
+    /// Patched in place, or an error.
+    Keep,
+    /// Always written anew: groups and paths with everything resolved.
+    Flatten,
+}
+
+/// What happens when a shape cannot be warped.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum OnError {
+    /// The whole document fails.
+    #[default]
+    Stop,
+    /// The shape stays as it was and is reported.
+    Skip,
+}
+
+/// What becomes of gradients.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Gradients {
+    /// They follow the map's best affine fit over the shape they paint.
+    #[default]
+    Fit,
+    /// They stay as they are.
+    Keep,
+}
+
+/// How a document is warped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WarpOptions {
+    /// How paths are refitted; the tolerance is in root user units.
+    pub refit: refit::Options,
+    /// Decimals of the coordinates written. `None`: as many as keep rounding below a hundredth of the tolerance.
+    pub precision: Option<u8>,
+    /// What becomes of strokes.
+    pub strokes: Strokes,
+    /// What becomes of text.
+    pub text: TextMode,
+    /// How the file is written.
+    pub structure: Structure,
+    /// What is warped.
+    pub selection: Selection,
+    /// What happens when a shape cannot be warped.
+    pub on_error: OnError,
+    /// What becomes of gradients.
+    pub gradients: Gradients,
+}
+
+impl WarpOptions {
+    /// Everything as it is by default.
+    #[must_use]
+    pub fn new(refit: refit::Options) -> Self {
+        Self {
+            refit,
+            precision: None,
+            strokes: Strokes::default(),
+            text: TextMode::default(),
+            structure: Structure::default(),
+            selection: Selection::default(),
+            on_error: OnError::default(),
+            gradients: Gradients::default(),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! From bytes to text and to usvg's tree: unpacking, bounds, fonts, and a stack that is deep enough.
+
+use crate::fonts::{self, GenericFamilies, Missing};
+use pathwarp::Error;
+use std::borrow::Cow;
+use std::io::Read as _;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// How a file is read.
+#[derive(Debug, Clone)]
+pub struct ReadOptions {
+    /// The folder that relative links to images start from; without it they are not followed.
+    pub base_dir: Option<PathBuf>,
+    /// Whether text may use the fonts installed on the machine (they are only read when there is text).
+    pub system_fonts: bool,
+    /// Further fonts: files, or folders of them.
+    pub fonts: Vec<PathBuf>,
+    /// What `serif`, `sans-serif` and so on stand for.
+    pub generic_families: GenericFamilies,
+    /// How many px make an inch.
+    pub dpi: f32,
+    /// The largest text, in bytes, that a compressed file may unpack to.
+    pub max_size: usize,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self {
+            base_dir: None,
+            system_fonts: true,
+            fonts: Vec::new(),
+            generic_families: GenericFamilies::default(),
+            dpi: 96.0,
+            max_size: 1 << 29,
+        }
+    }
+}
+
+/// The text of an SVG or svgz file.
+pub(crate) fn text(data: &[u8], name: &str, options: &ReadOptions) -> Result<String, Error> {
+    let mut bytes = Cow::Borrowed(data);
+    if data.starts_with(&[0x1f, 0x8b]) {
+        let mut out = Vec::new();
+        let limit = options.max_size as u64 + 1;
+        flate2::read::GzDecoder::new(data)
+            .take(limit)
+            .read_to_end(&mut out)
+            .map_err(|e| Error::input(name, format!("the compressed data is damaged: {e}")))?;
+        bytes = Cow::Owned(out);
+    }
+    if bytes.len() > options.max_size {
+        return Err(Error::input(
+            name,
+            format!("more than {} bytes of text; that is more than is read", options.max_size),
+        ));
+    }
+    String::from_utf8(bytes.into_owned()).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        let hint = match e.as_bytes() {
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "this is UTF-16 text; save it as UTF-8",
+            _ => "this is not UTF-8 text; save it as UTF-8",
+        };
+        Error::input(format!("{name}: byte {at}"), hint)
+    })
+}
+
+/// Runs `f` with a stack for the deepest nesting that the parsers let through (1024 elements). A panic inside, which no known
+/// file causes, becomes an error.
+pub(crate) fn with_stack<T: Send>(name: &str, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+    const STACK: usize = 256 << 20;
+    let gave_up = |why: &str| Error::input(name, format!("this drawing cannot be read: {why}"));
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, f);
+        match thread {
+            Ok(t) => t.join().unwrap_or_else(|_| Err(gave_up("the SVG library failed on it"))),
+            Err(e) => Err(gave_up(&format!("no thread to read it on: {e}"))),
+        }
+    })
+}
+
+/// usvg's tree, and the font families that were asked for and not found.
+pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usvg::Tree, Vec<String>), Error> {
+    let missing = Missing::default();
+    let mut usvg = usvg::Options {
+        resources_dir: options.base_dir.clone(),
+        dpi: options.dpi,
+        font_resolver: fonts::resolver(options.generic_families.clone(), missing.clone()),
+        ..usvg::Options::default()
+    };
+    // Glyphs of a COLR or SVG font may need fonts in turn, but only text asks for one.
+    if text.contains("text") || text.contains("ENTITY") || text.contains("image") {
+        usvg.fontdb = fonts::database(options.system_fonts, &options.fonts);
+    }
+    if options.base_dir.is_none() {
+        // Relative links would otherwise be looked for in the current folder.
+        usvg.image_href_resolver.resolve_string = Box::new(|_, _| None);
+    }
+    let tree = usvg::Tree::from_str(text, &usvg).map_err(|e| {
+        let problem = match e {
+            usvg::Error::InvalidSize => {
+                "the root <svg> has no valid size; give it a viewBox, or width and height".into()
+            }
+            usvg::Error::ElementsLimitReached => "it has more than a million elements".into(),
+            other => other.to_string(),
+        };
+        Error::input(name, problem)
+    })?;
+    let missing = missing.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
+    Ok((tree, missing))
+}
+
+/// Reads any SVG or svgz data into usvg's tree, with the same fonts and bounds as [`crate::Document::read`].
+///
+/// # Errors
+/// [`Error::Input`] if it is not an SVG drawing; `name` is what it is called in the message.
+pub fn parse_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<Arc<usvg::Tree>, Error> {
+    let text = text(data, name, options)?;
+    with_stack(name, || Ok(Arc::new(tree(&text, name, options)?.0)))
+}

@@ -1,0 +1,124 @@
+//! What a map does to a stroke: the width it should have, how wrong one width is, and the stroke's outline.
+
+use crate::scene::Part;
+use pathwarp::Outline;
+use pathwarp::kurbo::{self, Affine, Cap, Join, Point, StrokeOpts, Vec2};
+use pathwarp::map::Map;
+use usvg::{LineCap, LineJoin, Stroke};
+
+/// How a map scales a stroke's width along a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Width {
+    /// The factor for the width, and for dashes.
+    pub(crate) scale: f64,
+    /// The largest relative error of that one factor anywhere on the path.
+    pub(crate) error: f64,
+}
+
+/// A direction under a linear map.
+fn linear(m: Affine, v: Vec2) -> Vec2 {
+    let [a, b, c, d, ..] = m.as_coeffs();
+    Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
+}
+
+/// Looks at the map along `outline` (root user space) of a part whose user space was `read` and will be `write`. `None` where
+/// the map has no finite derivative.
+pub(crate) fn width(outline: &Outline, read: Affine, write: Affine, map: &dyn Map, stroke: &Stroke) -> Option<Width> {
+    let (before, after) = (read.inverse(), write.inverse());
+    let frames = (after.determinant() / before.determinant()).abs();
+    let (mut across, mut along) = (Vec::new(), Vec::new());
+    let (mut area, mut length) = (0.0, 0.0);
+    let segments = outline.segs().count().max(1);
+    // Long paths tell enough with fewer samples on each segment.
+    let samples: &[f64] = match segments {
+        0..=64 => &[0.0, 0.25, 0.5, 0.75, 1.0],
+        65..=4096 => &[0.1, 0.5, 0.9],
+        _ => &[0.5],
+    };
+    for s in outline.segs() {
+        for &t in samples {
+            let (p, v) = (s.eval(t), s.deriv(t));
+            let jet = map.jet(p);
+            let here = linear(before, v).hypot();
+            let there = linear(after, jet.push(v)).hypot();
+            if here <= 0.0 {
+                continue;
+            }
+            let det = jet.det().abs() * frames;
+            if !(det.is_finite() && there > 0.0) {
+                return None;
+            }
+            across.push(det * here / there);
+            along.push(there / here);
+            area += det.sqrt() * here;
+            length += here;
+        }
+    }
+    if length <= 0.0 {
+        return Some(Width { scale: 1.0, error: 0.0 });
+    }
+    let scale = area / length;
+    let worst = |all: &[f64]| all.iter().fold(0.0_f64, |m, r| m.max((r / scale - 1.0).abs()));
+    let mut error = worst(&across);
+    // Caps, joins and dashes reach along the path as well.
+    if segments > 1 || stroke.linecap() != LineCap::Butt || stroke.dasharray().is_some() {
+        error = error.max(worst(&along));
+    }
+    Some(Width { scale, error })
+}
+
+/// The stroke as a filled outline in the part's own user space, within `tolerance` there.
+pub(crate) fn outline(part: &Part, stroke: &Stroke, tolerance: f64) -> Outline {
+    let cap = match stroke.linecap() {
+        LineCap::Butt => Cap::Butt,
+        LineCap::Round => Cap::Round,
+        LineCap::Square => Cap::Square,
+    };
+    let join = match stroke.linejoin() {
+        LineJoin::Miter | LineJoin::MiterClip => Join::Miter,
+        LineJoin::Round => Join::Round,
+        LineJoin::Bevel => Join::Bevel,
+    };
+    let mut style = kurbo::Stroke::new(f64::from(stroke.width().get()))
+        .with_caps(cap)
+        .with_join(join)
+        .with_miter_limit(f64::from(stroke.miterlimit().get()));
+    let dot = if cap == Cap::Butt { 0.0 } else { DOT * f64::from(stroke.width().get()) };
+    if let Some(dashes) = stroke.dasharray() {
+        // A dash of no length still shows its caps; an expander sees it only if it has some.
+        let dashes: Vec<f64> = dashes.iter().map(|d| f64::from(*d).max(dot)).collect();
+        /// Dashes finer than this many on one path would be a grey line and no end of work.
+        const MOST_DASHES: f64 = 20_000.0;
+        let period: f64 = dashes.iter().sum();
+        if period > 0.0 && rough_length(&part.local) / period * (dashes.len() as f64) < 2.0 * MOST_DASHES {
+            style = style.with_dashes(f64::from(stroke.dashoffset()), dashes);
+        }
+    }
+    let mut path = part.local.to_bez_path(tolerance);
+    if dot > 0.0 {
+        for s in &part.local.subpaths {
+            if (s.closed || !s.segs.is_empty()) && s.segs.iter().all(|g| is_point(g, s.start)) {
+                path.move_to(s.start);
+                path.line_to(s.start + Vec2::new(dot, 0.0));
+            }
+        }
+    }
+    (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into()
+}
+
+/// The part of the width that a dot is long.
+const DOT: f64 = 1e-5;
+
+fn is_point(s: &pathwarp::Seg, at: Point) -> bool {
+    let c = s.to_cubic();
+    [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
+}
+
+/// The control polygons' length: an upper bound.
+fn rough_length(o: &Outline) -> f64 {
+    let leg = |s: &pathwarp::Seg| {
+        let c = s.to_cubic();
+        c.p0.distance(c.p1) + c.p1.distance(c.p2) + c.p2.distance(c.p3)
+    };
+    o.segs().map(leg).sum()
+}

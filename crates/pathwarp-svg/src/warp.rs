@@ -1,0 +1,357 @@
+//! A document under a map: every part's image, in parallel, and what to say about it.
+
+use crate::document::Document;
+use crate::number::MOST_DECIMALS;
+use crate::options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
+use crate::paint::{self, Fit};
+use crate::scene::{Part, Role, Scene};
+use crate::select::Selection;
+use crate::{keep, stroke, write};
+use pathwarp::kurbo::{Affine, BezPath, Point};
+use pathwarp::map::{Class, Map};
+use pathwarp::refit::{self, Assurance};
+use pathwarp::{Error, GeometryError, Outline};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A warped document.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warped {
+    /// The file.
+    pub svg: String,
+    /// What was done, per shape in painting order.
+    pub shapes: Vec<ShapeReport>,
+    /// What was left as it was.
+    pub skipped: Vec<Skipped>,
+    /// What the owner should know.
+    pub warnings: Vec<String>,
+}
+
+/// What was done to a shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapeReport {
+    /// The source's id, or a readable stand-in such as `path at 12:5`.
+    pub id: String,
+    /// Segments before, closing lines included.
+    pub segments_in: usize,
+    /// Segments after.
+    pub segments_out: usize,
+    /// The largest distance between true image and output, rounding included; root user units.
+    pub max_error: f64,
+    /// How that is known.
+    pub assurance: Assurance,
+    /// Places in the source where the work budget ended before the tolerance was met.
+    pub over_budget: Vec<Point>,
+}
+
+/// Something that was left as it was.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Skipped {
+    /// The source's id, or a readable stand-in.
+    pub id: String,
+    /// Why.
+    pub why: String,
+}
+
+/// Remarks, each said once with all it applies to.
+#[derive(Debug, Default)]
+pub(crate) struct Notes(BTreeMap<&'static str, BTreeSet<String>>);
+
+impl Notes {
+    /// `what` happened to `whom`.
+    pub(crate) fn add(&mut self, what: &'static str, whom: &str) {
+        self.0.entry(what).or_default().insert(whom.to_owned());
+    }
+
+    fn lines(self) -> impl Iterator<Item = String> {
+        /// As many names as help to find the place.
+        const NAMED: usize = 4;
+        self.0.into_iter().map(|(what, whom)| {
+            let names: Vec<&str> = whom.iter().map(String::as_str).filter(|n| !n.is_empty()).take(NAMED).collect();
+            match (names.len(), whom.len()) {
+                (0, _) => what.to_owned(),
+                (n, all) if all > n => format!("{what}: {} and {} more", names.join(", "), all - n),
+                _ => format!("{what}: {}", names.join(", ")),
+            }
+        })
+    }
+}
+
+/// What becomes of one part.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// It stays.
+    Kept,
+    Warped(Box<Done>),
+}
+
+#[derive(Debug)]
+pub(crate) struct Done {
+    /// In the part's own user space.
+    pub(crate) path: BezPath,
+    pub(crate) decimals: u8,
+    pub(crate) stroke: StrokeDone,
+    /// How gradients and patterns follow; `None`: they stay.
+    pub(crate) fit: Option<Fit>,
+    report: refit::PathReport,
+    rounding: f64,
+}
+
+#[derive(Debug)]
+pub(crate) enum StrokeDone {
+    /// Widths and dashes times this.
+    Scaled(f64),
+    /// The stroke's outline, in the part's own user space.
+    Outlined(BezPath),
+}
+
+impl Outcome {
+    pub(crate) fn done(&self) -> Option<&Done> {
+        match self {
+            Self::Kept => None,
+            Self::Warped(d) => Some(d),
+        }
+    }
+}
+
+/// The part of an error that a shape's width may have before the stroke is outlined.
+const WIDTH_ERROR: f64 = 0.02;
+/// Rounding may cost this part of the tolerance.
+const ROUNDING: f64 = 0.01;
+
+impl Document {
+    /// The document with everything that `options` selects bent by `map`, a map of root user space.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`] naming the shape that the map cannot bend, unless [`OnError::Skip`]; [`Error::Input`] if the
+    /// structure must be kept and cannot be.
+    pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
+        let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
+        let identity = map.class() == Class::Affine(Affine::IDENTITY);
+        if identity && options.structure != Structure::Flatten {
+            self.source.text.clone_into(&mut out.svg);
+            return Ok(out);
+        }
+        let meant = self.chosen(options);
+        let parts = &self.scene.parts;
+        let slots = self.place_slots(map, &meant, &options.selection);
+        let results: Vec<Option<Result<Done, GeometryError>>> = parts
+            .par_iter()
+            .zip(&meant)
+            .map(|(p, meant)| {
+                let write = written(&self.scene, &slots, p.slot, p.frame);
+                (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
+            })
+            .collect();
+        let mut outcomes = Vec::with_capacity(parts.len());
+        let mut last = None;
+        for (i, r) in results.into_iter().enumerate() {
+            let shape = &self.shapes[i];
+            outcomes.push(match r {
+                None => Outcome::Kept,
+                Some(Ok(done)) => {
+                    let owner = parts[i].owner.or(parts[i].source);
+                    out.report(shape.id.clone(), &done, owner.is_some() && owner == last);
+                    last = owner;
+                    Outcome::Warped(Box::new(done))
+                }
+                Some(Err(e)) => {
+                    let e = e.on_shape(&shape.id);
+                    let seen = parts[i].painted();
+                    if options.on_error == OnError::Stop && seen {
+                        return Err(Error::Geometry(e));
+                    }
+                    out.skipped.push(Skipped { id: shape.id.clone(), why: e.to_string() });
+                    Outcome::Kept
+                }
+            });
+        }
+        if !self.missing_fonts.is_empty() {
+            let names = self.missing_fonts.join(", ");
+            out.warnings
+                .push(format!("text is set in another font, for want of {names}; install it or outline the text"));
+        }
+        let mut notes = Notes::default();
+        let job = write::Job { document: self, outcomes: &outcomes, slots: &slots, map, options };
+        let kept = match (options.structure, &self.scene.unkeepable) {
+            (Structure::Flatten, _) => None,
+            (_, Some(why)) => Some(Err(why.clone())),
+            _ => Some(keep::write(&job, &mut out.skipped, &mut notes)),
+        };
+        out.svg = match (kept, options.structure) {
+            (Some(Ok(svg)), _) => svg,
+            (Some(Err(why)), Structure::Keep) => {
+                return Err(Error::input(&self.name, format!("the file's structure cannot be kept: {why}")));
+            }
+            (kept, _) => {
+                if let Some(Err(why)) = kept {
+                    out.warnings.push(format!("the file is written anew, its structure could not be kept: {why}"));
+                }
+                write::flat(&job, &mut out.skipped, &mut notes)
+            }
+        };
+        out.warnings.extend(notes.lines());
+        Ok(out)
+    }
+
+    /// Where filtered groups and images go: the affine fit of the map over each.
+    fn place_slots(&self, map: &dyn Map, meant: &[bool], selection: &Selection) -> Vec<Placed> {
+        let mut out: Vec<Placed> = Vec::with_capacity(self.scene.slots.len());
+        let elements = selection.resolve(&self.source);
+        for s in &self.scene.slots {
+            let outer = written(&self.scene, &out, s.outer, s.frame);
+            let moved = match meant.get(s.parts.clone()) {
+                Some(parts) if !parts.is_empty() => parts.iter().all(|m| *m),
+                _ => s.owner.or(s.element).map_or(selection.is_everything(), |e| elements[e]),
+            };
+            let fit = (moved && usable(s.frame) && usable(outer))
+                .then(|| paint::fit(s.area, s.frame, outer, map))
+                .flatten()
+                .filter(|f| usable(f.affine) && !f.is_identity(s.area));
+            let fit = fit.map_or(Affine::IDENTITY, |f| f.affine);
+            out.push(Placed { fit, write: outer * fit });
+        }
+        out
+    }
+
+    /// For every part whether it is to be warped: clip paths and masks follow those that refer to them.
+    fn chosen(&self, options: &WarpOptions) -> Vec<bool> {
+        let mut meant = self.meant(&options.selection);
+        let all = options.selection.is_everything();
+        let elements = options.selection.resolve(&self.source);
+        let refs = self.scene.clips.iter().map(|c| (&c.parts, &c.referrers));
+        let refs = refs.chain(self.scene.masks.iter().map(|m| (&m.parts, &m.referrers)));
+        for (parts, referrers) in refs {
+            let any = all || referrers.iter().any(|r| r.owner.or(r.element).is_some_and(|e| elements[e]));
+            meant[parts.clone()].fill(any);
+        }
+        for (m, p) in meant.iter_mut().zip(&self.scene.parts) {
+            let text = p.owner.is_some_and(|e| self.source.elements[e].tag == "text");
+            *m &= p.role != Role::Pattern && !(text && options.text == TextMode::Skip);
+        }
+        meant
+    }
+}
+
+impl Warped {
+    fn report(&mut self, id: String, done: &Done, same_as_last: bool) {
+        let r = &done.report;
+        let error = r.max_error + done.rounding;
+        match self.shapes.last_mut() {
+            Some(last) if same_as_last => {
+                last.segments_in += r.segments_in;
+                last.segments_out += r.segments_out;
+                last.max_error = last.max_error.max(error);
+                last.assurance = last.assurance.min(r.assurance);
+                last.over_budget.extend(&r.over_budget);
+            }
+            _ => self.shapes.push(ShapeReport {
+                id,
+                segments_in: r.segments_in,
+                segments_out: r.segments_out,
+                max_error: error,
+                assurance: r.assurance,
+                over_budget: r.over_budget.clone(),
+            }),
+        }
+    }
+}
+
+/// A slot under the map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Placed {
+    /// What its transform is multiplied with.
+    pub(crate) fit: Affine,
+    /// From inside to root user space, as written.
+    write: Affine,
+}
+
+/// A frame as it is in the result: inside a slot it has moved along.
+pub(crate) fn written(scene: &Scene, placed: &[Placed], slot: Option<usize>, frame: Affine) -> Affine {
+    match slot.and_then(|s| Some((placed.get(s)?, scene.slots.get(s)?))) {
+        Some((p, s)) if p.write != s.frame => p.write * s.frame.inverse() * frame,
+        _ => frame,
+    }
+}
+
+/// Whether there is a way back from root user space.
+fn usable(frame: Affine) -> bool {
+    frame.is_finite() && frame.determinant() != 0.0 && frame.inverse().is_finite()
+}
+
+/// The most that `m` stretches anything.
+pub(crate) fn stretch(m: Affine) -> f64 {
+    let [a, b, c, d, ..] = m.as_coeffs();
+    // The larger singular value.
+    let (s, t) = ((a + d).hypot(b - c), (a - d).hypot(b + c));
+    (s + t) / 2.0
+}
+
+fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> Result<Done, GeometryError> {
+    let outline = p.outline();
+    let back = write.inverse();
+    let size = stretch(write);
+    let tolerance = options.refit.tolerance;
+    let decimals = options.precision.unwrap_or_else(|| {
+        let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
+        if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
+    });
+    let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
+    // What rounding takes is not the refit's to spend.
+    let left = (tolerance - rounding).max(0.5 * tolerance);
+    let warped = refit::warp_path(&outline, map, &refit::Options { tolerance: left, ..options.refit.clone() })?;
+    let mut done = Done {
+        path: local(warped.path, back),
+        decimals,
+        stroke: StrokeDone::Scaled(1.0),
+        fit: None,
+        report: warped.report,
+        rounding,
+    };
+    let painted_by_server = |p: &usvg::Paint| !matches!(p, usvg::Paint::Color(_));
+    let served = p.fill.as_ref().is_some_and(|f| painted_by_server(f.paint()))
+        || p.stroke.as_ref().is_some_and(|s| painted_by_server(s.paint()));
+    if served && options.gradients == Gradients::Fit {
+        done.fit = p.local.bounding_box().and_then(|b| paint::fit(b, p.frame, write, map));
+    }
+    if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
+        let width = || stroke::width(&outline, p.frame, write, map, s);
+        let outlined = || outline_stroke(p, s, write, map, options);
+        match options.strokes {
+            Strokes::Keep => {}
+            Strokes::Scale => done.stroke = StrokeDone::Scaled(width().map_or(1.0, |w| w.scale)),
+            Strokes::Outline => done.stroke = StrokeDone::Outlined(outlined()?),
+            Strokes::Auto => match width() {
+                Some(w) if w.error <= WIDTH_ERROR => done.stroke = StrokeDone::Scaled(w.scale),
+                w => {
+                    // An outline may reach where the map does not; one width then is better than none.
+                    done.stroke = match outlined() {
+                        Ok(path) => StrokeDone::Outlined(path),
+                        Err(_) => StrokeDone::Scaled(w.map_or(1.0, |w| w.scale)),
+                    };
+                }
+            },
+        }
+    }
+    Ok(done)
+}
+
+fn outline_stroke(
+    p: &Part,
+    s: &usvg::Stroke,
+    write: Affine,
+    map: &dyn Map,
+    options: &WarpOptions,
+) -> Result<BezPath, GeometryError> {
+    // The expansion is an approximation of its own; a quarter of the tolerance is its share.
+    let outline: Outline = stroke::outline(p, s, (options.refit.tolerance / stretch(p.frame) * 0.25).max(1e-9));
+    let warped = refit::warp_path(&outline.transformed(p.frame), map, &options.refit)?;
+    Ok(local(warped.path, write.inverse()))
+}
+
+fn local(mut path: BezPath, back: Affine) -> BezPath {
+    if back != Affine::IDENTITY {
+        path.apply_affine(back);
+    }
+    path
+}
