@@ -5,8 +5,9 @@
 //! every point of C one on g.
 //!
 //! **φ** is a polynomial through the feet of the fit, φ(τ) = τ + τ(1−τ)·p(2τ−1) with p of degree 7. Since φ = τ·(1 + (1−τ)p) and
-//! 1−φ = (1−τ)·(1 − τp), it stays in [0, 1] if |p| ≤ 1, for which it is enough that p's Chebyshev coefficients add up to at
-//! most 1 in absolute value.
+//! 1−φ = (1−τ)·(1 − τp), it stays in [0, 1] if the two brackets, polynomials of degree 8, are not negative: which they are not
+//! if |p| ≤ 1, for which it is enough that p's Chebyshev coefficients add up to at most 1 in absolute value, or if the bound
+//! below says so.
 //!
 //! **The bound.** D = g − C∘φ is a polynomial of a known degree less than N. Its values at the N Chebyshev nodes therefore give
 //! its Chebyshev coefficients exactly (a discrete cosine transform), and for every d
@@ -88,7 +89,7 @@ pub(super) fn bound(source: &Source<'_>, algebra: &Algebra, c: &Candidate, feet:
             p[k] += row[k] * (f - row[P]);
         }
     }
-    if p.iter().map(|v| v.abs()).sum::<f64>() > 1.0 {
+    if !inside(&p) {
         return Ok(f64::INFINITY);
     }
     let mut x = [0.0; N];
@@ -137,10 +138,85 @@ pub(super) fn bound(source: &Source<'_>, algebra: &Algebra, c: &Candidate, feet:
         let k = (0..N).find(|&k| !(x[k] + y[k]).is_finite()).unwrap_or(0);
         return Err(source.at(t[k]));
     }
-    /// Rounding of a sample, relative to its coordinates.
+    Ok(supremum(&x, &y, most, N - 1) / share + noise(c))
+}
+
+/// Whether φ stays in [0, 1].
+fn inside(p: &[f64; P]) -> bool {
+    if p.iter().map(|v| v.abs()).sum::<f64>() <= 1.0 {
+        return true;
+    }
+    let tables = tables();
+    let (mut a, mut b) = ([0.0; N], [0.0; N]);
+    for k in 0..N {
+        let v: f64 = (0..P).map(|j| p[j] * tables.t[k][j]).sum();
+        a[k] = 1.0 + (1.0 - tables.tau[k]) * v;
+        b[k] = 1.0 - tables.tau[k] * v;
+    }
+    least(&a, P) >= 0.0 && least(&b, P) >= 0.0
+}
+
+/// A lower bound for a polynomial of the given degree from its values at the nodes: its distance from their middle is bounded
+/// as in the module's documentation.
+fn least(f: &[f64; N], degree: usize) -> f64 {
+    let lo = f.iter().copied().fold(f64::INFINITY, f64::min);
+    let hi = f.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mid = 0.5 * (lo + hi);
+    mid - supremum(&f.map(|v| v - mid), &[0.0; N], hi - mid, degree)
+}
+
+/// As [`bound`] where the candidate is a straight line: the part of D across the line, if the image runs along it one way.
+/// Then the point of the image with the same part along is each point's partner.
+#[cold]
+pub(super) fn line(source: &Source<'_>, algebra: &Algebra, c: &Candidate) -> Result<f64, Point> {
+    let tables = tables();
+    let unit = c.frame.t0;
+    let (mut across, mut pace, mut w) = ([0.0; N], [0.0; N], [1.0; N]);
+    for b in 0..BATCHES {
+        let mut t: Lane = [0.0; 8];
+        for i in 0..8 {
+            t[i] = c.t0 + (c.t1 - c.t0) * tables.tau[8 * b + i];
+        }
+        let s = source.points(&t);
+        if algebra.below > 0 {
+            let d = match &algebra.weights {
+                Some(w) => bernstein(w, &t),
+                None => source.denominators(&t, &s, algebra.power),
+            };
+            w[8 * b..8 * b + 8].copy_from_slice(&d);
+        }
+        for i in 0..8 {
+            let (p, d) = source.image(t[i]);
+            if !p.is_finite() || !d.is_finite() {
+                return Err(source.at(t[i]));
+            }
+            let k = 8 * b + i;
+            across[k] = (p - c.p0).cross(unit);
+            // W²·g' = G'W − GW' is a polynomial and has the sign of g'.
+            pace[k] = d.dot(unit) * (w[k] * w[k]);
+        }
+    }
+    let mut share = 1.0;
+    if algebra.below > 0 {
+        let Some(e) = cleared(&mut w, algebra.below + V - 1) else { return Ok(f64::INFINITY) };
+        for k in 0..N {
+            across[k] *= w[k];
+        }
+        share = 1.0 - e;
+    }
+    let degree = (algebra.degree + algebra.below).min(N);
+    if degree >= N || least(&pace, degree) < 0.0 {
+        return Ok(f64::INFINITY);
+    }
+    let most = across.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    Ok(supremum(&across, &[0.0; N], most, N - 1) / share + noise(c))
+}
+
+/// Rounding of the samples.
+fn noise(c: &Candidate) -> f64 {
+    /// Relative to their coordinates.
     const ROUNDING: f64 = 1e-14;
-    let noise = ROUNDING * (c.p0.x.abs() + c.p0.y.abs() + c.frame.size);
-    Ok(supremum(&x, &y, most, N - 1) / share + noise)
+    ROUNDING * (c.p0.x.abs() + c.p0.y.abs() + c.frame.size)
 }
 
 /// Replaces W by V·W and returns a bound for |VW − 1|, `degree` being VW's.

@@ -41,6 +41,9 @@ pub(super) struct Frame {
     pub(super) floor: [f64; 2],
     /// How far the samples get from the first point, more or less.
     pub(super) size: f64,
+    /// Where the handles are pulled to, and how strongly: nearly straight pieces leave them undetermined.
+    pub(super) home: [f64; 2],
+    pub(super) pull: f64,
 }
 
 /// A state of the fit.
@@ -86,6 +89,17 @@ impl Frame {
             let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
             z.s[i] = unit(s - (rx * dx + ry * dy) / (dx * dx + dy * dy + f64::MIN_POSITIVE));
         }
+    }
+
+    /// Adds the pull to the normal equations and the sum of squares.
+    #[inline(always)]
+    fn pulled(&self, (mut sums, squares, error): ([f64; 5], f64, f64), z: &State) -> ([f64; 5], f64, f64) {
+        let (da, db) = (z.a - self.home[0], z.b - self.home[1]);
+        sums[0] += self.pull;
+        sums[2] += self.pull;
+        sums[3] += self.pull * da;
+        sums[4] += self.pull * db;
+        (sums, squares + self.pull * (da * da + db * db), error)
     }
 
     #[inline(always)]
@@ -241,7 +255,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
     let ones = [1.0; 8];
     frame.settle(g, &mut z);
     let mut r = frame.residuals(g, &z);
-    let (mut sums, mut squares, error) = normal_equations(&r, &ones);
+    let (mut sums, mut squares, error) = frame.pulled(normal_equations(&r, &ones), &z);
     let mut best = Fit { z, error, ds: r.ds };
     let mut trust = TRUST * frame.size;
     for k in 1..MOST_EVALUATIONS {
@@ -260,7 +274,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
         }
         frame.settle(g, &mut next);
         let rn = frame.residuals(g, &next);
-        let (sn, sq, en) = normal_equations(&rn, &ones);
+        let (sn, sq, en) = frame.pulled(normal_equations(&rn, &ones), &next);
         // The first steps also settle the feet, which may raise the sum a little.
         if sq <= squares {
             (z, r, sums, squares) = (next, rn, sn, sq);
@@ -284,7 +298,7 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
     for k in 0..=steps {
         let r = [frame.residuals(g[0], &z[0]), frame.residuals(g[1], &z[1])];
         let ([mut sums, more], error) = {
-            let (s0, _, e0) = normal_equations(&r[0], &w[0]);
+            let (s0, _, e0) = frame.pulled(normal_equations(&r[0], &w[0]), &z[0]);
             let (s1, _, e1) = normal_equations(&r[1], &w[1]);
             ([s0, s1], e0.max(e1))
         };

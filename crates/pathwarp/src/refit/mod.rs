@@ -271,6 +271,9 @@ fn warp_seg(
     Ok(())
 }
 
+/// Shorter than this share of its coordinates, a segment is rounding of two equal points.
+const ROUNDING: f64 = 1e-15;
+
 /// Arcs that are to be proven are cut into parts of at most this angle (a little over a third of a turn).
 const MOST_RATIONAL: f64 = 2.2;
 
@@ -287,8 +290,8 @@ impl Job<'_> {
         let map = self.map;
         let certify = self.options.certify;
         let whole = Source::new(seg, map).rational_if(certify);
-        if whole.size() == 0.0 {
-            // A segment that goes nowhere stays one: it carries line caps and markers.
+        if whole.size() <= ROUNDING * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
+            // A segment that goes nowhere stays one (it carries line caps and markers), and has no direction to keep.
             pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }

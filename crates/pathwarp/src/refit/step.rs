@@ -29,6 +29,9 @@ const FLAT: f64 = 0.02;
 /// A fit this good is not improved further.
 const ENOUGH: f64 = 0.77;
 
+/// A handle longer or shorter than Hermite's by the piece's size counts like a residual of this share of the tolerance.
+const PULL: f64 = 0.05;
+
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
 const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
 /// Samples j/17 that check the fit, between them.
@@ -214,14 +217,15 @@ impl Stepper<'_> {
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
         let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
         if let Some(line) = straight(&g, q, from.p, to.p, size) {
-            return self.line(from, to, &g, line, size);
+            return self.line(from, to, line, size);
         }
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
         let third = h * (1.0 / 3.0);
         let hermite = [from.speed * third, to.speed * third];
         let least = |a: f64| if a > 0.0 { a.min(1e-3 * size) } else { 1e-5 * size };
         let floor = [least(hermite[0]), least(hermite[1])];
-        let frame = Frame { q, t0: from.away, t1: to.into, floor, size };
+        let pull = (PULL * tol / size).powi(2);
+        let frame = Frame { q, t0: from.away, t1: to.into, floor, size, home: hermite, pull };
         let mut z = State { a: hermite[0].max(floor[0]), b: hermite[1].max(floor[1]), s: [0.0; 8] };
         for i in 0..8 {
             z.s[i] = FITTED[i] * UNIT;
@@ -247,21 +251,21 @@ impl Stepper<'_> {
 
     /// A stretch whose image is straight to rounding.
     #[cold]
-    fn line(&self, from: &End, to: &End, g: &Lanes, line: Piece, size: f64) -> Result<Outcome, Point> {
+    fn line(&self, from: &End, to: &End, line: Piece, size: f64) -> Result<Outcome, Point> {
         if self.algebra.is_none() || size == 0.0 {
             return Ok(Outcome::Fits { piece: line, error: 0.0 });
         }
         let q = to.p - from.p;
         let length = q.hypot();
-        let check = self.samples(from, to.t - from.t, &CHECKED)?;
         let unit = if length > 0.0 { q / length } else { Vec2::ZERO };
-        let frame = Frame { q, t0: unit, t1: unit, floor: [0.0; 2], size };
-        let job = Job { from, to, frame, g, check: &check, careful: false };
-        let mut z = State { a: length / 3.0, b: length / 3.0, s: [0.0; 8] };
-        for i in 0..8 {
-            z.s[i] = fit::unit((g.x[i] * q.x + g.y[i] * q.y) / q.hypot2());
-        }
-        let error = self.proven(&job, &z, 0.0)?;
+        let frame = Frame { q, t0: unit, t1: unit, floor: [0.0; 2], size, home: [length / 3.0; 2], pull: 0.0 };
+        let error = match &self.algebra {
+            None => 0.0,
+            Some(algebra) => {
+                let c = Candidate { t0: from.t, t1: to.t, p0: from.p, frame, a: length / 3.0, b: length / 3.0 };
+                certify::line(self.source, algebra, &c)?
+            }
+        };
         if error <= self.tolerance {
             return Ok(Outcome::Fits { piece: line, error });
         }
