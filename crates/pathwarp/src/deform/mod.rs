@@ -92,6 +92,10 @@ pub enum Law {
     KeepsLines(Pairs),
     /// With these values every area is multiplied by this.
     Area(Pairs, f64),
+    /// With these values angles between curves are kept (and nothing is mirrored).
+    KeepsAngles(Pairs),
+    /// The second set of values takes every point back to where it was before the first.
+    Undoes(Pairs, Pairs),
 }
 
 /// A known value.
