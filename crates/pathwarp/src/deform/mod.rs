@@ -6,6 +6,7 @@ mod affine;
 mod projective;
 mod shaper;
 mod similitude;
+mod wave;
 
 use crate::error::Error;
 use crate::map::Map;
@@ -21,6 +22,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
+        Arc::new(wave::Wave),
     ]
 }
 
