@@ -6,6 +6,7 @@ mod affine;
 mod projective;
 mod shaper;
 mod similitude;
+mod swirl;
 mod wave;
 
 use crate::error::Error;
@@ -23,6 +24,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
         Arc::new(wave::Wave),
+        Arc::new(swirl::Swirl),
     ]
 }
 
