@@ -3,6 +3,7 @@
 //! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
 
 mod affine;
+mod bulge;
 mod projective;
 mod shaper;
 mod similitude;
@@ -25,6 +26,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(affine::AffineDeformation),
         Arc::new(wave::Wave),
         Arc::new(swirl::Swirl),
+        Arc::new(bulge::Bulge),
     ]
 }
 
