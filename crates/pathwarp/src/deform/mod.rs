@@ -4,6 +4,7 @@
 
 mod affine;
 mod bulge;
+mod polar;
 mod projective;
 mod shaper;
 mod similitude;
@@ -24,6 +25,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
+        Arc::new(polar::Polar),
         Arc::new(wave::Wave),
         Arc::new(swirl::Swirl),
         Arc::new(bulge::Bulge),
