@@ -4,6 +4,7 @@
 
 mod affine;
 mod bulge;
+mod mobius;
 mod polar;
 mod projective;
 mod shaper;
@@ -29,6 +30,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(wave::Wave),
         Arc::new(swirl::Swirl),
         Arc::new(bulge::Bulge),
+        Arc::new(mobius::Mobius),
     ]
 }
 
