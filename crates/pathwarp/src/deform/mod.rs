@@ -4,6 +4,7 @@
 
 mod affine;
 mod bulge;
+mod lens;
 mod mobius;
 mod polar;
 mod projective;
@@ -30,6 +31,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(wave::Wave),
         Arc::new(swirl::Swirl),
         Arc::new(bulge::Bulge),
+        Arc::new(lens::Lens),
         Arc::new(mobius::Mobius),
     ]
 }
