@@ -3,6 +3,7 @@
 //! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
 
 mod affine;
+mod bilinear;
 mod bulge;
 mod lens;
 mod mobius;
@@ -24,6 +25,7 @@ use std::sync::Arc;
 pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
+        Arc::new(bilinear::Bilinear),
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
