@@ -6,6 +6,7 @@ mod affine;
 mod bilinear;
 mod bulge;
 mod lens;
+mod mls;
 mod mobius;
 mod polar;
 mod projective;
@@ -30,6 +31,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
         Arc::new(polar::Polar),
+        Arc::new(mls::Mls),
         Arc::new(wave::Wave),
         Arc::new(swirl::Swirl),
         Arc::new(bulge::Bulge),
