@@ -130,6 +130,11 @@ impl Document {
         Reader { source: &self.source, dpi: self.dpi, page: self.page }
     }
 
+    /// What an element's `transform` says.
+    pub(crate) fn own_transform(&self, e: ElementId) -> Affine {
+        self.reader().own_transform(e).unwrap_or_default()
+    }
+
     /// Everything that is painted, clips or masks, in painting order. Texts and `use` copies count once per path.
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
@@ -145,7 +150,7 @@ impl Document {
     }
 
     /// The painted shapes that `selection` means.
-    pub fn selected(&self, selection: &Selection) -> impl Iterator<Item = &Shape> {
+    pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
         let meant = self.meant(selection);
         self.shapes.iter().zip(meant).filter(|(s, meant)| *meant && s.painted).map(|(s, _)| s)
     }

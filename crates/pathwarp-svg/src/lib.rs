@@ -23,6 +23,7 @@
 
 mod document;
 mod edit;
+mod filter;
 mod fonts;
 mod geometry;
 mod keep;

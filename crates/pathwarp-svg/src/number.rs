@@ -59,6 +59,9 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
         out.push(',');
         push(out, p.y, decimals);
     };
+    let mut at = Point::ORIGIN;
+    // Cubics that differ from a quadratic by less than rounding are one.
+    let near = 0.1 * 0.1_f64.powi(i32::from(decimals));
     for el in path.elements() {
         if !out.is_empty() {
             out.push(' ');
@@ -78,6 +81,14 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
                 out.push(' ');
                 point(&mut out, p);
             }
+            PathEl::CurveTo(a, b, p) if quadratic(at, a, b, p).is_some_and(|q| q.1 < near) => {
+                if let Some((q, _)) = quadratic(at, a, b, p) {
+                    out.push('Q');
+                    point(&mut out, q);
+                    out.push(' ');
+                    point(&mut out, p);
+                }
+            }
             PathEl::CurveTo(a, b, p) => {
                 out.push('C');
                 point(&mut out, a);
@@ -88,8 +99,17 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
             }
             PathEl::ClosePath => out.push('Z'),
         }
+        at = el.end_point().unwrap_or(at);
     }
     out
+}
+
+/// The quadratic nearest to a cubic, and how far its handle is off; `None` for a handle that would not be finite.
+fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)> {
+    let from_start = p0 + (p1 - p0) * 1.5;
+    let from_end = p3 + (p2 - p3) * 1.5;
+    let q = from_start.midpoint(from_end);
+    q.is_finite().then(|| (q, from_start.distance(from_end)))
 }
 
 /// Text made safe for an attribute value in double quotes, and for element content.
@@ -128,5 +148,16 @@ mod tests {
         assert_eq!(short(0.000_012_345), "0.000012345");
         assert_eq!(short(1234.5), "1234.5");
         assert_eq!(short(-1e-40), "0");
+    }
+
+    #[test]
+    fn raised_quadratics_come_down_again() {
+        let q = pathwarp::kurbo::QuadBez::new((0.0, 0.0), (1.0, 7.0), (10.0, 0.0)).raise();
+        let mut p = BezPath::new();
+        p.move_to(q.p0);
+        p.curve_to(q.p1, q.p2, q.p3);
+        p.curve_to((11.0, 1.0), (12.0, 0.0), (13.0, 5.0));
+        p.close_path();
+        assert_eq!(path_data(&p, 3), "M0,0 Q1,7 10,0 C11,1 12,0 13,5 Z");
     }
 }

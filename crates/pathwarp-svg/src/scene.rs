@@ -7,7 +7,7 @@ use crate::geometry::{self, Reader};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point, Rect, Size};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 use usvg::{BlendMode, Fill, PaintOrder, ShapeRendering, Stroke};
@@ -41,6 +41,7 @@ pub(crate) struct Part {
     pub(crate) visible: bool,
     /// The stroke's width is in px whatever the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
+    pub(crate) slot: Option<usize>,
 }
 
 #[derive(Debug)]
@@ -56,15 +57,34 @@ pub(crate) struct Group {
     pub(crate) source: Option<ElementId>,
     pub(crate) owner: Option<ElementId>,
     pub(crate) transform: Affine,
-    /// From inside to root user space.
-    pub(crate) frame: Affine,
     pub(crate) opacity: f32,
     pub(crate) blend: BlendMode,
     pub(crate) isolate: bool,
     pub(crate) clip: Option<usize>,
     pub(crate) mask: Option<usize>,
     pub(crate) filters: Vec<Arc<usvg::filter::Filter>>,
+    /// Its own slot, if it is moved as a whole.
+    pub(crate) slot: Option<usize>,
     pub(crate) children: Vec<Node>,
+}
+
+/// A place in the tree of groups where an affine fit of the map goes into the transforms, so that what cannot be bent (filters
+/// with their regions and lengths, images) is moved along. What is inside is written in the moved frame.
+#[derive(Debug)]
+pub(crate) struct Slot {
+    /// The slot around it.
+    pub(crate) outer: Option<usize>,
+    /// From inside to root user space.
+    pub(crate) frame: Affine,
+    /// What is to be fitted, in the coordinates inside.
+    pub(crate) area: Rect,
+    /// Whether it goes before the group's own transform, else after.
+    pub(crate) before: bool,
+    /// The element whose `transform` takes it up.
+    pub(crate) element: Option<ElementId>,
+    pub(crate) owner: Option<ElementId>,
+    /// The parts inside.
+    pub(crate) parts: Range<usize>,
 }
 
 /// A clip path as one frame sees it.
@@ -74,8 +94,6 @@ pub(crate) struct Clip {
     pub(crate) transform: Affine,
     pub(crate) clip: Option<usize>,
     pub(crate) root: Group,
-    /// Of those that refer to it.
-    pub(crate) frame: Affine,
     pub(crate) referrers: Vec<Referrer>,
     /// The parts that belong to it.
     pub(crate) parts: Range<usize>,
@@ -89,7 +107,9 @@ pub(crate) struct Mask {
     pub(crate) kind: usvg::MaskType,
     pub(crate) mask: Option<usize>,
     pub(crate) root: Group,
+    /// Of those that refer to it: from their user space to root user space.
     pub(crate) frame: Affine,
+    pub(crate) slot: Option<usize>,
     pub(crate) referrers: Vec<Referrer>,
     /// The parts that belong to it.
     pub(crate) parts: Range<usize>,
@@ -120,6 +140,9 @@ pub(crate) struct Scene {
     pub(crate) clips: Vec<Clip>,
     pub(crate) masks: Vec<Mask>,
     pub(crate) tiles: Vec<Tile>,
+    /// What filters show by `feImage`, by the address of usvg's group (which the document keeps alive).
+    pub(crate) pictures: HashMap<usize, Group>,
+    pub(crate) slots: Vec<Slot>,
     /// The parts written as each element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
     /// Root user space to px.
@@ -140,16 +163,24 @@ struct Builder<'a> {
     clips: Vec<Clip>,
     masks: Vec<Mask>,
     tiles: Vec<Tile>,
-    clip_index: HashMap<(usize, [u64; 6]), usize>,
-    mask_index: HashMap<(usize, [u64; 6]), usize>,
+    pictures: HashMap<usize, Group>,
+    clip_index: HashMap<DefKey, usize>,
+    mask_index: HashMap<DefKey, usize>,
     unkeepable: Option<String>,
-    taken: HashMap<ElementId, u32>,
+    taken: HashSet<ElementId>,
+    slots: Vec<Slot>,
+    /// The group that holds root user space; its own transform leads out of it.
+    top: Option<*const usvg::Group>,
 }
+
+/// A definition as one frame sees it: which, from where, in which slot.
+type DefKey = (usize, [u64; 6], Option<usize>);
 
 #[derive(Clone, Copy)]
 struct Context {
     owner: Option<ElementId>,
     role: Role,
+    slot: Option<usize>,
 }
 
 /// Resolves the drawing. `ids` says what the tree's ids stand for.
@@ -166,24 +197,25 @@ pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Ve
         clips: Vec::new(),
         masks: Vec::new(),
         tiles: Vec::new(),
+        pictures: HashMap::new(),
         clip_index: HashMap::new(),
         mask_index: HashMap::new(),
         unkeepable: source.unpatchable.clone(),
-        taken: HashMap::new(),
+        taken: HashSet::new(),
+        slots: Vec::new(),
+        top: None,
     };
     let (top, to_px) = b.root_group(tree, page);
-    // The viewport's own transform leads out of root user space; what is inside it lies there as it is.
-    let outside = if to_px.determinant() == 0.0 { Affine::IDENTITY } else { to_px.inverse() };
-    let mut root = b.group(top, outside, Context { owner: None, role: Role::Paint });
-    root.transform = Affine::IDENTITY;
-    let Builder { parts, clips, masks, tiles, unkeepable, .. } = b;
+    b.top = Some(std::ptr::from_ref(top));
+    let root = b.group(top, Affine::IDENTITY, Context { owner: None, role: Role::Paint, slot: None });
+    let Builder { parts, clips, masks, tiles, pictures, slots, unkeepable, .. } = b;
     let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
     for (i, p) in parts.iter().enumerate() {
         if let Some(e) = p.source {
             by_source.entry(e).or_default().push(i);
         }
     }
-    Scene { root, parts, clips, masks, tiles, by_source, to_px, unkeepable }
+    Scene { root, parts, clips, masks, tiles, pictures, slots, by_source, to_px, unkeepable }
 }
 
 fn bits(m: Affine) -> [u64; 6] {
@@ -267,8 +299,12 @@ impl Builder<'_> {
     fn only_child(&self, g: &usvg::Group) -> Option<ElementId> {
         let mut found = None;
         for c in g.children() {
-            if let usvg::Node::Path(_) | usvg::Node::Text(_) = c
-                && let Some(e) = self.element(c.id())
+            let leaf = match c {
+                usvg::Node::Path(_) | usvg::Node::Text(_) => self.element(c.id()),
+                usvg::Node::Group(_) => self.element(c.id()).filter(|&e| self.tag(e) == "image"),
+                usvg::Node::Image(_) => None,
+            };
+            if let Some(e) = leaf
                 && found.replace(e).is_some()
             {
                 return None;
@@ -280,15 +316,21 @@ impl Builder<'_> {
     fn group(&mut self, g: &usvg::Group, parent: Affine, mut context: Context) -> Group {
         let source = self.element(g.id());
         let element = source.or_else(|| self.only_child(g));
-        let transform = self.refine(g.transform(), element);
+        let top = self.top.is_some_and(|t| std::ptr::eq(t, g));
+        let transform = if top { Affine::IDENTITY } else { self.refine(g.transform(), element) };
         let frame = parent * transform;
+        let owner = context.owner.or(source.filter(|&e| self.tag(e) == "use"));
+        let slot = self.slot(g, source, element, parent, frame, Context { owner, ..context });
+        context.slot = slot.or(context.slot);
         let referrer = Referrer { element, owner: context.owner };
-        let clip = g.clip_path().map(|c| self.clip(c, frame, referrer));
-        let mask = g.mask().map(|m| self.mask(m, frame, referrer));
-        if context.owner.is_none() && source.is_some_and(|e| self.tag(e) == "use") {
-            context.owner = source;
+        let clip = g.clip_path().map(|c| self.clip(c, frame, referrer, context.slot));
+        let mask = g.mask().map(|m| self.mask(m, frame, referrer, context.slot));
+        context.owner = owner;
+        for p in g.filters().iter().flat_map(|f| f.primitives()) {
+            if let usvg::filter::Kind::Image(image) = p.kind() {
+                self.picture(image.root());
+            }
         }
-        let owner = context.owner;
         let markers = if context.owner.is_none() { self.marker_groups(g) } else { Vec::new() };
         let mut children = Vec::with_capacity(g.children().len());
         for (i, c) in g.children().iter().enumerate() {
@@ -301,19 +343,70 @@ impl Builder<'_> {
                 usvg::Node::Text(t) => self.text(t, frame, context),
             });
         }
+        if let Some(s) = slot {
+            self.slots[s].parts.end = self.parts.len();
+        }
         Group {
             source,
             owner,
             transform,
-            frame,
             opacity: g.opacity().get(),
             blend: g.blend_mode(),
             isolate: g.isolate(),
             clip,
             mask,
             filters: g.filters().to_vec(),
+            slot,
             children,
         }
+    }
+
+    /// A new slot, if the group holds what cannot be bent and there is a transform to take the slot up.
+    fn slot(
+        &mut self,
+        g: &usvg::Group,
+        source: Option<ElementId>,
+        element: Option<ElementId>,
+        parent: Affine,
+        frame: Affine,
+        context: Context,
+    ) -> Option<usize> {
+        let image = element.filter(|&e| self.tag(e) == "image");
+        let raster = g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
+        if g.filters().is_empty() && image.is_none() && !raster
+            || matches!(context.role, Role::Clip | Role::Pattern)
+            || context.slot.is_some_and(|s| image.is_some() && self.slots[s].element == element)
+        {
+            return None;
+        }
+        let owned = context.owner.is_some();
+        let free = |e: ElementId| {
+            self.tag(e) != "svg"
+                && self.reader.source.attr(e, "transform-origin").is_none()
+                && !self.reader.source.attr(e, "style").is_some_and(|s| s.contains("transform"))
+                && !self.reader.source.css_mentions("transform")
+        };
+        // In a fragment the group's own transform is written; elsewhere it is an element's.
+        let takes = element.is_some_and(|e| {
+            free(e)
+                && (source == Some(e) && image.is_some()
+                    || self.reader.own_transform(e).is_some_and(|t| near(t, geometry::affine(g.transform()))))
+        });
+        if !owned && !takes && self.unkeepable.is_none() {
+            return None;
+        }
+        // An image's own group holds its placing, which is no transform of the element's.
+        let before = image.is_some() && source == image || image.is_none() && raster;
+        let b = g.bounding_box();
+        let corners = Rect::new(f64::from(b.left()), f64::from(b.top()), f64::from(b.right()), f64::from(b.bottom()));
+        let (frame, area) = if before {
+            (parent, geometry::affine(g.transform()).transform_rect_bbox(corners))
+        } else {
+            (frame, corners)
+        };
+        let parts = self.parts.len()..self.parts.len();
+        self.slots.push(Slot { outer: context.slot, frame, area, before, element, owner: context.owner, parts });
+        Some(self.slots.len() - 1)
     }
 
     /// The children that belong to a shape with markers (the shape itself and the copies beside it), with its element.
@@ -365,7 +458,7 @@ impl Builder<'_> {
         let candidates = self.ids.get(p.id()).map_or(&[][..], Vec::as_slice);
         let shared = candidates.len() > 1;
         for &e in candidates {
-            if !is_shape(self.tag(e)) || (shared && self.taken.contains_key(&e)) {
+            if !is_shape(self.tag(e)) || (shared && self.taken.contains(&e)) {
                 continue;
             }
             let exact = self.reader.outline(e).filter(|o| geometry::same_path(o, p.data()));
@@ -373,7 +466,7 @@ impl Builder<'_> {
                 source = Some(e);
                 outline = exact;
                 if shared {
-                    self.taken.insert(e, 1);
+                    self.taken.insert(e);
                 }
                 break;
             }
@@ -386,7 +479,7 @@ impl Builder<'_> {
                 self.unkept("a painted path cannot be traced to one element of the source");
             }
         }
-        for paint in [p.fill().map(usvg::Fill::paint), p.stroke().map(usvg::Stroke::paint)] {
+        for paint in [p.fill().map(Fill::paint), p.stroke().map(Stroke::paint)] {
             if let Some(usvg::Paint::Pattern(pattern)) = paint {
                 self.tile(pattern);
             }
@@ -407,6 +500,7 @@ impl Builder<'_> {
             rendering: p.rendering_mode(),
             visible: p.is_visible(),
             fixed_width,
+            slot: context.slot,
         });
         self.parts.len() - 1
     }
@@ -445,8 +539,8 @@ impl Builder<'_> {
             .cloned()
     }
 
-    fn clip(&mut self, c: &usvg::ClipPath, frame: Affine, referrer: Referrer) -> usize {
-        let key = (std::ptr::from_ref(c) as usize, bits(frame));
+    fn clip(&mut self, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, slot: Option<usize>) -> usize {
+        let key = (std::ptr::from_ref(c) as usize, bits(frame), slot);
         if let Some(&i) = self.clip_index.get(&key) {
             self.clips[i].referrers.push(referrer);
             return i;
@@ -455,9 +549,9 @@ impl Builder<'_> {
         let def = self.element_of_def(c.id(), "clipPath");
         let transform = self.refine(c.transform(), def);
         let chained = Referrer { element: def, owner: None };
-        let clip = c.clip_path().map(|c| self.clip(c, frame, chained));
+        let clip = c.clip_path().map(|c| self.clip(c, frame, chained, slot));
         // What is inside replaces nothing of the drawing's own tree.
-        let inside = Context { owner: None, role: Role::Clip };
+        let inside = Context { owner: None, role: Role::Clip, slot };
         let kept = self.unkeepable.take();
         let root = self.group(c.root(), frame * transform, inside);
         self.unkeepable = kept;
@@ -466,7 +560,6 @@ impl Builder<'_> {
             transform,
             clip,
             root,
-            frame,
             referrers: vec![referrer],
             parts: first..self.parts.len(),
         });
@@ -474,17 +567,17 @@ impl Builder<'_> {
         self.clips.len() - 1
     }
 
-    fn mask(&mut self, m: &usvg::Mask, frame: Affine, referrer: Referrer) -> usize {
-        let key = (std::ptr::from_ref(m) as usize, bits(frame));
+    fn mask(&mut self, m: &usvg::Mask, frame: Affine, referrer: Referrer, slot: Option<usize>) -> usize {
+        let key = (std::ptr::from_ref(m) as usize, bits(frame), slot);
         if let Some(&i) = self.mask_index.get(&key) {
             self.masks[i].referrers.push(referrer);
             return i;
         }
         let first = self.parts.len();
         let chained = Referrer { element: self.element_of_def(m.id(), "mask"), owner: None };
-        let mask = m.mask().map(|m| self.mask(m, frame, chained));
+        let mask = m.mask().map(|m| self.mask(m, frame, chained, slot));
         let kept = self.unkeepable.take();
-        let root = self.group(m.root(), frame, Context { owner: None, role: Role::Mask });
+        let root = self.group(m.root(), frame, Context { owner: None, role: Role::Mask, slot });
         self.unkeepable = kept;
         let (r, c) = (m.rect(), m.root().stroke_bounding_box());
         let rect = |l, t, r, b| Rect::new(f64::from(l), f64::from(t), f64::from(r), f64::from(b));
@@ -495,6 +588,7 @@ impl Builder<'_> {
             mask,
             root,
             frame,
+            slot,
             referrers: vec![referrer],
             parts: first..self.parts.len(),
             content: rect(c.left(), c.top(), c.right(), c.bottom()),
@@ -508,9 +602,20 @@ impl Builder<'_> {
             return;
         }
         let kept = self.unkeepable.take();
-        let root = self.group(pattern.root(), Affine::IDENTITY, Context { owner: None, role: Role::Pattern });
+        let root =
+            self.group(pattern.root(), Affine::IDENTITY, Context { owner: None, role: Role::Pattern, slot: None });
         self.unkeepable = kept;
         self.tiles.push(Tile { pattern: pattern.clone(), root });
+    }
+
+    fn picture(&mut self, root: &usvg::Group) {
+        let key = std::ptr::from_ref(root) as usize;
+        if !self.pictures.contains_key(&key) {
+            let kept = self.unkeepable.take();
+            let group = self.group(root, Affine::IDENTITY, Context { owner: None, role: Role::Pattern, slot: None });
+            self.unkeepable = kept;
+            self.pictures.insert(key, group);
+        }
     }
 
     fn element_of_def(&self, id: &str, tag: &str) -> Option<ElementId> {

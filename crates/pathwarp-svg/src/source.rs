@@ -103,7 +103,9 @@ impl Source {
         for node in doc.descendants().filter(roxmltree::Node::is_element) {
             let id = elements.len();
             number.insert(node.id(), id);
-            let element = element(&text, node, node.parent().and_then(|p| number.get(&p.id()).copied()));
+            let element = element(&text, node, node.parent().and_then(|p| number.get(&p.id()).copied()))
+                // An entity's own text stands in the DTD, before the root.
+                .filter(|e| e.range.start >= root.range().start);
             match element {
                 Some(e) => {
                     if let Some(v) = e.attr(&text, "id").filter(|v| !v.is_empty()) {
@@ -153,12 +155,6 @@ impl Source {
     pub(crate) fn attr_in(&self, e: ElementId, namespace: Namespace, name: &str) -> Option<Cow<'_, str>> {
         let el = self.elements.get(e)?;
         el.attrs.iter().find(|a| a.namespace == namespace && a.name == name).map(|a| a.value(&self.text))
-    }
-
-    /// The target of `href` or `xlink:href`, without the `#`.
-    pub(crate) fn href(&self, e: ElementId) -> Option<String> {
-        let link = self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))?;
-        link.trim().strip_prefix('#').map(ToOwned::to_owned)
     }
 
     /// The element and its ancestors, innermost first.

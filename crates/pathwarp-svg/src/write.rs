@@ -8,11 +8,11 @@ use crate::number::{escape, matrix, path_data, short};
 use crate::options::WarpOptions;
 use crate::scene::{Group, Node, Part};
 use crate::source::ElementId;
-use crate::warp::{Done, Outcome, Skipped, StrokeDone};
+use crate::warp::{self, Done, Notes, Outcome, Placed, Skipped, StrokeDone};
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::refit;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRendering, SpreadMethod};
 
@@ -21,9 +21,13 @@ use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRende
 pub(crate) struct Job<'a> {
     pub(crate) document: &'a Document,
     pub(crate) outcomes: &'a [Outcome],
+    pub(crate) slots: &'a [Placed],
     pub(crate) map: &'a dyn Map,
     pub(crate) options: &'a WarpOptions,
 }
+
+/// What is said of filters.
+pub(crate) const FILTERS: &str = "filters follow the warp as a whole: their regions and lengths are not bent";
 
 /// Presentation properties in order.
 pub(crate) type Properties = Vec<(&'static str, String)>;
@@ -45,16 +49,11 @@ pub(crate) struct Writer<'a> {
     servers: HashMap<(usize, [u64; 6]), String>,
     filters: HashMap<usize, String>,
     pub(crate) skipped: &'a mut Vec<Skipped>,
-    pub(crate) notes: &'a mut BTreeSet<String>,
+    pub(crate) notes: &'a mut Notes,
 }
 
 impl<'a> Writer<'a> {
-    pub(crate) fn new(
-        job: Job<'a>,
-        in_source: bool,
-        skipped: &'a mut Vec<Skipped>,
-        notes: &'a mut BTreeSet<String>,
-    ) -> Self {
+    pub(crate) fn new(job: Job<'a>, in_source: bool, skipped: &'a mut Vec<Skipped>, notes: &'a mut Notes) -> Self {
         let source = &job.document.source;
         let scene = &job.document.scene;
         let taken = if in_source { source.by_id.keys().cloned().collect() } else { HashSet::new() };
@@ -163,8 +162,13 @@ impl<'a> Writer<'a> {
         }
         let own = if self.in_source { String::new() } else { g.source.map_or(String::new(), |e| self.id_attribute(e)) };
         let mut head = format!("{own}{extra}");
-        if g.transform != Affine::IDENTITY {
-            let _ = write!(head, " transform=\"{}\"", matrix(g.transform));
+        let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene.slots[s].before)) {
+            Some((fit, true)) => fit * g.transform,
+            Some((fit, false)) => g.transform * fit,
+            None => g.transform,
+        };
+        if transform != Affine::IDENTITY {
+            let _ = write!(head, " transform=\"{}\"", matrix(transform));
         }
         head.push_str(&self.attributes(&properties));
         let inner = self.nodes(&g.children);
@@ -371,7 +375,7 @@ impl<'a> Writer<'a> {
         let Some(tile) = scene.tiles.iter().find(|t| std::sync::Arc::ptr_eq(&t.pattern, pattern)) else {
             return "none".into();
         };
-        self.notes.insert(format!("pattern {} follows the warp as a whole; its tiles are not bent", pattern.id()));
+        self.notes.add("patterns follow the warp as a whole, their tiles are not bent", pattern.id());
         let id = self.new_id(pattern.id());
         self.servers.insert(key, id.clone());
         let r = pattern.rect();
@@ -432,7 +436,7 @@ impl<'a> Writer<'a> {
     fn clip_children(&mut self, g: &Group, t: Affine, clip: Option<usize>, out: &mut String) {
         let job = self.job;
         if clip.is_some() && g.clip.is_some() {
-            self.notes.insert("a shape in a clip path is clipped twice over; one of the two is left out".into());
+            self.notes.add("a shape in a clip path is clipped twice over; one of the two is left out", "");
         }
         let clip = g.clip.or(clip);
         for n in &g.children {
@@ -509,7 +513,8 @@ impl<'a> Writer<'a> {
         if self.changes(m.parts.clone()) {
             for i in m.parts.clone() {
                 let p = &scene.parts[i];
-                let to_frame = m.frame.inverse() * p.frame;
+                let written = |slot, frame| warp::written(scene, self.job.slots, slot, frame);
+                let to_frame = written(m.slot, m.frame).inverse() * written(p.slot, p.frame);
                 let done = self.job.outcomes[i].done();
                 let wide = match (&p.stroke, done.map(|d| &d.stroke)) {
                     (_, Some(StrokeDone::Outlined(o))) => Rect::bounding_box(&o.bounding_box()),
@@ -556,28 +561,41 @@ impl<'a> Writer<'a> {
         let border = border.finish().transformed(m.frame);
         let warped = refit::warp_path(&border, self.job.map, &self.job.options.refit).ok()?;
         let mut path = warped.path;
-        path.apply_affine(m.frame.inverse());
+        path.apply_affine(warp::written(&self.job.document.scene, self.job.slots, m.slot, m.frame).inverse());
         Some(path_data(&path, crate::number::MOST_DECIMALS.min(9)))
     }
 
+    /// A reference to a filter: the source's own, or one written here.
     fn filter(&mut self, f: &std::sync::Arc<usvg::filter::Filter>) -> String {
         let source = &self.job.document.source;
-        if self.in_source
-            && source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"))
-        {
-            self.notes.insert(format!("filter {} stays as it is", f.id()));
+        self.notes.add(FILTERS, f.id());
+        let own = source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
+        if self.in_source && own {
             return format!("url(#{})", f.id());
         }
+        format!("url(#{})", self.filter_id(f))
+    }
+
+    /// The id of a filter written here, in user space.
+    pub(crate) fn filter_id(&mut self, f: &std::sync::Arc<usvg::filter::Filter>) -> String {
         let key = std::sync::Arc::as_ptr(f) as usize;
         if let Some(id) = self.filters.get(&key) {
-            return format!("url(#{id})");
+            return id.clone();
         }
-        self.notes.insert(format!("filter {} cannot be written yet and is left out", f.id()));
-        "none".into()
+        let id = self.new_id(f.id());
+        self.filters.insert(key, id.clone());
+        let text = self.filter_element(f, &format!(" id=\"{}\"", escape(&id)));
+        self.define(&text);
+        id
+    }
+
+    /// How links are written where this stands.
+    pub(crate) fn link(&self) -> &'static str {
+        if self.in_source && !self.job.document.source.text.contains("xmlns:xlink=") { "href" } else { "xlink:href" }
     }
 
     fn image(&mut self, image: &usvg::Image) -> String {
-        self.notes.insert("images stay as they are".into());
+        self.notes.add("images in copies follow the warp as a whole, they are not bent", "");
         if !image.is_visible() {
             return String::new();
         }
@@ -601,11 +619,7 @@ impl<'a> Writer<'a> {
             usvg::ImageRendering::Pixelated => properties.push(("image-rendering", "pixelated".into())),
         }
         let style = properties.iter().map(|(n, v)| format!(" style=\"{n}:{v}\"")).collect::<String>();
-        let link = if self.in_source && !self.job.document.source.text.contains("xmlns:xlink=") {
-            "href"
-        } else {
-            "xlink:href"
-        };
+        let link = self.link();
         format!(
             "<{} width=\"{}\" height=\"{}\"{style} {link}=\"data:{kind};base64,{}\"/>",
             self.tag("image"),
@@ -671,7 +685,7 @@ fn base64(data: &[u8]) -> String {
 }
 
 /// The whole file written anew.
-pub(crate) fn flat(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut BTreeSet<String>) -> String {
+pub(crate) fn flat(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes) -> String {
     let source = &job.document.source;
     let mut w = Writer::new(*job, false, skipped, notes);
     let mut out =

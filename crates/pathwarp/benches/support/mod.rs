@@ -4,7 +4,7 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, PathSeg, Point, Vec2};
-use pathwarp::map::{Jet, Map};
+use pathwarp::map::{Algebra, Jet, Map};
 use pathwarp::{Outline, Seg};
 
 /// The box the icons and the maps live in.
@@ -49,10 +49,10 @@ impl Bicubic {
     /// Control points moved by at most 5 %.
     pub fn mild() -> Self {
         const D: [[(f64, f64); 4]; 4] = [
-            [(20.0, -30.0), (-40.0, 10.0), (35.0, 25.0), (-15.0, 45.0)],
-            [(10.0, 40.0), (45.0, -20.0), (-30.0, 35.0), (25.0, -50.0)],
-            [(-35.0, 15.0), (20.0, 45.0), (50.0, -15.0), (-45.0, 20.0)],
-            [(40.0, 5.0), (-25.0, -45.0), (15.0, 30.0), (-10.0, -20.0)],
+            [(25.0, 25.0), (40.0, -50.0), (-20.0, -35.0), (-5.0, 50.0)],
+            [(-20.0, 30.0), (45.0, 40.0), (45.0, 45.0), (-10.0, 50.0)],
+            [(-15.0, 10.0), (50.0, -15.0), (20.0, -20.0), (-50.0, -50.0)],
+            [(45.0, 15.0), (-25.0, 40.0), (-50.0, 0.0), (15.0, -30.0)],
         ];
         Self::moved(|i, j| D[i][j])
     }
@@ -62,8 +62,8 @@ impl Bicubic {
         Self::moved(|i, j| {
             let (u, v) = (i as f64 / 3.0 - 0.5, j as f64 / 3.0 - 0.5);
             let inner = (1..3).contains(&i) && (1..3).contains(&j);
-            let k = if inner { 1.05 } else { -0.12 };
-            let w = if inner { 0.75 } else { 0.1 };
+            let k = if inner { 2.1 } else { -0.1 };
+            let w = if inner { 1.6 } else { 0.0 };
             (BOX * (k * u - w * v), BOX * (k * v + w * u))
         })
     }
@@ -91,9 +91,13 @@ fn slope(r: &[f64; 4], v: f64) -> f64 {
 }
 
 impl Map for Bicubic {
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 6, rational: false })
+    }
+
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let [x, y, dx, dy] = self.tables(u);
         Jet {
             p: Point::new(horner(&x, v), horner(&y, v)),
@@ -104,10 +108,17 @@ impl Map for Bicubic {
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let row = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
         let at = |c: &[[f64; 4]; 4]| ((row(c, 3) * v + row(c, 2)) * v + row(c, 1)) * v + row(c, 0);
         Point::new(at(&self.x), at(&self.y))
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
     }
 }
 
@@ -147,9 +158,20 @@ impl Default for Rational {
 }
 
 impl Map for Rational {
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 4, rational: true })
+    }
+
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        std::array::from_fn(|i| {
+            let (u, v) = (x[i] * (1.0 / BOX), y[i] * (1.0 / BOX));
+            horner(&self.c[2][0], v) + u * horner(&self.c[2][1], v)
+        })
+    }
+
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let f: [(f64, f64, f64); 3] = std::array::from_fn(|k| {
             let [r, s] = &self.c[k];
             let e = horner(s, v);
@@ -167,10 +189,17 @@ impl Map for Rational {
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let f = |k: usize| horner(&self.c[k][0], v) + u * horner(&self.c[k][1], v);
         let w = f(2);
         Point::new(f(0) / w, f(1) / w)
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
     }
 }
 

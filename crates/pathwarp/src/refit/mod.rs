@@ -5,6 +5,8 @@
 
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
 #[allow(clippy::needless_range_loop)]
+mod certify;
+#[allow(clippy::needless_range_loop)]
 mod fit;
 #[allow(clippy::needless_range_loop)]
 mod source;
@@ -17,6 +19,7 @@ mod verify;
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
+use certify::Algebra;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point};
 use source::{End, Source};
 
@@ -183,7 +186,7 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
                 Seg::Line(l) => pieces.push(Piece::Line(l)),
                 Seg::Arc(a) => {
                     pieces.extend(a.to_cubics(options.tolerance).map(Piece::Cubic));
-                    out.note(options.tolerance, Assurance::Certified);
+                    out.note(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
                 }
                 other => pieces.push(Piece::Cubic(other.to_cubic())),
             }
@@ -242,43 +245,86 @@ fn warp_seg(
     report: &mut PathReport,
 ) -> Result<(), Point> {
     let (canonical, flipped) = split::canonical(seg);
-    let jets = if flipped { [jets[1], jets[0]] } else { jets };
-    let first = pieces.len();
-    let whole = Source::new(canonical, map);
-    if whole.size() == 0.0 {
-        // A segment that goes nowhere stays one: it carries line caps and markers.
-        pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
-        return Ok(());
-    }
-    let slow = split::slow(&canonical);
-    let splits = creases.splits(&canonical);
-    let nodes = [jets[0].p, jets[1].p];
-    let mut from = (0.0, nodes[0]);
-    for i in 0..=splits.len() {
-        let to = match splits.get(i) {
-            Some(&t) => (t, map.jet(canonical.eval(t)).p),
-            None => (1.0, nodes[1]),
-        };
-        let branch = map.branch(canonical.eval(0.5 * (from.0 + to.0)));
-        let source = branch.as_ref().map_or(whole, |b| Source::new(canonical, b));
-        let end = |(t, p): (f64, Point), jet: &Jet| -> Result<End, Point> {
-            if branch.is_none() && (t == 0.0 || t == 1.0) {
-                let at = if t == 0.0 { canonical.start() } else { canonical.end() };
-                source.end_with(t, Some(p), *jet, at)
-            } else {
-                source.end(t, Some(p))
+    let [first, last] = if flipped { [jets[1], jets[0]] } else { jets };
+    let start = pieces.len();
+    let job = Job { map, creases, options };
+    match &canonical {
+        Seg::Arc(a) if options.certify && a.sweep.abs() > MOST_RATIONAL && map.algebra().is_some() => {
+            // Only arcs of less than half a turn are quotients of polynomials with positive denominators.
+            let n = (a.sweep.abs() / MOST_RATIONAL).ceil();
+            let mut from = first;
+            for i in 0..n as usize {
+                let part = a.subsegment(i as f64 / n, (i + 1) as f64 / n);
+                let to = if i + 1 == n as usize { last } else { map.jet(part.p1) };
+                job.warp(&Seg::Arc(part), [from, to], pieces, report)?;
+                from = to;
             }
-        };
-        let (e0, e1) = (end(from, &jets[0])?, end(to, &jets[1])?);
-        let mut stepper = step::Stepper { source, slow, tolerance: options.tolerance, attempts: 0 };
-        stepper.cover(e0, e1, pieces, report)?;
-        from = to;
+        }
+        _ => job.warp(&canonical, [first, last], pieces, report)?,
     }
     if flipped {
-        pieces[first..].reverse();
-        for p in &mut pieces[first..] {
+        pieces[start..].reverse();
+        for p in &mut pieces[start..] {
             *p = p.reversed();
         }
     }
     Ok(())
+}
+
+/// Arcs that are to be proven are cut into parts of at most this angle (a little over a third of a turn).
+const MOST_RATIONAL: f64 = 2.2;
+
+/// What all segments of a path share.
+struct Job<'a> {
+    map: &'a dyn Map,
+    creases: &'a Creases,
+    options: &'a Options,
+}
+
+impl Job<'_> {
+    /// Appends the image of a segment in its canonical direction, given the jets at its ends.
+    fn warp(&self, seg: &Seg, jets: [Jet; 2], pieces: &mut Vec<Piece>, report: &mut PathReport) -> Result<(), Point> {
+        let map = self.map;
+        let certify = self.options.certify;
+        let whole = Source::new(seg, map).rational_if(certify);
+        if whole.size() == 0.0 {
+            // A segment that goes nowhere stays one: it carries line caps and markers.
+            pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
+            return Ok(());
+        }
+        let slow = split::slow(seg).map(|t| whole.param(t));
+        let splits = self.creases.splits(seg);
+        let nodes = [jets[0].p, jets[1].p];
+        let mut from = (0.0, nodes[0]);
+        for i in 0..=splits.len() {
+            let to = match splits.get(i) {
+                Some(&t) => (whole.param(t), map.jet(seg.eval(t)).p),
+                None => (1.0, nodes[1]),
+            };
+            let branch = map.branch(whole.at(0.5 * (from.0 + to.0)));
+            let inside;
+            let source = match &branch {
+                None => &whole,
+                Some(b) => {
+                    inside = Source::new(seg, b).rational_if(certify);
+                    &inside
+                }
+            };
+            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<End, Point> {
+                if branch.is_none() && (t == 0.0 || t == 1.0) {
+                    let at = if t == 0.0 { seg.start() } else { seg.end() };
+                    source.end_with(t, Some(p), *jet, at)
+                } else {
+                    source.end(t, Some(p))
+                }
+            };
+            let (e0, e1) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            let algebra = if certify { Algebra::of(source) } else { None };
+            let mut stepper =
+                step::Stepper { source, slow: &slow, tolerance: self.options.tolerance, algebra, attempts: 0 };
+            stepper.cover(e0, e1, pieces, report)?;
+            from = to;
+        }
+        Ok(())
+    }
 }
