@@ -5,6 +5,7 @@
 mod affine;
 mod bilinear;
 mod bulge;
+mod expr;
 mod lens;
 mod mls;
 mod mobius;
@@ -37,6 +38,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(bulge::Bulge),
         Arc::new(lens::Lens),
         Arc::new(mobius::Mobius),
+        Arc::new(expr::Expr),
     ]
 }
 
