@@ -254,6 +254,18 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Faults) {
             (off > NEAR * (1.0 + factor.abs()))
                 .then(|| format!("{pairs:?} should multiply areas by {factor}; it is off by {off:e}"))
         }),
+        Law::KeepsAngles(pairs) => with(pairs).and_then(|m| {
+            // Cauchy and Riemann: ∂F/∂y is ∂F/∂x turned by a quarter.
+            let off = worst(&*m, &|p| {
+                let j = m.jet(p);
+                (j.dy - j.dx.turn_90()).hypot() / j.dx.hypot().max(f64::MIN_POSITIVE)
+            });
+            (off > NEAR).then(|| format!("{pairs:?} should keep angles; one is off by {off:e}"))
+        }),
+        Law::Undoes(there, back) => with(there).zip(with(back)).and_then(|(f, g)| {
+            let off = worst(&*f, &|p| g.point(f.point(p)).distance(p));
+            (off > NEAR).then(|| format!("{back:?} should undo {there:?}; a point ends {off:e} away"))
+        }),
     };
     if let Some(f) = fault {
         faults.add(f);
@@ -315,7 +327,13 @@ mod tests {
         params: &[Param::number("Loud", "No full stop").default("many")],
         demo: &[],
         examples: &[Example { what: "one only", command: "bad" }],
-        laws: &[Law::Identity(&[]), Law::KeepsLines(&[]), Law::Area(&[], 7.0)],
+        laws: &[
+            Law::Identity(&[]),
+            Law::KeepsLines(&[]),
+            Law::Area(&[], 7.0),
+            Law::KeepsAngles(&[]),
+            Law::Undoes(&[], &[]),
+        ],
         cases: &[Case { args: &[], at: (0.0, 0.0), to: (1.0, 1.0), tolerance: 0.1 }],
     };
     impl Deformation for Bad {
@@ -342,6 +360,8 @@ mod tests {
             "identity",
             "straight",
             "areas",
+            "keep angles",
+            "should undo",
             "takes (0.0, 0.0)",
         ] {
             assert!(faults.contains(part), "`{part}` not in:\n{faults}");

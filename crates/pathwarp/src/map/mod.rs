@@ -4,7 +4,7 @@
 //! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
 
 mod affine;
-mod bernstein;
+pub(crate) mod bernstein;
 mod chain;
 mod crease;
 mod dual;
