@@ -23,6 +23,7 @@
 
 mod document;
 mod edit;
+mod embed;
 mod filter;
 mod fonts;
 mod geometry;
@@ -39,6 +40,7 @@ mod warp;
 mod write;
 
 pub use document::{Document, NamedPath, Shape};
+pub use embed::Origin;
 pub use fonts::GenericFamilies;
 pub use options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
 pub use read::{ReadOptions, parse_tree};
