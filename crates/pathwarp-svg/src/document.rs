@@ -19,6 +19,8 @@ pub struct Document {
     pub(crate) shapes: Vec<Shape>,
     pub(crate) missing_fonts: Vec<String>,
     pub(crate) page: Size,
+    /// Whether walking it takes little stack.
+    pub(crate) shallow: bool,
     tree: Arc<usvg::Tree>,
     dpi: f64,
 }
@@ -64,8 +66,9 @@ impl Document {
         let text = read::text(data, name, options)?;
         let bytes = data.to_vec();
         let dpi = f64::from(options.dpi);
-        read::with_stack(name, || {
-            let source = Source::parse(text, name)?;
+        let source = Source::parse(text, name)?;
+        let shallow = read::is_shallow(&source);
+        let resolve = || {
             let (instrumented, ids) = source.instrumented();
             // Where positions are not to be trusted, the text must not be touched.
             let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
@@ -73,18 +76,11 @@ impl Document {
             let scene = scene::build(&tree, &source, &ids, dpi);
             let shapes = shapes(&scene, &source);
             let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
-            Ok(Self {
-                name: name.to_owned(),
-                bytes,
-                source,
-                scene,
-                shapes,
-                missing_fonts,
-                page,
-                tree: Arc::new(tree),
-                dpi,
-            })
-        })
+            Ok((tree, missing_fonts, scene, shapes, page))
+        };
+        let (tree, missing_fonts, scene, shapes, page) =
+            if shallow { resolve()? } else { read::with_stack(name, resolve)? };
+        Ok(Self { name: name.to_owned(), bytes, source, scene, shapes, missing_fonts, page, tree: Arc::new(tree), dpi })
     }
 
     /// The file's bytes.

@@ -169,6 +169,8 @@ struct Builder<'a> {
     unkeepable: Option<String>,
     taken: HashSet<ElementId>,
     slots: Vec<Slot>,
+    /// Whether the source speaks of a page background.
+    backed: bool,
     /// The group that holds root user space; its own transform leads out of it.
     top: Option<*const usvg::Group>,
 }
@@ -203,6 +205,7 @@ pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Ve
         unkeepable: source.unpatchable.clone(),
         taken: HashSet::new(),
         slots: Vec::new(),
+        backed: source.text.contains("background-color"),
         top: None,
     };
     let (top, to_px) = b.root_group(tree, page);
@@ -255,7 +258,7 @@ impl Builder<'_> {
         // usvg wraps everything in a group exactly when the root has a transform or a background of its own.
         let moved =
             f32_bits(by_source) != f32_bits(Affine::IDENTITY) || self.reader.source.attr(0, "transform").is_some();
-        let backed = self.reader.source.text.contains("background-color")
+        let backed = self.backed
             && g.id().is_empty()
             && g.transform().is_identity()
             && matches!(g.children().first(), Some(usvg::Node::Path(p)) if p.id().is_empty());
@@ -477,7 +480,7 @@ impl Builder<'_> {
         if source.is_none() {
             outline = self.copy_of(p.data());
             // The page's own background is no artwork; it is the first thing of all.
-            let background = self.parts.is_empty() && self.reader.source.text.contains("background-color");
+            let background = self.parts.is_empty() && self.backed;
             if context.owner.is_none() && p.is_visible() && !background {
                 self.unkept("a painted path cannot be traced to one element of the source");
             }

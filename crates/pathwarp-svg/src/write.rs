@@ -12,6 +12,7 @@ use crate::warp::{self, Done, Notes, Outcome, Placed, Skipped, StrokeDone};
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::refit;
+use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRendering, SpreadMethod};
@@ -48,6 +49,8 @@ pub(crate) struct Writer<'a> {
     pub(crate) mask_ids: Vec<Option<String>>,
     servers: HashMap<(usize, [u64; 6]), String>,
     filters: HashMap<usize, String>,
+    /// Which properties the source speaks of at all.
+    mentioned: RefCell<HashMap<&'static str, bool>>,
     pub(crate) skipped: &'a mut Vec<Skipped>,
     pub(crate) notes: &'a mut Notes,
 }
@@ -68,6 +71,7 @@ impl<'a> Writer<'a> {
             mask_ids: vec![None; scene.masks.len()],
             servers: HashMap::new(),
             filters: HashMap::new(),
+            mentioned: RefCell::default(),
             skipped,
             notes,
         }
@@ -85,8 +89,9 @@ impl<'a> Writer<'a> {
     }
 
     /// Whether an ancestor in the source may have set a property, so that its default must be written out.
-    fn may_inherit(&self, name: &str) -> bool {
-        self.in_source && self.job.document.source.text.contains(name)
+    fn may_inherit(&self, name: &'static str) -> bool {
+        let look = || self.job.document.source.text.contains(name);
+        self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(look)
     }
 
     pub(crate) fn tag(&self, name: &str) -> String {
