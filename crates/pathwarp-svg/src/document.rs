@@ -80,7 +80,18 @@ impl Document {
         };
         let (tree, missing_fonts, scene, shapes, page) =
             if shallow { resolve()? } else { read::with_stack(name, resolve)? };
-        Ok(Self { name: name.to_owned(), bytes, source, scene, shapes, missing_fonts, page, tree: Arc::new(tree), dpi })
+        Ok(Self {
+            name: name.to_owned(),
+            bytes,
+            source,
+            scene,
+            shapes,
+            missing_fonts,
+            page,
+            shallow,
+            tree: Arc::new(tree),
+            dpi,
+        })
     }
 
     /// The file's bytes.
