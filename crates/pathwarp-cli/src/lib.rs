@@ -1,1 +1,95 @@
-//! Placeholder.
+//! The command line of pathwarp, for any registry of deformations.
+//!
+//! A program with deformations of its own is this short:
+//!
+//! ```no_run
+//! # use pathwarp::deform::Registry;
+//! fn main() -> std::process::ExitCode {
+//!     pathwarp_cli::main_with(Registry::builtin() /* .with(MyDeformation) */)
+//! }
+//! ```
+//!
+//! Exit codes: 0 all done; 1 done, but something was left as it was (the report says what); 2 wrong usage; 3 input unreadable;
+//! 4 the geometry forbids it. On 2, 3 and 4 no output file is touched.
+
+mod command;
+mod common;
+mod compare;
+mod deform;
+mod failure;
+mod output;
+mod paths;
+mod preview;
+mod reference;
+mod render;
+mod report;
+mod terminal;
+
+use failure::Failure;
+use pathwarp::deform::Registry;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// What a run came to when it did not fail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// All done.
+    Done,
+    /// Done, but something was left as it was.
+    Partly,
+}
+
+/// Runs the program on the process's arguments.
+#[must_use]
+#[expect(clippy::needless_pass_by_value, reason = "a program gives its registry away here, once")]
+pub fn main_with(registry: Registry) -> ExitCode {
+    run(&registry, std::env::args_os())
+}
+
+/// The whole command line of `registry` as clap knows it: for man pages and completions.
+#[must_use]
+pub fn command(registry: &Registry) -> clap::Command {
+    command::build(registry)
+}
+
+/// Runs the program on `args`, the first of which is the program's name.
+#[must_use]
+pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    match dispatch(registry, &args.into_iter().collect::<Vec<_>>()) {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Partly) => ExitCode::from(1),
+        Err(failure) => {
+            failure.show();
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> {
+    // `A … + B …`: every part after a lone + is a command line of its own, all but the first without inputs.
+    let mut parts = args.split(|a| a == "+").map(<[OsString]>::to_vec);
+    let first = parts.next().unwrap_or_default();
+    let rest: Vec<_> = parts.collect();
+    let matches = command::build(registry).try_get_matches_from(&first)?;
+    let Some((name, sub)) = matches.subcommand() else {
+        return Err(Failure::usage("no command is given; `pathwarp list` shows the deformations"));
+    };
+    if registry.get(name).is_none() && !rest.is_empty() {
+        return Err(Failure::usage(format!("`+` chains deformations; {name} is none")));
+    }
+    match name {
+        "list" => command::list(registry),
+        "completions" => command::completions(registry, sub),
+        "man" => command::man(registry),
+        "paths" => paths::run(sub),
+        "render" => render::run(sub),
+        "compare" => compare::run(sub),
+        _ => {
+            let mut steps = vec![command::step(registry, name, sub)];
+            for part in &rest {
+                steps.push(command::chained_step(registry, part)?);
+            }
+            deform::run(registry, &steps, sub)
+        }
+    }
+}

@@ -1,1 +1,39 @@
-//! Placeholder.
+//! Pictures for [pathwarp](https://github.com/pathwarp/pathwarp): everything that turns vector artwork into pixels, and
+//! everything that judges pixels.
+//!
+//! * [`render()`] draws a resolved SVG tree at a chosen [`Size`], never larger than [`MAX_PIXELS`].
+//! * [`encode_png`] and [`decode_png`] carry pictures to and from files.
+//! * [`compare()`] measures by how much two pictures differ; [`diff_image`] shows where.
+//! * [`Preview`] sets a drawing and its warped result side by side, with cages, bases and targets drawn on top.
+//!
+//! All pictures are [`Pixmap`]s: 8 bits per channel, RGBA, sRGB, alpha premultiplied.
+//!
+//! ```
+//! use pathwarp_raster::{Color, RenderOptions, Size, compare, render};
+//!
+//! let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="20" height="10"><circle cx="5" cy="5" r="4"/></svg>"#;
+//! let tree = usvg::Tree::from_str(svg, &usvg::Options::default())?;
+//!
+//! let small = render(&tree, Size::Native)?;
+//! let large = render(&tree, Size::Width(200))?;
+//! assert_eq!((small.width(), small.height()), (20, 10));
+//! assert_eq!((large.width(), large.height()), (200, 100));
+//!
+//! let on_white = RenderOptions { size: Size::Native, background: Some(Color::WHITE) }.render(&tree)?;
+//! assert!(compare(&small, &small)?.is_same());
+//! assert!(compare(&small, &on_white)?.max_channel == 255);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod compare;
+mod error;
+mod png;
+mod preview;
+mod render;
+
+pub use compare::{Difference, compare, diff_image};
+pub use error::Error;
+pub use png::{decode_png, encode_png};
+pub use preview::{Overlay, OverlayKind, Panel, Preview};
+pub use render::{MAX_PIXELS, RenderOptions, Size, render};
+pub use tiny_skia::{Color, Pixmap};

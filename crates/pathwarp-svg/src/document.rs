@@ -38,6 +38,8 @@ pub struct Shape {
     pub at: (usize, usize),
     /// Whether it leaves a mark by itself: visible, with a fill or a stroke, and no part of a clip path or mask.
     pub painted: bool,
+    /// Whether its inside is painted, clips or masks.
+    pub filled: bool,
 }
 
 /// A path that has a name, or could have one.
@@ -154,6 +156,12 @@ impl Document {
         boxes.filter_map(|(s, _)| s.outline.bounding_box()).filter(Rect::is_finite).reduce(|a, b| a.union(b))
     }
 
+    /// The painted shapes that `selection` means.
+    pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
+        let meant = self.meant(selection);
+        self.shapes.iter().zip(meant).filter(|(s, meant)| *meant && s.painted).map(|(s, _)| s)
+    }
+
     /// For every shape whether `selection` means it.
     pub(crate) fn meant(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.source);
@@ -251,6 +259,7 @@ fn shapes(scene: &Scene, source: &Source) -> Vec<Shape> {
             outline: p.outline(),
             at: e.map_or((1, 1), |e| source.line_column(source.elements[e].range.start)),
             painted: p.painted() && p.role == Role::Paint,
+            filled: p.fill.is_some() || p.role != Role::Paint,
         }
     };
     scene.parts.iter().map(shape).collect()

@@ -304,7 +304,6 @@ pub(crate) fn stretch(m: Affine) -> f64 {
 
 fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> Result<Done, GeometryError> {
     let outline = p.outline();
-    let warped = refit::warp_path(&outline, map, &options.refit)?;
     let back = write.inverse();
     let size = stretch(write);
     let tolerance = options.refit.tolerance;
@@ -313,6 +312,9 @@ fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> R
         if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
     });
     let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
+    // What rounding takes is not the refit's to spend.
+    let left = (tolerance - rounding).max(0.5 * tolerance);
+    let warped = refit::warp_path(&outline, map, &refit::Options { tolerance: left, ..options.refit.clone() })?;
     let mut done = Done {
         path: local(warped.path, back),
         decimals,

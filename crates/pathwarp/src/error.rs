@@ -93,6 +93,20 @@ pub enum GeometryError {
         /// Where.
         at: Point,
     },
+    /// A projective map between these corners has its horizon among them.
+    #[error(
+        "{path}: the projective map from {} to {} hits infinity between these corners, because one of the quadrilaterals is convex and the other is not; move a corner, or mind their order",
+        show_all(from),
+        show_all(to)
+    )]
+    NotConvex {
+        /// The path as the user named it.
+        path: String,
+        /// The source corners.
+        from: Vec<Point>,
+        /// The target corners.
+        to: Vec<Point>,
+    },
     /// The map is infinite, or undefined, somewhere on a shape.
     #[error(
         "{shape} hits infinity at {}: the map has no finite value there; move the anchors so that the artwork stays on one side of the horizon, or leave this shape out",

@@ -5,11 +5,23 @@
 //!
 //! This crate is pure: no I/O, no globals, no printing.
 
+pub(crate) mod anchors;
+pub mod check;
+pub mod deform;
+pub mod distance;
 mod error;
+pub mod fold;
 pub mod map;
 pub mod outline;
+pub mod param;
+pub mod recipe;
 pub mod refit;
 
 pub use error::{Error, GeometryError};
 pub use kurbo;
 pub use outline::{Outline, Seg, Subpath};
+
+/// The README's examples, tested.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -1,92 +1,332 @@
-//! Fits the image of one smooth part of a segment: Hermite cubics, halved until dense samples lie within the tolerance.
+//! The fit of one cubic to samples of a curve: ends and end tangents fixed, the two handle lengths free.
+//!
+//! A cubic that shares ends P₀, P₃ and unit end tangents T₀, T₁ with the curve has two numbers left, its handle lengths a, b:
+//!
+//! > C(s) = P₀(B₀+B₁) + P₃(B₂+B₃) + a·T₀·B₁ − b·T₁·B₂
+//!
+//! Chosen well they bring the error down to the sixth order in the piece's length (de Boor, Höllig, Sabin, *High accuracy
+//! geometric Hermite interpolation*, CAGD 4, 1987), where matching the parametrisation (Hermite) gives the fourth.
+//!
+//! **Variable projection.** With each sample gᵢ goes a foot sᵢ, the parameter of the closest point. At the foot the residual
+//! ρᵢ = C(sᵢ) − gᵢ is normal to the curve, so its length nᵢ does not depend on sᵢ to first order: Gauss–Newton runs on (a, b)
+//! alone, two by two normal equations, and the feet follow by their own Newton step
+//!
+//! > δsᵢ = −(ρᵢ + δa·T₀B₁ − δb·T₁B₂)·C′ / |C′|²
+//!
+//! whose middle part, the movement of the curve under the foot, must not be left out: without it the feet lag one step.
+//!
+//! **The curved valley.** To leading order nᵢ ≈ s²(1−s)²·(mismatch of the area under the curve): the sum of squares is a valley
+//! along the curves of equal area in the (a, b) plane, and those are bent. The area is proportional to
+//! α(a, b) = k₀a + k₁b − k₂ab with k₀ = q×T₀, k₁ = T₁×q, k₂ = (T₁×T₀)/2, q = P₃−P₀ (cf. Levien's quartic in *Fitting cubic
+//! Bézier curves*, 2021, which solves area and moment). A straight Gauss–Newton step (δa, δb) leaves the valley by −k₂δaδb; one
+//! Newton step along ∇α puts it back.
 
-use super::{Assurance, PathReport, Piece};
-use crate::map::Map;
-use crate::outline::Seg;
-use kurbo::{CubicBez, Line, ParamCurve, Point, Vec2};
+use super::source::{Lane, Lanes};
+use kurbo::{CubicBez, Point, Vec2};
 
-/// Halvings of one segment at most.
-const MAX_DEPTH: u32 = 16;
-/// Samples a piece is checked at.
-const CHECKS: usize = 16;
+/// Evaluations of one fit at most; twelve gain less than a third of a percent of segments.
+const MOST_EVALUATIONS: usize = 7;
+/// Damping relative to the diagonal: just enough to keep the two by two system from being singular.
+const DAMPING: f64 = 1e-11;
+/// A step longer than this share of the samples' length is not trusted.
+const TRUST: f64 = 0.15;
 
-/// Appends the image of `seg` over [`from`, `to`]. `Err` holds the source place where the map is not finite.
-pub(super) fn fit(
-    seg: &Seg,
-    from: f64,
-    to: f64,
-    map: &dyn Map,
-    tolerance: f64,
-    out: &mut Vec<Piece>,
-    report: &mut PathReport,
-) -> Result<(), Point> {
-    let mut stack = vec![(from, to, 0)];
-    while let Some((a, b, depth)) = stack.pop() {
-        let end = |t: f64| {
-            let p = seg.eval(t);
-            let j = map.jet(p);
-            if j.is_finite() { Ok((j.p, j.push(seg.deriv(t)))) } else { Err(p) }
-        };
-        let ((p0, d0), (p1, d1)) = (end(a)?, end(b)?);
-        let k = (b - a) / 3.0;
-        let cubic = CubicBez::new(p0, p0 + d0 * k, p1 - d1 * k, p1);
-        let mut source = [Point::ORIGIN; CHECKS];
-        let mut image = [Point::ORIGIN; CHECKS];
-        for (i, p) in source.iter_mut().enumerate() {
-            *p = seg.eval(a + (b - a) * (i as f64 + 0.5) / CHECKS as f64);
-        }
-        map.points(&source, &mut image);
-        if let Some(i) = image.iter().position(|p| !p.is_finite()) {
-            return Err(source[i]);
-        }
-        let line = p1 - p0;
-        let off_line = |q: &Point| {
-            let n = line.hypot();
-            if n == 0.0 { q.distance(p0) } else { ((*q - p0).cross(line) / n).abs() }
-        };
-        /// Straight to rounding.
-        const STRAIGHT: f64 = 1e-12;
-        let straight = image.iter().map(off_line).fold(0.0, f64::max);
-        let monotone = image.windows(2).all(|w| (w[1] - w[0]).dot(line) >= 0.0);
-        if straight <= STRAIGHT * line.hypot() && monotone {
-            out.push(Piece::Line(Line::new(p0, p1)));
-            continue;
-        }
-        let error = image
-            .iter()
-            .enumerate()
-            .map(|(i, q)| foot_distance(&cubic, (i as f64 + 0.5) / CHECKS as f64, *q))
-            .fold(0.0, f64::max);
-        if error <= tolerance * 0.8 || depth == MAX_DEPTH {
-            if error > tolerance {
-                report.over_budget.push(seg.eval(0.5 * (a + b)));
-            }
-            report.max_error = report.max_error.max(error);
-            report.assurance = report.assurance.min(Assurance::Checked);
-            out.push(Piece::Cubic(cubic));
-        } else {
-            let m = 0.5 * (a + b);
-            stack.push((m, b, depth + 1));
-            stack.push((a, m, depth + 1));
-        }
-    }
-    Ok(())
+/// What is fitted: a curve from the origin to `q` with given end tangents.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    pub(super) q: Vec2,
+    pub(super) t0: Vec2,
+    pub(super) t1: Vec2,
+    /// Smallest handles allowed.
+    pub(super) floor: [f64; 2],
+    /// How far the samples get from the first point, more or less.
+    pub(super) size: f64,
+    /// Where the handles are pulled to, and how strongly: nearly straight pieces leave them undetermined.
+    pub(super) home: [f64; 2],
+    pub(super) pull: f64,
 }
 
-/// Distance from `q` to the curve near `t`, by two Newton steps for the foot.
-fn foot_distance(c: &CubicBez, t: f64, q: Point) -> f64 {
-    use kurbo::ParamCurveDeriv;
-    let d = c.deriv();
-    let mut s = t;
-    let mut best = c.eval(t).distance(q);
-    for _ in 0..2 {
-        let (r, v): (Vec2, Vec2) = (c.eval(s) - q, d.eval(s).to_vec2());
-        let n = v.hypot2();
-        if n == 0.0 {
+/// A state of the fit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct State {
+    pub(super) a: f64,
+    pub(super) b: f64,
+    /// Feet of the samples.
+    pub(super) s: Lane,
+}
+
+/// Residuals of a state, and their derivatives.
+#[derive(Debug, Clone, Copy)]
+struct Residuals {
+    /// Normal part.
+    n: Lane,
+    /// Its derivatives.
+    na: Lane,
+    nb: Lane,
+    /// Movement of the feet: −ρ·C′/|C′|², and its derivatives.
+    ds: Lane,
+    sa: Lane,
+    sb: Lane,
+}
+
+impl Frame {
+    /// The cubic with handles `a`, `b`, power basis without the constant term: C(s) = ((c₃s + c₂)s + c₁)s.
+    #[inline(always)]
+    pub(super) fn power(&self, a: f64, b: f64) -> [Vec2; 3] {
+        let (u, v) = (self.t0 * (3.0 * a), self.t1 * (3.0 * b));
+        [u, self.q * 3.0 - u * 2.0 - v, self.q * -2.0 + u + v]
+    }
+
+    /// One Newton step for the feet.
+    #[inline(always)]
+    fn settle(&self, g: &Lanes, z: &mut State) {
+        let [c1, c2, c3] = self.power(z.a, z.b);
+        for i in 0..8 {
+            let s = z.s[i];
+            let rx = ((c3.x * s + c2.x) * s + c1.x) * s - g.x[i];
+            let ry = ((c3.y * s + c2.y) * s + c1.y) * s - g.y[i];
+            let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
+            let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
+            z.s[i] = unit(s - (rx * dx + ry * dy) / (dx * dx + dy * dy + f64::MIN_POSITIVE));
+        }
+    }
+
+    /// Adds the pull to the normal equations and the sum of squares.
+    #[inline(always)]
+    fn pulled(&self, (mut sums, squares, error): ([f64; 5], f64, f64), z: &State) -> ([f64; 5], f64, f64) {
+        let (da, db) = (z.a - self.home[0], z.b - self.home[1]);
+        sums[0] += self.pull;
+        sums[2] += self.pull;
+        sums[3] += self.pull * da;
+        sums[4] += self.pull * db;
+        (sums, squares + self.pull * (da * da + db * db), error)
+    }
+
+    #[inline(always)]
+    fn residuals(&self, g: &Lanes, z: &State) -> Residuals {
+        let [c1, c2, c3] = self.power(z.a, z.b);
+        let (t0, t1) = (self.t0, self.t1);
+        let mut r = Residuals { n: [0.0; 8], na: [0.0; 8], nb: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
+        for i in 0..8 {
+            let s = z.s[i];
+            let u = 1.0 - s;
+            let rx = ((c3.x * s + c2.x) * s + c1.x) * s - g.x[i];
+            let ry = ((c3.y * s + c2.y) * s + c1.y) * s - g.y[i];
+            let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
+            let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
+            let k = 1.0 / (dx * dx + dy * dy + f64::MIN_POSITIVE);
+            let l = k.sqrt();
+            let su = 3.0 * s * u;
+            let (b1, b2) = (su * u, su * s);
+            r.n[i] = (rx * dy - ry * dx) * l;
+            r.na[i] = (t0.x * dy - t0.y * dx) * b1 * l;
+            r.nb[i] = (t1.y * dx - t1.x * dy) * b2 * l;
+            r.ds[i] = -(rx * dx + ry * dy) * k;
+            r.sa[i] = -(t0.x * dx + t0.y * dy) * b1 * k;
+            r.sb[i] = (t1.x * dx + t1.y * dy) * b2 * k;
+        }
+        r
+    }
+
+    /// Squared distances of the samples from the cubic, after `steps` Newton steps for the feet. A step that leads away (near
+    /// a cusp of the cubic) is not taken.
+    #[inline(always)]
+    pub(super) fn distances(&self, g: &Lanes, a: f64, b: f64, s: &mut Lane, steps: usize) -> Lane {
+        let [c1, c2, c3] = self.power(a, b);
+        let mut best = [f64::INFINITY; 8];
+        let mut next = *s;
+        for _ in 0..=steps {
+            for i in 0..8 {
+                let t = next[i];
+                let rx = ((c3.x * t + c2.x) * t + c1.x) * t - g.x[i];
+                let ry = ((c3.y * t + c2.y) * t + c1.y) * t - g.y[i];
+                let dx = (c3.x * 3.0 * t + c2.x * 2.0) * t + c1.x;
+                let dy = (c3.y * 3.0 * t + c2.y * 2.0) * t + c1.y;
+                let k = 1.0 / (dx * dx + dy * dy + f64::MIN_POSITIVE);
+                let d = rx * rx + ry * ry;
+                let better = d < best[i];
+                best[i] = if better { d } else { best[i] };
+                s[i] = if better { t } else { s[i] };
+                next[i] = unit(t - (rx * dx + ry * dy) * k);
+            }
+        }
+        best
+    }
+
+    /// The other handle on the curve of equal area through `z` whose first handle is `a`.
+    pub(super) fn slide(&self, z: &State, a: f64) -> f64 {
+        let k2 = 0.5 * self.t1.cross(self.t0);
+        let (k0, k1) = (self.q.cross(self.t0), self.t1.cross(self.q));
+        (k0 * z.a + k1 * z.b - k2 * z.a * z.b - k0 * a) / (k1 - k2 * a)
+    }
+
+    /// The cubic in the plane.
+    pub(super) fn cubic(&self, p0: Point, p3: Point, a: f64, b: f64) -> CubicBez {
+        CubicBez::new(p0, p0 + self.t0 * a, p3 - self.t1 * b, p3)
+    }
+
+    /// One Gauss–Newton step, and how much it promises to take off the sum of squares; `None` where the samples do not
+    /// determine one.
+    #[inline(always)]
+    fn gauss_newton(sums: &[f64; 5]) -> Option<([f64; 2], f64)> {
+        let [mut aa, ab, mut bb, an, bn] = *sums;
+        aa += aa * DAMPING;
+        bb += bb * DAMPING;
+        let det = aa * bb - ab * ab;
+        let k = 1.0 / det;
+        let (da, db) = ((ab * bn - bb * an) * k, (ab * an - aa * bn) * k);
+        (det > 0.0 && k.is_finite()).then_some(([da, db], -(da * an + db * bn)))
+    }
+
+    /// The step shortened to `most` and bent along the valley.
+    #[inline(always)]
+    fn bent(&self, [mut da, mut db]: [f64; 2], z: &State, most: f64) -> (f64, f64, f64) {
+        let longest = da.abs().max(db.abs());
+        if longest > most {
+            da *= most / longest;
+            db *= most / longest;
+        }
+        let k2 = 0.5 * self.t1.cross(self.t0);
+        let (ga, gb) = (self.q.cross(self.t0) - k2 * z.b, self.t1.cross(self.q) - k2 * z.a);
+        let g2 = ga * ga + gb * gb;
+        let e = k2 * da * db;
+        // The correction is of second order in the step; where it is not, the valley's floor is not where this says.
+        if e * e < 0.25 * (da * da + db * db) * g2 {
+            da += e * ga / g2;
+            db += e * gb / g2;
+        }
+        ((z.a + da).max(self.floor[0]) - z.a, (z.b + db).max(self.floor[1]) - z.b, longest.min(most))
+    }
+}
+
+/// Clamped to [0, 1]. Comparisons in this form are one instruction each.
+#[inline(always)]
+pub(super) fn unit(s: f64) -> f64 {
+    let s = if s > 0.0 { s } else { 0.0 };
+    if s < 1.0 { s } else { 1.0 }
+}
+
+#[inline(always)]
+fn sum(v: &Lane) -> f64 {
+    ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
+}
+
+#[inline(always)]
+pub(super) fn largest(v: &Lane) -> f64 {
+    let m = |a: f64, b: f64| if a > b { a } else { b };
+    m(m(m(v[0], v[4]), m(v[2], v[6])), m(m(v[1], v[5]), m(v[3], v[7])))
+}
+
+/// The normal equations (`JᵀJ` and `Jᵀn`) of one batch, weighted, the sum of squares, and the largest residual.
+#[inline(always)]
+fn normal_equations(r: &Residuals, w: &Lane) -> ([f64; 5], f64, f64) {
+    let mut v = [[0.0; 8]; 7];
+    for i in 0..8 {
+        let (n, na, nb) = (r.n[i], r.na[i] * w[i], r.nb[i] * w[i]);
+        v[0][i] = na * r.na[i];
+        v[1][i] = na * r.nb[i];
+        v[2][i] = nb * r.nb[i];
+        v[3][i] = na * n;
+        v[4][i] = nb * n;
+        v[5][i] = n * n * w[i];
+        v[6][i] = n.abs();
+    }
+    ([sum(&v[0]), sum(&v[1]), sum(&v[2]), sum(&v[3]), sum(&v[4])], sum(&v[5]), largest(&v[6]))
+}
+
+/// A fit: the state with the smallest sum of squares, and the largest normal residual there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    pub(super) z: State,
+    pub(super) error: f64,
+    /// The Newton step that is still to be taken by the feet.
+    pub(super) ds: Lane,
+}
+
+/// Fits from `z` until the largest residual is at most `enough`, or no longer improves. Where it stays far above `wanted`, a
+/// rough fit will do: it only tells how many pieces are needed.
+pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64; 2]) -> Fit {
+    /// Far above.
+    const FAR: f64 = 3.0;
+    /// A step that promises less than this share of the sum of squares is not taken.
+    const GAIN: f64 = 0.01;
+    /// The same far above what is wanted.
+    const ROUGH: f64 = 0.1;
+    let ones = [1.0; 8];
+    frame.settle(g, &mut z);
+    let mut r = frame.residuals(g, &z);
+    let (mut sums, mut squares, error) = frame.pulled(normal_equations(&r, &ones), &z);
+    let mut best = Fit { z, error, ds: r.ds };
+    let mut trust = TRUST * frame.size;
+    for k in 1..MOST_EVALUATIONS {
+        if best.error <= enough || (k > 4 && best.error > FAR * wanted) {
             break;
         }
-        s = (s - r.dot(v) / n).clamp(0.0, 1.0);
-        best = best.min(c.eval(s).distance(q));
+        let Some((step, gain)) = Frame::gauss_newton(&sums) else { break };
+        let worth = if best.error > FAR * wanted { ROUGH } else { GAIN };
+        if k > 1 && gain < worth * squares {
+            break;
+        }
+        let (da, db, length) = frame.bent(step, &z, trust);
+        let mut next = State { a: z.a + da, b: z.b + db, s: z.s };
+        for i in 0..8 {
+            next.s[i] = unit(z.s[i] + r.ds[i] + da * r.sa[i] + db * r.sb[i]);
+        }
+        frame.settle(g, &mut next);
+        let rn = frame.residuals(g, &next);
+        let (sn, sq, en) = frame.pulled(normal_equations(&rn, &ones), &next);
+        // The first steps also settle the feet, which may raise the sum a little.
+        if sq <= squares {
+            (z, r, sums, squares) = (next, rn, sn, sq);
+            if en < best.error {
+                best = Fit { z, error: en, ds: r.ds };
+            }
+            trust *= 2.0;
+        } else {
+            trust = 0.25 * length;
+        }
+    }
+    best
+}
+
+/// Minimax by Lawson's reweighting on sixteen samples: weights grow with the residuals, and the largest ones even out.
+/// Returns the best state's handles, feet, and largest residual.
+pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: usize) -> ([State; 2], f64) {
+    let mut w = [[1.0; 8]; 2];
+    let mut z = start;
+    let mut best = (start, f64::INFINITY);
+    for k in 0..=steps {
+        let r = [frame.residuals(g[0], &z[0]), frame.residuals(g[1], &z[1])];
+        let ([mut sums, more], error) = {
+            let (s0, _, e0) = frame.pulled(normal_equations(&r[0], &w[0]), &z[0]);
+            let (s1, _, e1) = normal_equations(&r[1], &w[1]);
+            ([s0, s1], e0.max(e1))
+        };
+        if error < best.1 {
+            best = (z, error);
+        }
+        if k == steps {
+            break;
+        }
+        for (a, b) in sums.iter_mut().zip(more) {
+            *a += b;
+        }
+        let Some((step, _)) = Frame::gauss_newton(&sums) else { break };
+        let (da, db, _) = frame.bent(step, &z[0], TRUST * frame.size);
+        for h in 0..2 {
+            z[h].a += da;
+            z[h].b += db;
+            for i in 0..8 {
+                z[h].s[i] = unit(z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]);
+                w[h][i] *= r[h].n[i].abs() / error + 1e-3;
+            }
+        }
+        let total = sum(&w[0]) + sum(&w[1]);
+        for h in &mut w {
+            for v in h {
+                *v *= 16.0 / total;
+            }
+        }
     }
     best
 }

@@ -3,12 +3,25 @@
 //! One entry, [`warp_path`]. Affine maps move control points; elsewhere each source segment is split where the map is not
 //! smooth, and every part's image is fitted adaptively.
 
+// Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
+#[allow(clippy::needless_range_loop)]
+mod certify;
+#[allow(clippy::needless_range_loop)]
 mod fit;
+#[allow(clippy::needless_range_loop)]
+mod source;
+mod split;
+#[allow(clippy::needless_range_loop)]
+mod step;
+#[allow(clippy::needless_range_loop)]
+mod verify;
 
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Map};
+use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
+use certify::Algebra;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point};
+use source::{End, Source};
 
 /// How a path is refitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,6 +126,15 @@ enum Piece {
     Cubic(CubicBez),
 }
 
+impl Piece {
+    fn reversed(self) -> Self {
+        match self {
+            Self::Line(l) => Self::Line(Line::new(l.p1, l.p0)),
+            Self::Cubic(c) => Self::Cubic(CubicBez::new(c.p3, c.p2, c.p1, c.p0)),
+        }
+    }
+}
+
 #[derive(Debug)]
 struct Output {
     path: BezPath,
@@ -164,13 +186,17 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
                 Seg::Line(l) => pieces.push(Piece::Line(l)),
                 Seg::Arc(a) => {
                     pieces.extend(a.to_cubics(options.tolerance).map(Piece::Cubic));
-                    out.note(options.tolerance, Assurance::Certified);
+                    out.note(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
                 }
                 other => pieces.push(Piece::Cubic(other.to_cubic())),
             }
         }
         out.subpath(m * sub.start, &pieces, sub.closed);
     }
+}
+
+fn infinity(at: Point) -> GeometryError {
+    GeometryError::Infinity { shape: PATH.into(), at }
 }
 
 fn warp_subpath(
@@ -181,27 +207,127 @@ fn warp_subpath(
     out: &mut Output,
 ) -> Result<(), GeometryError> {
     let projective = matches!(map.class(), Class::Projective(_));
-    let infinity = |at| GeometryError::Infinity { shape: PATH.into(), at };
-    if !creases.defined_at(sub.start) || !map.point(sub.start).is_finite() {
+    // The jet at the last node, which the next segment starts from.
+    let mut node = (sub.start, map.jet(sub.start));
+    if !creases.defined_at(sub.start) || !node.1.p.is_finite() {
         return Err(infinity(sub.start));
     }
+    let start = node.1.p;
     let mut pieces = Vec::with_capacity(sub.segs.len());
     for seg in &sub.segs {
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
         }
-        if projective && let Seg::Line(l) = seg {
-            pieces.push(Piece::Line(Line::new(map.point(l.p0), map.point(l.p1))));
+        let first = if node.0 == seg.start() { node.1 } else { map.jet(seg.start()) };
+        let last = map.jet(seg.end());
+        node = (seg.end(), last);
+        if !last.p.is_finite() {
+            return Err(infinity(seg.end()));
+        }
+        if projective && matches!(seg, Seg::Line(_)) {
+            pieces.push(Piece::Line(Line::new(first.p, last.p)));
             continue;
         }
-        let mut from = 0.0;
-        for to in creases.splits(seg).into_iter().chain([1.0]) {
-            let branch = map.branch(seg.eval(0.5 * (from + to)));
-            let map: &dyn Map = branch.as_ref().map_or(map, |b| b);
-            fit::fit(seg, from, to, map, options.tolerance, &mut pieces, &mut out.report).map_err(infinity)?;
-            from = to;
+        warp_seg(seg, [first, last], map, creases, options, &mut pieces, &mut out.report).map_err(infinity)?;
+    }
+    out.subpath(start, &pieces, sub.closed);
+    Ok(())
+}
+
+/// Appends the image of one segment. The jets are those at its ends. `Err`: where the map is not finite.
+fn warp_seg(
+    seg: &Seg,
+    jets: [Jet; 2],
+    map: &dyn Map,
+    creases: &Creases,
+    options: &Options,
+    pieces: &mut Vec<Piece>,
+    report: &mut PathReport,
+) -> Result<(), Point> {
+    let (canonical, flipped) = split::canonical(seg);
+    let [first, last] = if flipped { [jets[1], jets[0]] } else { jets };
+    let start = pieces.len();
+    let job = Job { map, creases, options };
+    match &canonical {
+        Seg::Arc(a) if options.certify && a.sweep.abs() > MOST_RATIONAL && map.algebra().is_some() => {
+            // Only arcs of less than half a turn are quotients of polynomials with positive denominators.
+            let n = (a.sweep.abs() / MOST_RATIONAL).ceil();
+            let mut from = first;
+            for i in 0..n as usize {
+                let part = a.subsegment(i as f64 / n, (i + 1) as f64 / n);
+                let to = if i + 1 == n as usize { last } else { map.jet(part.p1) };
+                job.warp(&Seg::Arc(part), [from, to], pieces, report)?;
+                from = to;
+            }
+        }
+        _ => job.warp(&canonical, [first, last], pieces, report)?,
+    }
+    if flipped {
+        pieces[start..].reverse();
+        for p in &mut pieces[start..] {
+            *p = p.reversed();
         }
     }
-    out.subpath(map.point(sub.start), &pieces, sub.closed);
     Ok(())
+}
+
+/// Shorter than this share of its coordinates, a segment is rounding of two equal points.
+const ROUNDING: f64 = 1e-15;
+
+/// Arcs that are to be proven are cut into parts of at most this angle (a little over a third of a turn).
+const MOST_RATIONAL: f64 = 2.2;
+
+/// What all segments of a path share.
+struct Job<'a> {
+    map: &'a dyn Map,
+    creases: &'a Creases,
+    options: &'a Options,
+}
+
+impl Job<'_> {
+    /// Appends the image of a segment in its canonical direction, given the jets at its ends.
+    fn warp(&self, seg: &Seg, jets: [Jet; 2], pieces: &mut Vec<Piece>, report: &mut PathReport) -> Result<(), Point> {
+        let map = self.map;
+        let certify = self.options.certify;
+        let whole = Source::new(seg, map).rational_if(certify);
+        if whole.size() <= ROUNDING * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
+            // A segment that goes nowhere stays one (it carries line caps and markers), and has no direction to keep.
+            pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
+            return Ok(());
+        }
+        let slow = split::slow(seg).map(|t| whole.param(t));
+        let splits = self.creases.splits(seg);
+        let nodes = [jets[0].p, jets[1].p];
+        let mut from = (0.0, nodes[0]);
+        for i in 0..=splits.len() {
+            let to = match splits.get(i) {
+                Some(&t) => (whole.param(t), map.jet(seg.eval(t)).p),
+                None => (1.0, nodes[1]),
+            };
+            let branch = map.branch(whole.at(0.5 * (from.0 + to.0)));
+            let inside;
+            let source = match &branch {
+                None => &whole,
+                Some(b) => {
+                    inside = Source::new(seg, b).rational_if(certify);
+                    &inside
+                }
+            };
+            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<End, Point> {
+                if branch.is_none() && (t == 0.0 || t == 1.0) {
+                    let at = if t == 0.0 { seg.start() } else { seg.end() };
+                    source.end_with(t, Some(p), *jet, at)
+                } else {
+                    source.end(t, Some(p))
+                }
+            };
+            let (e0, e1) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            let algebra = if certify { Algebra::of(source) } else { None };
+            let mut stepper =
+                step::Stepper { source, slow: &slow, tolerance: self.options.tolerance, algebra, attempts: 0 };
+            stepper.cover(e0, e1, pieces, report)?;
+            from = to;
+        }
+        Ok(())
+    }
 }

@@ -1,0 +1,165 @@
+//! The command line itself, made from the registry.
+
+use crate::failure::Failure;
+use crate::{Outcome, common, compare, output, paths, render};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::{Args, Kind, Param};
+use pathwarp::recipe::Step;
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::io::IsTerminal;
+
+const ABOUT: &str = "Bends, warps and deforms SVG artwork, and gives clean Bézier curves back.";
+
+const AFTER: &str = "Path references (PATHREF), wherever an option takes a path:
+  FILE#NAME       the path of that id, label or title in an SVG file
+  FILE            the only path in the file; a JSON file of points [[x,y],…]
+  #NAME           in the input document; it is then a guide: left out of the artwork, kept in the file
+  'M 0,0 C …'     SVG path data in place
+  'x,y x,y …'     plain points; 50%,0% counts from the frame's left and top
+
+Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
+Everything is composed before any curve is fitted.
+
+Exit codes: 0 all done; 1 done, but something was left as it was; 2 wrong usage; 3 input unreadable;
+4 the geometry forbids it. On 2, 3 and 4 no output file is touched.";
+
+/// The whole command line.
+pub(crate) fn build(registry: &Registry) -> Command {
+    let mut c = Command::new("pathwarp")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about(ABOUT)
+        .after_help(AFTER)
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .infer_subcommands(false);
+    for e in registry.entries() {
+        c = c.subcommand(deformation(e.info()));
+    }
+    c.subcommand(Command::new("list").about("List the deformations"))
+        .subcommand(paths::command())
+        .subcommand(render::command())
+        .subcommand(compare::command())
+        .subcommand(
+            Command::new("completions")
+                .about("Print completions for a shell")
+                .arg(Arg::new("SHELL").required(true).value_parser(value_parser!(clap_complete::Shell))),
+        )
+        .subcommand(Command::new("man").about("Print the manual page"))
+}
+
+/// A deformation's own options, without the common ones.
+fn own_args(info: &Info) -> impl Iterator<Item = Arg> {
+    info.params.iter().map(|p| {
+        let mut help = p.help.to_owned();
+        if let Some(d) = p.default {
+            let _ = write!(help, " [default: {d}]");
+        }
+        let arg = Arg::new(p.name).long(p.name).help(help).help_heading("Options");
+        if p.kind == Kind::Flag {
+            return arg.action(ArgAction::SetTrue);
+        }
+        // Coordinates may start with a minus; a missing value must still not swallow the next option.
+        arg.value_name(p.value_name())
+            .allow_hyphen_values(true)
+            .value_parser(|t: &str| {
+                if t.starts_with("--") { Err("a value is missing before this option") } else { Ok(t.to_owned()) }
+            })
+            .action(if p.repeat { ArgAction::Append } else { ArgAction::Set })
+    })
+}
+
+fn deformation(info: &Info) -> Command {
+    let mut examples = String::from("Examples:");
+    for e in info.examples {
+        let _ = write!(examples, "\n  {}:\n    pathwarp {}", e.what, e.command);
+    }
+    let _ = write!(examples, "\n\nSource: {}", info.source);
+    Command::new(info.name)
+        .about(info.title)
+        .long_about(format!("{} — {}\n\n{}", info.name, info.title, info.about))
+        .after_help(examples)
+        .args(own_args(info))
+        .args(common::args())
+}
+
+/// The step that a parsed subcommand stands for.
+pub(crate) fn step(registry: &Registry, name: &str, m: &ArgMatches) -> Step {
+    let mut args = Args::new();
+    for p in registry.get(name).map_or(&[][..], |e| e.info().params) {
+        read(p, m, &mut args);
+    }
+    Step { deformation: name.to_owned(), args }
+}
+
+fn read(p: &Param, m: &ArgMatches, args: &mut Args) {
+    if p.kind == Kind::Flag {
+        if m.get_flag(p.name) {
+            args.push(p.name, "true");
+        }
+        return;
+    }
+    for v in m.get_many::<String>(p.name).into_iter().flatten() {
+        args.push(p.name, v.clone());
+    }
+}
+
+/// A step after a `+`: a deformation and its own options, nothing else.
+pub(crate) fn chained_step(registry: &Registry, words: &[OsString]) -> Result<Step, Failure> {
+    let mut c = Command::new("pathwarp … +")
+        .no_binary_name(true)
+        .disable_help_flag(true)
+        .disable_help_subcommand(true)
+        .subcommand_required(true);
+    for e in registry.entries() {
+        c = c.subcommand(Command::new(e.info().name).about(e.info().title).args(own_args(e.info())));
+    }
+    let m = c.try_get_matches_from(words)?;
+    m.subcommand()
+        .map(|(name, sub)| step(registry, name, sub))
+        .ok_or_else(|| Failure::usage("a deformation must follow `+`"))
+}
+
+/// `pathwarp list`: a menu.
+pub(crate) fn list(registry: &Registry) -> Result<Outcome, Failure> {
+    let infos: Vec<&Info> = registry.entries().iter().map(|e| e.info()).collect();
+    let width = infos.iter().map(|i| i.name.len()).max().unwrap_or(0);
+    let mut groups: Vec<&str> = Vec::new();
+    for i in &infos {
+        if !groups.contains(&i.group) {
+            groups.push(i.group);
+        }
+    }
+    let mut out = String::new();
+    let heading = anstyle::Style::new().bold();
+    for g in groups {
+        let _ = writeln!(out, "{heading}{g}{heading:#}");
+        for i in infos.iter().filter(|i| i.group == g) {
+            let _ = writeln!(out, "  {:width$}  {}", i.name, i.title);
+        }
+        out.push('\n');
+    }
+    out.push_str("`pathwarp help NAME` tells more; `+` between two of them chains them.\n");
+    let plain = if std::io::stdout().is_terminal() { out } else { anstream::adapter::strip_str(&out).to_string() };
+    output::to_stdout(plain.as_bytes())?;
+    Ok(Outcome::Done)
+}
+
+/// `pathwarp completions SHELL`.
+pub(crate) fn completions(registry: &Registry, m: &ArgMatches) -> Result<Outcome, Failure> {
+    let mut out = Vec::new();
+    if let Some(shell) = m.get_one::<clap_complete::Shell>("SHELL") {
+        clap_complete::generate(*shell, &mut build(registry), "pathwarp", &mut out);
+    }
+    output::to_stdout(&out)?;
+    Ok(Outcome::Done)
+}
+
+/// `pathwarp man`.
+pub(crate) fn man(registry: &Registry) -> Result<Outcome, Failure> {
+    let mut out = Vec::new();
+    clap_mangen::Man::new(build(registry)).render(&mut out).map_err(|e| Failure::stdout(&e))?;
+    output::to_stdout(&out)?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,199 @@
+//! The options that every deformation shares.
+
+use crate::failure::Failure;
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use pathwarp::kurbo::Rect;
+use std::path::PathBuf;
+
+/// The default tolerance as a part of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
+/// plotter draws.
+const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
+
+/// Where a percentage gets its meaning.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum FrameChoice {
+    Artwork,
+    ViewBox,
+    Rect(Rect),
+}
+
+/// The common options, read.
+#[derive(Debug, Clone)]
+pub(crate) struct Common {
+    pub(crate) inputs: Vec<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
+    pub(crate) out_dir: Option<PathBuf>,
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) certify: bool,
+    pub(crate) merge: bool,
+    pub(crate) frame: FrameChoice,
+    pub(crate) select: Vec<String>,
+    pub(crate) exclude: Vec<String>,
+    pub(crate) precision: Option<u8>,
+    pub(crate) strokes: pathwarp_svg::Strokes,
+    pub(crate) text: pathwarp_svg::TextMode,
+    pub(crate) gradients: pathwarp_svg::Gradients,
+    pub(crate) structure: pathwarp_svg::Structure,
+    pub(crate) on_error: pathwarp_svg::OnError,
+    pub(crate) report: Option<PathBuf>,
+    pub(crate) preview: Option<PathBuf>,
+    pub(crate) explain: bool,
+    pub(crate) jobs: Option<usize>,
+    pub(crate) quiet: bool,
+}
+
+/// The arguments for clap.
+pub(crate) fn args() -> Vec<Arg> {
+    let file = |name: &'static str| Arg::new(name).long(name).value_name("FILE").value_parser(value_parser!(PathBuf));
+    let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    let choice = |name: &'static str, words: &'static [&'static str]| {
+        Arg::new(name).long(name).value_name(words.join("|")).value_parser(words.to_vec()).hide_possible_values(true)
+    };
+    let all = vec![
+        Arg::new("INPUT")
+            .num_args(0..)
+            .value_parser(value_parser!(PathBuf))
+            .help("SVG files (also .svgz); - or none reads standard input"),
+        Arg::new("out").short('o').long("out").value_name("OUT").value_parser(value_parser!(PathBuf)).help(
+            "Where to write the result; - or none writes to standard output",
+        ),
+        Arg::new("out-dir")
+            .long("out-dir")
+            .value_name("DIR")
+            .value_parser(value_parser!(PathBuf))
+            .conflicts_with("out")
+            .help("Where to write the results of several inputs, under their own names"),
+        Arg::new("tolerance")
+            .long("tolerance")
+            .value_name("D")
+            .allow_negative_numbers(true)
+            .help("Largest distance between the true curve and the output, in user units; default 1e-4 of the artwork's diagonal"),
+        flag("certify").help("Prove the distance where the deformation allows it, rather than measure it"),
+        choice("merge", &["on", "off"]).help("Join pieces across smooth joints where that saves nodes [default: off]"),
+        Arg::new("frame")
+            .long("frame")
+            .value_name("artwork|viewbox|X,Y,W,H")
+            .allow_hyphen_values(true)
+            .help("The box that percentages and defaults refer to [default: artwork]"),
+        Arg::new("select")
+            .long("select")
+            .value_name("SEL")
+            .action(ArgAction::Append)
+            .help("Warp only these: #id, .class, an element's tag, or a label; may be given several times"),
+        Arg::new("exclude")
+            .long("exclude")
+            .value_name("SEL")
+            .action(ArgAction::Append)
+            .help("Leave these as they are"),
+        Arg::new("precision")
+            .long("precision")
+            .value_name("N")
+            .value_parser(value_parser!(u8).range(0..=15))
+            .help("Decimals of coordinates; default: enough for a hundredth of the tolerance"),
+        choice("strokes", &["auto", "keep", "scale", "outline"]).help(
+            "Strokes: keep their width, scale it by the local stretch, or turn them into outlines that are warped; auto scales \
+             where that looks right and outlines elsewhere [default: auto]",
+        ),
+        choice("text", &["outline", "skip"]).help("Text: warp its outlines, or leave it as it is [default: outline]"),
+        choice("gradients", &["fit", "keep"]).help("Gradients: follow the artwork as an affine map can, or stay [default: fit]"),
+        choice("structure", &["auto", "keep", "flatten"]).help(
+            "The document: keep its text and structure wherever possible, insist on it, or write a flat new one [default: auto]",
+        ),
+        choice("on-error", &["stop", "skip"]).help("A shape that cannot be warped: stop, or leave it as it is [default: stop]"),
+        file("report").help("Write what was done, shape by shape, as JSON"),
+        file("preview").help("Draw the artwork, its guides and the result as a PNG"),
+        flag("explain").help("Say what was decided on your behalf: corners, sides, directions"),
+        Arg::new("jobs").short('j').long("jobs").value_name("N").value_parser(value_parser!(u16).range(1..)).help(
+            "Threads to use; default: one per core. The output does not depend on it",
+        ),
+        flag("quiet").short('q').help("No warnings, no progress"),
+    ];
+    all.into_iter().map(|a| if a.get_id() == "INPUT" { a } else { a.help_heading("Common options") }).collect()
+}
+
+impl Common {
+    pub(crate) fn read(m: &ArgMatches) -> Result<Self, Failure> {
+        let path = |name: &str| m.get_one::<PathBuf>(name).cloned();
+        let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
+        let words = |name: &str| m.get_many::<String>(name).map(|v| v.cloned().collect()).unwrap_or_default();
+        let positive = |name: &str| -> Result<Option<f64>, Failure> {
+            let Some(text) = m.get_one::<String>(name) else { return Ok(None) };
+            match text.parse::<f64>() {
+                Ok(v) if v > 0.0 && v.is_finite() => Ok(Some(v)),
+                _ => Err(Failure::usage(format!("--{name}: `{text}` is not a positive number"))),
+            }
+        };
+        let common = Self {
+            inputs: m.get_many::<PathBuf>("INPUT").map(|v| v.cloned().collect()).unwrap_or_default(),
+            out: path("out").filter(|p| p.as_os_str() != "-"),
+            out_dir: path("out-dir"),
+            tolerance: positive("tolerance")?,
+            certify: m.get_flag("certify"),
+            merge: word("merge") == "on",
+            frame: frame(m.get_one::<String>("frame"))?,
+            select: words("select"),
+            exclude: words("exclude"),
+            precision: m.get_one::<u8>("precision").copied(),
+            strokes: match word("strokes") {
+                "keep" => pathwarp_svg::Strokes::Keep,
+                "scale" => pathwarp_svg::Strokes::Scale,
+                "outline" => pathwarp_svg::Strokes::Outline,
+                _ => pathwarp_svg::Strokes::Auto,
+            },
+            text: if word("text") == "skip" { pathwarp_svg::TextMode::Skip } else { pathwarp_svg::TextMode::Outline },
+            gradients: if word("gradients") == "keep" {
+                pathwarp_svg::Gradients::Keep
+            } else {
+                pathwarp_svg::Gradients::Fit
+            },
+            structure: match word("structure") {
+                "keep" => pathwarp_svg::Structure::Keep,
+                "flatten" => pathwarp_svg::Structure::Flatten,
+                _ => pathwarp_svg::Structure::Auto,
+            },
+            on_error: if word("on-error") == "skip" {
+                pathwarp_svg::OnError::Skip
+            } else {
+                pathwarp_svg::OnError::Stop
+            },
+            report: path("report"),
+            preview: path("preview"),
+            explain: m.get_flag("explain"),
+            jobs: m.get_one::<u16>("jobs").map(|n| usize::from(*n)),
+            quiet: m.get_flag("quiet"),
+        };
+        if common.inputs.len() > 1 {
+            if common.out_dir.is_none() {
+                return Err(Failure::usage("several inputs need --out-dir DIR; their results cannot share one file"));
+            }
+            if common.preview.is_some() {
+                return Err(Failure::usage("--preview draws one input; give one"));
+            }
+        }
+        Ok(common)
+    }
+
+    /// The tolerance for artwork of this box.
+    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>) -> f64 {
+        let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
+        self.tolerance.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
+    }
+}
+
+fn frame(text: Option<&String>) -> Result<FrameChoice, Failure> {
+    match text.map(String::as_str) {
+        None | Some("artwork") => Ok(FrameChoice::Artwork),
+        Some("viewbox") => Ok(FrameChoice::ViewBox),
+        Some(t) => {
+            let numbers: Result<Vec<f64>, _> = t.split(',').map(|w| w.trim().parse::<f64>()).collect();
+            match numbers.as_deref() {
+                Ok(&[x, y, w, h]) if w > 0.0 && h > 0.0 && (x + y + w + h).is_finite() => {
+                    Ok(FrameChoice::Rect(Rect::new(x, y, x + w, y + h)))
+                }
+                _ => Err(Failure::usage(format!(
+                    "--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive)"
+                ))),
+            }
+        }
+    }
+}

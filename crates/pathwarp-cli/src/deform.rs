@@ -1,0 +1,290 @@
+//! Running deformations over files: read, build, warp, write, report.
+
+use crate::common::{Common, FrameChoice};
+use crate::failure::Failure;
+use crate::output::{self, Pending};
+use crate::reference::References;
+use crate::report::{self, Report, Totals};
+use crate::{Outcome, preview, terminal};
+use clap::ArgMatches;
+use pathwarp::deform::Registry;
+use pathwarp::fold::{self, Orientation};
+use pathwarp::map::Map;
+use pathwarp::outline::Outline;
+use pathwarp::param::Frame;
+use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
+use pathwarp::refit;
+use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, Warped};
+use rayon::prelude::*;
+use std::io::{IsTerminal, Read};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// One input, warped, nothing written yet.
+struct Job {
+    report: report::Input,
+    output: Vec<Pending>,
+    /// What goes to standard output.
+    to_stdout: Option<Vec<u8>>,
+    notes: Vec<String>,
+    partly: bool,
+}
+
+/// `pathwarp DEFORMATION …`.
+pub(crate) fn run(registry: &Registry, steps: &[Step], matches: &ArgMatches) -> Result<Outcome, Failure> {
+    let started = Instant::now();
+    let common = Common::read(matches)?;
+    let inputs = if common.inputs.is_empty() { vec![PathBuf::from("-")] } else { common.inputs.clone() };
+    let targets = targets(&common, &inputs)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(common.jobs.unwrap_or(0))
+        .build()
+        .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
+
+    let bar = progress(&common, inputs.len());
+    let jobs: Result<Vec<Job>, Failure> = pool.install(|| {
+        let one = |(input, target): (&PathBuf, &Option<PathBuf>)| {
+            let job = warp(registry, steps, &common, input, target.as_deref());
+            bar.inc(1);
+            job.map_err(|f| f.about(&display(input)))
+        };
+        inputs.par_iter().zip(&targets).map(one).collect()
+    });
+    bar.finish_and_clear();
+    let jobs = jobs?;
+
+    let mut outcome = Outcome::Done;
+    let mut pending = Vec::new();
+    let mut reports = Vec::new();
+    let mut printed = Vec::new();
+    for job in jobs {
+        for n in &job.notes {
+            terminal::note(n);
+        }
+        if !common.quiet {
+            tell(&job.report);
+        }
+        if job.partly {
+            outcome = Outcome::Partly;
+        }
+        pending.extend(job.output);
+        printed.extend(job.to_stdout);
+        reports.push(job.report);
+    }
+    if let Some(file) = &common.report {
+        let report = Report {
+            tool: "pathwarp",
+            version: env!("CARGO_PKG_VERSION"),
+            steps: steps.iter().map(|s| s.deformation.clone()).collect(),
+            totals: Totals::of(&reports, started.elapsed().as_secs_f64()),
+            inputs: reports,
+        };
+        let mut json = serde_json::to_vec_pretty(&report).map_err(|e| Failure::file(file, e))?;
+        json.push(b'\n');
+        pending.push(Pending::new(file, &json)?);
+    }
+    Pending::commit_all(pending)?;
+    for bytes in printed {
+        output::to_stdout(&bytes)?;
+    }
+    Ok(outcome)
+}
+
+/// Where each input's result goes; `None` is standard output.
+fn targets(common: &Common, inputs: &[PathBuf]) -> Result<Vec<Option<PathBuf>>, Failure> {
+    let Some(dir) = &common.out_dir else { return Ok(vec![common.out.clone(); inputs.len()]) };
+    let mut out: Vec<Option<PathBuf>> = Vec::with_capacity(inputs.len());
+    for i in inputs {
+        let name = i.file_name().filter(|n| *n != "-");
+        let mut to = dir.join(name.ok_or_else(|| Failure::usage("--out-dir needs named inputs"))?);
+        if to.extension().is_some_and(|e| e.eq_ignore_ascii_case("svgz")) {
+            to.set_extension("svg");
+        }
+        if out.contains(&Some(to.clone())) {
+            return Err(Failure::usage(format!("two inputs would both be written to {}", to.display())));
+        }
+        out.push(Some(to));
+    }
+    std::fs::create_dir_all(dir).map_err(|e| Failure::file(dir, format!("cannot be made: {e}")))?;
+    Ok(out)
+}
+
+fn progress(common: &Common, files: usize) -> indicatif::ProgressBar {
+    if common.quiet || files < 2 || !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let bar = indicatif::ProgressBar::new(files as u64);
+    if let Ok(style) = indicatif::ProgressStyle::with_template("{bar:32} {pos}/{len} files  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+pub(crate) fn display(input: &Path) -> String {
+    if input.as_os_str() == "-" { "standard input".into() } else { input.display().to_string() }
+}
+
+/// Reads a file, or standard input.
+pub(crate) fn read(input: &Path) -> Result<Vec<u8>, Failure> {
+    if input.as_os_str() == "-" {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::Input(format!("standard input: {e}")))?;
+        return Ok(bytes);
+    }
+    std::fs::read(input).map_err(|e| Failure::file(input, format!("cannot be read: {e}")))
+}
+
+/// Reads an SVG document; linked images are looked for beside it.
+pub(crate) fn document(input: &Path) -> Result<Document, Failure> {
+    let bytes = read(input)?;
+    Ok(Document::read(&bytes, &display(input), &read_options(input))?)
+}
+
+pub(crate) fn read_options(input: &Path) -> ReadOptions {
+    let folder = match input.parent() {
+        Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
+        other => other.map(Path::to_path_buf),
+    };
+    ReadOptions { base_dir: folder, ..ReadOptions::default() }
+}
+
+fn warp(
+    registry: &Registry,
+    steps: &[Step],
+    common: &Common,
+    input: &Path,
+    target: Option<&Path>,
+) -> Result<Job, Failure> {
+    let doc = document(input)?;
+    let mut references = References::new(&doc);
+    let mut recipe = Recipe { steps: steps.to_vec() };
+    for step in &mut recipe.steps {
+        if let Some(e) = registry.get(&step.deformation) {
+            step.args.resolve_paths(e.info().params, |r| references.look_up(r))?;
+            step.args.resolve_files(e.info().params, |f| {
+                std::fs::read_to_string(f).map_err(|e| pathwarp::Error::input(f, format!("cannot be read: {e}")))
+            })?;
+        }
+    }
+    let selection =
+        Selection { select: common.select.clone(), exclude: common.exclude.clone(), guides: references.guides };
+    let artwork_box = doc.artwork_box(&selection);
+    let frame = match common.frame {
+        FrameChoice::Artwork => artwork_box.unwrap_or_else(|| doc.view_box()),
+        FrameChoice::ViewBox => doc.view_box(),
+        FrameChoice::Rect(r) => r,
+    };
+    let artwork: Vec<&Outline> = doc.selected(&selection).map(|s| &s.outline).collect();
+    let built = recipe.build(registry, Frame::new(frame), &artwork.iter().copied())?;
+
+    let tolerance = common.tolerance_for(artwork_box);
+    let options = WarpOptions {
+        precision: common.precision,
+        strokes: common.strokes,
+        text: common.text,
+        structure: common.structure,
+        selection,
+        on_error: common.on_error,
+        gradients: common.gradients,
+        ..WarpOptions::new(refit::Options {
+            certify: common.certify,
+            merge: common.merge,
+            ..refit::Options::new(tolerance)
+        })
+    };
+    let warped = doc.warp(&built.map, &options)?;
+    let report = report(&doc, &built, &options, &warped, &display(input), target);
+
+    let mut output = Vec::new();
+    let mut to_stdout = None;
+    match target {
+        Some(t) => output.push(Pending::new(t, warped.svg.as_bytes())?),
+        None => to_stdout = Some(warped.svg.clone().into_bytes()),
+    }
+    for (file, text) in built.steps.iter().flat_map(|s| &s.saves) {
+        output.push(Pending::new(Path::new(file), text.as_bytes())?);
+    }
+    if let Some(file) = &common.preview {
+        output.push(Pending::new(file, &preview::draw(&doc, &warped.svg, &built, &read_options(input))?)?);
+    }
+    let notes = if common.explain { built.steps.iter().flat_map(|s| s.notes.clone()).collect() } else { Vec::new() };
+    let partly = !report.skipped.is_empty() || report.shapes.iter().any(|s| !s.over_budget.is_empty());
+    Ok(Job { report, output, to_stdout, notes, partly })
+}
+
+fn report(
+    doc: &Document,
+    built: &BuiltRecipe,
+    options: &WarpOptions,
+    warped: &Warped,
+    file: &str,
+    target: Option<&Path>,
+) -> report::Input {
+    let folds = folds(doc, &built.map, &options.selection);
+    let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
+    warnings.extend(warped.warnings.iter().cloned());
+    let all = folds.iter().fold(Orientation::default(), |sum, (_, o)| sum.and(o));
+    let mut shapes = Vec::with_capacity(warped.shapes.len());
+    let mut folded = Vec::new();
+    for s in &warped.shapes {
+        let o = folds.iter().filter(|(id, _)| *id == s.id).fold(Orientation::default(), |sum, (_, o)| sum.and(o));
+        let at = o.folded_against(&all);
+        if let Some(at) = at
+            && !folded.iter().any(|(id, _)| *id == &s.id)
+        {
+            folded.push((&s.id, at));
+        }
+        shapes.push(report::Shape {
+            id: s.id.clone(),
+            segments_in: s.segments_in,
+            segments_out: s.segments_out,
+            max_error: s.max_error,
+            certified: s.assurance != refit::Assurance::Checked,
+            assurance: report::assurance_word(s.assurance),
+            folds: if at.is_some() { o.changes.max(1) } else { 0 },
+            folded_at: at.map(|p| [p.x, p.y]),
+            over_budget: s.over_budget.iter().map(|p| [p.x, p.y]).collect(),
+        });
+    }
+    for (id, at) in folded {
+        warnings.push(format!("{id} folds over near {:.4},{:.4}: the map turns the plane over there", at.x, at.y));
+    }
+    report::Input {
+        file: file.to_owned(),
+        output: target.map(|t| t.display().to_string()),
+        tolerance: options.refit.tolerance,
+        shapes,
+        skipped: warped.skipped.iter().map(|s| report::Skipped { id: s.id.clone(), why: s.why.clone() }).collect(),
+        warnings,
+    }
+}
+
+/// Every selected shape's orientation under the map.
+fn folds<'a>(doc: &'a Document, map: &dyn Map, selection: &Selection) -> Vec<(&'a str, Orientation)> {
+    let shapes: Vec<_> = doc.selected(selection).collect();
+    shapes.into_par_iter().map(|s| (s.id.as_str(), fold::orientation(&s.outline, s.filled, map))).collect()
+}
+
+/// Warnings and leavings, for people.
+fn tell(r: &report::Input) {
+    /// More than this is for the report.
+    const SHOWN: usize = 8;
+    let of = |what: &str| format!("{}: {what}", r.file);
+    for w in r.warnings.iter().take(SHOWN) {
+        terminal::warning(&of(w));
+    }
+    for s in r.skipped.iter().take(SHOWN) {
+        terminal::warning(&of(&format!("{} is left as it was: {}", s.id, s.why)));
+    }
+    for s in r.shapes.iter().filter(|s| !s.over_budget.is_empty()).take(SHOWN) {
+        let [x, y] = s.over_budget[0];
+        terminal::warning(&of(&format!(
+            "{} misses the tolerance near {x:.4},{y:.4}: the error there is up to {:.3e}",
+            s.id, s.max_error
+        )));
+    }
+    let more = r.warnings.len().saturating_sub(SHOWN) + r.skipped.len().saturating_sub(SHOWN);
+    if more > 0 {
+        terminal::warning(&of(&format!("and {more} more; --report FILE lists them all")));
+    }
+}

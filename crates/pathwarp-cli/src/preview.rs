@@ -1,0 +1,31 @@
+//! `--preview`: the artwork with its guides, and what became of it, side by side.
+
+use crate::failure::Failure;
+use pathwarp::deform::Role;
+use pathwarp::recipe::BuiltRecipe;
+use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview, encode_png};
+use pathwarp_svg::{Document, ReadOptions};
+
+/// The PNG. Bases are drawn over the source, targets and cages over the result.
+pub(crate) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &ReadOptions) -> Result<Vec<u8>, Failure> {
+    let after = Document::read(warped.as_bytes(), "the result", read)?;
+    let mut left = Panel::new(doc.tree(), doc.user_to_px(), doc.view_box());
+    let mut right = Panel::new(after.tree(), after.user_to_px(), after.view_box());
+    let last = built.steps.len().saturating_sub(1);
+    for (i, step) in built.steps.iter().enumerate() {
+        let has_target = step.overlays.iter().any(|o| o.role == Role::Target);
+        for o in &step.overlays {
+            // A middle step's guides lie in a plane that neither panel shows; a cage whose result goes to a Target is only a
+            // pattern, and stands with the source.
+            let (panel, kind) = match o.role {
+                Role::Base if i == 0 => (&mut left, OverlayKind::Base),
+                Role::Cage if i == 0 && has_target => (&mut left, OverlayKind::Cage),
+                Role::Cage if i == last => (&mut right, OverlayKind::Cage),
+                Role::Target if i == last => (&mut right, OverlayKind::Target),
+                _ => continue,
+            };
+            *panel = panel.clone().with(Overlay::new(kind, o.path.clone()));
+        }
+    }
+    Ok(encode_png(&Preview::new(left, right).render()?)?)
+}

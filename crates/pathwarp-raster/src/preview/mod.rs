@@ -1,0 +1,269 @@
+//! A drawing and its warped result side by side, for people.
+//!
+//! Both panels show the same part of the plane at the same scale, so that a shape which did not move is at the same
+//! place in both. That part is the smallest box around both pages and all overlays. Artwork may spill over the edge of
+//! its page: there it is shown on the grey around the page, as far as the panel goes.
+
+mod overlay;
+
+pub use overlay::{Overlay, OverlayKind};
+
+use crate::{Error, render::new_pixmap};
+use kurbo::{Affine, Rect};
+use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, PixmapPaint, Transform};
+
+/// Width and height of a panel's box, in pixels, unless the caller says otherwise.
+const DEFAULT_PANEL: u32 = 600;
+
+/// The panel size at which overlays are drawn at their nominal width; at other sizes they scale along.
+const NOMINAL_PANEL: f32 = 600.0;
+
+/// A panel narrower than this (in nominal pixels) is widened: a very flat drawing is still a picture.
+const LEAST_SIDE: f64 = 48.0;
+
+/// Space around the view within its panel and between the panels, in nominal pixels.
+const MARGIN: f64 = 20.0;
+const GAP: f64 = 4.0;
+
+/// One drawing, with what is drawn on top of it.
+#[derive(Debug, Clone)]
+pub struct Panel<'a> {
+    tree: &'a usvg::Tree,
+    user_to_px: Affine,
+    page: Rect,
+    overlays: Vec<Overlay>,
+}
+
+impl<'a> Panel<'a> {
+    /// A panel showing `tree`.
+    ///
+    /// A tree is in pixels of the outermost viewport; page and overlays are in root user units, the units of the
+    /// `viewBox`. `user_to_px` takes the latter to the former. `page` is the drawing's sheet of paper: its `viewBox`, or
+    /// the box of its `width` and `height`.
+    pub fn new(tree: &'a usvg::Tree, user_to_px: Affine, page: Rect) -> Self {
+        Self { tree, user_to_px, page, overlays: Vec::new() }
+    }
+
+    /// Adds something on top of the artwork and of the overlays added before.
+    #[must_use]
+    pub fn with(mut self, overlay: Overlay) -> Self {
+        self.overlays.push(overlay);
+        self
+    }
+
+    /// The box around the page and all overlays, in root user units.
+    fn bounds(&self) -> Rect {
+        self.overlays.iter().filter_map(Overlay::bounds).fold(self.page.abs(), |all, one| all.union(one))
+    }
+}
+
+/// Two panels side by side: the drawing before and after.
+///
+/// ```
+/// use kurbo::{Affine, BezPath, Rect};
+/// use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview};
+///
+/// let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20"><path d="M5 5h30v10H5z"/></svg>"#;
+/// let tree = usvg::Tree::from_str(svg, &usvg::Options::default())?;
+/// let page = Rect::new(0.0, 0.0, 40.0, 20.0);
+/// let base = BezPath::from_svg("M5 15H35")?;
+///
+/// let before = Panel::new(&tree, Affine::IDENTITY, page).with(Overlay::new(OverlayKind::Base, base));
+/// let after = Panel::new(&tree, Affine::IDENTITY, page);
+/// let picture = Preview::new(before, after).panel_size(300).render()?;
+/// assert!(picture.width() > picture.height());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Preview<'a> {
+    before: Panel<'a>,
+    after: Panel<'a>,
+    panel_size: u32,
+    view: Option<Rect>,
+}
+
+impl<'a> Preview<'a> {
+    /// `before` on the left, `after` on the right.
+    pub fn new(before: Panel<'a>, after: Panel<'a>) -> Self {
+        Self { before, after, panel_size: DEFAULT_PANEL, view: None }
+    }
+
+    /// The longer side of each panel, in pixels; 600 unless set.
+    #[must_use]
+    pub fn panel_size(mut self, pixels: u32) -> Self {
+        self.panel_size = pixels;
+        self
+    }
+
+    /// Shows this part of the plane (in root user units) instead of the pages and all overlays.
+    #[must_use]
+    pub fn view(mut self, view: Rect) -> Self {
+        self.view = Some(view);
+        self
+    }
+
+    /// Draws the picture.
+    pub fn render(&self) -> Result<Pixmap, Error> {
+        let view = self.view.unwrap_or_else(|| self.before.bounds().union(self.after.bounds())).abs();
+        let layout = Layout::new(view, self.panel_size)?;
+        let mut picture = new_pixmap(2.0 * layout.width + layout.gap, layout.height)?;
+        picture.fill(Color::from_rgba8(0xc4, 0xc8, 0xcf, 0xff));
+        let second = layout.width + layout.gap;
+        for (panel, left) in [(&self.before, 0.0), (&self.after, second)] {
+            let drawn = layout.draw(panel)?;
+            #[expect(clippy::cast_possible_truncation, reason = "within the picture")]
+            let left = left as i32;
+            picture.draw_pixmap(left, 0, drawn.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
+        }
+        Ok(picture)
+    }
+}
+
+/// How the view falls on the pixels of a panel. Sizes are whole numbers of pixels.
+struct Layout {
+    width: f64,
+    height: f64,
+    gap: f64,
+    /// Root user units to pixels of the panel.
+    to_panel: Affine,
+    /// Real pixels per nominal pixel: the widths of lines and dots scale with the panel.
+    unit: f32,
+}
+
+impl Layout {
+    fn new(view: Rect, panel_size: u32) -> Result<Self, Error> {
+        if !view.is_finite() {
+            return Err(Error::NoView("the page or an overlay is not finite"));
+        }
+        let longer = view.width().max(view.height());
+        if longer <= 0.0 {
+            return Err(Error::NoView("the page and the overlays have no extent"));
+        }
+        if panel_size == 0 {
+            return Err(Error::Empty { width: 0, height: 0 });
+        }
+        #[expect(clippy::cast_precision_loss, reason = "panels are far smaller")]
+        let unit = panel_size as f32 / NOMINAL_PANEL;
+        let nominal = f64::from(unit);
+        let margin = MARGIN * nominal;
+        let scale = (f64::from(panel_size) - 2.0 * margin) / longer;
+        let side = |length: f64| (length * scale + 2.0 * margin).max(LEAST_SIDE * nominal).round().max(1.0);
+        let (width, height) = (side(view.width()), side(view.height()));
+        let centre = kurbo::Vec2::new(width / 2.0, height / 2.0);
+        let to_panel = Affine::translate(centre) * Affine::scale(scale) * Affine::translate(-view.center().to_vec2());
+        Ok(Self { width, height, gap: (GAP * nominal).round().max(1.0), to_panel, unit })
+    }
+
+    fn draw(&self, panel: &Panel<'_>) -> Result<Pixmap, Error> {
+        let determinant = panel.user_to_px.determinant();
+        if !determinant.is_finite() || determinant == 0.0 {
+            return Err(Error::NoView("the map from user units to pixels cannot be undone"));
+        }
+        let mut picture = new_pixmap(self.width, self.height)?;
+        picture.fill(Color::from_rgba8(0xec, 0xee, 0xf1, 0xff));
+        self.draw_page(panel.page, &mut picture);
+        let tree_to_panel = transform(self.to_panel * panel.user_to_px.inverse());
+        resvg::render(panel.tree, tree_to_panel, &mut picture.as_mut());
+        for overlay in &panel.overlays {
+            overlay.draw(self.to_panel, self.unit, &mut picture);
+        }
+        Ok(picture)
+    }
+
+    /// The white sheet, with a soft edge to the lower right.
+    fn draw_page(&self, page: Rect, picture: &mut Pixmap) {
+        let sheet = self.to_panel.transform_rect_bbox(page);
+        for (offset, color) in
+            [(2.5, Color::from_rgba8(0, 0, 0, 14)), (1.2, Color::from_rgba8(0, 0, 0, 26)), (0.0, Color::WHITE)]
+        {
+            let shifted = sheet + kurbo::Vec2::new(offset, offset) * f64::from(self.unit);
+            let [left, top, right, bottom] = [shifted.x0, shifted.y0, shifted.x1, shifted.y1].map(to_f32);
+            if let Some(rect) = tiny_skia::Rect::from_ltrb(left, top, right, bottom) {
+                let mut paint = Paint::default();
+                paint.set_color(color);
+                let path = PathBuilder::from_rect(rect);
+                picture.fill_path(&path, &paint, FillRule::Winding, Transform::identity(), None);
+            }
+        }
+    }
+}
+
+/// The renderer's own precision.
+#[expect(clippy::cast_possible_truncation, reason = "pixels need no more")]
+fn to_f32(x: f64) -> f32 {
+    x as f32
+}
+
+fn transform(affine: Affine) -> Transform {
+    let [sx, ky, kx, sy, tx, ty] = affine.as_coeffs().map(to_f32);
+    Transform::from_row(sx, ky, kx, sy, tx, ty)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::BezPath;
+
+    const PAGE: Rect = Rect::new(0.0, 0.0, 100.0, 50.0);
+
+    fn tree() -> usvg::Tree {
+        let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100" viewBox="0 0 100 50">
+            <path fill="#00f" d="M0 0h50v50H0z"/></svg>"##;
+        usvg::Tree::from_str(svg, &usvg::Options::default()).unwrap()
+    }
+
+    fn rgb(picture: &Pixmap, x: u32, y: u32) -> [u8; 3] {
+        picture.pixel(x, y).map(|p| [p.red(), p.green(), p.blue()]).unwrap()
+    }
+
+    #[test]
+    fn panels_share_scale_and_place() {
+        let tree = tree();
+        let panel = || Panel::new(&tree, Affine::scale(2.0), PAGE);
+        let picture = Preview::new(panel(), panel()).render().unwrap();
+        assert_eq!((picture.width(), picture.height()), (600 + 4 + 600, 320));
+        for left in [0, 604] {
+            assert_eq!(rgb(&picture, left + 150, 160), [0, 0, 255], "artwork");
+            assert_eq!(rgb(&picture, left + 450, 160), [255, 255, 255], "page");
+            assert_eq!(rgb(&picture, left + 5, 5), [0xec, 0xee, 0xf1], "around the page");
+        }
+    }
+
+    #[test]
+    fn an_overlay_widens_both_panels_and_is_drawn_in_its_own() {
+        let tree = tree();
+        let panel = || Panel::new(&tree, Affine::scale(2.0), PAGE);
+        let cage = BezPath::from_svg("M0 0H200V50H0Z").unwrap();
+        let before = panel().with(Overlay::new(OverlayKind::Cage, cage));
+        let picture = Preview::new(before, panel()).render().unwrap();
+        assert_eq!((picture.width(), picture.height()), (1204, 180));
+        // The cage's right side is 20 px from the left panel's edge.
+        let edge = rgb(&picture, 580, 60);
+        assert!(edge[0] > edge[2] + 100, "{edge:?}");
+        assert_eq!(rgb(&picture, 604 + 580, 60), [0xec, 0xee, 0xf1]);
+    }
+
+    #[test]
+    fn panels_scale_with_everything_on_them() {
+        let tree = tree();
+        let panel = || Panel::new(&tree, Affine::scale(2.0), PAGE);
+        let picture = Preview::new(panel(), panel()).panel_size(1200).render().unwrap();
+        assert_eq!((picture.width(), picture.height()), (1200 + 8 + 1200, 640));
+    }
+
+    #[test]
+    fn hopeless_views_are_refused() {
+        let tree = tree();
+        let page = |rect| Panel::new(&tree, Affine::IDENTITY, rect);
+        let no_view = |preview: Preview<'_>| matches!(preview.render(), Err(Error::NoView(_)));
+        assert!(no_view(Preview::new(page(Rect::ZERO), page(Rect::ZERO))));
+        let endless = Rect::new(0.0, 0.0, f64::INFINITY, 1.0);
+        assert!(no_view(Preview::new(page(endless), page(PAGE))));
+        let flat = Panel::new(&tree, Affine::scale(0.0), PAGE);
+        assert!(no_view(Preview::new(flat, page(PAGE))));
+        let huge = Preview::new(page(PAGE), page(PAGE)).panel_size(u32::MAX).render();
+        assert!(matches!(huge, Err(Error::TooLarge { .. })));
+        assert!(Preview::new(page(PAGE), page(PAGE)).panel_size(0).render().is_err());
+        assert!(Preview::new(page(PAGE), page(PAGE)).panel_size(1).render().is_ok());
+    }
+}

@@ -1,0 +1,233 @@
+//! Anchors of user-drawn paths, and the rules by which a drawing's direction on the screen is made sense of.
+//!
+//! A user seldom knows which way a path runs or where a closed one starts. The shaper paper's rule: the side that lies lowest
+//! on the screen is the bottom, and it runs left to right.
+
+use crate::error::{Error, GeometryError};
+use crate::map::{AffineMap, Homography, Map};
+use crate::outline::{Outline, Seg, Subpath};
+use crate::param::{Frame, NamedPath, Settings};
+use kurbo::{Affine, Line, Point};
+use std::sync::Arc;
+
+/// Anchors closer than this part of their spread coincide; three anchors whose triangle is flatter than this part of their
+/// spread squared lie on a line. Well above rounding, well below what anybody draws.
+const NEAR: f64 = 1e-9;
+/// A closing line shorter than this part of the path's box is a drawing program's rounding, not a side.
+const STRAY: f64 = 1e-5;
+
+/// Two or four anchors, in the order the deformation uses them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Anchors {
+    Two([Point; 2]),
+    Four([Point; 4]),
+}
+
+impl Anchors {
+    pub(crate) fn points(&self) -> &[Point] {
+        match self {
+            Self::Two(p) => p,
+            Self::Four(p) => p,
+        }
+    }
+
+    /// The path through them, for a preview.
+    pub(crate) fn outline(&self) -> Outline {
+        Outline::from_points(self.points(), matches!(self, Self::Four(_)))
+    }
+}
+
+/// The only connected run of a path, a stray closing line dropped.
+pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<Subpath, Error> {
+    let count = |anchors: Vec<Point>| GeometryError::AnchorCount {
+        path: path.name.clone(),
+        found: anchors.len(),
+        anchors: anchors.into_iter().take(8).collect(),
+        expected,
+    };
+    let [sub] = path.outline.subpaths.as_slice() else {
+        return Err(count(path.outline.subpaths.iter().flat_map(Subpath::anchors).collect()).into());
+    };
+    let mut sub = sub.clone();
+    let size = path.outline.bounding_box().map_or(0.0, |b| b.width().hypot(b.height()));
+    let stray = |s: &Seg| s.start().distance(s.end()) <= STRAY * size;
+    if sub.closed && sub.segs.len() > 1 && matches!(sub.segs.last(), Some(s @ Seg::Line(_)) if stray(s)) {
+        sub.segs.pop();
+        if let Some(last) = sub.segs.last_mut() {
+            *last = ending_at(last, sub.start);
+        }
+    }
+    Ok(sub)
+}
+
+/// The same piece, its last point moved to `end` (by rounding only).
+fn ending_at(seg: &Seg, end: Point) -> Seg {
+    match *seg {
+        Seg::Line(l) => Seg::Line(Line::new(l.p0, end)),
+        Seg::Quad(mut q) => {
+            q.p2 = end;
+            Seg::Quad(q)
+        }
+        Seg::Cubic(mut c) => {
+            c.p3 = end;
+            Seg::Cubic(c)
+        }
+        Seg::Arc(mut a) => {
+            a.p1 = end;
+            Seg::Arc(a)
+        }
+    }
+}
+
+/// The two or four anchors of a path, as drawn.
+pub(crate) fn two_or_four(path: &NamedPath) -> Result<Anchors, Error> {
+    let sub = only_subpath(path, "two or four")?;
+    let a = sub.anchors();
+    match a[..] {
+        [p, q] => {
+            distinct(&path.name, &a)?;
+            Ok(Anchors::Two([p, q]))
+        }
+        [p, q, r, s] => {
+            general(&path.name, &a)?;
+            Ok(Anchors::Four([p, q, r, s]))
+        }
+        _ => Err(GeometryError::AnchorCount {
+            path: path.name.clone(),
+            found: a.len(),
+            anchors: a.into_iter().take(8).collect(),
+            expected: "two or four",
+        }
+        .into()),
+    }
+}
+
+/// Refuses coincident anchors.
+pub(crate) fn distinct(path: &str, a: &[Point]) -> Result<(), GeometryError> {
+    let near = NEAR * spread(a);
+    for (i, p) in a.iter().enumerate() {
+        for (j, q) in a.iter().enumerate().take(i) {
+            if p.distance(*q) <= near {
+                return Err(GeometryError::Coincident { path: path.to_owned(), which: [j + 1, i + 1], at: *p });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses coincident anchors, and three on a line.
+pub(crate) fn general(path: &str, a: &[Point]) -> Result<(), GeometryError> {
+    distinct(path, a)?;
+    let flat = NEAR * spread(a).powi(2);
+    for k in 0..a.len() {
+        for j in 0..k {
+            for i in 0..j {
+                if (a[j] - a[i]).cross(a[k] - a[i]).abs() <= flat {
+                    let which = [i + 1, j + 1, k + 1];
+                    return Err(GeometryError::Collinear { path: path.to_owned(), which, points: a.to_vec() });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn spread(a: &[Point]) -> f64 {
+    a.iter().flat_map(|p| a.iter().map(move |q| p.distance(*q))).fold(0.0, f64::max)
+}
+
+/// The order in which to take four corners so that the lowest side on the screen comes first, left to right: for each of the
+/// four places its index in `heights` (mean y of the side that starts there).
+pub(crate) struct Arrangement {
+    /// Which side (0..4, as drawn) is the bottom.
+    pub(crate) bottom: usize,
+    /// Whether the path is run against its drawn direction.
+    pub(crate) reversed: bool,
+}
+
+impl Arrangement {
+    /// By the paper's rule. `heights[i]` is the mean y of the side from corner i to corner i+1.
+    pub(crate) fn by_rule(corners: &[Point; 4], heights: &[f64; 4]) -> Self {
+        let bottom = (0..4).fold(0, |best, i| if heights[i] > heights[best] { i } else { best });
+        Self::from_bottom(corners, bottom)
+    }
+
+    /// With side `bottom` as the bottom, left to right.
+    pub(crate) fn from_bottom(corners: &[Point; 4], bottom: usize) -> Self {
+        Self { bottom, reversed: corners[bottom].x > corners[(bottom + 1) % 4].x }
+    }
+
+    /// The corner indices in order: bottom start, bottom end, then on round.
+    pub(crate) fn order(&self) -> [usize; 4] {
+        let b = self.bottom;
+        if self.reversed {
+            [(b + 1) % 4, b, (b + 3) % 4, (b + 2) % 4]
+        } else {
+            [b, (b + 1) % 4, (b + 2) % 4, (b + 3) % 4]
+        }
+    }
+}
+
+/// Anchors arranged by the rule: two left to right; of four the lowest side first, left to right.
+pub(crate) fn arranged(a: Anchors) -> Anchors {
+    match a {
+        Anchors::Two([p, q]) if p.x > q.x => Anchors::Two([q, p]),
+        Anchors::Two(_) => a,
+        Anchors::Four(q) => {
+            let heights = std::array::from_fn(|i| 0.5 * (q[i].y + q[(i + 1) % 4].y));
+            Anchors::Four(Arrangement::by_rule(&q, &heights).order().map(|i| q[i]))
+        }
+    }
+}
+
+/// The anchors of parameter `name`, arranged unless `NAME-as-drawn` is set; `None` if not given.
+pub(crate) fn from_settings(s: &Settings<'_>, name: &str, as_drawn: &str) -> Result<Option<Anchors>, Error> {
+    let Some(path) = s.path_if(name)? else { return Ok(None) };
+    let a = two_or_four(&path)?;
+    Ok(Some(if s.flag(as_drawn)? { a } else { arranged(a) }))
+}
+
+/// The frame's corners as anchors: what Base is by default.
+pub(crate) fn frame_corners(s: &Settings<'_>) -> Result<Anchors, Error> {
+    let c = s.frame().corners();
+    general("the artwork's box (the default of --base)", &c)?;
+    Ok(Anchors::Four(c))
+}
+
+/// The map to the standard position: two anchors to (0,0), (1,0) by a direct similitude, four to the unit square's corners by
+/// a projective map. The standard position has v growing *upwards* on the screen.
+pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error> {
+    match *a {
+        Anchors::Two([p, q]) => {
+            // Mirrored first, so that the similitude is direct in the sense of the screen.
+            let up = |p: Point| Point::new(p.x, -p.y);
+            let m = AffineMap::similitude(up(p), up(q), Point::ORIGIN, Point::new(1.0, 0.0))
+                .ok_or_else(|| GeometryError::Coincident { path: name.to_owned(), which: [1, 2], at: p })?;
+            Ok(Arc::new(AffineMap(m.0 * Affine::FLIP_Y)))
+        }
+        Anchors::Four(q) => {
+            const UNIT: [Point; 4] =
+                [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(1.0, 1.0), Point::new(0.0, 1.0)];
+            Ok(Arc::new(projective(name, q, UNIT)?))
+        }
+    }
+}
+
+/// `m`, or exactly the identity if it moves no corner of the frame by more than rounding: then nothing at all is touched.
+pub(crate) fn settled(m: Affine, frame: &Frame) -> Affine {
+    /// A few dozen operations on numbers of the corners' size.
+    const ROUNDING: f64 = 1e-14;
+    let corners = frame.corners();
+    let size = corners.iter().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max);
+    let moves = corners.iter().any(|p| (m * *p).distance(*p) > ROUNDING * size);
+    if moves || frame.rect.area() == 0.0 { m } else { Affine::IDENTITY }
+}
+
+/// The projective map from four points to four points, with the blame on `name`.
+pub(crate) fn projective(name: &str, from: [Point; 4], to: [Point; 4]) -> Result<Homography, GeometryError> {
+    Homography::from_points(from, to).ok_or_else(|| GeometryError::NotConvex {
+        path: name.to_owned(),
+        from: from.to_vec(),
+        to: to.to_vec(),
+    })
+}

@@ -1,0 +1,97 @@
+//! The projective map from four points to four points: artwork seen in perspective.
+//!
+//! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
+//! Image Warping*, 1989, §2.2). Straight lines stay straight.
+
+use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use crate::anchors::{self, Anchors};
+use crate::error::{Error, GeometryError};
+use crate::map::{AffineMap, Class, Map};
+use crate::param::{Param, Settings};
+use std::sync::Arc;
+
+pub(super) struct Projective;
+
+static INFO: Info = Info {
+    name: "projective",
+    title: "perspective: four points to four points, lines stay straight",
+    group: "Basics",
+    about: "Takes the four anchors of the Base (by default the corners of the artwork's box) to the four anchors of the Target. \
+Straight lines stay straight and keep their two nodes.\n\nBoth start with the side that lies lowest on the screen, left to right, \
+unless --base-as-drawn or --target-as-drawn say otherwise.",
+    source: "P. Heckbert, Fundamentals of Texture Mapping and Image Warping, 1989, section 2.2",
+    params: &[
+        Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
+        Param::path("target", "Four anchors where they are to land.").needed(),
+        Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
+        Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
+    ],
+    demo: &[("target", "0,100 100,90 75,20 15,5")],
+    examples: &[
+        Example {
+            what: "Lettering on a floor",
+            command: "projective samples/lettering.svg --target '0%,100% 100%,100% 75%,0% 25%,0%' -o out.svg",
+        },
+        Example {
+            what: "Straighten a photographed sign",
+            command: "projective samples/badge.svg --base '2%,90% 95%,98% 90%,5% 8%,10%' --target '0%,100% 100%,100% 100%,0% 0%,0%' -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("target", "0,0 100,0 100,100 0,100")]),
+        Law::KeepsLines(&[("target", "0,100 100,90 75,20 15,5")]),
+        Law::Area(&[("target", "0,200 200,200 200,0 0,0")], 4.0),
+    ],
+    cases: &[
+        // The diagonals' crossing goes to the diagonals' crossing: here a symmetric trapezoid, diagonals (0,100)-(75,0), (100,100)-(25,0).
+        Case {
+            args: &[("target", "0,100 100,100 75,0 25,0")],
+            at: (50.0, 50.0),
+            to: (50.0, 100.0 / 3.0),
+            tolerance: 1e-12,
+        },
+        Case { args: &[("target", "0,100 100,100 75,0 25,0")], at: (100.0, 0.0), to: (75.0, 0.0), tolerance: 1e-12 },
+    ],
+};
+
+impl Deformation for Projective {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let base = match anchors::from_settings(s, "base", "base-as-drawn")? {
+            Some(a) => four("--base", &a)?,
+            None => s.frame().corners(),
+        };
+        anchors::general("the Base", &base)?;
+        let Some(target) = anchors::from_settings(s, "target", "target-as-drawn")? else {
+            return Err(Error::Missing {
+                param: "--target".into(),
+                hint: "four anchors where the Base is to land".into(),
+            });
+        };
+        let target = four("--target", &target)?;
+        let overlay = |role, q: [kurbo::Point; 4]| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
+        let map = anchors::projective("--target", base, target)?;
+        let map: Arc<dyn Map> = match map.class() {
+            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
+            _ => Arc::new(map),
+        };
+        let overlays = vec![overlay(Role::Base, base), overlay(Role::Target, target)];
+        Ok(Built { overlays, ..Built::new(map) })
+    }
+}
+
+fn four(name: &str, a: &Anchors) -> Result<[kurbo::Point; 4], Error> {
+    match a {
+        Anchors::Four(q) => Ok(*q),
+        Anchors::Two(p) => Err(GeometryError::AnchorCount {
+            path: name.into(),
+            found: 2,
+            anchors: p.to_vec(),
+            expected: "four (for two, use similitude)",
+        }
+        .into()),
+    }
+}

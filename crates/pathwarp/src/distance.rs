@@ -1,0 +1,93 @@
+//! How far two paths are apart.
+
+use crate::outline::{Outline, Seg};
+use kurbo::{Point, Rect};
+
+/// Samples per segment that [`symmetric`] takes on each side.
+const PER_SEGMENT: usize = 64;
+/// Stretches of a segment in which a nearest point is sought by itself.
+const STRETCHES: usize = 16;
+
+/// The symmetric (Hausdorff) distance between two paths: the largest distance from a point of one to the other, either way.
+/// Sampled at 65 points a segment, each with its nearest point found by Newton's method; `None` if one of them is empty.
+#[must_use]
+pub fn symmetric(a: &Outline, b: &Outline) -> Option<f64> {
+    Some(one_way(a, b)?.max(one_way(b, a)?))
+}
+
+/// The largest distance from `from` to `to`.
+fn one_way(from: &Outline, to: &Outline) -> Option<f64> {
+    let targets: Vec<(Rect, &Seg)> = to.segs().map(|s| (s.bounding_box(), s)).collect();
+    let dots: Vec<Point> = to.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| s.start).collect();
+    if targets.is_empty() && dots.is_empty() {
+        return None;
+    }
+    let samples = from.segs().flat_map(|s| (0..=PER_SEGMENT).map(|i| s.eval(i as f64 / PER_SEGMENT as f64)));
+    let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| s.start);
+    let mut last = 0;
+    samples
+        .chain(alone)
+        .map(|p| {
+            let mut best = dots.iter().map(|d| d.distance(p)).fold(f64::INFINITY, f64::min);
+            // Neighbouring samples have neighbouring feet: starting with the last winner prunes nearly all the others.
+            let winner = last;
+            let near = targets.get(winner).into_iter();
+            for (i, (bounds, seg)) in near.map(|t| (winner, t)).chain(targets.iter().enumerate()) {
+                if box_distance(bounds, p) < best {
+                    let d = to_segment(seg, p, best);
+                    if d < best {
+                        (best, last) = (d, i);
+                    }
+                }
+            }
+            best
+        })
+        .reduce(f64::max)
+}
+
+fn box_distance(r: &Rect, p: Point) -> f64 {
+    let dx = (r.x0 - p.x).max(p.x - r.x1).max(0.0);
+    let dy = (r.y0 - p.y).max(p.y - r.y1).max(0.0);
+    dx.hypot(dy)
+}
+
+/// The distance from `p` to `seg`; `known` is a bound that some other segment already reaches.
+fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
+    let mut best = known;
+    for i in 0..=STRETCHES {
+        let mut t = i as f64 / STRETCHES as f64;
+        let mut d = seg.eval(t).distance(p);
+        // Gauss–Newton for the foot.
+        for _ in 0..6 {
+            let v = seg.deriv(t);
+            let n = v.hypot2();
+            if n == 0.0 {
+                break;
+            }
+            let next = (t - (seg.eval(t) - p).dot(v) / n).clamp(0.0, 1.0);
+            let nd = seg.eval(next).distance(p);
+            if nd >= d {
+                break;
+            }
+            (t, d) = (next, nd);
+        }
+        best = best.min(d);
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn known_distances() {
+        let path = |d: &str| Outline::from_svg(d).unwrap();
+        // Concentric circles, and a line beside one that is longer: its far end is what counts.
+        let ring = |r: f64| path(&format!("M{r},0 A{r},{r} 0 0 1 -{r},0 A{r},{r} 0 0 1 {r},0 Z"));
+        assert!((symmetric(&ring(10.0), &ring(10.5)).unwrap() - 0.5).abs() < 1e-9);
+        assert!((symmetric(&path("M0,0 H10"), &path("M0,1 H14")).unwrap() - 17.0_f64.sqrt()).abs() < 1e-12);
+        assert!(symmetric(&ring(10.0), &ring(10.0)).unwrap() < 1e-12);
+        assert_eq!(symmetric(&ring(1.0), &Outline::default()), None);
+    }
+}

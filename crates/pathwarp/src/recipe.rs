@@ -1,0 +1,105 @@
+//! Recipes: deformations one after another, composed before anything is refitted.
+
+use crate::deform::{Built, Registry};
+use crate::error::Error;
+use crate::map::{Chain, Map};
+use crate::outline::Outline;
+use crate::param::{Args, Frame};
+use kurbo::{Point, Rect};
+use std::sync::Arc;
+
+/// A deformation with its arguments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The deformation's name.
+    pub deformation: String,
+    /// Its arguments, paths looked up.
+    pub args: Args,
+}
+
+/// Steps in order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Recipe {
+    /// The steps; the first is applied first.
+    pub steps: Vec<Step>,
+}
+
+/// A recipe with every parameter settled.
+#[derive(Clone)]
+pub struct BuiltRecipe {
+    /// All steps composed.
+    pub map: Chain,
+    /// The steps one by one.
+    pub steps: Vec<Built>,
+}
+
+impl Recipe {
+    /// Builds every step. Percentages in the first step mean `frame`, in later ones the box of `artwork` as it is by then.
+    ///
+    /// # Errors
+    /// An unknown deformation, or whatever building a step says.
+    pub fn build<'a>(
+        &self,
+        registry: &Registry,
+        mut frame: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+    ) -> Result<BuiltRecipe, Error> {
+        let mut map = Chain::default();
+        let mut steps = Vec::with_capacity(self.steps.len());
+        for (i, step) in self.steps.iter().enumerate() {
+            let entry = registry.get(&step.deformation).ok_or_else(|| {
+                let known: Vec<_> = registry.entries().iter().map(|e| e.info().name).collect();
+                Error::Input {
+                    place: format!("step {}", i + 1),
+                    problem: format!("there is no deformation `{}`; known are {}", step.deformation, known.join(", ")),
+                }
+            })?;
+            if i > 0 {
+                frame = image_box(artwork.clone(), &map).map_or(frame, Frame::new);
+            }
+            let built = entry.build_from(&step.args, &frame)?;
+            map.push(Arc::clone(&built.map));
+            steps.push(built);
+        }
+        Ok(BuiltRecipe { map, steps })
+    }
+}
+
+/// The box of the artwork's image, from points along the outlines: what a percentage needs, not what a proof needs.
+fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, map: &dyn Map) -> Option<Rect> {
+    const PER_SEGMENT: usize = 16;
+    let mut all: Option<Rect> = None;
+    for seg in artwork.flat_map(Outline::segs) {
+        let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
+        let mut image = [Point::ORIGIN; PER_SEGMENT + 1];
+        map.points(&ps, &mut image);
+        for p in image.into_iter().filter(|p| p.is_finite()) {
+            let at = Rect::from_points(p, p);
+            all = Some(all.map_or(at, |a| a.union(at)));
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn later_percentages_mean_the_box_at_that_step() {
+        let art = Outline::from_svg("M0,0 H100 V50 H0 Z").unwrap();
+        let step =
+            |name: &str, pairs: &[(&str, &str)]| Step { deformation: name.into(), args: Args::from_pairs(pairs) };
+        let recipe = Recipe {
+            steps: vec![step("affine", &[("scale-x", "2"), ("about", "0,0")]), step("affine", &[("move-x", "50%")])],
+        };
+        let built = recipe
+            .build(&Registry::builtin(), Frame::new(art.bounding_box().unwrap()), &std::iter::once(&art))
+            .unwrap();
+        assert_eq!(built.map.point(Point::new(10.0, 5.0)), Point::new(120.0, 5.0));
+        assert_eq!(built.map.steps().len(), 1);
+        let unknown = Recipe { steps: vec![step("wobble", &[])] };
+        let e = unknown.build(&Registry::builtin(), Frame::new(Rect::ZERO), &std::iter::once(&art)).err().unwrap();
+        assert!(e.to_string().contains("shaper"), "{e}");
+    }
+}

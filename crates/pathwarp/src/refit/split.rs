@@ -1,0 +1,172 @@
+//! Before the fit: the direction a segment is worked on in, and the places where its image may be sharp.
+
+use crate::outline::{EllipticArc, Seg};
+use kurbo::{Point, Vec2, common::solve_cubic};
+use std::cmp::Ordering;
+
+/// The segment in the direction every copy of it is worked on, and whether that is the reverse of the given one.
+///
+/// Two shapes that share an edge run along it in opposite directions. Working on one of them and mirroring the result gives
+/// both the same curves to the last bit.
+pub(super) fn canonical(seg: &Seg) -> (Seg, bool) {
+    let order = match seg {
+        Seg::Line(s) => compare(s.p0, s.p1),
+        Seg::Quad(s) => compare(s.p0, s.p2),
+        Seg::Cubic(s) => compare(s.p0, s.p3).then_with(|| compare(s.p1, s.p2)),
+        Seg::Arc(s) => compare(s.p0, s.p1).then_with(|| 0.0f64.total_cmp(&s.sweep)),
+    };
+    if order == Ordering::Greater { (seg.reversed(), true) } else { (*seg, false) }
+}
+
+fn compare(a: Point, b: Point) -> Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+}
+
+/// Slow spots of a segment at most.
+const MOST: usize = 4;
+
+/// Parameters inside a segment at which it is much slower than elsewhere: cusps and near-cusps, where the direction turns
+/// within a stretch too short for evenly spread samples to see.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Slow {
+    t: [f64; MOST],
+    len: usize,
+}
+
+impl Slow {
+    pub(super) fn all(&self) -> &[f64] {
+        &self.t[..self.len]
+    }
+
+    pub(super) fn push(&mut self, t: f64) {
+        if self.len < MOST {
+            self.t[self.len] = t;
+            self.len += 1;
+        }
+    }
+
+    /// The same spots in another parameter.
+    pub(super) fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for t in &mut self.t[..self.len] {
+            *t = f(*t);
+        }
+        self
+    }
+
+    /// Those well inside (t0, t1), the one nearest the middle first.
+    pub(super) fn inside(&self, t0: f64, t1: f64) -> Option<f64> {
+        /// A stretch shorter than this share is not worth a piece of its own.
+        const MARGIN: f64 = 1e-6;
+        let m = MARGIN * (t1 - t0);
+        let off = |t: f64| (t - 0.5 * (t0 + t1)).abs();
+        self.all().iter().copied().filter(|t| *t > t0 + m && *t < t1 - m).min_by(|a, b| off(*a).total_cmp(&off(*b)))
+    }
+}
+
+/// A minimum of the speed counts below this share of the mean speed. A curve's radius of curvature goes with the cube of its
+/// speed: at a third of it samples a sixteenth apart still see the turn.
+const SLOW: f64 = 0.3;
+
+/// The slow spots of `seg`.
+pub(super) fn slow(seg: &Seg) -> Slow {
+    match seg {
+        Seg::Line(_) => Slow::default(),
+        Seg::Quad(s) => {
+            let (v, a) = (s.p1 - s.p0, (s.p2 - s.p1) - (s.p1 - s.p0));
+            minima(&[v, a, Vec2::ZERO])
+        }
+        Seg::Cubic(s) => {
+            let (d0, d1, d2) = (s.p1 - s.p0, s.p2 - s.p1, s.p3 - s.p2);
+            // |c'| ≥ 3(u²d₀ + 2us·d₁ + s²d₂)·q̂ ≥ 3/2·min(d₀·q̂, d₂·q̂) if no leg runs against the chord q: most curves end here.
+            let q = s.p3 - s.p0;
+            let least = d0.dot(q).min(d2.dot(q));
+            let size2 = d0.hypot2() + d1.hypot2() + d2.hypot2();
+            if d1.dot(q) >= 0.0 && least > 0.0 && least * least > 0.02 * size2 * q.hypot2() {
+                return Slow::default();
+            }
+            minima(&[d0, (d1 - d0) * 2.0, d2 - d1 * 2.0 + d0])
+        }
+        Seg::Arc(s) => flat_vertices(s),
+    }
+}
+
+/// Interior minima of |v|² for v = v₀ + v₁t + v₂t² that are small against its mean: roots of the cubic v·v′ = 0.
+fn minima(v: &[Vec2; 3]) -> Slow {
+    let [v0, v1, v2] = *v;
+    let speed2 = |t: f64| (v0 + (v1 + v2 * t) * t).hypot2();
+    let mean = [0.1, 0.3, 0.5, 0.7, 0.9].iter().map(|t| speed2(*t).sqrt()).sum::<f64>() / 5.0;
+    let roots = solve_cubic(v0.dot(v1), 2.0 * v0.dot(v2) + v1.hypot2(), 3.0 * v1.dot(v2), 2.0 * v2.hypot2());
+    let mut out = Slow::default();
+    for mut t in roots {
+        // Two Newton steps wash out the closed form's cancellation.
+        for _ in 0..2 {
+            let (w, dw) = (v0 + (v1 + v2 * t) * t, v1 + v2 * (2.0 * t));
+            let slope = dw.hypot2() + 2.0 * w.dot(v2);
+            if slope > 0.0 {
+                t -= w.dot(dw) / slope;
+            }
+        }
+        if t > 0.0 && t < 1.0 && speed2(t).sqrt() < SLOW * mean && !out.all().contains(&t) {
+            out.push(t);
+        }
+    }
+    out
+}
+
+/// The ends of the long axis of a flat ellipse, as far as they lie inside the arc.
+fn flat_vertices(arc: &EllipticArc) -> Slow {
+    // |P'|² = A + B cos 2θ + C sin 2θ is smallest opposite to the phase (B, C).
+    let (aa, bb, ab) = (arc.a.hypot2(), arc.b.hypot2(), arc.a.dot(arc.b));
+    let (mean, b, c) = (0.5 * (aa + bb), 0.5 * (bb - aa), -ab);
+    let mut out = Slow::default();
+    if (mean - b.hypot(c)).max(0.0).sqrt() >= SLOW * mean.sqrt() || arc.sweep == 0.0 {
+        return out;
+    }
+    let first = 0.5 * (-c).atan2(-b);
+    for k in -8..=8 {
+        let t = (first + f64::from(k) * std::f64::consts::PI - arc.start) / arc.sweep;
+        if t > 0.0 && t < 1.0 {
+            out.push(t);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::CubicBez;
+
+    #[test]
+    fn both_directions_have_one_canonical_form() {
+        let segs = [
+            Seg::Cubic(CubicBez::new((0.0, 0.0), (3.0, 1.0), (2.0, 5.0), (0.0, 0.0))),
+            Seg::Cubic(CubicBez::new((5.0, 0.1), (3.0, 1.0), (2.0, 5.0), (0.0, 0.3))),
+            Seg::Arc(EllipticArc::new(Point::new(3.0, 4.0), (5.0, 1.0).into(), (0.3, 2.0).into(), 0.7, 1.9)),
+            Seg::Arc(EllipticArc::new(
+                Point::new(3.0, 4.0),
+                (5.0, 1.0).into(),
+                (0.3, 2.0).into(),
+                0.7,
+                -std::f64::consts::TAU,
+            )),
+        ];
+        for s in &segs {
+            let (a, fa) = canonical(s);
+            let (b, fb) = canonical(&s.reversed());
+            assert_eq!(a, b);
+            assert_ne!(fa, fb);
+        }
+    }
+
+    #[test]
+    fn a_cusp_is_found_where_it_is() {
+        // The handles cross so that the curve has a cusp in the middle.
+        let c = Seg::Cubic(CubicBez::new((0.0, 0.0), (100.0, 100.0), (0.0, 100.0), (100.0, 0.0)));
+        let found = slow(&c);
+        assert_eq!(found.all().len(), 1);
+        assert!((found.all()[0] - 0.5).abs() < 1e-12);
+        let round = Seg::Cubic(CubicBez::new((0.0, 0.0), (55.0, 0.0), (100.0, 45.0), (100.0, 100.0)));
+        assert!(slow(&round).all().is_empty());
+    }
+}

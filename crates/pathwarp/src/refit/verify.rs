@@ -1,0 +1,239 @@
+//! Dense checks of a fitted piece against the true image, both ways.
+
+use super::fit::Frame;
+use super::source::{Lane, Lanes, Source};
+use super::split::Slow;
+use kurbo::{Point, Vec2};
+
+/// Samples of the quick check, in batches of eight.
+const BATCHES: usize = 8;
+/// Samples a way of the thorough check.
+const THOROUGH: usize = 160;
+
+/// A fitted piece: where it lies on the source, and its handles.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Candidate {
+    pub(super) t0: f64,
+    pub(super) t1: f64,
+    pub(super) p0: Point,
+    pub(super) frame: Frame,
+    pub(super) a: f64,
+    pub(super) b: f64,
+}
+
+impl Candidate {
+    fn param(&self, tau: f64) -> f64 {
+        self.t0 + (self.t1 - self.t0) * tau
+    }
+
+    /// Images at `tau` (shares of the piece), relative to its first point.
+    fn images(&self, source: &Source<'_>, tau: &Lane) -> Result<Lanes, Point> {
+        let mut t = [0.0; 8];
+        for i in 0..8 {
+            t[i] = self.param(tau[i]);
+        }
+        let mut g = source.images(&t)?;
+        for i in 0..8 {
+            g.x[i] -= self.p0.x;
+            g.y[i] -= self.p0.y;
+        }
+        Ok(g)
+    }
+
+    fn at(&self, s: f64) -> Vec2 {
+        let [c1, c2, c3] = self.frame.power(self.a, self.b);
+        (c1 + (c2 + c3 * s) * s) * s
+    }
+
+    fn slope(&self, s: f64) -> Vec2 {
+        let [c1, c2, c3] = self.frame.power(self.a, self.b);
+        c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s
+    }
+}
+
+/// The distance between the candidate and the image over its stretch, by many samples, more of them around slow spots.
+/// `feet` are known pairs (share of the piece, foot), sorted, from 0 to 1: first guesses.
+pub(super) fn dense(
+    source: &Source<'_>,
+    c: &Candidate,
+    feet: &[(f64, f64)],
+    slow: &Slow,
+    tolerance: f64,
+) -> Result<f64, Point> {
+    let mut worst = 0.0f64;
+    let mut last = Foot { tau: 0.0, s: 0.0, slope: c.frame.t0 };
+    let mut sound = true;
+    let walk = |tau: &Lane, worst: &mut f64, last: &mut Foot, depth: u32| -> Result<bool, Point> {
+        walk(source, c, feet, tau, worst, last, depth)
+    };
+    for k in 0..BATCHES {
+        let tau: Lane = std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (BATCHES * 8) as f64);
+        sound &= walk(&tau, &mut worst, &mut last, 0)?;
+    }
+    sound &= turns_little(last.slope, c.frame.t1) || walk(&spread(last.tau, 1.0), &mut worst, &mut last, 1)?;
+    for t in slow.all() {
+        let at = (t - c.t0) / (c.t1 - c.t0);
+        if at > 0.0 && at < 1.0 {
+            let mut w = 1.0 / (BATCHES * 8) as f64;
+            for _ in 0..3 {
+                let tau: Lane = std::array::from_fn(|i| (at + w * (i as f64 - 3.5) / 4.0).clamp(0.0, 1.0));
+                let mut s: Lane = tau.map(|t| guess(feet, t));
+                let g = c.images(source, &tau)?;
+                let d = c.frame.distances(&g, c.a, c.b, &mut s, 4);
+                worst = d.iter().copied().fold(worst, f64::max);
+                w *= 0.125;
+            }
+        }
+    }
+    let worst = worst.sqrt();
+    if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
+}
+
+/// A sample's foot on the cubic.
+#[derive(Debug, Clone, Copy)]
+struct Foot {
+    tau: f64,
+    s: f64,
+    slope: Vec2,
+}
+
+/// Eight shares between two.
+fn spread(a: f64, b: f64) -> Lane {
+    std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 8.0)
+}
+
+/// Measures the next eight samples; between two whose feet see the cubic turn much, eight more. Returns whether the feet
+/// advance, and the cubic between them is known.
+fn walk(
+    source: &Source<'_>,
+    c: &Candidate,
+    feet: &[(f64, f64)],
+    tau: &Lane,
+    worst: &mut f64,
+    last: &mut Foot,
+    depth: u32,
+) -> Result<bool, Point> {
+    /// Sixty-four samples, eight and eight more in between.
+    const DEPTH: u32 = 2;
+    /// Feet this close are in order.
+    const ROUNDING: f64 = 1e-9;
+    let mut s: Lane = tau.map(|t| guess(feet, t));
+    let g = c.images(source, tau)?;
+    let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+    *worst = d.iter().copied().fold(*worst, f64::max);
+    let mut sound = true;
+    for i in 0..8 {
+        let next = Foot { tau: tau[i], s: s[i], slope: c.slope(s[i]) };
+        if next.s < last.s - ROUNDING {
+            return Ok(false);
+        }
+        if !turns_little(last.slope, next.slope) {
+            sound &= depth < DEPTH && walk(source, c, feet, &spread(last.tau, next.tau), worst, last, depth + 1)?;
+        }
+        *last = next;
+    }
+    Ok(sound)
+}
+
+/// Whether two directions are less than 60° apart.
+fn turns_little(a: Vec2, b: Vec2) -> bool {
+    let d = a.dot(b);
+    d > 0.0 && 4.0 * d * d >= a.hypot2() * b.hypot2()
+}
+
+/// Piecewise linear between the known feet.
+fn guess(feet: &[(f64, f64)], tau: f64) -> f64 {
+    let k = feet.partition_point(|f| f.0 < tau);
+    match (k.checked_sub(1).and_then(|j| feet.get(j)), feet.get(k)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (tau - a.0) / (b.0 - a.0),
+        (Some(a), None) | (None, Some(a)) => a.1,
+        (None, None) => tau,
+    }
+}
+
+/// Both one-sided distances, with no help from the fit: nearest samples by search, then Newton steps.
+#[cold]
+pub(super) fn thorough(source: &Source<'_>, c: &Candidate, slow: &Slow, tolerance: f64) -> Result<f64, Point> {
+    let mut taus = Vec::with_capacity(THOROUGH + 72);
+    taus.extend((0..=THOROUGH).map(|i| i as f64 / THOROUGH as f64));
+    for t in slow.all() {
+        let at = (t - c.t0) / (c.t1 - c.t0);
+        if at > 0.0 && at < 1.0 {
+            let mut w = 1.0 / THOROUGH as f64;
+            taus.push(at);
+            for _ in 0..16 {
+                taus.extend([at - w, at + w]);
+                w *= 0.6;
+            }
+        }
+    }
+    taus.retain(|t| (0.0..=1.0).contains(t));
+    taus.sort_by(f64::total_cmp);
+    while taus.len() % 8 != 0 {
+        taus.push(1.0);
+    }
+    let mut images = Vec::with_capacity(taus.len());
+    for chunk in taus.chunks_exact(8) {
+        let tau: Lane = std::array::from_fn(|i| chunk[i]);
+        let g = c.images(source, &tau)?;
+        images.extend((0..8).map(|i| Vec2::new(g.x[i], g.y[i])));
+    }
+    let curve: Vec<Vec2> = (0..=THOROUGH).map(|i| c.at(i as f64 / THOROUGH as f64)).collect();
+    // Downhill from the last nearest; all of them where that is not near enough.
+    let enough = tolerance * tolerance;
+    let nearest = |set: &[Vec2], from: usize, p: Vec2| {
+        let d = |i: usize| (set[i] - p).hypot2();
+        let (mut at, mut best) = (from, d(from));
+        loop {
+            if at + 1 < set.len() && d(at + 1) < best {
+                at += 1;
+            } else if at > 0 && d(at - 1) < best {
+                at -= 1;
+            } else {
+                break;
+            }
+            best = d(at);
+        }
+        if best > enough {
+            for (i, q) in set.iter().enumerate() {
+                let d = (*q - p).hypot2();
+                if d < best {
+                    (at, best) = (i, d);
+                }
+            }
+        }
+        (at, best)
+    };
+    let mut from = 0;
+    let mut worst = 0.0f64;
+    for p in &images {
+        let (i, mut best) = nearest(&curve, from, *p);
+        from = i;
+        let mut s = i as f64 / THOROUGH as f64;
+        for _ in 0..4 {
+            let (r, v) = (c.at(s) - *p, c.slope(s));
+            s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            best = best.min((c.at(s) - *p).hypot2());
+        }
+        worst = worst.max(best);
+    }
+    let origin = c.p0.to_vec2();
+    from = 0;
+    for q in &curve {
+        let (i, mut best) = nearest(&images, from, *q);
+        from = i;
+        let mut tau = taus[i];
+        let h = c.t1 - c.t0;
+        // Farther than what is already known to be the error only if Newton finds nothing nearer.
+        if best > worst {
+            for _ in 0..4 {
+                let (p, d) = source.image(c.param(tau));
+                let (r, v) = (p.to_vec2() - origin - *q, d * h);
+                best = best.min(r.hypot2());
+                tau = (tau - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            }
+        }
+        worst = worst.max(best);
+    }
+    Ok(worst.sqrt())
+}

@@ -1,0 +1,269 @@
+//! The refit against an independent oracle: distances both ways by 2,000 samples a direction.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "../benches/support/mod.rs"]
+mod support;
+
+use kurbo::{CubicBez, Point};
+use pathwarp::map::{Formula, Map, Real};
+use pathwarp::refit::{Assurance, Options, warp_path};
+use pathwarp::{Outline, Seg, Subpath};
+use support::{Bicubic, Rational};
+
+fn single(seg: Seg) -> Outline {
+    Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] }
+}
+
+fn maps() -> [(&'static str, Box<dyn Map>); 3] {
+    [
+        ("mild", Box::new(Bicubic::mild())),
+        ("strong", Box::new(Bicubic::strong())),
+        ("rational", Box::new(Rational::new())),
+    ]
+}
+
+/// Segments out and error ÷ tolerance.
+fn measure(seg: Seg, map: &dyn Map, tolerance: f64) -> (usize, f64) {
+    let w = warp_path(&single(seg), map, &Options::new(tolerance)).unwrap();
+    let out = support::cubics(&w.path);
+    assert!(w.report.over_budget.is_empty(), "{seg:?}: budget");
+    (out.len(), support::distance(&seg, map, &out, 2000, 0.0) / tolerance)
+}
+
+fn cubic(p: [(f64, f64); 4]) -> Seg {
+    Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3]))
+}
+
+/// All icons, all maps, all tolerances. Slow: run with `--release -- --ignored --nocapture`.
+#[test]
+#[ignore = "minutes; needs the fetched icons"]
+#[allow(clippy::print_stdout)]
+fn corpus_has_no_violation() {
+    let (outlines, _) = support::corpus();
+    let every: usize = std::env::var("EVERY").ok().and_then(|v| v.parse().ok()).unwrap_or(1);
+    let segs: Vec<Seg> = outlines.iter().flat_map(Outline::segs).step_by(every).copied().collect();
+    let certify = std::env::var("CERTIFY").is_ok();
+    let mut bad = 0;
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.1, 0.01, 0.001] {
+            let (mut n, mut worst, mut over, mut turns) = (0, 0.0f64, 0, 0);
+            for seg in &segs {
+                let o = Options { certify, ..Options::new(tolerance) };
+                let w = warp_path(&single(*seg), map.as_ref(), &o).unwrap();
+                let out = support::cubics(&w.path);
+                if certify && w.report.over_budget.is_empty() {
+                    assert!(w.report.assurance >= Assurance::Certified, "{seg:?}");
+                }
+                n += out.len();
+                over += w.report.over_budget.len();
+                let e = support::distance(seg, map.as_ref(), &out, 2000, 0.9 * tolerance) / tolerance;
+                worst = worst.max(e);
+                if e > 1.0001 {
+                    bad += 1;
+                    println!("  {name} {tolerance}: {e:.4} with {} pieces: {seg:?}", out.len());
+                }
+                if support::largest_turn(&out) > 0.01 {
+                    turns += 1;
+                    println!("  {name} {tolerance}: turn {} : {seg:?}", support::largest_turn(&out));
+                }
+            }
+            let ratio = n as f64 / segs.len() as f64;
+            println!("{name} {tolerance}: out/in {ratio:.4}, worst {worst:.4}, over budget {over}, turns {turns}");
+        }
+    }
+    assert_eq!(bad, 0);
+}
+
+#[test]
+fn failure_modes_stay_within_the_tolerance() {
+    let cases = [
+        // A near-cusp that sixteen even samples step over.
+        cubic([(200.0, 200.0), (800.0, 790.0), (205.0, 800.0), (800.0, 200.0)]),
+        cubic([(492.5, 596.3), (524.6, 443.8), (479.9, 654.5), (509.9, 513.0)]),
+        // Out and back along a line.
+        cubic([(429.92, 717.63), (430.67, 717.63), (429.92, 717.63), (429.92, 717.63)]),
+        cubic([(100.0, 500.0), (900.0, 500.0), (100.0, 500.0), (600.0, 500.0)]),
+        // One closed cubic.
+        cubic([(500.0, 300.0), (900.0, 900.0), (100.0, 900.0), (500.0, 300.0)]),
+        // Coincident handles: at one end, at both, all but one.
+        cubic([(100.0, 200.0), (100.0, 200.0), (500.0, 700.0), (800.0, 300.0)]),
+        cubic([(100.0, 200.0), (100.0, 200.0), (800.0, 300.0), (800.0, 300.0)]),
+        cubic([(100.0, 200.0), (100.0, 200.0), (100.0, 200.0), (800.0, 900.0)]),
+        // A true cusp.
+        cubic([(200.0, 200.0), (800.0, 800.0), (200.0, 800.0), (800.0, 200.0)]),
+        // Shorter than the tolerance.
+        cubic([(500.0, 500.0), (500.01, 500.02), (500.03, 500.0), (500.02, 499.99)]),
+        // A loop.
+        cubic([(200.0, 300.0), (1200.0, 900.0), (-200.0, 900.0), (800.0, 300.0)]),
+    ];
+    for (name, map) in &maps() {
+        for seg in cases {
+            for tolerance in [1.0, 0.1, 0.01, 0.001] {
+                let (n, e) = measure(seg, map.as_ref(), tolerance);
+                assert!(e <= 1.0001, "{name} {tolerance} {seg:?}: {e} with {n}");
+                assert!(n <= 40, "{name} {tolerance} {seg:?}: {n} pieces");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_segment_that_goes_nowhere_stays_one() {
+    let p = (300.0, 400.0);
+    let w = warp_path(&single(cubic([p; 4])), &Bicubic::strong(), &Options::new(0.01)).unwrap();
+    assert_eq!(w.report.segments_out, 1);
+}
+
+struct Same;
+impl Formula for Same {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y)
+    }
+}
+
+#[test]
+fn the_identity_gives_every_segment_back() {
+    let outline = Outline::from_svg(
+        "M10 20L300 40C400 50 500 60 520 300S100 900 700 800Q900 700 800 400C800 400 700 300 600 350C500 400 420 420 420 420Z
+         M200 200C800 800 200 800 800 200C900 100 905 100 950 300 L429.92 717.63C430.67 717.63 429.92 717.63 429.92 717.63",
+    )
+    .unwrap();
+    for tolerance in [1.0, 1e-3, 1e-6] {
+        let w = warp_path(&outline, &Same, &Options::new(tolerance)).unwrap();
+        assert_eq!(w.report.segments_out, w.report.segments_in);
+        let ours = support::cubics(&w.path);
+        let theirs = support::cubics(&outline.to_bez_path(1e-9));
+        for (a, b) in ours.iter().zip(&theirs) {
+            for (p, q) in [(a.p0, b.p0), (a.p1, b.p1), (a.p2, b.p2), (a.p3, b.p3)] {
+                assert!(p.distance(q) < 1e-9, "{a:?} {b:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn iso_lines_of_a_bicubic_come_out_as_their_control_points() {
+    let map = Bicubic::strong();
+    for (a, b) in [((0.0, 250.0), (1000.0, 250.0)), ((640.0, 1000.0), (640.0, 0.0)), ((125.0, 0.0), (125.0, 500.0))] {
+        let (p, q) = (Point::from(a), Point::from(b));
+        let w = warp_path(&Outline::from_points(&[p, q], false), &map, &Options::new(1e-6)).unwrap();
+        let out = support::cubics(&w.path);
+        assert_eq!(out.len(), 1);
+        // The polynomial through four points of the image.
+        let c = out[0];
+        for i in 0..=10 {
+            let t = f64::from(i) / 10.0;
+            assert!(kurbo::ParamCurve::eval(&c, t).distance(map.point(p.lerp(q, t))) < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn shared_edges_are_the_same_curves_mirrored() {
+    let outline = Outline::from_svg(
+        "M100 100C300 50 400 300 700 200L900 350Q500 400 620 800A180 90 20 1 0 300 700C200 600 150 300 100 100Z
+         M500 300A120 120 0 0 1 260 300A120 120 0 0 1 500 300Z",
+    )
+    .unwrap();
+    let back = Outline { subpaths: outline.subpaths.iter().map(Subpath::reversed).collect() };
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.01] {
+            let a = warp_path(&outline, map.as_ref(), &Options::new(tolerance)).unwrap();
+            let b = warp_path(&back, map.as_ref(), &Options::new(tolerance)).unwrap();
+            let mut seen: Vec<CubicBez> = support::cubics(&b.path);
+            for c in support::cubics(&a.path) {
+                let mirrored = CubicBez::new(c.p3, c.p2, c.p1, c.p0);
+                let line = |c: &CubicBez| c.p0.lerp(c.p3, 1.0 / 3.0) == c.p1;
+                let found = seen.iter().position(|d| *d == mirrored || (line(d) && d.p0 == c.p3 && d.p3 == c.p0));
+                assert!(found.is_some(), "{name} {tolerance}: {c:?}");
+                seen.remove(found.unwrap());
+            }
+        }
+    }
+}
+
+#[test]
+fn smooth_joints_stay_smooth_and_circles_closed() {
+    let circle = Outline::from_svg("M500 250C362 250 250 362 250 500S362 750 500 750 750 638 750 500 638 250 500 250Z");
+    for outline in
+        [circle.unwrap(), Outline::from_svg("M250 500A250 250 0 1 1 750 500A250 250 0 1 1 250 500Z").unwrap()]
+    {
+        for (name, map) in &maps() {
+            for tolerance in [1.0, 0.1, 0.01, 0.001] {
+                let w = warp_path(&outline, map.as_ref(), &Options::new(tolerance)).unwrap();
+                let mut out = support::cubics(&w.path);
+                assert_eq!(out.first().unwrap().p0, out.last().unwrap().p3);
+                out.push(out[0]);
+                assert!(support::largest_turn(&out) < 0.01, "{name} {tolerance}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_full_turn_in_one_arc() {
+    use pathwarp::outline::EllipticArc;
+    use std::f64::consts::TAU;
+    for axes in [((300.0, 0.0), (0.0, 300.0)), ((400.0, 100.0), (-3.0, 12.0)), ((0.0, 30.0), (450.0, 20.0))] {
+        let seg = Seg::Arc(EllipticArc::new(Point::new(500.0, 500.0), axes.0.into(), axes.1.into(), 0.4, TAU));
+        for (name, map) in &maps() {
+            for tolerance in [1.0, 0.1, 0.01, 0.001] {
+                let (n, e) = measure(seg, map.as_ref(), tolerance);
+                assert!(e <= 1.0001 && n < 60, "{name} {tolerance}: {e} {n}");
+            }
+        }
+    }
+}
+
+#[test]
+fn proofs_hold_for_every_kind_of_segment() {
+    let outline = Outline::from_svg(
+        "M100 100C300 50 400 300 700 200L900 350Q500 400 620 800A180 90 20 1 0 300 700C200 600 150 300 100 100Z
+         M500 300A120 120 0 0 1 260 300A120 60 0 1 1 500 300ZM100 200C100 200 500 700 800 300
+         M200 200C800 790 205 800 800 200M300 200V800M500 500C500.01 500.02 500.03 500 500.02 499.99",
+    )
+    .unwrap();
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.1, 0.01, 0.001] {
+            for seg in outline.segs() {
+                let o = Options { certify: true, ..Options::new(tolerance) };
+                let w = warp_path(&single(*seg), map.as_ref(), &o).unwrap();
+                let r = &w.report;
+                assert!(r.over_budget.is_empty(), "{name} {tolerance} {seg:?}");
+                assert!(r.assurance >= Assurance::Certified && r.max_error <= tolerance, "{name} {tolerance} {seg:?}");
+                let e = support::distance(seg, map.as_ref(), &support::cubics(&w.path), 2000, 0.0);
+                assert!(e <= r.max_error * 1.0001 + 1e-9, "{name} {tolerance} {seg:?}: {e} > {}", r.max_error);
+                assert!(r.segments_out < 40, "{name} {tolerance} {seg:?}: {}", r.segments_out);
+            }
+        }
+    }
+}
+
+/// Folds the plane over along a curve.
+struct Fold;
+impl Formula for Fold {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let u = (x - 500.0) / 500.0;
+        (u * u * 400.0 + y * 0.2, y + u * 30.0)
+    }
+}
+
+#[test]
+fn folds_are_followed_even_along_the_kernel() {
+    // J·c' = 0 at (500, ·) for the direction (1, −0.06): a cusp of the image.
+    let segs = [
+        "M200 518L800 482",
+        "M200 300L800 320",
+        "M200 300C400 500 600 100 800 300",
+        "M500 100C500 300 500 600 500 900",
+        "M440 503.6C480 501.2 520 498.8 560 496.4",
+    ];
+    for d in segs {
+        let seg = *Outline::from_svg(d).unwrap().segs().next().unwrap();
+        for tolerance in [1.0, 0.1, 0.01, 0.001] {
+            let (n, e) = measure(seg, &Fold, tolerance);
+            assert!(e <= 1.0001 && n < 40, "{d} {tolerance}: {e} {n}");
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! `cargo xtask new-deformation NAME`: a deformation that works, to be changed into the one that is wanted.
+
+use crate::Fault;
+use std::fs;
+use std::path::Path;
+
+/// A line in `deform/mod.rs` before which the registry's new line goes.
+const END_OF_LIST: &str = "    ]\n}\n";
+
+/// Writes the file and the two lines; says what was done.
+pub(crate) fn run(root: &Path, name: &str) -> Result<String, Fault> {
+    let kebab = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
+    if !name.split('-').all(kebab) || name.starts_with(|c: char| c.is_ascii_digit()) {
+        return Err(format!("`{name}` is not kebab-case, such as swirl or square-wave"));
+    }
+    let module = name.replace('-', "_");
+    if ["mod", "self", "super", "crate", "type", "match", "move", "loop", "box", "fn", "let"].contains(&module.as_str())
+    {
+        return Err(format!("`{name}` is a word of Rust's own; choose another"));
+    }
+    let folder = root.join("crates/pathwarp/src/deform");
+    let file = folder.join(format!("{module}.rs"));
+    let list_file = folder.join("mod.rs");
+    if file.exists() {
+        return Err(format!("{} is there already", file.display()));
+    }
+    let read = |p: &Path| fs::read_to_string(p).map_err(|e| format!("{}: {e}", p.display()));
+    let list = register(&read(&list_file)?, &module, &type_name(name))?;
+    let text = TEMPLATE.replace("NAME", name).replace("MODULE", &module).replace("TYPE", &type_name(name));
+    fs::write(&file, text).map_err(|e| format!("{}: {e}", file.display()))?;
+    fs::write(&list_file, list).map_err(|e| format!("{}: {e}", list_file.display()))?;
+    Ok(format!(
+        "wrote {}\nadded two lines to {}\n\nIt bends artwork into a wave already: see `cargo run -- {name} samples/logo.svg -o out.svg`.\n\
+         Change the formula, the parameters, the cases; `cargo test -p pathwarp {module}` checks them.",
+        file.display(),
+        list_file.display()
+    ))
+}
+
+/// The list with the module's and the entry's line added.
+fn register(list: &str, module: &str, ty: &str) -> Result<String, Fault> {
+    let lost = "deform/mod.rs does not look as it should: add `mod` and the entry by hand";
+    let mut mods: Vec<&str> = list.lines().filter(|l| l.starts_with("mod ")).collect();
+    let (first, last) = (*mods.first().ok_or(lost)?, *mods.last().ok_or(lost)?);
+    let start = list.find(first).ok_or(lost)?;
+    let end = list.find(last).ok_or(lost)? + last.len();
+    let line = format!("mod {module};");
+    mods.push(&line);
+    mods.sort_unstable();
+    let at = list[end..].find(END_OF_LIST).ok_or(lost)? + end;
+    Ok(format!(
+        "{}{}{}        Arc::new({module}::{ty}),\n{}",
+        &list[..start],
+        mods.join("\n"),
+        &list[end..at],
+        &list[at..]
+    ))
+}
+
+/// `square-wave` to `SquareWave`.
+fn type_name(name: &str) -> String {
+    let word = |w: &str| w[..1].to_uppercase() + &w[1..];
+    name.split('-').map(word).collect()
+}
+
+const TEMPLATE: &str = r#"//! One sentence: what NAME does to artwork.
+//!
+//! The formula, and where it comes from (paper and equation):
+//! x' = x, y' = y + h·sin(2π·x/l).
+
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::map::{Formula, Real};
+use crate::param::{Axis, Param, Settings};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+pub(super) struct TYPE;
+
+static INFO: Info = Info {
+    name: "NAME",
+    title: "one line for the menu",
+    group: "New",
+    about: "What it does and when to reach for it, in plain sentences.",
+    source: "paper and equation",
+    params: &[
+        Param::length("height", Axis::Y, "Height of the wave.").default("10%").slider(0.0, 100.0),
+        Param::length("length", Axis::X, "Length of the wave.").default("50%").within(1e-3, 1e9).slider(1.0, 1000.0),
+    ],
+    demo: &[],
+    examples: &[
+        Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" },
+        Example { what: "One long wave", command: "NAME samples/lettering.svg --length 100% --height 20% -o out.svg" },
+    ],
+    // What holds for every instance.
+    laws: &[Law::Identity(&[("height", "0")]), Law::Area(&[], 1.0)],
+    // Values known from elsewhere, in the frame 0,0,100,100: a quarter of the wave on, the crest.
+    cases: &[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }],
+};
+
+impl Deformation for TYPE {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let map = TYPEMap { height: s.number("height")?, length: s.number("length")? };
+        Ok(Built::new(Arc::new(map)))
+    }
+}
+
+/// The map itself; derivatives follow from the formula.
+struct TYPEMap {
+    height: f64,
+    length: f64,
+}
+
+impl Formula for TYPEMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y + (x / self.length * TAU).sin() * self.height)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn is_sound() {
+        let faults = crate::check::entry(&TYPE);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+}
+"#;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::process::Command;
+
+    fn repository() -> std::path::PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    }
+
+    /// The whole promise: in a copy of the workspace, the new deformation compiles, is registered, and passes its tests.
+    #[test]
+    fn the_new_deformation_passes_its_tests() {
+        let root = repository();
+        let copy = tempfile::tempdir().unwrap();
+        let here = copy.path();
+        let pathwarp = here.join("crates/pathwarp");
+        copy_folder(&root.join("crates/pathwarp"), &pathwarp);
+        // A workspace of this one crate.
+        let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
+        let own: Vec<&str> = manifest.lines().filter(|l| !l.contains("crates/pathwarp-")).collect();
+        let own = own.join("\n").replace(&members(&manifest), "members = [\"crates/pathwarp\"]");
+        fs::write(here.join("Cargo.toml"), own).unwrap();
+        fs::copy(root.join("Cargo.lock"), here.join("Cargo.lock")).unwrap();
+
+        run(here, "square-wave").unwrap();
+        let test = Command::new(env!("CARGO"))
+            .args(["test", "--quiet", "-p", "pathwarp", "--lib", "--test", "registry"])
+            .arg("--target-dir")
+            .arg(root.join("target/new-deformation"))
+            .current_dir(here)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&test.stdout).into_owned() + &String::from_utf8_lossy(&test.stderr);
+        assert!(test.status.success(), "{said}");
+
+        assert!(run(here, "square-wave").unwrap_err().contains("already"));
+        assert!(run(here, "Square").is_err() && run(here, "").is_err() && run(here, "a--b").is_err());
+    }
+
+    fn members(manifest: &str) -> String {
+        manifest.lines().find(|l| l.starts_with("members")).unwrap().to_owned()
+    }
+
+    fn copy_folder(from: &Path, to: &Path) {
+        fs::create_dir_all(to).unwrap();
+        for entry in fs::read_dir(from).unwrap() {
+            let entry = entry.unwrap();
+            let target = to.join(entry.file_name());
+            if entry.file_type().unwrap().is_dir() {
+                copy_folder(&entry.path(), &target);
+            } else {
+                fs::copy(entry.path(), target).unwrap();
+            }
+        }
+    }
+}

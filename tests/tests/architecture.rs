@@ -1,0 +1,37 @@
+//! Dependencies run one way: cli → {svg, raster} → pathwarp → kurbo.
+
+mod support;
+
+use serde_json::Value;
+use std::process::Command;
+
+#[test]
+fn dependencies_run_one_way() {
+    let out = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--no-deps", "--offline"])
+        .current_dir(support::root())
+        .output()
+        .unwrap();
+    let metadata: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let of = |name: &str| -> Vec<String> {
+        let package = metadata["packages"].as_array().unwrap().iter().find(|p| p["name"] == name).unwrap();
+        let normal = package["dependencies"].as_array().unwrap().iter().filter(|d| d["kind"].is_null());
+        normal.map(|d| d["name"].as_str().unwrap().to_owned()).collect()
+    };
+    // The core: curves, path data and error types, nothing else.
+    assert_eq!(of("pathwarp"), ["kurbo", "svgtypes", "thiserror"]);
+    let allowed = |name: &str, ours: &[&str]| {
+        for d in of(name).iter().filter(|d| d.starts_with("pathwarp")) {
+            assert!(ours.contains(&d.as_str()), "{name} must not depend on {d}");
+        }
+    };
+    allowed("pathwarp-svg", &["pathwarp"]);
+    allowed("pathwarp-raster", &["pathwarp"]);
+    allowed("pathwarp-cli", &["pathwarp", "pathwarp-svg", "pathwarp-raster"]);
+    for name in ["pathwarp", "pathwarp-svg", "pathwarp-raster"] {
+        assert!(
+            !of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")),
+            "{name} prints"
+        );
+    }
+}

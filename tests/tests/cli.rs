@@ -1,0 +1,348 @@
+//! The program from outside: exit codes, files, streams, messages.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use support::{artwork, expect_code, pathwarp_in, root, sample, words};
+
+const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z";
+const SQUARE: &str =
+    "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='s' d='M0,0H100V100H0Z'/></svg>";
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn every_example_in_help_runs() {
+    let registry = pathwarp::deform::Registry::builtin();
+    let dir = tempfile::tempdir().unwrap();
+    for e in registry.entries() {
+        for example in e.info().examples {
+            let args: Vec<String> = words(example.command)
+                .into_iter()
+                .map(|w| if w == "out.svg" || w == "out.png" { dir.path().join(w).display().to_string() } else { w })
+                .collect();
+            expect_code(0, &args);
+            let svg = fs::read_to_string(dir.path().join("out.svg")).unwrap();
+            assert!(svg.contains("<svg"), "{}", example.command);
+            fs::remove_file(dir.path().join("out.svg")).unwrap();
+        }
+    }
+}
+
+#[test]
+fn help_list_completions_and_manual_know_every_deformation() {
+    let (list, _) = expect_code(0, &["list"]);
+    let (help, _) = expect_code(0, &["--help"]);
+    let (man, _) = expect_code(0, &["man"]);
+    let (bash, _) = expect_code(0, &["completions", "bash"]);
+    for e in pathwarp::deform::Registry::builtin().entries() {
+        let info = e.info();
+        for (what, page) in [("list", &list), ("help", &help), ("man", &man), ("completions", &bash)] {
+            assert!(page.contains(info.name), "{} is not in {what}", info.name);
+        }
+        let (own, _) = expect_code(0, &["help", info.name]);
+        assert!(
+            own.contains("Examples:") && info.params.iter().all(|p| own.contains(&format!("--{}", p.name))),
+            "{own}"
+        );
+    }
+}
+
+#[test]
+fn standard_input_to_standard_output() {
+    let dir = tempfile::tempdir().unwrap();
+    for args in [&["shaper", "--shaper", CAGE][..], &["shaper", "--shaper", CAGE, "-", "-o", "-"]] {
+        let out = pathwarp_in(dir.path(), args, SQUARE.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        assert!(text(&out.stdout).contains("id='s'"));
+        assert!(out.stderr.is_empty(), "silent on success: {}", text(&out.stderr));
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn wrong_usage_is_2_and_names_the_fault() {
+    for (args, part) in [
+        (&["wobble"][..], "wobble"),
+        (&["shaper"], "--shaper"),
+        (&["shaper", "--shaper", CAGE, "--tolerance", "-1"], "--tolerance"),
+        (&["shaper", "--shaper", CAGE, "--tolerance", "nan"], "--tolerance"),
+        (&["shaper", "--shaper", CAGE, "--bottom", "7"], "--bottom"),
+        (&["shaper", "--shaper", CAGE, "--frame", "1,2,3"], "--frame"),
+        (&["shaper", "--shaper", CAGE, "--strokes", "wide"], "--strokes"),
+        (&["shaper", "--shaper", "--explain"], "--shaper"),
+        (&["shaper", "--shaper", CAGE, "+", "list"], "list"),
+        (&["list", "+", "affine"], "chains deformations"),
+        (&["affine", "--matrix", "1,0,0,1,0"], "6 are wanted"),
+        (&["affine", "--rotate", "30 parsecs"], "parsecs"),
+    ] {
+        let dir = tempfile::tempdir().unwrap();
+        let mut all = args.to_vec();
+        if args[0] != "list" && args[0] != "wobble" {
+            all.splice(1..1, ["-o", "out.svg"]);
+        }
+        let out = pathwarp_in(dir.path(), &all, SQUARE.as_bytes());
+        assert_eq!(out.status.code(), Some(2), "{args:?}: {}", text(&out.stderr));
+        assert!(text(&out.stderr).contains(part), "{args:?}: {}", text(&out.stderr));
+        assert!(!dir.path().join("out.svg").exists());
+    }
+}
+
+#[test]
+fn unreadable_input_is_3_and_names_the_place() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("latin1.svg"), b"<svg xmlns='http://www.w3.org/2000/svg'>\xe4</svg>").unwrap();
+    fs::write(dir.path().join("broken.svg"), "<svg xmlns='http://www.w3.org/2000/svg'>\n<path").unwrap();
+    fs::write(dir.path().join("empty.svg"), "").unwrap();
+    fs::write(dir.path().join("ok.svg"), SQUARE).unwrap();
+    fs::write(dir.path().join("points.json"), "[[1,2],[3]]").unwrap();
+    for (input, shaper, part) in [
+        ("missing.svg", CAGE, "missing.svg"),
+        ("latin1.svg", CAGE, "UTF-8"),
+        ("broken.svg", CAGE, "broken.svg"),
+        ("empty.svg", CAGE, "empty.svg"),
+        ("ok.svg", "no-such-file.svg#a", "no-such-file.svg"),
+        ("ok.svg", "#nothing", "#nothing"),
+        ("ok.svg", "points.json", "points.json"),
+    ] {
+        let out = pathwarp_in(dir.path(), &["shaper", input, "--shaper", shaper, "-o", "out.svg"], b"");
+        assert_eq!(out.status.code(), Some(3), "{input} {shaper}: {}", text(&out.stderr));
+        assert!(text(&out.stderr).contains(part), "{input} {shaper}: {}", text(&out.stderr));
+        assert!(!dir.path().join("out.svg").exists());
+    }
+}
+
+#[test]
+fn forbidden_geometry_is_4_and_leaves_the_old_file_alone() {
+    let anchors = sample("anchors.svg").display().to_string();
+    let horizon = "0,0 100,0 40,40 0,100";
+    let dir = tempfile::tempdir().unwrap();
+    let old = dir.path().join("out.svg");
+    fs::write(&old, "precious").unwrap();
+    for (args, parts) in [
+        (vec!["--shaper", "M0,0 L10,0 L10,10 L0,10 L1,1"], vec!["not closed", "--shaper"]),
+        (vec!["--shaper", "M0,0 L10,0 L10,10 Z"], vec!["3 anchors"]),
+        (
+            vec!["--shaper", CAGE, "--target", &(anchors.clone() + "#target4-collinear")],
+            vec!["one line", "target4-collinear"],
+        ),
+        (vec!["--shaper", CAGE, "--base", "5,5 5,5"], vec!["coincide", "--base"]),
+        (vec!["--shaper", CAGE, "--base", "10,40 20,40 17,35 13,35"], vec!["s hits infinity at"]),
+        (vec!["--shaper", CAGE, "--target", horizon], vec!["infinity"]),
+    ] {
+        let mut all = vec!["shaper", "-", "-o", "out.svg"];
+        all.extend(args.iter().copied());
+        let out = pathwarp_in(dir.path(), &all, SQUARE.as_bytes());
+        let said = text(&out.stderr);
+        assert_eq!(out.status.code(), Some(4), "{args:?}: {said}");
+        assert!(parts.iter().all(|p| said.contains(p)), "{args:?}: {said}");
+        assert_eq!(fs::read_to_string(&old).unwrap(), "precious");
+    }
+}
+
+#[test]
+fn a_shape_beyond_the_horizon_can_be_skipped() {
+    let dir = tempfile::tempdir().unwrap();
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='near' d='M12,36 l4,0 0,3 z'/><path id='far' d='M0,0H100V100H0Z'/></svg>";
+    let args = [
+        "shaper",
+        "-",
+        "--shaper",
+        CAGE,
+        "--base",
+        "10,40 20,40 17,35 13,35",
+        "--on-error",
+        "skip",
+        "-o",
+        "out.svg",
+        "--report",
+        "r.json",
+    ];
+    let out = pathwarp_in(dir.path(), &args, svg.as_bytes());
+    assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
+    let warped = fs::read_to_string(dir.path().join("out.svg")).unwrap();
+    assert!(warped.contains("M0,0H100V100H0Z") && !warped.contains("M12,36"), "{warped}");
+    let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+    assert_eq!(report["inputs"][0]["skipped"][0]["id"], "far");
+    assert_eq!(report["inputs"][0]["shapes"][0]["id"], "near");
+}
+
+#[test]
+fn the_report_has_every_field() {
+    let dir = tempfile::tempdir().unwrap();
+    let (svg, json) = (dir.path().join("o.svg"), dir.path().join("r.json"));
+    let [input, cage] = [sample("monogram.svg"), sample("cages.svg")].map(|p| p.display().to_string());
+    let cage = cage + "#flag";
+    expect_code(
+        0,
+        &["shaper", &input, "--shaper", &cage, "-o", svg.to_str().unwrap(), "--report", json.to_str().unwrap()],
+    );
+    let r: Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
+    assert_eq!(r["tool"], "pathwarp");
+    assert_eq!(r["steps"][0], "shaper");
+    let file = &r["inputs"][0];
+    let tolerance = file["tolerance"].as_f64().unwrap();
+    let shapes = file["shapes"].as_array().unwrap();
+    assert!(!shapes.is_empty());
+    let mut sums = [0, 0];
+    for s in shapes {
+        assert!(s["max_error"].as_f64().unwrap() <= tolerance && s["certified"].is_boolean() && s["folds"] == 0);
+        sums[0] += s["segments_in"].as_u64().unwrap();
+        sums[1] += s["segments_out"].as_u64().unwrap();
+    }
+    assert_eq!(r["totals"]["shapes"].as_u64().unwrap() as usize, shapes.len());
+    assert_eq!([&r["totals"]["segments_in"], &r["totals"]["segments_out"]].map(|v| v.as_u64().unwrap()), sums);
+    assert!(r["totals"]["seconds"].as_f64().unwrap() > 0.0);
+    assert_eq!(file["output"], svg.display().to_string());
+}
+
+#[test]
+fn folds_are_warned_of_and_counted() {
+    let dir = tempfile::tempdir().unwrap();
+    // A shaper whose top side runs back on itself.
+    let twisted = "M0,100 L100,100 L100,0 C-150,0 250,0 0,0 Z";
+    let out = pathwarp_in(dir.path(), &["shaper", "--shaper", twisted, "--report", "r.json"], SQUARE.as_bytes());
+    assert_eq!(out.status.code(), Some(0));
+    let said = text(&out.stderr);
+    assert!(said.contains("s folds over near"), "{said}");
+    let r: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+    assert!(r["totals"]["folds"].as_u64().unwrap() > 0);
+    assert!(r["inputs"][0]["warnings"][0].as_str().unwrap().contains("s folds over"));
+    // A mirroring map is no fold.
+    let mirrored = pathwarp_in(dir.path(), &["shaper", "--shaper", CAGE, "--reverse-shaper"], SQUARE.as_bytes());
+    assert!(mirrored.stderr.is_empty(), "{}", text(&mirrored.stderr));
+}
+
+#[test]
+fn several_inputs_go_to_a_folder_and_threads_change_nothing() {
+    let inputs: Vec<String> = artwork().iter().map(|n| sample(n).display().to_string()).collect();
+    let cage = sample("cages.svg").display().to_string() + "#flag";
+    let run = |jobs: &str, dir: &Path| {
+        let mut args: Vec<&str> =
+            vec!["shaper", "--shaper", &cage, "--jobs", jobs, "--quiet", "--out-dir", dir.to_str().unwrap()];
+        args.extend(inputs.iter().map(String::as_str));
+        expect_code(0, &args);
+    };
+    let dir = tempfile::tempdir().unwrap();
+    let (one, four) = (dir.path().join("one"), dir.path().join("four"));
+    run("1", &one);
+    run("4", &four);
+    for name in artwork() {
+        let bytes = fs::read(one.join(&name)).unwrap();
+        assert!(!bytes.is_empty() && bytes == fs::read(four.join(&name)).unwrap(), "{name}");
+    }
+    let (_, said) = expect_code(2, &["shaper", &inputs[0], &inputs[1], "--shaper", &cage]);
+    assert!(said.contains("--out-dir"), "{said}");
+}
+
+#[test]
+fn guides_in_the_document_stay_and_are_no_artwork() {
+    let (svg, _) = expect_code(
+        0,
+        &["shaper", "samples/paper-two-anchors.svg", "--base", "#Base", "--target", "#Target", "--shaper", "#Shaper"],
+    );
+    let source = fs::read_to_string(sample("paper-two-anchors.svg")).unwrap();
+    for id in ["Base", "Target", "Shaper"] {
+        let line = |s: &str| s.lines().find(|l| l.contains(&format!("id=\"{id}\""))).unwrap().to_owned();
+        assert_eq!(line(&svg), line(&source));
+    }
+    assert_ne!(svg, source);
+}
+
+#[test]
+fn explain_tells_the_corners() {
+    let (_, said) =
+        expect_code(0, &["shaper", "samples/grid.svg", "--shaper", "samples/cages.svg#arch", "--explain", "-o", "-"]);
+    for part in ["bottom side of", "corners of", "base:", "target: none"] {
+        assert!(said.contains(part), "{part} not in {said}");
+    }
+}
+
+#[test]
+fn chains_equal_their_parts_one_after_another() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |args: &[&str], input: &[u8]| {
+        let out = pathwarp_in(dir.path(), args, input);
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        out.stdout
+    };
+    let fine = ["--tolerance", "1e-4", "--precision", "8"];
+    let perspective = ["projective", "--target", "0,100 100,95 80,10 15,0"];
+    let bend = ["shaper", "--shaper", CAGE];
+    let first = run(&[&perspective[..], &fine].concat(), SQUARE.as_bytes());
+    let both = run(&[&bend[..], &fine].concat(), &first);
+    let chained = run(&[&perspective[..], &fine, &["+"], &bend].concat(), SQUARE.as_bytes());
+    fs::write(dir.path().join("a.svg"), both).unwrap();
+    fs::write(dir.path().join("b.svg"), chained).unwrap();
+    let out = run(&["compare", "--json", "a.svg", "b.svg"], b"");
+    let c: Value = serde_json::from_slice(&out).unwrap();
+    assert!(c["max_distance"].as_f64().unwrap() < 3e-4, "{c}");
+}
+
+#[test]
+fn paths_lists_names_anchors_and_points() {
+    let (json, _) = expect_code(0, &["paths", "--json", "samples/cages.svg"]);
+    let list: Value = serde_json::from_str(&json).unwrap();
+    let all = list["paths"].as_array().unwrap();
+    let arch = all.iter().find(|p| p["name"] == "arch").unwrap();
+    let stroke = &arch["strokes"][0];
+    assert_eq!((stroke["closed"].as_bool(), stroke["anchors"].as_u64()), (Some(true), Some(4)));
+    assert_eq!(stroke["points"].as_array().unwrap().len(), 12);
+    let (table, _) = expect_code(0, &["paths", "samples/cages.svg"]);
+    assert!(table.lines().any(|l| l.starts_with("arch") && l.contains("closed")), "{table}");
+}
+
+#[test]
+fn compare_tells_how_far_and_can_fail() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("a.svg"), SQUARE).unwrap();
+    fs::write(dir.path().join("b.svg"), SQUARE.replace("M0,0H100V100", "M0,0H100V90")).unwrap();
+    let same =
+        pathwarp_in(dir.path(), &["compare", "a.svg", "a.svg", "--max-distance", "1e-9", "--max-pixels", "0"], b"");
+    assert_eq!(same.status.code(), Some(0), "{}", text(&same.stdout));
+    let apart = pathwarp_in(dir.path(), &["compare", "--json", "a.svg", "b.svg", "--max-distance", "9.9"], b"");
+    assert_eq!(apart.status.code(), Some(1));
+    let c: Value = serde_json::from_slice(&apart.stdout).unwrap();
+    assert!((c["max_distance"].as_f64().unwrap() - 10.0).abs() < 1e-9);
+    assert!((c["pixels"]["visible_share"].as_f64().unwrap() - 0.1).abs() < 0.005, "{c}");
+}
+
+#[test]
+fn render_and_preview_write_pictures() {
+    let dir = tempfile::tempdir().unwrap();
+    let png = dir.path().join("logo.png");
+    expect_code(0, &["render", "samples/logo.svg", "-o", png.to_str().unwrap(), "--width", "300"]);
+    assert_eq!(pathwarp_raster::decode_png(&fs::read(png).unwrap()).unwrap().width(), 300);
+    let preview = dir.path().join("p.png");
+    expect_code(
+        0,
+        &[
+            "shaper",
+            "samples/logo.svg",
+            "--shaper",
+            "samples/cages.svg#flag",
+            "-o",
+            "-",
+            "--preview",
+            preview.to_str().unwrap(),
+        ],
+    );
+    assert!(pathwarp_raster::decode_png(&fs::read(preview).unwrap()).unwrap().width() > 600);
+}
+
+#[test]
+fn a_crate_of_one_file_adds_its_deformation() {
+    let program = support::program("pathwarp-ripple", "pathwarp-ripple");
+    let dir = tempfile::tempdir().unwrap();
+    let run = |args: &[&str]| std::process::Command::new(&program).args(args).current_dir(root()).output().unwrap();
+    assert!(text(&run(&["list"]).stdout).contains("rings on water"));
+    let out = dir.path().join("o.svg");
+    let done = run(&["ripple", "samples/grid.svg", "-o", out.to_str().unwrap()]);
+    assert!(done.status.success(), "{}", text(&done.stderr));
+    assert!(fs::read_to_string(out).unwrap().contains('C'), "straight lines have become curves");
+    assert!(run(&["shaper", "samples/grid.svg", "--shaper", CAGE, "-o", "-"]).status.success());
+}

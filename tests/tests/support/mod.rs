@@ -1,0 +1,95 @@
+//! Running the program, and finding the project's files.
+#![allow(dead_code, reason = "every test file uses its own part of this")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+
+/// The project's root.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+/// A file of `samples/`.
+pub fn sample(name: &str) -> PathBuf {
+    root().join("samples").join(name)
+}
+
+/// The artwork among the samples (cages and anchors are not).
+pub fn artwork() -> Vec<String> {
+    let mut all: Vec<String> = std::fs::read_dir(root().join("samples"))
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .filter(|n| n.ends_with(".svg") && !["cages.svg", "anchors.svg", "banner.svg"].contains(&n.as_str()))
+        .collect();
+    all.sort();
+    assert!(all.len() >= 8);
+    all
+}
+
+/// The program of package `package`, built once. Test binaries lie in `target/PROFILE/deps`.
+pub fn program(package: &str, name: &str) -> PathBuf {
+    let profile = std::env::current_exe().unwrap().parent().unwrap().parent().unwrap().to_owned();
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["build", "--quiet", "--package", package]).current_dir(root());
+    build.arg("--target-dir").arg(profile.parent().unwrap());
+    if profile.ends_with("release") {
+        build.arg("--release");
+    }
+    assert!(build.status().unwrap().success(), "{package} does not build");
+    profile.join(name).with_extension(std::env::consts::EXE_EXTENSION)
+}
+
+fn pathwarp_program() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| program("pathwarp-cli", "pathwarp"))
+}
+
+/// `pathwarp` with these arguments, run from the project's root.
+pub fn pathwarp<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> Output {
+    Command::new(pathwarp_program()).args(args).current_dir(root()).stdin(Stdio::null()).output().unwrap()
+}
+
+/// The same in another folder, with something on standard input.
+pub fn pathwarp_in(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
+    use std::io::Write;
+    let mut child = Command::new(pathwarp_program())
+        .args(args)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that fails early closes its input.
+    let _ = child.stdin.take().unwrap().write_all(stdin);
+    child.wait_with_output().unwrap()
+}
+
+/// Runs and must end with `code`; gives standard output and standard error.
+#[track_caller]
+pub fn expect_code<S: AsRef<std::ffi::OsStr> + std::fmt::Debug>(code: i32, args: &[S]) -> (String, String) {
+    let out = pathwarp(args);
+    let text = |b: &[u8]| String::from_utf8_lossy(b).into_owned();
+    assert_eq!(out.status.code(), Some(code), "{args:?}\n{}", text(&out.stderr));
+    (text(&out.stdout), text(&out.stderr))
+}
+
+/// Splits a command line as a shell does, as far as the examples need it: words and single quotes.
+pub fn words(line: &str) -> Vec<String> {
+    let mut out = Vec::new();
+    let mut word: Option<String> = None;
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            '\'' => {
+                quoted = !quoted;
+                word.get_or_insert_default();
+            }
+            c if c.is_whitespace() && !quoted => out.extend(word.take()),
+            c => word.get_or_insert_default().push(c),
+        }
+    }
+    out.extend(word);
+    out
+}
