@@ -2,6 +2,7 @@
 
 use crate::geometry::Reader;
 use crate::read::{self, ReadOptions};
+use crate::resolve;
 use crate::scene::{self, Role, Scene};
 use crate::select::{self, Selection};
 use crate::source::{ElementId, Source, is_shape};
@@ -75,7 +76,7 @@ impl Document {
             // Where positions are not to be trusted, the text must not be touched.
             let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
             let (tree, missing_fonts) = read::tree(text, name, options)?;
-            let scene = scene::build(&tree, &source, &ids, dpi);
+            let scene = resolve::build(&tree, &source, &ids, dpi);
             let shapes = shapes(&scene, &source);
             let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
             Ok((tree, missing_fonts, scene, shapes, page))

@@ -157,6 +157,12 @@ impl Source {
         el.attrs.iter().find(|a| a.namespace == namespace && a.name == name).map(|a| a.value(&self.text))
     }
 
+    /// The target of `href` or `xlink:href`, without the `#`.
+    pub(crate) fn href(&self, e: ElementId) -> Option<String> {
+        let link = self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))?;
+        link.trim().strip_prefix('#').map(ToOwned::to_owned)
+    }
+
     /// The element and its ancestors, innermost first.
     pub(crate) fn ancestors(&self, e: ElementId) -> impl Iterator<Item = ElementId> {
         std::iter::successors(Some(e), |&e| self.elements.get(e).and_then(|e| e.parent))
