@@ -10,6 +10,23 @@ use std::fmt::Write as _;
 use usvg::{FillRule, SpreadMethod};
 
 impl Writer<'_> {
+    /// Whether a gradient of the source can lend its stops: there is one of this name, and its own links end somewhere.
+    fn can_lean_on(&self, id: &str) -> bool {
+        /// Longer chains of gradients than any program writes.
+        const LONGEST: usize = 16;
+        let source = &self.job.document.source;
+        let mut next = Some(id.to_owned());
+        for _ in 0..LONGEST {
+            let Some(id) = next else { return true };
+            match source.by_id.get(&id).map(Vec::as_slice) {
+                Some(&[e]) if source.elements[e].tag.ends_with("Gradient") => next = source.href(e),
+                _ => return false,
+            }
+        }
+        // Renderers may follow a circle for ever.
+        false
+    }
+
     pub(crate) fn gradient(
         &mut self,
         tag: &str,
