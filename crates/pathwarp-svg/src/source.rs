@@ -64,6 +64,8 @@ pub(crate) struct Source {
     pub(crate) css: String,
     /// Element and property names that a selector or a declaration of the style sheets mentions.
     css_words: HashSet<String>,
+    /// Whether anything moves.
+    pub(crate) animated: bool,
     /// Why the text cannot be patched in place.
     pub(crate) unpatchable: Option<String>,
     line_starts: Vec<usize>,
@@ -137,7 +139,8 @@ impl Source {
         let css_words = words(&css);
         let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
         drop(doc);
-        Ok(Self { text, elements, by_id, css, css_words, unpatchable, line_starts })
+        let animated = elements.iter().any(|e| e.tag == "animate");
+        Ok(Self { animated, text, elements, by_id, css, css_words, unpatchable, line_starts })
     }
 
     /// Line and column (in characters), counted from 1.
