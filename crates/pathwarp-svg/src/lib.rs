@@ -21,6 +21,7 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 
+mod defs;
 mod document;
 mod edit;
 mod embed;
@@ -32,6 +33,7 @@ mod number;
 mod options;
 mod paint;
 mod read;
+mod resolve;
 mod scene;
 mod select;
 mod source;

@@ -6,7 +6,7 @@ use crate::options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptio
 use crate::paint::{self, Fit};
 use crate::scene::{Part, Role, Scene};
 use crate::select::Selection;
-use crate::{keep, stroke, write};
+use crate::{keep, read, stroke, write};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::map::{Class, Map};
 use pathwarp::refit::{self, Assurance};
@@ -126,6 +126,14 @@ impl Document {
     /// [`Error::Geometry`] naming the shape that the map cannot bend, unless [`OnError::Skip`]; [`Error::Input`] if the
     /// structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
+        if self.shallow {
+            self.warp_here(map, options)
+        } else {
+            read::with_stack(&self.name, || self.warp_here(map, options))
+        }
+    }
+
+    fn warp_here(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
         let identity = map.class() == Class::Affine(Affine::IDENTITY);
         if identity && options.structure != Structure::Flatten {
@@ -135,14 +143,18 @@ impl Document {
         let meant = self.chosen(options);
         let parts = &self.scene.parts;
         let slots = self.place_slots(map, &meant, &options.selection);
-        let results: Vec<Option<Result<Done, GeometryError>>> = parts
-            .par_iter()
-            .zip(&meant)
-            .map(|(p, meant)| {
-                let write = written(&self.scene, &slots, p.slot, p.frame);
-                (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
-            })
-            .collect();
+        let one = |(p, meant): (&Part, &bool)| {
+            let write = written(&self.scene, &slots, p.slot, p.frame);
+            (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
+        };
+        /// Below so many segments the work is done before another thread has woken up.
+        const WORTH_IT: usize = 100;
+        let segments: usize = parts.iter().map(|p| p.local.segs().count()).sum();
+        let results: Vec<Option<Result<Done, GeometryError>>> = if segments < WORTH_IT {
+            parts.iter().zip(&meant).map(one).collect()
+        } else {
+            parts.par_iter().zip(&meant).map(one).collect()
+        };
         let mut outcomes = Vec::with_capacity(parts.len());
         let mut last = None;
         for (i, r) in results.into_iter().enumerate() {
