@@ -16,13 +16,15 @@ use kurbo::{Point, Vec2};
 /// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree).
 const SMOOTH: f64 = 0.0087;
 /// Places of the grid in one segment.
-const GRID: usize = 4;
+const GRID: usize = 6;
 /// Segments under one cubic at most: the dense check then has ten samples in each.
 const MOST_SPANNED: usize = 6;
 /// Segments handled in one table at most.
 const MOST_IN_CHAIN: usize = 64;
 /// Stretches that fail in a row before longer ones are not tried any more.
 const PATIENCE: usize = 2;
+/// Searches in one chain.
+const SEARCHES: usize = 4;
 /// Intervals of a segment's table of lengths.
 const TABLE: usize = 16;
 
@@ -92,12 +94,52 @@ impl Merger<'_> {
             slow: &slow,
             tolerance: self.tolerance,
             algebra: None,
-            careful: true,
+            careful: false,
             attempts: 0,
         };
+        // A quick search, then a close look at the pieces found; those that do not pass are left out of the next search.
+        let mut refused = Vec::new();
+        for _ in 0..SEARCHES {
+            stepper.careful = false;
+            let Some(way) = self.search(chain, &mut stepper, &ends, bounds, &refused)? else { return Ok(None) };
+            stepper.careful = true;
+            let (mut out, mut worst) = (Vec::with_capacity(own), 0.0f64);
+            let known = refused.len();
+            for (from, to, single) in way {
+                if !single {
+                    out.extend_from_slice(&pieces[bounds[from / GRID]..bounds[to / GRID]]);
+                    continue;
+                }
+                match stepper.attempt(&ends[from], &ends[to])? {
+                    Outcome::Fits { piece, error } => {
+                        worst = worst.max(error);
+                        out.push(piece);
+                    }
+                    Outcome::Misses { .. } => refused.push((from, to)),
+                }
+            }
+            if refused.len() == known {
+                return Ok(Some((out, worst)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The way through the grid with the fewest pieces: (from, to, whether by one cubic or by a segment's own pieces). `None`: not
+    /// fewer than the segments have.
+    fn search(
+        &self,
+        chain: &Chain<'_>,
+        stepper: &mut Stepper<'_, Chain<'_>>,
+        ends: &[End],
+        bounds: &[usize],
+        refused: &[(usize, usize)],
+    ) -> Result<Option<Vec<(usize, usize, bool)>>, Point> {
+        let own = bounds[bounds.len() - 1] - bounds[0];
+        let n = GRID * chain.parts.len();
         // cost[k]: pieces up to place k; how[k]: where the last of them starts, and what it is.
         let mut cost = vec![usize::MAX; n + 1];
-        let mut how: Vec<(usize, Option<(Piece, f64)>)> = vec![(0, None); n + 1];
+        let mut how = vec![(0, false); n + 1];
         cost[0] = 0;
         for k in 0..n {
             if cost[k] == usize::MAX || cost[k] >= own {
@@ -108,23 +150,19 @@ impl Merger<'_> {
                 let seg = k / GRID;
                 let with = cost[k] + bounds[seg + 1] - bounds[seg];
                 if with < cost[k + GRID] {
-                    (cost[k + GRID], how[k + GRID]) = (with, (k, None));
+                    (cost[k + GRID], how[k + GRID]) = (with, (k, false));
                 }
             }
             let mut failed = 0;
             for m in k + 1..=n.min(k + GRID * MOST_SPANNED) {
                 // Of no use if that place is reached as cheaply already.
-                let useful = cost[k] + 1 < cost[m];
-                // Short stretches fit; only failures need to be counted.
-                if !useful && failed == 0 && m - k < GRID {
+                if cost[k] + 1 >= cost[m] || refused.contains(&(k, m)) {
                     continue;
                 }
                 match stepper.attempt(&ends[k], &ends[m])? {
-                    Outcome::Fits { piece, error } => {
+                    Outcome::Fits { .. } => {
                         failed = 0;
-                        if useful {
-                            (cost[m], how[m]) = (cost[k] + 1, (k, Some((piece, error))));
-                        }
+                        (cost[m], how[m]) = (cost[k] + 1, (k, true));
                     }
                     Outcome::Misses { .. } => {
                         failed += 1;
@@ -138,22 +176,15 @@ impl Merger<'_> {
         if cost[n] >= own {
             return Ok(None);
         }
-        // Back from the end.
-        let (mut out, mut worst) = (Vec::with_capacity(cost[n]), 0.0f64);
+        let mut way = Vec::with_capacity(cost[n]);
         let mut k = n;
         while k > 0 {
-            let (from, piece) = how[k];
-            match piece {
-                Some((piece, error)) => {
-                    worst = worst.max(error);
-                    out.push(piece);
-                }
-                None => out.extend(pieces[bounds[from / GRID]..bounds[k / GRID]].iter().rev()),
-            }
+            let (from, single) = how[k];
+            way.push((from, k, single));
             k = from;
         }
-        out.reverse();
-        Ok(Some((out, worst)))
+        way.reverse();
+        Ok(Some(way))
     }
 }
 
