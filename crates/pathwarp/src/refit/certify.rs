@@ -23,7 +23,7 @@
 //!
 //! Rounding of the samples (some 1e-13 of the coordinates) is added to the bound.
 
-use super::source::{Lane, Source};
+use super::source::{Curve, Lane, Source};
 use super::verify::Candidate;
 use crate::map::RationalBezier;
 use kurbo::Point;

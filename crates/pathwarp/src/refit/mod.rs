@@ -9,6 +9,8 @@ mod certify;
 #[allow(clippy::needless_range_loop)]
 mod fit;
 #[allow(clippy::needless_range_loop)]
+mod merge;
+#[allow(clippy::needless_range_loop)]
 mod source;
 mod split;
 #[allow(clippy::needless_range_loop)]
@@ -17,11 +19,11 @@ mod step;
 mod verify;
 
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Jet, Map};
+use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use certify::Algebra;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point};
-use source::{End, Source};
+use source::{Curve, End, Source};
 
 /// How a path is refitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,7 +187,14 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
             match seg.transformed(m) {
                 Seg::Line(l) => pieces.push(Piece::Line(l)),
                 Seg::Arc(a) => {
-                    pieces.extend(a.to_cubics(options.tolerance).map(Piece::Cubic));
+                    let (canonical, flipped) = split::canonical(seg);
+                    let start = pieces.len();
+                    if let Seg::Arc(c) = canonical.transformed(m) {
+                        pieces.extend(c.to_cubics(options.tolerance).map(Piece::Cubic));
+                    }
+                    if flipped {
+                        turn(&mut pieces[start..]);
+                    }
                     out.note(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
                 }
                 other => pieces.push(Piece::Cubic(other.to_cubic())),
@@ -214,6 +223,8 @@ fn warp_subpath(
     }
     let start = node.1.p;
     let mut pieces = Vec::with_capacity(sub.segs.len());
+    // Where each segment's pieces begin.
+    let mut bounds = vec![0];
     for seg in &sub.segs {
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
@@ -226,9 +237,16 @@ fn warp_subpath(
         }
         if projective && matches!(seg, Seg::Line(_)) {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
+            bounds.push(pieces.len());
             continue;
         }
         warp_seg(seg, [first, last], map, creases, options, &mut pieces, &mut out.report).map_err(infinity)?;
+        bounds.push(pieces.len());
+    }
+    let smooth = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
+    if options.merge && !options.certify && smooth && bounds.len() == sub.segs.len() + 1 {
+        let merger = merge::Merger { map, tolerance: options.tolerance };
+        pieces = merger.merged(&sub.segs, &pieces, &bounds, &mut out.report).map_err(infinity)?;
     }
     out.subpath(start, &pieces, sub.closed);
     Ok(())
@@ -263,12 +281,17 @@ fn warp_seg(
         _ => job.warp(&canonical, [first, last], pieces, report)?,
     }
     if flipped {
-        pieces[start..].reverse();
-        for p in &mut pieces[start..] {
-            *p = p.reversed();
-        }
+        turn(&mut pieces[start..]);
     }
     Ok(())
+}
+
+/// The pieces run backwards.
+fn turn(pieces: &mut [Piece]) {
+    pieces.reverse();
+    for p in pieces {
+        *p = p.reversed();
+    }
 }
 
 /// Shorter than this share of its coordinates, a segment is rounding of two equal points.
@@ -318,13 +341,19 @@ impl Job<'_> {
                     let at = if t == 0.0 { seg.start() } else { seg.end() };
                     source.end_with(t, Some(p), *jet, at)
                 } else {
-                    source.end(t, Some(p))
+                    source.end_at(t, Some(p))
                 }
             };
             let (e0, e1) = (end(from, &jets[0])?, end(to, &jets[1])?);
             let algebra = if certify { Algebra::of(source) } else { None };
-            let mut stepper =
-                step::Stepper { source, slow: &slow, tolerance: self.options.tolerance, algebra, attempts: 0 };
+            let mut stepper = step::Stepper {
+                source,
+                slow: &slow,
+                tolerance: self.options.tolerance,
+                algebra,
+                careful: false,
+                attempts: 0,
+            };
             stepper.cover(e0, e1, pieces, report)?;
             from = to;
         }

@@ -6,7 +6,7 @@
 
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State};
-use super::source::{End, Lane, Lanes, Source};
+use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate};
 use super::{Assurance, PathReport, Piece};
@@ -45,7 +45,7 @@ const UNIT: f64 = 1.0 / 17.0;
 
 /// What came of fitting one piece to a stretch.
 #[derive(Debug, Clone, Copy)]
-enum Outcome {
+pub(super) enum Outcome {
     Fits {
         piece: Piece,
         /// Proven, if there is something to prove it with.
@@ -71,16 +71,18 @@ impl Outcome {
 }
 
 /// Fits one smooth part of a segment.
-pub(super) struct Stepper<'a> {
-    pub(super) source: &'a Source<'a>,
+pub(super) struct Stepper<'a, C> {
+    pub(super) source: &'a C,
     pub(super) slow: &'a Slow,
     pub(super) tolerance: f64,
     /// What proofs need, if there are to be any.
     pub(super) algebra: Option<Algebra>,
+    /// Whether to look at every piece closely.
+    pub(super) careful: bool,
     pub(super) attempts: usize,
 }
 
-impl Stepper<'_> {
+impl<C: Curve> Stepper<'_, C> {
     /// Appends pieces for the stretch between two break points. `Err`: a source place where the map is not finite.
     pub(super) fn cover(
         &mut self,
@@ -117,7 +119,7 @@ impl Stepper<'_> {
             }
             let split = self.slow.inside(from.t, to.t).or(sharp);
             if let Some(t) = split {
-                let mid = self.source.end(t, None)?;
+                let mid = self.source.end(t)?;
                 stack.push((mid, to, None));
                 stack.push((from, mid, None));
                 continue;
@@ -157,7 +159,7 @@ impl Stepper<'_> {
         let mut got: [Option<Outcome>; MOST_PLANNED] = [None; MOST_PLANNED];
         ends[n] = to;
         for i in 1..n {
-            ends[i] = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64, None)?;
+            ends[i] = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64)?;
         }
         let mut round = 0;
         loop {
@@ -196,7 +198,7 @@ impl Stepper<'_> {
                     at += 1;
                 }
                 let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
-                ends[i] = self.source.end(old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0), None)?;
+                ends[i] = self.source.end(old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0))?;
             }
             ends[next] = to;
             got = [None; MOST_PLANNED];
@@ -208,7 +210,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
+    pub(super) fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
         let tol = self.tolerance;
@@ -230,7 +232,7 @@ impl Stepper<'_> {
         for i in 0..8 {
             z.s[i] = FITTED[i] * UNIT;
         }
-        let careful = !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
+        let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
         let check = self.samples(from, h, &CHECKED)?;
         let job = Job { from, to, frame, g: &g, check: &check, careful };
         // Most pieces end here: the Hermite cubic does.
@@ -259,11 +261,11 @@ impl Stepper<'_> {
         let length = q.hypot();
         let unit = if length > 0.0 { q / length } else { Vec2::ZERO };
         let frame = Frame { q, t0: unit, t1: unit, floor: [0.0; 2], size, home: [length / 3.0; 2], pull: 0.0 };
-        let error = match &self.algebra {
-            None => 0.0,
-            Some(algebra) => {
+        let error = match (&self.algebra, self.source.single()) {
+            (None, _) | (_, None) => 0.0,
+            (Some(algebra), Some(source)) => {
                 let c = Candidate { t0: from.t, t1: to.t, p0: from.p, frame, a: length / 3.0, b: length / 3.0 };
-                certify::line(self.source, algebra, &c)?
+                certify::line(source, algebra, &c)?
             }
         };
         if error <= self.tolerance {
@@ -276,7 +278,7 @@ impl Stepper<'_> {
     /// it with.
     #[inline(never)]
     fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
-        let Some(algebra) = &self.algebra else { return Ok(error) };
+        let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
         let mut s0 = z.s;
         job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
         let mut s1 = between(&s0);
@@ -287,7 +289,7 @@ impl Stepper<'_> {
             feet[CHECKED[i] as usize - 1] = s1[i];
         }
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        certify::bound(self.source, algebra, &c, &feet)
+        certify::bound(source, algebra, &c, &feet)
     }
 
     /// The measured error, and if that will do, the proven one.
