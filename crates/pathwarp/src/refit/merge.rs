@@ -31,6 +31,9 @@ const SEARCHES: usize = 4;
 /// Intervals of a segment's table of lengths.
 const TABLE: usize = 16;
 
+/// A stretch between two places of the grid, and whether one cubic covers it or a segment's own pieces do.
+type Leg = (usize, usize, bool);
+
 /// Merges the pieces of one subpath.
 pub(super) struct Merger<'a> {
     pub(super) map: &'a dyn Map,
@@ -137,7 +140,7 @@ impl Merger<'_> {
         ends: &[End],
         bounds: &[usize],
         refused: &[(usize, usize)],
-    ) -> Result<Option<Vec<(usize, usize, bool)>>, Point> {
+    ) -> Result<Option<Vec<Leg>>, Point> {
         let own = bounds[bounds.len() - 1] - bounds[0];
         let n = GRID * chain.parts.len();
         // cost[k]: pieces up to place k; how[k]: where the last of them starts, and what it is.
