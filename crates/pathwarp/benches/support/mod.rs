@@ -11,7 +11,7 @@ use pathwarp::{Outline, Seg};
 pub const BOX: f64 = 1000.0;
 
 /// A bicubic map of the box, power basis: c[i][j] goes with uⁱvʲ, u = x/1000, v = y/1000.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Bicubic {
     pub x: [[f64; 4]; 4],
     pub y: [[f64; 4]; 4],
