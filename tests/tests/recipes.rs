@@ -182,8 +182,7 @@ fn points_are_mapped_line_by_line() {
     );
     assert_eq!(text(&out.stdout), "7 8\n");
     // Beyond the horizon there is no value.
-    let out =
-        run(&["projective", "--frame", "0,0,100,100", "--target", "0,100 100,100 75,0 25,0"], "50 50\n50 300\n");
+    let out = run(&["projective", "--frame", "0,0,100,100", "--target", "0,100 100,100 75,0 25,0"], "50 50\n50 300\n");
     assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
     assert!(text(&out.stdout).ends_with("nan nan\n"), "{}", text(&out.stdout));
     let bad = run(&["affine"], "1 2\n3 four\n");
