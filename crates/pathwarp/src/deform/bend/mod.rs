@@ -75,15 +75,15 @@ left away). A handle says where the artwork's height goes.",
     examples: &[
         Example {
             what: "Along a curve, true to size",
-            command: "bend samples/lettering.svg --along 'M0,160 C100,0 220,0 320,160' -o out.svg --preview out.png",
+            command: "bend samples/lettering.svg --along 'M20,170 C180,60 356,60 516,170' -o out.svg --preview out.png",
         },
         Example {
-            what: "Round a circle, scaled to half of it",
-            command: "bend samples/logo.svg --along 'M100,200 A100,100 0 0 1 300,200' --stretch scale --baseline 0 -o out.svg",
+            what: "On an arc of a circle, scaled to its length",
+            command: "bend samples/logo.svg --along 'M60,190 A400,400 0 0 1 604,190' --stretch scale --baseline 0 -o out.svg",
         },
         Example {
             what: "A grid along a winding path, by the paper's polynomial map",
-            command: "bend samples/grid.svg --along 'M0,200 C100,50 150,50 200,200 S350,350 400,200' --by parameter --stretch fit --width 40% -o out.svg",
+            command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% -o out.svg",
         },
     ],
     laws: &[
@@ -98,7 +98,7 @@ left away). A handle says where the artwork's height goes.",
             &[("along", "M0,60 Q50,20 100,60"), ("reverse", "true")],
             &[("along", "M100,60 Q50,20 0,60"), ("as-drawn", "true")],
         ),
-        // A circle of circumference 400/… bent evenly is a sector of a ring.
+        // The upper half of a circle, wherever the circle begins and whichever way it was drawn.
         Law::Same(&[("along", ARC), ("baseline", "0")], &[("along", CIRCLE), ("baseline", "0")]),
     ],
     cases: &[
@@ -317,10 +317,8 @@ impl Map for BendMap {
         /// Turns round a closed skeleton whose joints are told.
         const MOST_TURNS: f64 = 64.0;
         let (a, b) = (self.place.s(self.reach.0), self.place.s(self.reach.1));
-        let (mut turn, last) = match self.closed {
-            true => ((a / self.length).floor(), (b / self.length).floor()),
-            false => (0.0, 0.0),
-        };
+        let turns = |s: f64| if self.closed { (s / self.length).floor() } else { 0.0 };
+        let (mut turn, last) = (turns(a), turns(b));
         let last = last.min(turn + MOST_TURNS);
         while turn <= last {
             for s in self.pieces.iter().map(|p| p.from).filter(|s| s.is_finite()) {

@@ -222,12 +222,12 @@ impl Skeleton {
         if self.closed {
             return pieces;
         }
-        let straight = |piece: &Piece, s: f64| {
-            let (p, t, n) = piece.jet(s, 0.0);
-            Shape::Straight { p, t: t / t.hypot(), n }
+        let straight = |piece: &Piece, s: f64, t: Vec2| {
+            let (p, _, n) = piece.jet(s, 0.0);
+            Shape::Straight { p, t, n }
         };
-        let ends = [straight(first, 0.0), straight(last, last.length)];
-        let [before, after] = ends;
+        let (t0, t1) = (moving(&self.segs[0].0, 0.0).t, moving(&self.segs[self.segs.len() - 1].0, 1.0).t);
+        let (before, after) = (straight(first, 0.0, t0), straight(last, last.length, t1));
         if !matches!(last.shape, Shape::Straight { .. }) {
             pieces.push(Piece { from: at, anchor: at, length: 1.0, shape: after });
         }
