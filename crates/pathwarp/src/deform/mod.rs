@@ -3,6 +3,7 @@
 //! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
 
 mod affine;
+mod bend;
 mod bilinear;
 mod bulge;
 mod expr;
@@ -31,6 +32,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
+        Arc::new(bend::Bend),
         Arc::new(polar::Polar),
         Arc::new(mls::Mls),
         Arc::new(wave::Wave),
