@@ -5,6 +5,7 @@
 
 mod affine;
 mod bernstein;
+mod birational;
 mod bspline;
 mod chain;
 mod crease;
@@ -14,11 +15,14 @@ mod homography;
 mod inverse;
 mod jet;
 mod lattice;
+mod monoid;
 pub mod net;
 mod patch;
+mod pins;
 mod rational;
 
 pub use affine::AffineMap;
+pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
 pub use crease::{Crease, CreaseKind, Creases, Level};
 pub use dual::{Dual, Real};
@@ -27,8 +31,10 @@ pub use homography::Homography;
 pub use inverse::NewtonInverse;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
+pub use monoid::{Monoid, Ray};
 pub use net::BicubicNet;
 pub use patch::Patch;
+pub use pins::{MOST_PINS, pull};
 pub use rational::RationalBezier;
 
 use kurbo::{Affine, Point};

@@ -231,6 +231,26 @@ fn warp_subpath(
     Ok(())
 }
 
+/// Two sides of a crease that are this share of the tolerance apart are torn, not rounded.
+const TORN: f64 = 0.01;
+
+/// A part that an affine branch moves exactly, between the nodes it shares with its neighbours.
+fn affine_part(part: &Seg, from: Point, to: Point, tolerance: f64, pieces: &mut Vec<Piece>) {
+    let near = |a: Point, b: Point| a.distance(b) <= TORN * tolerance;
+    let (a, b) = (part.start(), part.end());
+    if !near(a, from) {
+        pieces.push(Piece::Line(Line::new(from, a)));
+    }
+    let (p0, p3) = (if near(a, from) { from } else { a }, if near(b, to) { to } else { b });
+    pieces.push(match part {
+        Seg::Line(_) => Piece::Line(Line::new(p0, p3)),
+        other => Piece::Cubic(CubicBez { p0, p3, ..other.to_cubic() }),
+    });
+    if !near(b, to) {
+        pieces.push(Piece::Line(Line::new(b, to)));
+    }
+}
+
 /// Appends the image of one segment. The jets are those at its ends. `Err`: where the map is not finite.
 fn warp_seg(
     seg: &Seg,
@@ -260,18 +280,31 @@ fn warp_seg(
             None => (1.0, nodes[1]),
         };
         let branch = map.branch(canonical.eval(0.5 * (from.0 + to.0)));
+        if let (Some(Class::Affine(m)), Some(part)) = (branch.as_ref().map(Map::class), canonical.part(from.0, to.0)) {
+            affine_part(&part.transformed(m), from.1, to.1, options.tolerance, pieces);
+            from = to;
+            continue;
+        }
         let source = branch.as_ref().map_or(whole, |b| Source::new(canonical, b));
-        let end = |(t, p): (f64, Point), jet: &Jet| -> Result<End, Point> {
+        // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
+        let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
             if branch.is_none() && (t == 0.0 || t == 1.0) {
                 let at = if t == 0.0 { canonical.start() } else { canonical.end() };
-                source.end_with(t, Some(p), *jet, at)
-            } else {
-                source.end(t, Some(p))
+                return Ok((source.end_with(t, Some(p), *jet, at)?, false));
             }
+            let own = source.end(t, None)?;
+            let torn = own.p.distance(p) > TORN * options.tolerance;
+            Ok((if torn { own } else { End { p, ..own } }, torn))
         };
-        let (e0, e1) = (end(from, &jets[0])?, end(to, &jets[1])?);
+        let ((e0, torn0), (e1, torn1)) = (end(from, &jets[0])?, end(to, &jets[1])?);
+        if torn0 {
+            pieces.push(Piece::Line(Line::new(from.1, e0.p)));
+        }
         let mut stepper = step::Stepper { source, slow, tolerance: options.tolerance, attempts: 0 };
         stepper.cover(e0, e1, pieces, report)?;
+        if torn1 {
+            pieces.push(Piece::Line(Line::new(e1.p, to.1)));
+        }
         from = to;
     }
     if flipped {
