@@ -3,6 +3,8 @@
 //! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
 
 mod affine;
+mod birational;
+mod ffd;
 mod projective;
 mod shaper;
 mod similitude;
@@ -18,6 +20,8 @@ use std::sync::Arc;
 pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
+        Arc::new(ffd::Ffd),
+        Arc::new(birational::BirationalDeformation),
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
@@ -90,6 +94,10 @@ pub enum Law {
     Same(Pairs, Pairs),
     /// With these values straight lines stay straight.
     KeepsLines(Pairs),
+    /// With these values straight lines in this direction stay straight.
+    KeepsLinesAlong(Pairs, (f64, f64)),
+    /// With these values nothing moves outside the box x0, y0, x1, y1.
+    FixedOutside(Pairs, [f64; 4]),
     /// With these values every area is multiplied by this.
     Area(Pairs, f64),
 }

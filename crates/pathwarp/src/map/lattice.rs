@@ -421,7 +421,8 @@ impl LatticeInverse {
             (false, _) => (0.0, Arc::new(LatticeMap { extended: true, affine: None, ..map.clone() })),
         };
         let domain = r.inflate(beyond * r.width(), beyond * r.height());
-        let reach = map.inside.x1 - r.x1;
+        // Beyond the border by more than the width over which places still count as inside, so that no gap is left between.
+        let reach = 1e3 * (map.inside.x1 - r.x1);
         Self { map: map.clone(), inner: Arc::new(NewtonInverse::new(pieces, domain, reach, map.cells)) }
     }
 
