@@ -5,8 +5,10 @@
 mod affine;
 mod bend;
 mod bilinear;
+mod birational;
 mod bulge;
 mod expr;
+mod ffd;
 mod lens;
 mod mls;
 mod mobius;
@@ -29,6 +31,8 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
         Arc::new(bilinear::Bilinear),
+        Arc::new(ffd::Ffd),
+        Arc::new(birational::BirationalDeformation),
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
@@ -110,6 +114,10 @@ pub enum Law {
     Same(Pairs, Pairs),
     /// With these values straight lines stay straight.
     KeepsLines(Pairs),
+    /// With these values straight lines in this direction stay straight.
+    KeepsLinesAlong(Pairs, (f64, f64)),
+    /// With these values nothing moves outside the box x0, y0, x1, y1.
+    FixedOutside(Pairs, [f64; 4]),
     /// With these values every area is multiplied by this.
     Area(Pairs, f64),
     /// With these values angles between curves are kept (and nothing is mirrored).
