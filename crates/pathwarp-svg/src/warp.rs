@@ -126,14 +126,6 @@ impl Document {
     /// [`Error::Geometry`] naming the shape that the map cannot bend, unless [`OnError::Skip`]; [`Error::Input`] if the
     /// structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
-        if self.shallow {
-            self.warp_here(map, options)
-        } else {
-            read::with_stack(&self.name, || self.warp_here(map, options))
-        }
-    }
-
-    fn warp_here(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
         let identity = map.class() == Class::Affine(Affine::IDENTITY);
         if identity && options.structure != Structure::Flatten {
@@ -183,14 +175,26 @@ impl Document {
             out.warnings
                 .push(format!("text is set in another font, for want of {names}; install it or outline the text"));
         }
-        let mut notes = Notes::default();
         let job = write::Job { document: self, outcomes: &outcomes, slots: &slots, map, options };
-        let kept = match (options.structure, &self.scene.unkeepable) {
+        // The walk over the drawing's groups wants a stack as deep as they are. Nothing in there waits for other threads: a
+        // caller that runs on a thread pool, as does the work above, would wait for itself.
+        if self.shallow {
+            self.write(&job, &mut out)?;
+        } else {
+            read::with_stack(&self.name, || self.write(&job, &mut out))?;
+        }
+        Ok(out)
+    }
+
+    fn write(&self, job: &write::Job<'_>, out: &mut Warped) -> Result<(), Error> {
+        let structure = job.options.structure;
+        let mut notes = Notes::default();
+        let kept = match (structure, &self.scene.unkeepable) {
             (Structure::Flatten, _) => None,
             (_, Some(why)) => Some(Err(why.clone())),
-            _ => Some(keep::write(&job, &mut out.skipped, &mut notes)),
+            _ => Some(keep::write(job, &mut out.skipped, &mut notes)),
         };
-        out.svg = match (kept, options.structure) {
+        out.svg = match (kept, structure) {
             (Some(Ok(svg)), _) => svg,
             (Some(Err(why)), Structure::Keep) => {
                 return Err(Error::input(&self.name, format!("the file's structure cannot be kept: {why}")));
@@ -199,11 +203,11 @@ impl Document {
                 if let Some(Err(why)) = kept {
                     out.warnings.push(format!("the file is written anew, its structure could not be kept: {why}"));
                 }
-                write::flat(&job, &mut out.skipped, &mut notes)
+                write::flat(job, &mut out.skipped, &mut notes)
             }
         };
         out.warnings.extend(notes.lines());
-        Ok(out)
+        Ok(())
     }
 
     /// Where filtered groups and images go: the affine fit of the map over each.

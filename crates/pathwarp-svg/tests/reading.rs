@@ -116,3 +116,13 @@ fn files_made_to_hurt_end_in_an_error_or_a_drawing() {
         }
     }
 }
+
+#[test]
+fn many_deep_drawings_at_once_do_not_wait_for_each_other() {
+    use rayon::prelude::*;
+    let shapes = "<path d='M0 0C9 9 0 20 30 30z'/>".repeat(120);
+    let deep = drawing(&format!("{}{shapes}{}", "<g>".repeat(120), "</g>".repeat(120)));
+    let sizes: Vec<usize> =
+        (0..16).into_par_iter().map(|_| read(&deep).warp(&Bend, &warp_options()).unwrap().svg.len()).collect();
+    assert!(sizes.iter().all(|s| *s == sizes[0]));
+}

@@ -23,10 +23,16 @@ const MOST_SPANNED: usize = 6;
 const MOST_IN_CHAIN: usize = 64;
 /// Stretches that fail in a row before longer ones are not tried any more.
 const PATIENCE: usize = 2;
+/// Share of the tolerance that merged pieces may use: where curvature jumps at a joint, the error has corners that lie between
+/// samples.
+const SHARE: f64 = 0.97;
 /// Searches in one chain.
 const SEARCHES: usize = 4;
 /// Intervals of a segment's table of lengths.
 const TABLE: usize = 16;
+
+/// A stretch between two places of the grid, and whether one cubic covers it or a segment's own pieces do.
+type Leg = (usize, usize, bool);
 
 /// Merges the pieces of one subpath.
 pub(super) struct Merger<'a> {
@@ -92,7 +98,7 @@ impl Merger<'_> {
         let mut stepper = Stepper {
             source: chain,
             slow: &slow,
-            tolerance: self.tolerance,
+            tolerance: SHARE * self.tolerance,
             algebra: None,
             careful: false,
             attempts: 0,
@@ -134,7 +140,7 @@ impl Merger<'_> {
         ends: &[End],
         bounds: &[usize],
         refused: &[(usize, usize)],
-    ) -> Result<Option<Vec<(usize, usize, bool)>>, Point> {
+    ) -> Result<Option<Vec<Leg>>, Point> {
         let own = bounds[bounds.len() - 1] - bounds[0];
         let n = GRID * chain.parts.len();
         // cost[k]: pieces up to place k; how[k]: where the last of them starts, and what it is.
@@ -307,6 +313,18 @@ impl Curve for Chain<'_> {
         // The parameter is the length.
         (end.t, end.speed) = (t, 1.0);
         Ok(end)
+    }
+
+    /// Short segments between long ones would fall between even samples.
+    fn places(&self, t0: f64, t1: f64) -> Vec<f64> {
+        /// In each segment.
+        const PLACES: usize = 24;
+        let mut out = Vec::new();
+        for (part, start) in self.parts.iter().zip(&self.starts) {
+            let spread = (0..PLACES).map(|i| start + part.length() * i as f64 / PLACES as f64);
+            out.extend(spread.filter(|u| *u > t0 && *u < t1));
+        }
+        out
     }
 
     fn at(&self, t: f64) -> Point {

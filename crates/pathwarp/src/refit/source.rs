@@ -29,6 +29,10 @@ pub(super) trait Curve {
     fn image(&self, t: f64) -> (Point, Vec2);
     /// The break point at `t`.
     fn end(&self, t: f64) -> Result<End, Point>;
+    /// Places in (t0, t1) that a close look must not miss, besides those spread evenly.
+    fn places(&self, _t0: f64, _t1: f64) -> Vec<f64> {
+        Vec::new()
+    }
     /// The source's point at `t`, to name in messages.
     fn at(&self, t: f64) -> Point;
     /// The curve as the image of one segment, which proofs need.

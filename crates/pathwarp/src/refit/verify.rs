@@ -85,6 +85,13 @@ pub(super) fn dense(
             }
         }
     }
+    for chunk in source.places(c.t0, c.t1).chunks(8) {
+        let tau: Lane = std::array::from_fn(|i| (chunk[i.min(chunk.len() - 1)] - c.t0) / (c.t1 - c.t0));
+        let mut s: Lane = tau.map(|t| guess(feet, t));
+        let g = c.images(source, &tau)?;
+        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+        worst = d.iter().copied().fold(worst, f64::max);
+    }
     let worst = worst.sqrt();
     if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
 }
