@@ -92,6 +92,7 @@ fn main() {
     frozen.shift(2, 2, Vec2::new(-9.0, 7.0));
     let entries: Vec<(&str, Box<dyn Map>)> = vec![
         ("ffd 3x3, unit weights", Box::new(ffd(3, 3, false))),
+        ("ffd 3x3, unit weights, extended", Box::new(LatticeMap::new(&lattice(3, 3, false), true))),
         ("ffd 3x3, weights", Box::new(ffd(3, 3, true))),
         ("ffd 2x2, unit weights", Box::new(ffd(2, 2, false))),
         ("ffd 5x5, unit weights", Box::new(ffd(5, 5, false))),

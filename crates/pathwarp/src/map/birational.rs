@@ -86,7 +86,7 @@ impl Birational {
             });
             let name =
                 |n: &str| if cells == 1 { n.to_owned() } else { format!("{n} (Bézier piece {} of {cells})", k + 1) };
-            raw.push(general_rows(&bezier, allow_poles, names.map(name))?);
+            raw.push(general_rows(&bezier, allow_poles, &names.map(name))?);
         }
         let rows_of = chained(raw).ok_or(GeometryError::NotFinite { shape: names[0].to_owned(), at: points[0][0] })?;
         Ok(Self::from_monoids(region, rows, rows_of))
@@ -151,11 +151,15 @@ impl Birational {
 }
 
 /// The two rows as monoids with the pace left as it comes, their points checked.
-fn general_rows(points: &[Vec<Point>; 2], allow_poles: bool, names: [String; 2]) -> Result<[Monoid; 2], GeometryError> {
+fn general_rows(
+    points: &[Vec<Point>; 2],
+    allow_poles: bool,
+    names: &[String; 2],
+) -> Result<[Monoid; 2], GeometryError> {
     let n = points[0].len() - 1;
     let b = points.iter().flatten().fold(Rect::from_points(points[0][0], points[0][0]), |b, p| b.union_pt(*p));
     let size = b.width().hypot(b.height());
-    let mut lines = [(0, points[0][0]), (n, points[0][n])].map(|(j, _)| Ray::join(points[0][j], points[1][j]));
+    let mut lines = [0, n].map(|j| Ray::join(points[0][j], points[1][j]));
     for (line, j) in lines.iter_mut().zip([0, n]) {
         let length = line.normal.hypot();
         if length <= ON_LINE * size {
@@ -167,7 +171,7 @@ fn general_rows(points: &[Vec<Point>; 2], allow_poles: bool, names: [String; 2])
     }
     let [first, last] = lines;
     let side = if first.at(points[0][n]) >= 0.0 { 1.0 } else { -1.0 };
-    for (row, name) in points.iter().zip(&names) {
+    for (row, name) in points.iter().zip(names) {
         for (i, p) in row.iter().enumerate() {
             let off = [(i > 0, side * first.at(*p), "first"), (i < n, -side * last.at(*p), "last")];
             for (counts, d, end) in off {
