@@ -286,9 +286,9 @@ impl LatticeMap {
     /// Calls `f` with each run of points in one cell, and `still` with each run outside.
     #[inline]
     fn runs(&self, ps: &[Point], mut f: impl FnMut(Option<&Patch>, std::ops::Range<usize>)) {
-        let b = &self.inside;
+        let (c, half) = (self.inside.center(), self.inside.size() * 0.5);
         let all = |ps: &[Point]| {
-            ps.iter().fold(true, |all, p| all & (p.x >= b.x0) & (p.x <= b.x1) & (p.y >= b.y0) & (p.y <= b.y1))
+            ps.iter().fold(true, |all, p| all & ((p.x - c.x).abs() <= half.width) & ((p.y - c.y).abs() <= half.height))
         };
         if self.patches.len() == 1 && (self.extended || all(ps)) {
             return f(Some(&self.patches[0]), 0..ps.len());

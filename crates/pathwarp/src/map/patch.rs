@@ -13,7 +13,7 @@ use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
 /// Points evaluated side by side.
-const LANES: usize = 6;
+const LANES: usize = 8;
 /// Jets evaluated side by side: three results for each coordinate are what the registers hold.
 const JET_LANES: usize = 4;
 /// A coefficient this much smaller than the largest is rounding.
