@@ -159,7 +159,7 @@ fn general_rows(
     let n = points[0].len() - 1;
     let b = points.iter().flatten().fold(Rect::from_points(points[0][0], points[0][0]), |b, p| b.union_pt(*p));
     let size = b.width().hypot(b.height());
-    let mut lines = [(0, points[0][0]), (n, points[0][n])].map(|(j, _)| Ray::join(points[0][j], points[1][j]));
+    let mut lines = [0, n].map(|j| Ray::join(points[0][j], points[1][j]));
     for (line, j) in lines.iter_mut().zip([0, n]) {
         let length = line.normal.hypot();
         if length <= ON_LINE * size {
