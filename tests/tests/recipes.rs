@@ -112,11 +112,6 @@ fn inverses_give_the_drawing_back() {
             &[args, &["--inverse", "--tolerance", "0.001", "--precision", "9"]].concat(),
             &there.stdout,
         );
-        if args[0] == "shaper" && back.status.code() == Some(4) {
-            // A bent shaper's inverse is another deformation's business; it is refused by name.
-            assert!(text(&back.stderr).contains("has no inverse"), "{}", text(&back.stderr));
-            continue;
-        }
         assert_eq!(back.status.code(), Some(0), "{args:?} {}", text(&back.stderr));
         fs::write(dir.path().join("a.svg"), ART).unwrap();
         fs::write(dir.path().join("b.svg"), &back.stdout).unwrap();

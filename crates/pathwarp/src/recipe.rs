@@ -1,10 +1,10 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
 
 use crate::deform::{Built, Overlay, Registry, Role};
-use crate::error::{Error, GeometryError};
-use crate::map::{Chain, Map};
+use crate::error::Error;
+use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
-use crate::param::{Args, Frame};
+use crate::param::{Args, Axis, Frame};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ impl Recipe {
             }
             let mut built = entry.build_from(&step.args, &frame)?;
             if step.inverse {
-                built = inverted(built, &step.deformation)?;
+                built = inverted(built, &frame);
             }
             map.push(Arc::clone(&built.map));
             steps.push(built);
@@ -78,12 +78,16 @@ impl Recipe {
     }
 }
 
-/// The same deformation turned round.
-fn inverted(built: Built, name: &str) -> Result<Built, Error> {
-    let map = built.map.inverse().ok_or_else(|| GeometryError::NoInverse {
-        what: name.to_owned(),
-        why: "several places go to one, or none is known".to_owned(),
-    })?;
+/// The same deformation turned round: by its own inverse, or by Newton's method over the frame.
+fn inverted(built: Built, frame: &Frame) -> Built {
+    /// How far beyond the frame an answer may lie, as a share of its diagonal: strokes and handles reach over it.
+    const REACH: f64 = 0.25;
+    /// Enough starts for a map that bends a few times across the frame.
+    const PIECES: [usize; 2] = [6, 6];
+    let map = built.map.inverse().unwrap_or_else(|| {
+        let reach = REACH * frame.extent(Axis::Diagonal);
+        Arc::new(NewtonInverse::new(Arc::clone(&built.map), frame.rect, reach, PIECES))
+    });
     // What was the source is now the result.
     let overlays = built.overlays.into_iter().map(|o| {
         let role = match o.role {
@@ -93,7 +97,7 @@ fn inverted(built: Built, name: &str) -> Result<Built, Error> {
         };
         Overlay { role, ..o }
     });
-    Ok(Built { map, overlays: overlays.collect(), ..built })
+    Built { map, overlays: overlays.collect(), ..built }
 }
 
 impl Recipe {
