@@ -68,7 +68,10 @@ proptest! {
             let e = support::distance(&seg, &map, &out, 1000, 0.9 * tolerance);
             prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} {:?}", e / tolerance, w.report);
         }
-        // The other way round it is the same, mirrored.
+        // The other way round it is the same, mirrored; unless the other way round it is the very same segment.
+        if seg.reversed() == seg {
+            return Ok(());
+        }
         let back = Outline { subpaths: path.subpaths.iter().map(Subpath::reversed).collect() };
         let b = warp_path(&back, &map, &Options { certify, ..Options::new(tolerance) }).unwrap();
         let mirrored = support::cubics(&b.path);

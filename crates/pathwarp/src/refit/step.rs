@@ -21,8 +21,8 @@ const MOST_PLANNED: usize = 8;
 /// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
 /// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
 const PLAIN: f64 = 0.9;
-/// The same for the dense check, whose samples are four times as many.
-const DENSE: f64 = 0.995;
+/// The same for the dense check, whose samples are four times as many: enough also for the sharp spots it is made for.
+const DENSE: f64 = 0.98;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
 /// is let pass (κ about the inverse of the piece's size, δ a share of that size).
 const FLAT: f64 = 0.02;
