@@ -6,7 +6,7 @@
 mod support;
 
 use pathwarp::Seg;
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Pairs, Registry};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame};
 use pathwarp::refit;
@@ -25,7 +25,7 @@ const VISIBLE: u8 = 24;
 const SHARE: f64 = 5e-4;
 
 /// Values that keep the artwork on its page.
-const DEFORMATIONS: [(&str, &str, &[(&str, &str)]); 5] = [
+const DEFORMATIONS: [(&str, &str, Pairs); 5] = [
     ("shaper", "shaper", &[("shaper", CAGE), ("target", "5%,92% 95%,92%")]),
     ("shaper-four", "shaper", &[("shaper", CAGE), ("target", "3%,97% 90%,85% 80%,12% 15%,5%")]),
     ("projective", "projective", &[("target", "0%,100% 100%,90% 75%,20% 15%,5%")]),

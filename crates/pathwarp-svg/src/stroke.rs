@@ -2,7 +2,7 @@
 
 use crate::scene::Part;
 use pathwarp::Outline;
-use pathwarp::kurbo::{self, Affine, Cap, Join, Point, StrokeOpts, Vec2};
+use pathwarp::kurbo::{self, Affine, Cap, Circle, Join, Point, Rect, Shape as _, StrokeOpts, Vec2};
 use pathwarp::map::Map;
 use usvg::{LineCap, LineJoin, Stroke};
 
@@ -94,16 +94,21 @@ pub(crate) fn outline(part: &Part, stroke: &Stroke, tolerance: f64) -> Outline {
             style = style.with_dashes(f64::from(stroke.dashoffset()), dashes);
         }
     }
-    let mut path = part.local.to_bez_path(tolerance);
-    if dot > 0.0 {
-        for s in &part.local.subpaths {
-            if (s.closed || !s.segs.is_empty()) && s.segs.iter().all(|g| is_point(g, s.start)) {
-                path.move_to(s.start);
-                path.line_to(s.start + Vec2::new(dot, 0.0));
-            }
-        }
+    // Subpaths of no length show their caps alone.
+    let (points, lines): (Vec<_>, Vec<_>) =
+        part.local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
+    let path = Outline { subpaths: lines }.to_bez_path(tolerance);
+    let mut out: Outline = (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into();
+    let reach = f64::from(stroke.width().get()) / 2.0;
+    for s in points.iter().filter(|s| s.closed || !s.segs.is_empty()) {
+        let dot = match cap {
+            Cap::Butt => continue,
+            Cap::Round => Circle::new(s.start, reach).to_path(tolerance),
+            Cap::Square => Rect::from_center_size(s.start, (2.0 * reach, 2.0 * reach)).to_path(tolerance),
+        };
+        out.subpaths.extend(Outline::from(&dot).subpaths);
     }
-    (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into()
+    out
 }
 
 /// The part of the width that a dot is long.

@@ -5,6 +5,7 @@ use pathwarp::kurbo::{BezPath, CubicBez, ParamCurve, PathEl, Point, Rect, Shape}
 use pathwarp::map::{Formula, Map, Real};
 use pathwarp::outline::Outline;
 use pathwarp::param::{Args, Frame};
+use pathwarp::recipe::{Recipe, Step};
 use pathwarp::refit::{self, Options};
 use pathwarp::{Error, GeometryError};
 use proptest::prelude::*;
@@ -14,8 +15,9 @@ const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40
 
 fn shaper(pairs: &[(&str, &str)]) -> Result<Arc<dyn Map>, Error> {
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
-    let registry = Registry::builtin();
-    registry.get("shaper").unwrap().build_from(&Args::from_pairs(pairs), &frame).map(|b| b.map)
+    let recipe = Recipe { steps: vec![Step::new("shaper", Args::from_pairs(pairs))] };
+    let built = recipe.build(&Registry::builtin(), frame, &std::iter::empty())?;
+    Ok(Arc::new(built.map))
 }
 
 /// Criterion: a straight line on an iso-line comes out as exactly one cubic with the exact control points. The exact ones come

@@ -3,9 +3,21 @@
 //! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
 
 mod affine;
+mod bend;
+mod bilinear;
+mod birational;
+mod bulge;
+mod expr;
+mod ffd;
+mod lens;
+mod mls;
+mod mobius;
+mod polar;
 mod projective;
 mod shaper;
 mod similitude;
+mod swirl;
+mod wave;
 
 use crate::error::Error;
 use crate::map::Map;
@@ -18,9 +30,21 @@ use std::sync::Arc;
 pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
+        Arc::new(bilinear::Bilinear),
+        Arc::new(ffd::Ffd),
+        Arc::new(birational::BirationalDeformation),
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
+        Arc::new(bend::Bend),
+        Arc::new(polar::Polar),
+        Arc::new(mls::Mls),
+        Arc::new(wave::Wave),
+        Arc::new(swirl::Swirl),
+        Arc::new(bulge::Bulge),
+        Arc::new(lens::Lens),
+        Arc::new(mobius::Mobius),
+        Arc::new(expr::Expr),
     ]
 }
 
@@ -90,8 +114,16 @@ pub enum Law {
     Same(Pairs, Pairs),
     /// With these values straight lines stay straight.
     KeepsLines(Pairs),
+    /// With these values straight lines in this direction stay straight.
+    KeepsLinesAlong(Pairs, (f64, f64)),
+    /// With these values nothing moves outside the box x0, y0, x1, y1.
+    FixedOutside(Pairs, [f64; 4]),
     /// With these values every area is multiplied by this.
     Area(Pairs, f64),
+    /// With these values angles between curves are kept (and nothing is mirrored).
+    KeepsAngles(Pairs),
+    /// The second set of values takes every point back to where it was before the first.
+    Undoes(Pairs, Pairs),
 }
 
 /// A known value.

@@ -4,7 +4,10 @@
 //! earlier maps: φ ∘ F. A path is split where it crosses them.
 
 use crate::outline::Seg;
-use kurbo::{Point, common::solve_cubic};
+use kurbo::{
+    Point, Rect,
+    common::{solve_cubic, solve_quadratic},
+};
 use std::fmt;
 use std::sync::Arc;
 
@@ -20,6 +23,17 @@ pub enum Level {
         /// Constant term.
         c: f64,
     },
+    /// The part of a straight line within a box: away from it the map is smooth across the line.
+    Stretch {
+        /// Coefficient of x.
+        a: f64,
+        /// Coefficient of y.
+        b: f64,
+        /// Constant term.
+        c: f64,
+        /// The box.
+        within: Rect,
+    },
     /// Any continuous function.
     Field(Arc<dyn Fn(Point) -> f64 + Send + Sync>),
 }
@@ -28,17 +42,18 @@ impl fmt::Debug for Level {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line { a, b, c } => write!(f, "{a}·x + {b}·y + {c}"),
+            Self::Stretch { a, b, c, within } => write!(f, "{a}·x + {b}·y + {c} within {within:?}"),
             Self::Field(_) => f.write_str("field"),
         }
     }
 }
 
 impl Level {
-    /// The function's value.
+    /// The function's value; for a [`Level::Stretch`] the whole line's.
     #[must_use]
     pub fn at(&self, p: Point) -> f64 {
         match self {
-            Self::Line { a, b, c } => a * p.x + b * p.y + c,
+            Self::Line { a, b, c } | Self::Stretch { a, b, c, .. } => a * p.x + b * p.y + c,
             Self::Field(f) => f(p),
         }
     }
@@ -46,18 +61,21 @@ impl Level {
     /// Adds the parameters in (0, 1) where `seg` meets the zero set: exactly for a straight one and Bézier pieces, by
     /// bracketing between samples otherwise.
     pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) {
+        let within = if let Self::Stretch { within, .. } = self {
+            // Wider by the rounding of a crossing's place.
+            let room = 1e-9 * (within.width() + within.height());
+            Some(within.inflate(room, room))
+        } else {
+            None
+        };
         let mut add = |t: f64| {
-            if t > 0.0 && t < 1.0 {
+            if t > 0.0 && t < 1.0 && within.is_none_or(|b| b.contains(seg.eval(t))) {
                 out.push(t);
             }
         };
         match (self, seg) {
-            (Self::Line { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
-                let c = seg.to_cubic();
-                let [q0, q1, q2, q3] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.at(p));
-                // Bernstein to power basis.
-                let roots = solve_cubic(q0, 3.0 * (q1 - q0), 3.0 * (q2 - 2.0 * q1 + q0), q3 - 3.0 * q2 + 3.0 * q1 - q0);
-                roots.into_iter().for_each(add);
+            (Self::Line { .. } | Self::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
+                straight_crossings(|p| self.at(p), seg).into_iter().for_each(add);
             }
             _ => {
                 /// Finer than any wiggle a cubic's image usually has; a crease touched and left between two samples is missed.
@@ -77,6 +95,48 @@ impl Level {
             }
         }
     }
+}
+
+/// Where an affine function vanishes on a Bézier piece: roots of a polynomial of its degree.
+fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
+    /// A leading coefficient this small against the values is rounding; the closed forms would blow it up.
+    const NOISE: f64 = 1e-14;
+    // Power basis.
+    let c = match seg {
+        Seg::Line(s) => {
+            let [a, b] = [s.p0, s.p1].map(level);
+            [a, b - a, 0.0, 0.0]
+        }
+        Seg::Quad(s) => {
+            let [a, b, c] = [s.p0, s.p1, s.p2].map(level);
+            [a, 2.0 * (b - a), c - 2.0 * b + a, 0.0]
+        }
+        _ => {
+            let s = seg.to_cubic();
+            let [a, b, c, d] = [s.p0, s.p1, s.p2, s.p3].map(level);
+            [a, 3.0 * (b - a), 3.0 * (c - 2.0 * b + a), d - 3.0 * c + 3.0 * b - a]
+        }
+    };
+    let small = NOISE * c.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+    let degree = (1..4).rev().find(|&k| c[k].abs() > small).unwrap_or(0);
+    let mut roots: Vec<f64> = match degree {
+        0 => Vec::new(),
+        1 => vec![-c[0] / c[1]],
+        2 => solve_quadratic(c[0], c[1], c[2]).into_iter().collect(),
+        _ => solve_cubic(c[0], c[1], c[2], c[3]).into_iter().collect(),
+    };
+    for t in &mut roots {
+        // Newton steps wash out the closed forms' cancellation; near a double root they may only help.
+        for _ in 0..3 {
+            let value = |t: f64| ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
+            let slope = (3.0 * c[3] * *t + 2.0 * c[2]) * *t + c[1];
+            let next = *t - value(*t) / slope;
+            if next.is_finite() && value(next).abs() < value(*t).abs() {
+                *t = next;
+            }
+        }
+    }
+    roots
 }
 
 fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64 {
@@ -99,7 +159,7 @@ fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64
 /// What happens at a crease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CreaseKind {
-    /// The map is continuous but its derivative jumps.
+    /// The derivative jumps, or the value itself: a path that crosses is drawn on by a straight line then.
     Kink,
     /// The map is defined only where the level is positive.
     Edge,
@@ -186,5 +246,30 @@ impl Creases {
             }
         }
         ts.into_iter().min_by(f64::total_cmp).map(|t| seg.eval(t))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::{CubicBez, Line, QuadBez};
+
+    /// Pieces that are straight, or nearly, are no worse than bent ones.
+    #[test]
+    fn straight_creases_are_crossed_exactly() {
+        let line = Seg::Line(Line::new((0.0, 50.0), (140.0, 50.0)));
+        let (q, c) = (Seg::Quad(QuadBez::new((0.0, 0.0), (70.1, 9.0), (140.0, 0.0))), Seg::Cubic(line.to_cubic()));
+        for at in [20.000000000031, 63.7, 120.0] {
+            let level = Level::Line { a: 1.0, b: 0.0, c: -at };
+            for seg in [line, q, c] {
+                let mut ts = Vec::new();
+                level.crossings(&seg, &mut ts);
+                assert!(ts.len() == 1 && (seg.eval(ts[0]).x - at).abs() < 1e-13 * at, "{seg:?} {ts:?}");
+            }
+        }
+        let s = Seg::Cubic(CubicBez::new((0.0, 0.0), (100.0, 0.0), (-50.0, 0.0), (50.0, 0.0)));
+        let mut ts = Vec::new();
+        Level::Line { a: 1.0, b: 0.0, c: -25.0 }.crossings(&s, &mut ts);
+        assert!(ts.len() == 3 && ts.iter().all(|t| (s.eval(*t).x - 25.0).abs() < 1e-13), "{ts:?}");
     }
 }

@@ -4,24 +4,37 @@
 //! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
 
 mod affine;
-mod bernstein;
+pub(crate) mod bernstein;
+mod birational;
+mod bspline;
 mod chain;
 mod crease;
 mod dual;
 mod formula;
 mod homography;
+mod inverse;
 mod jet;
+mod lattice;
+mod monoid;
 pub mod net;
+mod patch;
+mod pins;
 mod rational;
 
 pub use affine::AffineMap;
+pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
 pub use crease::{Crease, CreaseKind, Creases, Level};
 pub use dual::{Dual, Real};
 pub use formula::Formula;
 pub use homography::Homography;
+pub use inverse::NewtonInverse;
 pub use jet::Jet;
+pub use lattice::{Lattice, LatticeMap};
+pub use monoid::{Monoid, Ray};
 pub use net::BicubicNet;
+pub use patch::Patch;
+pub use pins::{MOST_PINS, pull};
 pub use rational::RationalBezier;
 
 use kurbo::{Affine, Point};

@@ -257,6 +257,26 @@ fn warp_subpath(
     Ok(())
 }
 
+/// Two sides of a crease that are this share of the tolerance apart are torn, not rounded.
+const TORN: f64 = 0.01;
+
+/// A part that an affine branch moves exactly, between the nodes it shares with its neighbours.
+fn affine_part(part: &Seg, from: Point, to: Point, tolerance: f64, pieces: &mut Vec<Piece>) {
+    let near = |a: Point, b: Point| a.distance(b) <= TORN * tolerance;
+    let (a, b) = (part.start(), part.end());
+    if !near(a, from) {
+        pieces.push(Piece::Line(Line::new(from, a)));
+    }
+    let (p0, p3) = (if near(a, from) { from } else { a }, if near(b, to) { to } else { b });
+    pieces.push(match part {
+        Seg::Line(_) => Piece::Line(Line::new(p0, p3)),
+        other => Piece::Cubic(CubicBez { p0, p3, ..other.to_cubic() }),
+    });
+    if !near(b, to) {
+        pieces.push(Piece::Line(Line::new(b, to)));
+    }
+}
+
 /// Appends the image of one segment. The jets are those at its ends. `Err`: where the map is not finite.
 fn warp_seg(
     seg: &Seg,
@@ -326,13 +346,21 @@ impl Job<'_> {
         let slow = split::slow(seg).map(|t| whole.param(t));
         let splits = self.creases.splits(seg);
         let nodes = [jets[0].p, jets[1].p];
+        let tolerance = self.options.tolerance;
         let mut from = (0.0, nodes[0]);
+        let mut from_t = 0.0;
         for i in 0..=splits.len() {
+            let to_t = splits.get(i).copied().unwrap_or(1.0);
             let to = match splits.get(i) {
                 Some(&t) => (whole.param(t), map.jet(seg.eval(t)).p),
                 None => (1.0, nodes[1]),
             };
             let branch = map.branch(whole.at(0.5 * (from.0 + to.0)));
+            if let (Some(Class::Affine(m)), Some(part)) = (branch.as_ref().map(Map::class), seg.part(from_t, to_t)) {
+                affine_part(&part.transformed(m), from.1, to.1, tolerance, pieces);
+                (from, from_t) = (to, to_t);
+                continue;
+            }
             let inside;
             let source = match &branch {
                 None => &whole,
@@ -341,25 +369,27 @@ impl Job<'_> {
                     &inside
                 }
             };
-            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<End, Point> {
+            // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
+            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
                 if branch.is_none() && (t == 0.0 || t == 1.0) {
                     let at = if t == 0.0 { seg.start() } else { seg.end() };
-                    source.end_with(t, Some(p), *jet, at)
-                } else {
-                    source.end_at(t, Some(p))
+                    return Ok((source.end_with(t, Some(p), *jet, at)?, false));
                 }
+                let own = source.end_at(t, None)?;
+                let torn = own.p.distance(p) > TORN * tolerance;
+                Ok((if torn { own } else { End { p, ..own } }, torn))
             };
-            let (e0, e1) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            let ((e0, torn0), (e1, torn1)) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            if torn0 {
+                pieces.push(Piece::Line(Line::new(from.1, e0.p)));
+            }
             let algebra = if certify { Algebra::of(source) } else { None };
-            let mut stepper = step::Stepper {
-                source,
-                slow: &slow,
-                tolerance: self.options.tolerance,
-                algebra,
-                careful: false,
-                attempts: 0,
-            };
+            let mut stepper = step::Stepper { source, slow: &slow, tolerance, algebra, careful: false, attempts: 0 };
             stepper.cover(e0, e1, pieces, report)?;
+            if torn1 {
+                pieces.push(Piece::Line(Line::new(e1.p, to.1)));
+            }
+            from_t = to_t;
             from = to;
         }
         Ok(())
