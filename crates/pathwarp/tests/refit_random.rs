@@ -35,7 +35,7 @@ fn seg() -> impl Strategy<Value = Seg> {
         1 => (point(), point(), point()).prop_map(|(a, b, c)| Seg::Cubic(CubicBez::new(a, a, b, c))),
         1 => (point(), point(), -2.0..3.0f64, -2.0..3.0f64)
             .prop_map(|(a, b, s, t)| Seg::Cubic(CubicBez::new(a, a.lerp(b, s), a.lerp(b, t), b))),
-        1 => (point(), 1.0..300.0f64, 0.01..300.0f64, 0.0..6.3f64, -std::f64::consts::TAU..std::f64::consts::TAU).prop_map(|(c, a, b, start, sweep)| {
+        1 => (point(), 1.0..300.0f64, 0.01..300.0f64, 0.0..6.3f64, -6.2..6.2f64).prop_map(|(c, a, b, start, sweep)| {
             Seg::Arc(EllipticArc::new(c, (a, a * 0.3).into(), (-b * 0.3, b).into(), start, sweep))
         }),
     ]
@@ -68,7 +68,10 @@ proptest! {
             let e = support::distance(&seg, &map, &out, 1000, 0.9 * tolerance);
             prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} {:?}", e / tolerance, w.report);
         }
-        // The other way round it is the same, mirrored.
+        // The other way round it is the same, mirrored; unless the other way round it is the very same segment.
+        if seg.reversed() == seg {
+            return Ok(());
+        }
         let back = Outline { subpaths: path.subpaths.iter().map(Subpath::reversed).collect() };
         let b = warp_path(&back, &map, &Options { certify, ..Options::new(tolerance) }).unwrap();
         let mirrored = support::cubics(&b.path);

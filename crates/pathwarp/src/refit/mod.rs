@@ -1,7 +1,10 @@
 //! Back to Béziers: the image of a path under a map, as lines and cubics within a stated distance.
 //!
-//! One entry, [`warp_path`]. Affine maps move control points; elsewhere each source segment is split where the map is not
-//! smooth, and every part's image is fitted adaptively.
+//! One entry, [`warp_path`]. Affine maps move control points; elsewhere each source segment is taken in its canonical direction,
+//! split where the map is not smooth (`split`), sampled eight places at a time (`source`), fitted by cubics with the right end
+//! tangents and the best handle lengths (`fit`), over as few stretches as the tolerance allows (`step`), each looked at
+//! closely where its samples may not tell all (`verify`), and proven where map and segment are quotients of polynomials
+//! (`certify`). Pieces may be merged across smooth joints (`merge`).
 
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
 #[allow(clippy::needless_range_loop)]
@@ -10,6 +13,8 @@ mod certify;
 mod fit;
 #[allow(clippy::needless_range_loop)]
 mod merge;
+#[allow(clippy::needless_range_loop)]
+mod samples;
 #[allow(clippy::needless_range_loop)]
 mod source;
 mod split;
