@@ -1,11 +1,12 @@
 //! Patches the source text in place: whatever can stay an element stays that element, with all its owner gave it.
 
 use crate::edit::Edits;
-use crate::number::{escape, short};
+use crate::number::{escape, matrix, short};
 use crate::scene::{Group, Node, Referrer};
 use crate::source::{ElementId, Source, is_shape};
-use crate::warp::{Skipped, StrokeDone};
+use crate::warp::{Notes, Skipped, StrokeDone};
 use crate::write::{Job, Writer, dashes, part_data, stroke_scale};
+use pathwarp::kurbo::Affine;
 use std::collections::{BTreeMap, BTreeSet};
 use usvg::Paint;
 
@@ -20,13 +21,14 @@ struct Keeper<'a, 'w> {
 }
 
 /// The patched text, or why there is none.
-pub(crate) fn write(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut BTreeSet<String>) -> Result<String, String> {
+pub(crate) fn write(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes) -> Result<String, String> {
     let source = &job.document.source;
     let mut writer = Writer::new(*job, true, skipped, notes);
     let mut k = Keeper { edits: Edits::new(source), source, job: *job, writer: &mut writer };
     k.clips()?;
     k.masks()?;
     k.group(&job.document.scene.root);
+    k.slots();
     let edits = k.edits;
     let defs = std::mem::take(&mut writer.defs);
     finish(source, edits, &defs, &writer.tag("defs"))
@@ -127,6 +129,18 @@ impl<'a> Keeper<'a, '_> {
         Ok(())
     }
 
+    /// Filtered elements and images move along with their transforms.
+    fn slots(&mut self) {
+        for (s, placed) in self.job.document.scene.slots.iter().zip(self.job.slots) {
+            if let (None, Some(e)) = (s.owner, s.element)
+                && placed.fit != Affine::IDENTITY
+            {
+                let own = self.job.document.own_transform(e);
+                self.edits.set_attr(e, "transform", matrix(own * placed.fit));
+            }
+        }
+    }
+
     fn def(&self, id: &str, tag: &str) -> Option<ElementId> {
         self.source.by_id.get(id)?.iter().copied().rfind(|&e| self.tag(e) == tag)
     }
@@ -199,9 +213,16 @@ impl<'a> Keeper<'a, '_> {
     }
 
     fn group(&mut self, g: &Group) {
+        if let ([n @ Node::Text { element: Some(e), .. }], false) = (g.children.as_slice(), g.filters.is_empty())
+            && self.changed(n)
+        {
+            // Box units meant the box of the letters' places, which outlines do not have.
+            let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
+            self.edits.set_property(*e, "filter", list.join(" "));
+        }
         let scene = &self.job.document.scene;
         for f in &g.filters {
-            self.writer.notes.insert(format!("filter {} stays as it is", f.id()));
+            self.writer.notes.add(crate::write::FILTERS, f.id());
         }
         // Shapes with markers: the shape and its copies, in painting order.
         let mut marked: BTreeMap<ElementId, Vec<&Node>> = BTreeMap::new();
@@ -244,7 +265,9 @@ impl<'a> Keeper<'a, '_> {
 
     fn image(&mut self, g: &Group) {
         let id = g.source.map_or_else(|| "an image".to_owned(), |e| self.source.display_name(e));
-        self.writer.skipped.push(Skipped { id, why: "images are not warped yet".into() });
+        self.writer
+            .skipped
+            .push(Skipped { id, why: "images are not bent yet; it is placed by the best affine fit".into() });
     }
 
     /// A shape element stays; only where its stroke has become an outline it turns into a group of two paths.
@@ -264,13 +287,14 @@ impl<'a> Keeper<'a, '_> {
                 self.edits.remove_attr(e, name);
             }
             // A rule for the old name no longer holds, one for the new name does.
-            if self.source.css_mentions(tag) || self.source.css_mentions("path") {
+            if self.source.css_mentions(tag) || self.source.css_mentions("path") || self.source.css.contains('[') {
                 for (name, value) in self.writer.properties(i) {
                     self.edits.set_style(e, name, value);
                 }
             }
         }
         self.edits.set_attr(e, "d", part_data(p, Some(done)));
+        self.animated(e);
         let fit = done.fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
         for (name, paint) in
             [("fill", p.fill.as_ref().map(usvg::Fill::paint)), ("stroke", p.stroke.as_ref().map(usvg::Stroke::paint))]
@@ -278,6 +302,15 @@ impl<'a> Keeper<'a, '_> {
             if let (Some(_), Some(paint)) = (fit, paint.filter(|p| !matches!(p, Paint::Color(_)))) {
                 let paint = self.writer.paint(paint, p, Some(done));
                 self.edits.set_property(e, name, paint);
+            }
+        }
+        // Without a box, a paint server in box units gave way to a colour; now that there may be one, it must not come back.
+        let flat = p.local.bounding_box().is_some_and(|b| b.width() == 0.0 || b.height() == 0.0);
+        if flat && self.source.text.contains("objectBoundingBox") | self.source.text.contains("Gradient") {
+            for (name, value) in self.writer.properties(i) {
+                if matches!(name, "fill" | "stroke") {
+                    self.edits.set_property(e, name, value);
+                }
             }
         }
         let scale = stroke_scale(Some(done));
@@ -289,6 +322,24 @@ impl<'a> Keeper<'a, '_> {
                     self.edits.set_property(e, "stroke-dashoffset", short(f64::from(s.dashoffset()) * scale));
                 }
             }
+        }
+    }
+
+    /// An animation of a shape's own geometry still knows the old one.
+    fn animated(&mut self, e: ElementId) {
+        if !self.source.animated {
+            return;
+        }
+        let end = self.source.elements[e].range.end;
+        let inside = (e + 1..self.source.elements.len()).take_while(|&c| self.source.elements[c].range.start < end);
+        let moves = |c: ElementId| {
+            self.source.attr(c, "attributeName").is_some_and(|n| n == "points" || GEOMETRY.contains(&&*n))
+        };
+        if inside.into_iter().any(moves) {
+            self.writer.notes.add(
+                "animations of a shape's geometry were left as they are and no longer fit",
+                &self.source.display_name(e),
+            );
         }
     }
 
@@ -361,9 +412,7 @@ impl<'a> Keeper<'a, '_> {
             let inner = self.writer.group(g, "");
             format!("<{0}{head}>{title}{inner}</{0}>", self.writer.tag("g"))
         } else {
-            let mark = "\u{1}";
-            head.push_str(mark);
-            self.writer.group(g, &head).replacen(&format!("{mark}>"), &format!(">{title}"), 1).replacen(mark, "", 1)
+            self.writer.group_with(g, &head, &title)
         };
         self.edits.replace(e, text);
     }

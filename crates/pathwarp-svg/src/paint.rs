@@ -1,25 +1,23 @@
 //! Gradients and patterns under a map: the best affine fit over the painted shape.
 
-use crate::scene::Part;
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::Map;
 
 /// An affine stand-in for a map over a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {
-    /// In the part's own user space.
+    /// Between the two user spaces.
     pub(crate) affine: Affine,
     /// The largest distance between it and the map over the samples, relative to the box's image.
     pub(crate) residual: f64,
 }
 
-/// The best affine fit of `map` over `part`, in the part's own user space. `None` where the map is not finite, or all is one
-/// point.
-pub(crate) fn fit(part: &Part, map: &dyn Map) -> Option<Fit> {
-    let area = part.local.bounding_box()?;
-    let back = part.frame.inverse();
+/// The best affine fit of `map` over `area`, from a user space that `read` takes to root user space to one that `write` does.
+/// `None` where the map is not finite, or all is one point.
+pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Option<Fit> {
+    let back = write.inverse();
     let pairs: Vec<(Point, Point)> =
-        grid(area).map(|p| (p, back * map.point(part.frame * p))).filter(|(_, q)| q.is_finite()).collect();
+        grid(area).map(|p| (p, back * map.point(read * p))).filter(|(_, q)| q.is_finite()).collect();
     let n = pairs.len() as f64;
     if pairs.len() < 3 {
         return None;
@@ -43,12 +41,12 @@ pub(crate) fn fit(part: &Part, map: &dyn Map) -> Option<Fit> {
     let (cx, cy) = if det > 1e-12 * (xx + yy).powi(2) {
         ((ux * yy - uy * xy) / det, (uy * xx - ux * xy) / det)
     } else {
-        let centre = part.frame * area.center();
+        let centre = read * area.center();
         let jet = map.jet(centre);
         if !jet.is_finite() {
             return None;
         }
-        let local = back * Affine::new([jet.dx.x, jet.dx.y, jet.dy.x, jet.dy.y, 0.0, 0.0]) * part.frame;
+        let local = back * Affine::new([jet.dx.x, jet.dx.y, jet.dy.x, jet.dy.y, 0.0, 0.0]) * read;
         let [a, b, c, d, ..] = local.as_coeffs();
         (Vec2::new(a, b), Vec2::new(c, d))
     };

@@ -1,6 +1,7 @@
 //! From bytes to text and to usvg's tree: unpacking, bounds, fonts, and a stack that is deep enough.
 
 use crate::fonts::{self, GenericFamilies, Missing};
+use crate::source::Source;
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::io::Read as _;
@@ -65,6 +66,20 @@ pub(crate) fn text(data: &[u8], name: &str, options: &ReadOptions) -> Result<Str
     })
 }
 
+/// Whether a drawing nests so little that any stack holds it. What is referred to may hold references in turn.
+pub(crate) fn is_shallow(source: &Source) -> bool {
+    /// Elements deep, references followed. A level takes a few kilobytes.
+    const SHALLOW: usize = 80;
+    let mut depths: Vec<usize> = Vec::with_capacity(source.elements.len());
+    let mut references = 1;
+    for e in &source.elements {
+        depths.push(e.parent.map_or(0, |p| depths[p] + 1));
+        let refers = matches!(e.tag.as_str(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
+        references += usize::from(refers);
+    }
+    source.unpatchable.is_none() && depths.iter().max().is_none_or(|d| d * references <= SHALLOW)
+}
+
 /// Runs `f` with a stack for the deepest nesting that the parsers let through (1024 elements). A panic inside, which no known
 /// file causes, becomes an error.
 pub(crate) fn with_stack<T: Send>(name: &str, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
@@ -88,8 +103,8 @@ pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usv
         font_resolver: fonts::resolver(options.generic_families.clone(), missing.clone()),
         ..usvg::Options::default()
     };
-    // Glyphs of a COLR or SVG font may need fonts in turn, but only text asks for one.
-    if text.contains("text") || text.contains("ENTITY") || text.contains("image") {
+    // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
+    if ["<text", ":text", "ENTITY", "image/svg", ".svg"].iter().any(|t| text.contains(t)) {
         usvg.fontdb = fonts::database(options.system_fonts, &options.fonts);
     }
     if options.base_dir.is_none() {

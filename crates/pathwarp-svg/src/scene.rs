@@ -3,10 +3,9 @@
 //!
 //! Root user space is the coordinate system inside the root `<svg>` (viewBox units).
 
-use crate::geometry::{self, Reader};
-use crate::source::{ElementId, Source, is_shape};
+use crate::source::ElementId;
 use pathwarp::Outline;
-use pathwarp::kurbo::{Affine, Point, Rect, Size};
+use pathwarp::kurbo::{Affine, Rect};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -41,6 +40,7 @@ pub(crate) struct Part {
     pub(crate) visible: bool,
     /// The stroke's width is in px whatever the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
+    pub(crate) slot: Option<usize>,
 }
 
 #[derive(Debug)]
@@ -56,15 +56,34 @@ pub(crate) struct Group {
     pub(crate) source: Option<ElementId>,
     pub(crate) owner: Option<ElementId>,
     pub(crate) transform: Affine,
-    /// From inside to root user space.
-    pub(crate) frame: Affine,
     pub(crate) opacity: f32,
     pub(crate) blend: BlendMode,
     pub(crate) isolate: bool,
     pub(crate) clip: Option<usize>,
     pub(crate) mask: Option<usize>,
     pub(crate) filters: Vec<Arc<usvg::filter::Filter>>,
+    /// Its own slot, if it is moved as a whole.
+    pub(crate) slot: Option<usize>,
     pub(crate) children: Vec<Node>,
+}
+
+/// A place in the tree of groups where an affine fit of the map goes into the transforms, so that what cannot be bent (filters
+/// with their regions and lengths, images) is moved along. What is inside is written in the moved frame.
+#[derive(Debug)]
+pub(crate) struct Slot {
+    /// The slot around it.
+    pub(crate) outer: Option<usize>,
+    /// From inside to root user space.
+    pub(crate) frame: Affine,
+    /// What is to be fitted, in the coordinates inside.
+    pub(crate) area: Rect,
+    /// Whether it goes before the group's own transform, else after.
+    pub(crate) before: bool,
+    /// The element whose `transform` takes it up.
+    pub(crate) element: Option<ElementId>,
+    pub(crate) owner: Option<ElementId>,
+    /// The parts inside.
+    pub(crate) parts: Range<usize>,
 }
 
 /// A clip path as one frame sees it.
@@ -74,8 +93,6 @@ pub(crate) struct Clip {
     pub(crate) transform: Affine,
     pub(crate) clip: Option<usize>,
     pub(crate) root: Group,
-    /// Of those that refer to it.
-    pub(crate) frame: Affine,
     pub(crate) referrers: Vec<Referrer>,
     /// The parts that belong to it.
     pub(crate) parts: Range<usize>,
@@ -89,7 +106,9 @@ pub(crate) struct Mask {
     pub(crate) kind: usvg::MaskType,
     pub(crate) mask: Option<usize>,
     pub(crate) root: Group,
+    /// Of those that refer to it: from their user space to root user space.
     pub(crate) frame: Affine,
+    pub(crate) slot: Option<usize>,
     pub(crate) referrers: Vec<Referrer>,
     /// The parts that belong to it.
     pub(crate) parts: Range<usize>,
@@ -120,410 +139,15 @@ pub(crate) struct Scene {
     pub(crate) clips: Vec<Clip>,
     pub(crate) masks: Vec<Mask>,
     pub(crate) tiles: Vec<Tile>,
+    /// What filters show by `feImage`, by the address of usvg's group (which the document keeps alive).
+    pub(crate) pictures: HashMap<usize, Group>,
+    pub(crate) slots: Vec<Slot>,
     /// The parts written as each element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
     /// Root user space to px.
     pub(crate) to_px: Affine,
     /// Why the source cannot be patched in place, whatever the map.
     pub(crate) unkeepable: Option<String>,
-}
-
-struct Builder<'a> {
-    reader: Reader<'a>,
-    ids: &'a HashMap<String, Vec<ElementId>>,
-    /// The source's transforms by what they are in f32; `None` where two different ones round to the same.
-    exact: HashMap<[u32; 6], Option<Affine>>,
-    /// The source's shapes by roughly where they start: for copies, which carry no id. Filled when first needed.
-    starts: Option<HashMap<[i64; 2], Vec<ElementId>>>,
-    outlines: HashMap<ElementId, Outline>,
-    parts: Vec<Part>,
-    clips: Vec<Clip>,
-    masks: Vec<Mask>,
-    tiles: Vec<Tile>,
-    clip_index: HashMap<(usize, [u64; 6]), usize>,
-    mask_index: HashMap<(usize, [u64; 6]), usize>,
-    unkeepable: Option<String>,
-    taken: HashMap<ElementId, u32>,
-}
-
-#[derive(Clone, Copy)]
-struct Context {
-    owner: Option<ElementId>,
-    role: Role,
-}
-
-/// Resolves the drawing. `ids` says what the tree's ids stand for.
-pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Vec<ElementId>>, dpi: f64) -> Scene {
-    let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
-    let reader = Reader { source, dpi, page };
-    let mut b = Builder {
-        reader,
-        ids,
-        exact: exact_transforms(&reader),
-        starts: None,
-        outlines: HashMap::new(),
-        parts: Vec::new(),
-        clips: Vec::new(),
-        masks: Vec::new(),
-        tiles: Vec::new(),
-        clip_index: HashMap::new(),
-        mask_index: HashMap::new(),
-        unkeepable: source.unpatchable.clone(),
-        taken: HashMap::new(),
-    };
-    let (top, to_px) = b.root_group(tree, page);
-    // The viewport's own transform leads out of root user space; what is inside it lies there as it is.
-    let outside = if to_px.determinant() == 0.0 { Affine::IDENTITY } else { to_px.inverse() };
-    let mut root = b.group(top, outside, Context { owner: None, role: Role::Paint });
-    root.transform = Affine::IDENTITY;
-    let Builder { parts, clips, masks, tiles, unkeepable, .. } = b;
-    let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
-    for (i, p) in parts.iter().enumerate() {
-        if let Some(e) = p.source {
-            by_source.entry(e).or_default().push(i);
-        }
-    }
-    Scene { root, parts, clips, masks, tiles, by_source, to_px, unkeepable }
-}
-
-fn bits(m: Affine) -> [u64; 6] {
-    m.as_coeffs().map(f64::to_bits)
-}
-
-fn f32_bits(m: Affine) -> [u32; 6] {
-    // Adding zero makes -0 and 0 one.
-    m.as_coeffs().map(|v| (v as f32 + 0.0).to_bits())
-}
-
-fn exact_transforms(reader: &Reader<'_>) -> HashMap<[u32; 6], Option<Affine>> {
-    let mut out: HashMap<[u32; 6], Option<Affine>> = HashMap::new();
-    for e in 0..reader.source.elements.len() {
-        let moved = reader.source.attr(e, "transform").is_some()
-            || matches!(reader.source.elements[e].tag.as_str(), "use" | "svg");
-        if moved && let Some(t) = reader.own_transform(e) {
-            out.entry(f32_bits(t)).and_modify(|v| *v = v.filter(|v| *v == t)).or_insert(Some(t));
-        }
-    }
-    out
-}
-
-/// Whether `b` is `a` up to f32 rounding of a short product.
-fn near(a: Affine, b: Affine) -> bool {
-    let (a, b) = (a.as_coeffs(), b.as_coeffs());
-    let linear = a[..4].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let shift = a[4].abs().max(a[5].abs()).max(linear);
-    (0..4).all(|i| (a[i] - b[i]).abs() <= 1e-6 * linear) && (4..6).all(|i| (a[i] - b[i]).abs() <= 1e-6 * shift)
-}
-
-impl Builder<'_> {
-    /// The group that holds root user space, and the transform from there to px.
-    fn root_group<'t>(&self, tree: &'t usvg::Tree, page: Size) -> (&'t usvg::Group, Affine) {
-        let by_source = self.reader.view_box_transform(0, page);
-        let plain = by_source == Affine::IDENTITY
-            && self.reader.source.attr(0, "transform").is_none()
-            && !self.reader.source.text.contains("background-color");
-        // usvg wraps everything in a group exactly when the root has a transform of its own.
-        if let ([usvg::Node::Group(g)], false) = (tree.root().children(), plain)
-            && g.id().is_empty()
-        {
-            let t = geometry::affine(g.transform());
-            if near(by_source, t) {
-                return (g, by_source);
-            }
-            if g.transform().is_identity() || self.reader.source.text.contains("transform") {
-                return (g, t);
-            }
-        }
-        (tree.root(), Affine::IDENTITY)
-    }
-
-    /// The one element that an id stands for.
-    fn element(&self, id: &str) -> Option<ElementId> {
-        match self.ids.get(id)?.as_slice() {
-            [one] => Some(*one),
-            _ => None,
-        }
-    }
-
-    fn tag(&self, e: ElementId) -> &str {
-        &self.reader.source.elements[e].tag
-    }
-
-    /// A group's transform in f64: its element's, or the only one in the source that is the same in f32.
-    fn refine(&self, t: usvg::Transform, element: Option<ElementId>) -> Affine {
-        let rough = geometry::affine(t);
-        if t.is_identity() {
-            return rough;
-        }
-        if let Some(own) = element.and_then(|e| self.reader.own_transform(e))
-            && near(own, rough)
-        {
-            return own;
-        }
-        self.exact.get(&f32_bits(rough)).copied().flatten().unwrap_or(rough)
-    }
-
-    /// The element that a group without id belongs to: the one shape or text it was made for.
-    fn only_child(&self, g: &usvg::Group) -> Option<ElementId> {
-        let mut found = None;
-        for c in g.children() {
-            if let usvg::Node::Path(_) | usvg::Node::Text(_) = c
-                && let Some(e) = self.element(c.id())
-                && found.replace(e).is_some()
-            {
-                return None;
-            }
-        }
-        found
-    }
-
-    fn group(&mut self, g: &usvg::Group, parent: Affine, mut context: Context) -> Group {
-        let source = self.element(g.id());
-        let element = source.or_else(|| self.only_child(g));
-        let transform = self.refine(g.transform(), element);
-        let frame = parent * transform;
-        let referrer = Referrer { element, owner: context.owner };
-        let clip = g.clip_path().map(|c| self.clip(c, frame, referrer));
-        let mask = g.mask().map(|m| self.mask(m, frame, referrer));
-        if context.owner.is_none() && source.is_some_and(|e| self.tag(e) == "use") {
-            context.owner = source;
-        }
-        let owner = context.owner;
-        let markers = if context.owner.is_none() { self.marker_groups(g) } else { Vec::new() };
-        let mut children = Vec::with_capacity(g.children().len());
-        for (i, c) in g.children().iter().enumerate() {
-            let marked = markers.iter().find(|m| m.0 == i).map(|m| m.1);
-            let context = Context { owner: context.owner.or(marked), ..context };
-            children.push(match c {
-                usvg::Node::Group(c) => Node::Group(Box::new(self.group(c, frame, context))),
-                usvg::Node::Path(p) => Node::Part(self.part(p, frame, context)),
-                usvg::Node::Image(image) => Node::Image(image.clone()),
-                usvg::Node::Text(t) => self.text(t, frame, context),
-            });
-        }
-        Group {
-            source,
-            owner,
-            transform,
-            frame,
-            opacity: g.opacity().get(),
-            blend: g.blend_mode(),
-            isolate: g.isolate(),
-            clip,
-            mask,
-            filters: g.filters().to_vec(),
-            children,
-        }
-    }
-
-    /// The children that belong to a shape with markers (the shape itself and the copies beside it), with its element.
-    fn marker_groups(&self, g: &usvg::Group) -> Vec<(usize, ElementId)> {
-        let mut out = Vec::new();
-        let path = |i: usize| match g.children().get(i) {
-            Some(usvg::Node::Path(p)) => self.element(p.id()).filter(|&e| is_shape(self.tag(e))),
-            _ => None,
-        };
-        for (i, c) in g.children().iter().enumerate() {
-            let usvg::Node::Group(c) = c else { continue };
-            let anonymous = c.id().is_empty() && c.transform().is_identity() && c.opacity().get() == 1.0;
-            if !anonymous || c.clip_path().is_some() || c.children().is_empty() {
-                continue;
-            }
-            // Copies hang in groups of their own and carry no ids.
-            let copies = c.children().iter().all(|m| matches!(m, usvg::Node::Group(m) if m.id().is_empty()));
-            if !copies || has_known(c, self.ids) {
-                continue;
-            }
-            for j in [i.wrapping_sub(1), i + 1] {
-                if let Some(e) = path(j) {
-                    out.push((i, e));
-                    out.push((j, e));
-                    break;
-                }
-            }
-        }
-        out
-    }
-
-    fn text(&mut self, t: &usvg::Text, frame: Affine, context: Context) -> Node {
-        let element = self.element(t.id());
-        if element.is_none() && context.owner.is_none() {
-            self.unkept("a text cannot be told from another with the same id");
-        }
-        let context = Context { owner: context.owner.or(element), ..context };
-        let content = self.group(t.flattened(), frame, context);
-        Node::Text { element, content: Box::new(content) }
-    }
-
-    fn unkept(&mut self, why: &str) {
-        self.unkeepable.get_or_insert_with(|| why.to_owned());
-    }
-
-    fn part(&mut self, p: &usvg::Path, frame: Affine, context: Context) -> usize {
-        let mut source = None;
-        let mut outline = None;
-        let candidates = self.ids.get(p.id()).map_or(&[][..], Vec::as_slice);
-        let shared = candidates.len() > 1;
-        for &e in candidates {
-            if !is_shape(self.tag(e)) || (shared && self.taken.contains_key(&e)) {
-                continue;
-            }
-            let exact = self.reader.outline(e).filter(|o| geometry::same_path(o, p.data()));
-            if exact.is_some() || !shared {
-                source = Some(e);
-                outline = exact;
-                if shared {
-                    self.taken.insert(e, 1);
-                }
-                break;
-            }
-        }
-        if source.is_none() {
-            outline = self.copy_of(p.data());
-            // The page's own background is no artwork; it is the first thing of all.
-            let background = self.parts.is_empty() && self.reader.source.text.contains("background-color");
-            if context.owner.is_none() && p.is_visible() && !background {
-                self.unkept("a painted path cannot be traced to one element of the source");
-            }
-        }
-        for paint in [p.fill().map(usvg::Fill::paint), p.stroke().map(usvg::Stroke::paint)] {
-            if let Some(usvg::Paint::Pattern(pattern)) = paint {
-                self.tile(pattern);
-            }
-        }
-        let fixed_width = source.is_some_and(|e| {
-            let fixed = |name| self.reader.source.attr(e, name).is_some_and(|v| v.contains("non-scaling-stroke"));
-            fixed("vector-effect") || fixed("style")
-        });
-        self.parts.push(Part {
-            source,
-            owner: context.owner,
-            role: context.role,
-            local: outline.unwrap_or_else(|| geometry::from_usvg(p.data())),
-            frame,
-            fill: p.fill().cloned(),
-            stroke: p.stroke().cloned(),
-            paint_order: p.paint_order(),
-            rendering: p.rendering_mode(),
-            visible: p.is_visible(),
-            fixed_width,
-        });
-        self.parts.len() - 1
-    }
-
-    /// The source's own outline of a copied path (in a `use`, in a marker).
-    fn copy_of(&mut self, path: &usvg::tiny_skia_path::Path) -> Option<Outline> {
-        /// Cells of the size of f32's rounding would miss neighbours; these are coarse enough, and three by three are asked.
-        fn cell(p: Point) -> [i64; 2] {
-            [p.x, p.y].map(|v| (v * 16.0).floor() as i64)
-        }
-        if self.starts.is_none() {
-            let mut starts: HashMap<_, Vec<_>> = HashMap::new();
-            for (e, el) in self.reader.source.elements.iter().enumerate() {
-                if is_shape(&el.tag)
-                    && let Some(o) = self.reader.outline(e)
-                    && let Some(first) = o.subpaths.iter().find(|s| !s.segs.is_empty() || s.closed)
-                {
-                    starts.entry(cell(first.start)).or_default().push(e);
-                    self.outlines.insert(e, o);
-                }
-            }
-            self.starts = Some(starts);
-        }
-        let start = path.points().first()?;
-        let [x, y] = cell(Point::new(f64::from(start.x), f64::from(start.y)));
-        let starts = self.starts.as_ref()?;
-        /// Enough for any drawing made by a person; a file of a million equal copies must not take forever.
-        const TRIES: usize = 64;
-        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [x.saturating_add(i), y.saturating_add(j)]));
-        around
-            .filter_map(|c| starts.get(&c))
-            .flatten()
-            .take(TRIES)
-            .filter_map(|e| self.outlines.get(e))
-            .find(|o| geometry::same_path(o, path))
-            .cloned()
-    }
-
-    fn clip(&mut self, c: &usvg::ClipPath, frame: Affine, referrer: Referrer) -> usize {
-        let key = (std::ptr::from_ref(c) as usize, bits(frame));
-        if let Some(&i) = self.clip_index.get(&key) {
-            self.clips[i].referrers.push(referrer);
-            return i;
-        }
-        let first = self.parts.len();
-        let def = self.element_of_def(c.id(), "clipPath");
-        let transform = self.refine(c.transform(), def);
-        let chained = Referrer { element: def, owner: None };
-        let clip = c.clip_path().map(|c| self.clip(c, frame, chained));
-        // What is inside replaces nothing of the drawing's own tree.
-        let inside = Context { owner: None, role: Role::Clip };
-        let kept = self.unkeepable.take();
-        let root = self.group(c.root(), frame * transform, inside);
-        self.unkeepable = kept;
-        self.clips.push(Clip {
-            id: c.id().to_owned(),
-            transform,
-            clip,
-            root,
-            frame,
-            referrers: vec![referrer],
-            parts: first..self.parts.len(),
-        });
-        self.clip_index.insert(key, self.clips.len() - 1);
-        self.clips.len() - 1
-    }
-
-    fn mask(&mut self, m: &usvg::Mask, frame: Affine, referrer: Referrer) -> usize {
-        let key = (std::ptr::from_ref(m) as usize, bits(frame));
-        if let Some(&i) = self.mask_index.get(&key) {
-            self.masks[i].referrers.push(referrer);
-            return i;
-        }
-        let first = self.parts.len();
-        let chained = Referrer { element: self.element_of_def(m.id(), "mask"), owner: None };
-        let mask = m.mask().map(|m| self.mask(m, frame, chained));
-        let kept = self.unkeepable.take();
-        let root = self.group(m.root(), frame, Context { owner: None, role: Role::Mask });
-        self.unkeepable = kept;
-        let (r, c) = (m.rect(), m.root().stroke_bounding_box());
-        let rect = |l, t, r, b| Rect::new(f64::from(l), f64::from(t), f64::from(r), f64::from(b));
-        self.masks.push(Mask {
-            id: m.id().to_owned(),
-            rect: rect(r.left(), r.top(), r.right(), r.bottom()),
-            kind: m.kind(),
-            mask,
-            root,
-            frame,
-            referrers: vec![referrer],
-            parts: first..self.parts.len(),
-            content: rect(c.left(), c.top(), c.right(), c.bottom()),
-        });
-        self.mask_index.insert(key, self.masks.len() - 1);
-        self.masks.len() - 1
-    }
-
-    fn tile(&mut self, pattern: &Arc<usvg::Pattern>) {
-        if self.tiles.iter().any(|t| Arc::ptr_eq(&t.pattern, pattern)) {
-            return;
-        }
-        let kept = self.unkeepable.take();
-        let root = self.group(pattern.root(), Affine::IDENTITY, Context { owner: None, role: Role::Pattern });
-        self.unkeepable = kept;
-        self.tiles.push(Tile { pattern: pattern.clone(), root });
-    }
-
-    fn element_of_def(&self, id: &str, tag: &str) -> Option<ElementId> {
-        let all = self.reader.source.by_id.get(id)?;
-        all.iter().copied().rfind(|&e| self.tag(e) == tag)
-    }
-}
-
-/// Whether anything in `g` comes from an element of its own.
-fn has_known(g: &usvg::Group, ids: &HashMap<String, Vec<ElementId>>) -> bool {
-    g.children().iter().any(|c| {
-        ids.contains_key(c.id()) && !c.id().is_empty() || matches!(c, usvg::Node::Group(g) if has_known(g, ids))
-    })
 }
 
 impl Part {

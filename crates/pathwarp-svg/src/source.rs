@@ -64,6 +64,8 @@ pub(crate) struct Source {
     pub(crate) css: String,
     /// Element and property names that a selector or a declaration of the style sheets mentions.
     css_words: HashSet<String>,
+    /// Whether anything moves.
+    pub(crate) animated: bool,
     /// Why the text cannot be patched in place.
     pub(crate) unpatchable: Option<String>,
     line_starts: Vec<usize>,
@@ -103,7 +105,9 @@ impl Source {
         for node in doc.descendants().filter(roxmltree::Node::is_element) {
             let id = elements.len();
             number.insert(node.id(), id);
-            let element = element(&text, node, node.parent().and_then(|p| number.get(&p.id()).copied()));
+            let element = element(&text, node, node.parent().and_then(|p| number.get(&p.id()).copied()))
+                // An entity's own text stands in the DTD, before the root.
+                .filter(|e| e.range.start >= root.range().start);
             match element {
                 Some(e) => {
                     if let Some(v) = e.attr(&text, "id").filter(|v| !v.is_empty()) {
@@ -135,7 +139,8 @@ impl Source {
         let css_words = words(&css);
         let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
         drop(doc);
-        Ok(Self { text, elements, by_id, css, css_words, unpatchable, line_starts })
+        let animated = elements.iter().any(|e| e.tag == "animate");
+        Ok(Self { animated, text, elements, by_id, css, css_words, unpatchable, line_starts })
     }
 
     /// Line and column (in characters), counted from 1.

@@ -2,7 +2,7 @@
 
 use crate::scene::Part;
 use pathwarp::Outline;
-use pathwarp::kurbo::{self, Affine, Cap, Join, StrokeOpts, Vec2};
+use pathwarp::kurbo::{self, Affine, Cap, Circle, Join, Point, Rect, Shape as _, StrokeOpts, Vec2};
 use pathwarp::map::Map;
 use usvg::{LineCap, LineJoin, Stroke};
 
@@ -21,10 +21,11 @@ fn linear(m: Affine, v: Vec2) -> Vec2 {
     Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
 }
 
-/// Looks at the map along `outline` (root user space) of a part whose user space is `frame`. `None` where the map has no
-/// finite derivative.
-pub(crate) fn width(outline: &Outline, frame: Affine, map: &dyn Map, stroke: &Stroke) -> Option<Width> {
-    let back = frame.inverse();
+/// Looks at the map along `outline` (root user space) of a part whose user space was `read` and will be `write`. `None` where
+/// the map has no finite derivative.
+pub(crate) fn width(outline: &Outline, read: Affine, write: Affine, map: &dyn Map, stroke: &Stroke) -> Option<Width> {
+    let (before, after) = (read.inverse(), write.inverse());
+    let frames = (after.determinant() / before.determinant()).abs();
     let (mut across, mut along) = (Vec::new(), Vec::new());
     let (mut area, mut length) = (0.0, 0.0);
     let segments = outline.segs().count().max(1);
@@ -38,12 +39,12 @@ pub(crate) fn width(outline: &Outline, frame: Affine, map: &dyn Map, stroke: &St
         for &t in samples {
             let (p, v) = (s.eval(t), s.deriv(t));
             let jet = map.jet(p);
-            let here = linear(back, v).hypot();
-            let there = linear(back, jet.push(v)).hypot();
+            let here = linear(before, v).hypot();
+            let there = linear(after, jet.push(v)).hypot();
             if here <= 0.0 {
                 continue;
             }
-            let det = jet.det().abs();
+            let det = jet.det().abs() * frames;
             if !(det.is_finite() && there > 0.0) {
                 return None;
             }
@@ -82,8 +83,10 @@ pub(crate) fn outline(part: &Part, stroke: &Stroke, tolerance: f64) -> Outline {
         .with_caps(cap)
         .with_join(join)
         .with_miter_limit(f64::from(stroke.miterlimit().get()));
+    let dot = if cap == Cap::Butt { 0.0 } else { DOT * f64::from(stroke.width().get()) };
     if let Some(dashes) = stroke.dasharray() {
-        let dashes: Vec<f64> = dashes.iter().map(|d| f64::from(*d)).collect();
+        // A dash of no length still shows its caps; an expander sees it only if it has some.
+        let dashes: Vec<f64> = dashes.iter().map(|d| f64::from(*d).max(dot)).collect();
         /// Dashes finer than this many on one path would be a grey line and no end of work.
         const MOST_DASHES: f64 = 20_000.0;
         let period: f64 = dashes.iter().sum();
@@ -91,8 +94,29 @@ pub(crate) fn outline(part: &Part, stroke: &Stroke, tolerance: f64) -> Outline {
             style = style.with_dashes(f64::from(stroke.dashoffset()), dashes);
         }
     }
-    let path = part.local.to_bez_path(tolerance);
-    (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into()
+    // Subpaths of no length show their caps alone.
+    let (points, lines): (Vec<_>, Vec<_>) =
+        part.local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
+    let path = Outline { subpaths: lines }.to_bez_path(tolerance);
+    let mut out: Outline = (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into();
+    let reach = f64::from(stroke.width().get()) / 2.0;
+    for s in points.iter().filter(|s| s.closed || !s.segs.is_empty()) {
+        let dot = match cap {
+            Cap::Butt => continue,
+            Cap::Round => Circle::new(s.start, reach).to_path(tolerance),
+            Cap::Square => Rect::from_center_size(s.start, (2.0 * reach, 2.0 * reach)).to_path(tolerance),
+        };
+        out.subpaths.extend(Outline::from(&dot).subpaths);
+    }
+    out
+}
+
+/// The part of the width that a dot is long.
+const DOT: f64 = 1e-5;
+
+fn is_point(s: &pathwarp::Seg, at: Point) -> bool {
+    let c = s.to_cubic();
+    [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
 }
 
 /// The control polygons' length: an upper bound.

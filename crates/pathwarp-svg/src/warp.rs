@@ -4,14 +4,15 @@ use crate::document::Document;
 use crate::number::MOST_DECIMALS;
 use crate::options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
 use crate::paint::{self, Fit};
-use crate::scene::{Part, Role};
-use crate::{keep, stroke, write};
+use crate::scene::{Part, Role, Scene};
+use crate::select::Selection;
+use crate::{keep, read, stroke, write};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::map::{Class, Map};
 use pathwarp::refit::{self, Assurance};
 use pathwarp::{Error, GeometryError, Outline};
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A warped document.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +51,30 @@ pub struct Skipped {
     pub id: String,
     /// Why.
     pub why: String,
+}
+
+/// Remarks, each said once with all it applies to.
+#[derive(Debug, Default)]
+pub(crate) struct Notes(BTreeMap<&'static str, BTreeSet<String>>);
+
+impl Notes {
+    /// `what` happened to `whom`.
+    pub(crate) fn add(&mut self, what: &'static str, whom: &str) {
+        self.0.entry(what).or_default().insert(whom.to_owned());
+    }
+
+    fn lines(self) -> impl Iterator<Item = String> {
+        /// As many names as help to find the place.
+        const NAMED: usize = 4;
+        self.0.into_iter().map(|(what, whom)| {
+            let names: Vec<&str> = whom.iter().map(String::as_str).filter(|n| !n.is_empty()).take(NAMED).collect();
+            match (names.len(), whom.len()) {
+                (0, _) => what.to_owned(),
+                (n, all) if all > n => format!("{what}: {} and {} more", names.join(", "), all - n),
+                _ => format!("{what}: {}", names.join(", ")),
+            }
+        })
+    }
 }
 
 /// What becomes of one part.
@@ -109,11 +134,19 @@ impl Document {
         }
         let meant = self.chosen(options);
         let parts = &self.scene.parts;
-        let results: Vec<Option<Result<Done, GeometryError>>> = parts
-            .par_iter()
-            .zip(&meant)
-            .map(|(p, meant)| (*meant && usable(p.frame)).then(|| warp_part(p, map, options)))
-            .collect();
+        let slots = self.place_slots(map, &meant, &options.selection);
+        let one = |(p, meant): (&Part, &bool)| {
+            let write = written(&self.scene, &slots, p.slot, p.frame);
+            (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
+        };
+        /// Below so many segments the work is done before another thread has woken up.
+        const WORTH_IT: usize = 100;
+        let segments: usize = parts.iter().map(|p| p.local.segs().count()).sum();
+        let results: Vec<Option<Result<Done, GeometryError>>> = if segments < WORTH_IT {
+            parts.iter().zip(&meant).map(one).collect()
+        } else {
+            parts.par_iter().zip(&meant).map(one).collect()
+        };
         let mut outcomes = Vec::with_capacity(parts.len());
         let mut last = None;
         for (i, r) in results.into_iter().enumerate() {
@@ -142,14 +175,26 @@ impl Document {
             out.warnings
                 .push(format!("text is set in another font, for want of {names}; install it or outline the text"));
         }
-        let mut notes = BTreeSet::new();
-        let job = write::Job { document: self, outcomes: &outcomes, map, options };
-        let kept = match (options.structure, &self.scene.unkeepable) {
+        let job = write::Job { document: self, outcomes: &outcomes, slots: &slots, map, options };
+        // The walk over the drawing's groups wants a stack as deep as they are. Nothing in there waits for other threads: a
+        // caller that runs on a thread pool, as does the work above, would wait for itself.
+        if self.shallow {
+            self.write(&job, &mut out)?;
+        } else {
+            read::with_stack(&self.name, || self.write(&job, &mut out))?;
+        }
+        Ok(out)
+    }
+
+    fn write(&self, job: &write::Job<'_>, out: &mut Warped) -> Result<(), Error> {
+        let structure = job.options.structure;
+        let mut notes = Notes::default();
+        let kept = match (structure, &self.scene.unkeepable) {
             (Structure::Flatten, _) => None,
             (_, Some(why)) => Some(Err(why.clone())),
-            _ => Some(keep::write(&job, &mut out.skipped, &mut notes)),
+            _ => Some(keep::write(job, &mut out.skipped, &mut notes)),
         };
-        out.svg = match (kept, options.structure) {
+        out.svg = match (kept, structure) {
             (Some(Ok(svg)), _) => svg,
             (Some(Err(why)), Structure::Keep) => {
                 return Err(Error::input(&self.name, format!("the file's structure cannot be kept: {why}")));
@@ -158,11 +203,34 @@ impl Document {
                 if let Some(Err(why)) = kept {
                     out.warnings.push(format!("the file is written anew, its structure could not be kept: {why}"));
                 }
-                write::flat(&job, &mut out.skipped, &mut notes)
+                write::flat(job, &mut out.skipped, &mut notes)
             }
         };
-        out.warnings.extend(notes);
-        Ok(out)
+        out.warnings.extend(notes.lines());
+        Ok(())
+    }
+
+    /// Where filtered groups and images go: the affine fit of the map over each.
+    fn place_slots(&self, map: &dyn Map, meant: &[bool], selection: &Selection) -> Vec<Placed> {
+        let mut out: Vec<Placed> = Vec::with_capacity(self.scene.slots.len());
+        let elements = selection.resolve(&self.source);
+        for s in &self.scene.slots {
+            let outer = written(&self.scene, &out, s.outer, s.frame);
+            // What stands in tiles and in filters' pictures is never bent and has no say.
+            let mut own = s.parts.clone().filter(|&i| self.scene.parts[i].role != Role::Pattern).peekable();
+            let moved = if own.peek().is_some() {
+                own.all(|i| meant[i])
+            } else {
+                s.owner.or(s.element).map_or(selection.is_everything(), |e| elements[e])
+            };
+            let fit = (moved && usable(s.frame) && usable(outer))
+                .then(|| paint::fit(s.area, s.frame, outer, map))
+                .flatten()
+                .filter(|f| usable(f.affine) && !f.is_identity(s.area));
+            let fit = fit.map_or(Affine::IDENTITY, |f| f.affine);
+            out.push(Placed { fit, write: outer * fit });
+        }
+        out
     }
 
     /// For every part whether it is to be warped: clip paths and masks follow those that refer to them.
@@ -208,6 +276,23 @@ impl Warped {
     }
 }
 
+/// A slot under the map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Placed {
+    /// What its transform is multiplied with.
+    pub(crate) fit: Affine,
+    /// From inside to root user space, as written.
+    write: Affine,
+}
+
+/// A frame as it is in the result: inside a slot it has moved along.
+pub(crate) fn written(scene: &Scene, placed: &[Placed], slot: Option<usize>, frame: Affine) -> Affine {
+    match slot.and_then(|s| Some((placed.get(s)?, scene.slots.get(s)?))) {
+        Some((p, s)) if p.write != s.frame => p.write * s.frame.inverse() * frame,
+        _ => frame,
+    }
+}
+
 /// Whether there is a way back from root user space.
 fn usable(frame: Affine) -> bool {
     frame.is_finite() && frame.determinant() != 0.0 && frame.inverse().is_finite()
@@ -221,17 +306,19 @@ pub(crate) fn stretch(m: Affine) -> f64 {
     (s + t) / 2.0
 }
 
-fn warp_part(p: &Part, map: &dyn Map, options: &WarpOptions) -> Result<Done, GeometryError> {
+fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> Result<Done, GeometryError> {
     let outline = p.outline();
-    let warped = refit::warp_path(&outline, map, &options.refit)?;
-    let back = p.frame.inverse();
-    let size = stretch(p.frame);
+    let back = write.inverse();
+    let size = stretch(write);
     let tolerance = options.refit.tolerance;
     let decimals = options.precision.unwrap_or_else(|| {
         let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
         if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
     });
     let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
+    // What rounding takes is not the refit's to spend.
+    let left = (tolerance - rounding).max(0.5 * tolerance);
+    let warped = refit::warp_path(&outline, map, &refit::Options { tolerance: left, ..options.refit.clone() })?;
     let mut done = Done {
         path: local(warped.path, back),
         decimals,
@@ -244,11 +331,11 @@ fn warp_part(p: &Part, map: &dyn Map, options: &WarpOptions) -> Result<Done, Geo
     let served = p.fill.as_ref().is_some_and(|f| painted_by_server(f.paint()))
         || p.stroke.as_ref().is_some_and(|s| painted_by_server(s.paint()));
     if served && options.gradients == Gradients::Fit {
-        done.fit = paint::fit(p, map);
+        done.fit = p.local.bounding_box().and_then(|b| paint::fit(b, p.frame, write, map));
     }
     if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
-        let width = || stroke::width(&outline, p.frame, map, s);
-        let outlined = || outline_stroke(p, s, map, options, size);
+        let width = || stroke::width(&outline, p.frame, write, map, s);
+        let outlined = || outline_stroke(p, s, write, map, options);
         match options.strokes {
             Strokes::Keep => {}
             Strokes::Scale => done.stroke = StrokeDone::Scaled(width().map_or(1.0, |w| w.scale)),
@@ -271,14 +358,14 @@ fn warp_part(p: &Part, map: &dyn Map, options: &WarpOptions) -> Result<Done, Geo
 fn outline_stroke(
     p: &Part,
     s: &usvg::Stroke,
+    write: Affine,
     map: &dyn Map,
     options: &WarpOptions,
-    size: f64,
 ) -> Result<BezPath, GeometryError> {
     // The expansion is an approximation of its own; a quarter of the tolerance is its share.
-    let outline: Outline = stroke::outline(p, s, (options.refit.tolerance / size * 0.25).max(1e-9));
+    let outline: Outline = stroke::outline(p, s, (options.refit.tolerance / stretch(p.frame) * 0.25).max(1e-9));
     let warped = refit::warp_path(&outline.transformed(p.frame), map, &options.refit)?;
-    Ok(local(warped.path, p.frame.inverse()))
+    Ok(local(warped.path, write.inverse()))
 }
 
 fn local(mut path: BezPath, back: Affine) -> BezPath {

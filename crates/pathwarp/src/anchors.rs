@@ -6,7 +6,7 @@
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Homography, Map};
 use crate::outline::{Outline, Seg, Subpath};
-use crate::param::{NamedPath, Settings};
+use crate::param::{Frame, NamedPath, Settings};
 use kurbo::{Affine, Line, Point};
 use std::sync::Arc;
 
@@ -211,6 +211,16 @@ pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error
             Ok(Arc::new(projective(name, q, UNIT)?))
         }
     }
+}
+
+/// `m`, or exactly the identity if it moves no corner of the frame by more than rounding: then nothing at all is touched.
+pub(crate) fn settled(m: Affine, frame: &Frame) -> Affine {
+    /// A few dozen operations on numbers of the corners' size.
+    const ROUNDING: f64 = 1e-14;
+    let corners = frame.corners();
+    let size = corners.iter().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max);
+    let moves = corners.iter().any(|p| (m * *p).distance(*p) > ROUNDING * size);
+    if moves || frame.rect.area() == 0.0 { m } else { Affine::IDENTITY }
 }
 
 /// The projective map from four points to four points, with the blame on `name`.

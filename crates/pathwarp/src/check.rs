@@ -272,6 +272,18 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Faults) {
             (off > NEAR * (1.0 + factor.abs()))
                 .then(|| format!("{pairs:?} should multiply areas by {factor}; it is off by {off:e}"))
         }),
+        Law::KeepsAngles(pairs) => with(pairs).and_then(|m| {
+            // Cauchy and Riemann: ∂F/∂y is ∂F/∂x turned by a quarter.
+            let off = worst(&*m, &|p| {
+                let j = m.jet(p);
+                (j.dy - j.dx.turn_90()).hypot() / j.dx.hypot().max(f64::MIN_POSITIVE)
+            });
+            (off > NEAR).then(|| format!("{pairs:?} should keep angles; one is off by {off:e}"))
+        }),
+        Law::Undoes(there, back) => with(there).zip(with(back)).and_then(|(f, g)| {
+            let off = worst(&*f, &|p| g.point(f.point(p)).distance(p));
+            (off > NEAR).then(|| format!("{back:?} should undo {there:?}; a point ends {off:e} away"))
+        }),
     };
     if let Some(f) = fault {
         faults.add(f);
@@ -339,6 +351,8 @@ mod tests {
             Law::KeepsLinesAlong(&[], (1.0, 2.0)),
             Law::FixedOutside(&[], [0.0, 0.0, 50.0, 50.0]),
             Law::Area(&[], 7.0),
+            Law::KeepsAngles(&[]),
+            Law::Undoes(&[], &[]),
         ],
         cases: &[Case { args: &[], at: (0.0, 0.0), to: (1.0, 1.0), tolerance: 0.1 }],
     };
@@ -368,6 +382,8 @@ mod tests {
             "along 1,2 straight",
             "nothing outside",
             "areas",
+            "keep angles",
+            "should undo",
             "takes (0.0, 0.0)",
         ] {
             assert!(faults.contains(part), "`{part}` not in:\n{faults}");

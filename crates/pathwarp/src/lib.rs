@@ -21,3 +21,8 @@ pub mod refit;
 pub use error::{Error, GeometryError};
 pub use kurbo;
 pub use outline::{Outline, Seg, Subpath};
+
+/// The README's examples, tested.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -89,7 +89,7 @@ fn values_are_de_casteljaus_at_every_degree() {
     }
 }
 
-/// A line of constant s is the Bézier curve of the H_j(s), exactly, as one cubic.
+/// A line of constant s is the Bézier curve of the `H_j(s)`, exactly, as one cubic.
 #[test]
 fn iso_lines_are_exact() {
     for (m, n) in [(3, 3), (2, 3), (5, 3), (3, 2), (10, 3)] {

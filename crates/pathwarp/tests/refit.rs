@@ -1,11 +1,13 @@
 //! The refit against an independent oracle: distances both ways by 2,000 samples a direction.
 
+#![allow(clippy::unwrap_used)]
+
 #[path = "../benches/support/mod.rs"]
 mod support;
 
 use kurbo::{CubicBez, Point};
 use pathwarp::map::{Formula, Map, Real};
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::refit::{Assurance, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use support::{Bicubic, Rational};
 
@@ -41,13 +43,18 @@ fn corpus_has_no_violation() {
     let (outlines, _) = support::corpus();
     let every: usize = std::env::var("EVERY").ok().and_then(|v| v.parse().ok()).unwrap_or(1);
     let segs: Vec<Seg> = outlines.iter().flat_map(Outline::segs).step_by(every).copied().collect();
+    let certify = std::env::var("CERTIFY").is_ok();
     let mut bad = 0;
     for (name, map) in &maps() {
         for tolerance in [1.0, 0.1, 0.01, 0.001] {
             let (mut n, mut worst, mut over, mut turns) = (0, 0.0f64, 0, 0);
             for seg in &segs {
-                let w = warp_path(&single(*seg), map.as_ref(), &Options::new(tolerance)).unwrap();
+                let o = Options { certify, ..Options::new(tolerance) };
+                let w = warp_path(&single(*seg), map.as_ref(), &o).unwrap();
                 let out = support::cubics(&w.path);
+                if certify && w.report.over_budget.is_empty() {
+                    assert!(w.report.assurance >= Assurance::Certified, "{seg:?}");
+                }
                 n += out.len();
                 over += w.report.over_budget.len();
                 let e = support::distance(seg, map.as_ref(), &out, 2000, 0.9 * tolerance) / tolerance;
@@ -66,6 +73,69 @@ fn corpus_has_no_violation() {
         }
     }
     assert_eq!(bad, 0);
+}
+
+/// The same for merged paths, subpath by subpath.
+#[test]
+#[ignore = "minutes; needs the fetched icons"]
+#[allow(clippy::print_stdout)]
+fn merged_corpus_has_no_violation() {
+    let (outlines, _) = support::corpus();
+    let every: usize = std::env::var("EVERY").ok().and_then(|v| v.parse().ok()).unwrap_or(1);
+    let mut bad = 0;
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.1, 0.01, 0.001] {
+            let (mut segs, mut n, mut worst) = (0, 0, 0.0f64);
+            for sub in outlines.iter().step_by(every).flat_map(|o| &o.subpaths).filter(|s| !s.segs.is_empty()) {
+                let o = Options { merge: true, ..Options::new(tolerance) };
+                let w = warp_path(&Outline { subpaths: vec![sub.clone()] }, map.as_ref(), &o).unwrap();
+                let out = support::cubics(&w.path);
+                (segs, n) = (segs + sub.segs.len(), n + w.report.segments_out);
+                let e = support::distance_of_run(&sub.segs, map.as_ref(), &out, 400, 0.9 * tolerance) / tolerance;
+                worst = worst.max(e);
+                if e > 1.0001 {
+                    bad += 1;
+                    println!("  {name} {tolerance}: {e:.4}, {} to {}: {}", sub.segs.len(), out.len(), w.path.to_svg());
+                }
+            }
+            println!("{name} {tolerance}: out/in {:.4}, worst {worst:.4}", n as f64 / segs as f64);
+        }
+    }
+    assert_eq!(bad, 0);
+}
+
+#[test]
+fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
+    // A circle in sixteen pieces, and a rounded square.
+    let circle = {
+        use pathwarp::outline::EllipticArc;
+        let d = 300.0;
+        let a = |i: i32| f64::from(i) * std::f64::consts::TAU / 16.0;
+        let arc =
+            |i| EllipticArc::new(Point::new(500.0, 500.0), (d, 0.0).into(), (0.0, d).into(), a(i), a(1)).to_cubic();
+        let segs: Vec<Seg> = (0..16).map(|i| Seg::Cubic(arc(i))).collect();
+        Subpath { start: segs[0].start(), segs, closed: false }
+    };
+    let square =
+        Outline::from_svg("M300 200H700Q800 200 800 300V700L700 800H300L200 700V300Q200 200 300 200Z").unwrap();
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.01] {
+            for (sub, corners) in [(&circle, 0), (&square.subpaths[0], 4)] {
+                let outline = Outline { subpaths: vec![sub.clone()] };
+                let w =
+                    |merge| warp_path(&outline, map.as_ref(), &Options { merge, ..Options::new(tolerance) }).unwrap();
+                let (plain, merged) = (w(false), w(true));
+                assert!(merged.report.segments_out <= plain.report.segments_out);
+                assert!(corners > 0 || merged.report.segments_out * 10 <= 6 * plain.report.segments_out, "{name}");
+                let out = support::cubics(&merged.path);
+                let e = support::distance_of_run(&sub.segs, map.as_ref(), &out, 400, 0.0);
+                assert!(e <= tolerance * 1.0001, "{name} {tolerance}: {e}");
+                let sharp =
+                    out.windows(2).filter(|w| support::turn(support::arriving(&w[0]), support::leaving(&w[1])) > 0.01);
+                assert_eq!(sharp.count(), corners, "{name} {tolerance}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -204,6 +274,30 @@ fn a_full_turn_in_one_arc() {
             for tolerance in [1.0, 0.1, 0.01, 0.001] {
                 let (n, e) = measure(seg, map.as_ref(), tolerance);
                 assert!(e <= 1.0001 && n < 60, "{name} {tolerance}: {e} {n}");
+            }
+        }
+    }
+}
+
+#[test]
+fn proofs_hold_for_every_kind_of_segment() {
+    let outline = Outline::from_svg(
+        "M100 100C300 50 400 300 700 200L900 350Q500 400 620 800A180 90 20 1 0 300 700C200 600 150 300 100 100Z
+         M500 300A120 120 0 0 1 260 300A120 60 0 1 1 500 300ZM100 200C100 200 500 700 800 300
+         M200 200C800 790 205 800 800 200M300 200V800M500 500C500.01 500.02 500.03 500 500.02 499.99",
+    )
+    .unwrap();
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.1, 0.01, 0.001] {
+            for seg in outline.segs() {
+                let o = Options { certify: true, ..Options::new(tolerance) };
+                let w = warp_path(&single(*seg), map.as_ref(), &o).unwrap();
+                let r = &w.report;
+                assert!(r.over_budget.is_empty(), "{name} {tolerance} {seg:?}");
+                assert!(r.assurance >= Assurance::Certified && r.max_error <= tolerance, "{name} {tolerance} {seg:?}");
+                let e = support::distance(seg, map.as_ref(), &support::cubics(&w.path), 2000, 0.0);
+                assert!(e <= r.max_error * 1.0001 + 1e-9, "{name} {tolerance} {seg:?}: {e} > {}", r.max_error);
+                assert!(r.segments_out < 40, "{name} {tolerance} {seg:?}: {}", r.segments_out);
             }
         }
     }

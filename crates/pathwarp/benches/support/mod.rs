@@ -4,14 +4,14 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, PathSeg, Point, Vec2};
-use pathwarp::map::{Jet, Map};
+use pathwarp::map::{Algebra, Jet, Map};
 use pathwarp::{Outline, Seg};
 
 /// The box the icons and the maps live in.
 pub const BOX: f64 = 1000.0;
 
 /// A bicubic map of the box, power basis: c[i][j] goes with uⁱvʲ, u = x/1000, v = y/1000.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Bicubic {
     pub x: [[f64; 4]; 4],
     pub y: [[f64; 4]; 4],
@@ -49,10 +49,10 @@ impl Bicubic {
     /// Control points moved by at most 5 %.
     pub fn mild() -> Self {
         const D: [[(f64, f64); 4]; 4] = [
-            [(20.0, -30.0), (-40.0, 10.0), (35.0, 25.0), (-15.0, 45.0)],
-            [(10.0, 40.0), (45.0, -20.0), (-30.0, 35.0), (25.0, -50.0)],
-            [(-35.0, 15.0), (20.0, 45.0), (50.0, -15.0), (-45.0, 20.0)],
-            [(40.0, 5.0), (-25.0, -45.0), (15.0, 30.0), (-10.0, -20.0)],
+            [(25.0, 25.0), (40.0, -50.0), (-20.0, -35.0), (-5.0, 50.0)],
+            [(-20.0, 30.0), (45.0, 40.0), (45.0, 45.0), (-10.0, 50.0)],
+            [(-15.0, 10.0), (50.0, -15.0), (20.0, -20.0), (-50.0, -50.0)],
+            [(45.0, 15.0), (-25.0, 40.0), (-50.0, 0.0), (15.0, -30.0)],
         ];
         Self::moved(|i, j| D[i][j])
     }
@@ -62,8 +62,8 @@ impl Bicubic {
         Self::moved(|i, j| {
             let (u, v) = (i as f64 / 3.0 - 0.5, j as f64 / 3.0 - 0.5);
             let inner = (1..3).contains(&i) && (1..3).contains(&j);
-            let k = if inner { 1.05 } else { -0.12 };
-            let w = if inner { 0.75 } else { 0.1 };
+            let k = if inner { 2.1 } else { -0.1 };
+            let w = if inner { 1.6 } else { 0.0 };
             (BOX * (k * u - w * v), BOX * (k * v + w * u))
         })
     }
@@ -91,9 +91,13 @@ fn slope(r: &[f64; 4], v: f64) -> f64 {
 }
 
 impl Map for Bicubic {
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 6, rational: false })
+    }
+
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let [x, y, dx, dy] = self.tables(u);
         Jet {
             p: Point::new(horner(&x, v), horner(&y, v)),
@@ -104,10 +108,17 @@ impl Map for Bicubic {
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let row = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
         let at = |c: &[[f64; 4]; 4]| ((row(c, 3) * v + row(c, 2)) * v + row(c, 1)) * v + row(c, 0);
         Point::new(at(&self.x), at(&self.y))
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
     }
 }
 
@@ -147,9 +158,20 @@ impl Default for Rational {
 }
 
 impl Map for Rational {
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 4, rational: true })
+    }
+
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        std::array::from_fn(|i| {
+            let (u, v) = (x[i] * (1.0 / BOX), y[i] * (1.0 / BOX));
+            horner(&self.c[2][0], v) + u * horner(&self.c[2][1], v)
+        })
+    }
+
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let f: [(f64, f64, f64); 3] = std::array::from_fn(|k| {
             let [r, s] = &self.c[k];
             let e = horner(s, v);
@@ -167,10 +189,17 @@ impl Map for Rational {
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        let (u, v) = (p.x / BOX, p.y / BOX);
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let f = |k: usize| horner(&self.c[k][0], v) + u * horner(&self.c[k][1], v);
         let w = f(2);
         Point::new(f(0) / w, f(1) / w)
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
     }
 }
 
@@ -252,6 +281,38 @@ pub fn distance(seg: &Seg, map: &dyn Map, out: &[CubicBez], samples: usize, enou
     a.max(b)
 }
 
+/// As [`distance`], for the image of a run of segments.
+pub fn distance_of_run(segs: &[Seg], map: &dyn Map, out: &[CubicBez], per: usize, enough: f64) -> f64 {
+    // Segments of no length would be many samples in one place.
+    let segs: Vec<Seg> = segs.iter().filter(|s| extent(&s.to_cubic()) > 1e-9).copied().collect();
+    let out: Vec<CubicBez> = out.iter().filter(|c| extent(c) > 1e-9).copied().collect();
+    let image = |t: f64| {
+        let k = (t as usize).min(segs.len() - 1);
+        map.point(segs[k].eval(t - k as f64))
+    };
+    let curve = |t: f64| {
+        let k = (t as usize).min(out.len() - 1);
+        out[k].eval(t - k as f64)
+    };
+    let g: Vec<Point> = (0..=per * segs.len()).map(|i| image(i as f64 / per as f64)).collect();
+    let c: Vec<Point> = (0..=per * out.len()).map(|i| curve(i as f64 / per as f64)).collect();
+    let near =
+        |k: usize, n: usize| ((k as f64 - 1.0).max(0.0) / per as f64, ((k as f64 + 1.0) / per as f64).min(n as f64));
+    let a = one_sided(&g, &c, enough, |k, p| {
+        let (lo, hi) = near(k, out.len());
+        golden(lo, hi, |t| curve(t).distance(p))
+    });
+    let b = one_sided(&c, &g, enough, |k, p| {
+        let (lo, hi) = near(k, segs.len());
+        golden(lo, hi, |t| image(t).distance(p))
+    });
+    a.max(b)
+}
+
+fn extent(c: &CubicBez) -> f64 {
+    [c.p1, c.p2, c.p3].iter().map(|p| p.distance(c.p0)).fold(0.0, f64::max)
+}
+
 /// The smallest value between `lo` and `hi`, by golden sections: slow, but cusps do not confuse it.
 fn golden(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     const G: f64 = 0.381_966_011_250_105;
@@ -292,16 +353,18 @@ fn one_sided(from: &[Point], to: &[Point], enough: f64, refine: impl Fn(usize, P
             e = e.min(refine(at, *p));
         }
         if e > enough && e > worst {
-            // Every sample that is nearer than its neighbours: branches of a hairpin may lie closer than samples do.
-            let mut dips: Vec<usize> = (0..to.len())
-                .filter(|&k| (k == 0 || d(k) <= d(k - 1)) && (k + 1 == to.len() || d(k) <= d(k + 1)))
-                .collect();
-            dips.sort_by(|a, b| d(*a).total_cmp(&d(*b)));
-            for k in dips.into_iter().take(6) {
-                for k in [k.saturating_sub(1), k, (k + 1).min(to.len() - 1)] {
-                    if e > enough {
-                        e = e.min(refine(k, *p));
-                    }
+            // The chords between samples that are nearest: the samples themselves may be far apart, and branches of a hairpin
+            // nearer to each other than samples are.
+            let chord = |k: usize| {
+                let (a, v) = (to[k], to[k + 1] - to[k]);
+                let s = ((*p - a).dot(v) / (v.hypot2() + 1e-300)).clamp(0.0, 1.0);
+                (a + v * s).distance(*p)
+            };
+            let mut near: Vec<(f64, usize)> = (0..to.len() - 1).map(|k| (chord(k), k)).collect();
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (_, k) in near.into_iter().take(8) {
+                if e > enough {
+                    e = e.min(refine(k, *p)).min(refine(k + 1, *p));
                 }
             }
         }

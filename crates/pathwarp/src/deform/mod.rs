@@ -3,11 +3,21 @@
 //! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
 
 mod affine;
+mod bend;
+mod bilinear;
 mod birational;
+mod bulge;
+mod expr;
 mod ffd;
+mod lens;
+mod mls;
+mod mobius;
+mod polar;
 mod projective;
 mod shaper;
 mod similitude;
+mod swirl;
+mod wave;
 
 use crate::error::Error;
 use crate::map::Map;
@@ -20,11 +30,21 @@ use std::sync::Arc;
 pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
+        Arc::new(bilinear::Bilinear),
         Arc::new(ffd::Ffd),
         Arc::new(birational::BirationalDeformation),
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
+        Arc::new(bend::Bend),
+        Arc::new(polar::Polar),
+        Arc::new(mls::Mls),
+        Arc::new(wave::Wave),
+        Arc::new(swirl::Swirl),
+        Arc::new(bulge::Bulge),
+        Arc::new(lens::Lens),
+        Arc::new(mobius::Mobius),
+        Arc::new(expr::Expr),
     ]
 }
 
@@ -100,6 +120,10 @@ pub enum Law {
     FixedOutside(Pairs, [f64; 4]),
     /// With these values every area is multiplied by this.
     Area(Pairs, f64),
+    /// With these values angles between curves are kept (and nothing is mirrored).
+    KeepsAngles(Pairs),
+    /// The second set of values takes every point back to where it was before the first.
+    Undoes(Pairs, Pairs),
 }
 
 /// A known value.

@@ -6,6 +6,7 @@
 use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
 use crate::anchors::{self, Anchors};
 use crate::error::{Error, GeometryError};
+use crate::map::{AffineMap, Class, Map};
 use crate::param::{Param, Settings};
 use std::sync::Arc;
 
@@ -72,10 +73,13 @@ impl Deformation for Projective {
         };
         let target = four("--target", &target)?;
         let overlay = |role, q: [kurbo::Point; 4]| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
-        Ok(Built {
-            overlays: vec![overlay(Role::Base, base), overlay(Role::Target, target)],
-            ..Built::new(Arc::new(anchors::projective("--target", base, target)?))
-        })
+        let map = anchors::projective("--target", base, target)?;
+        let map: Arc<dyn Map> = match map.class() {
+            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
+            _ => Arc::new(map),
+        };
+        let overlays = vec![overlay(Role::Base, base), overlay(Role::Target, target)];
+        Ok(Built { overlays, ..Built::new(map) })
     }
 }
 

@@ -57,7 +57,7 @@ corners of the artwork's box.",
     examples: &[
         Example {
             what: "Bend a logo into a path of another file",
-            command: "shaper samples/logo.svg --shaper samples/cages.svg#flag -o out.svg",
+            command: "shaper samples/logo.svg --shaper samples/banner.svg -o out.svg",
         },
         Example {
             what: "The paper's example: Base, Target and Shaper are paths of the document itself",
@@ -156,6 +156,10 @@ impl Deformation for Shaper {
             }
         };
         let map = compose(&anchors::to_standard("--base", &base)?, net, after);
+        let map = match map.class() {
+            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
+            _ => map,
+        };
 
         let mut overlays = vec![Overlay { role: Role::Cage, path: cage }, overlay(Role::Base, &base)];
         overlays.extend(target.iter().map(|t| overlay(Role::Target, t)));
@@ -174,10 +178,6 @@ fn compose(h1: &Arc<dyn Map>, net: Net, h2: Option<Arc<dyn Map>>) -> Arc<dyn Map
         _ => (Some(h1.clone()), kurbo::Affine::IDENTITY),
     };
     let f0 = Arc::new(BicubicNet::new(&net, pre)) as Arc<dyn Map>;
-    let f0 = match f0.class() {
-        Class::Affine(m) => Arc::new(AffineMap(m)),
-        _ => f0,
-    };
     if before.is_none() && h2.is_none() {
         return f0;
     }

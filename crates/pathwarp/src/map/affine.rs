@@ -1,6 +1,6 @@
 //! Affine maps.
 
-use super::{Class, Jet, Map, RationalBezier};
+use super::{Algebra, Class, Jet, Map, RationalBezier};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -47,6 +47,10 @@ impl Map for AffineMap {
     fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [a, b, c, d, e, f] = self.0.as_coeffs();
         Some(curve.mapped(|[x, y, w]| [a * x + c * y + e * w, b * x + d * y + f * w, w]))
+    }
+
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 1, rational: false })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -1,6 +1,6 @@
 //! Maps one after another.
 
-use super::{AffineMap, Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier};
+use super::{AffineMap, Algebra, Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -114,6 +114,35 @@ impl Map for Chain {
                 m.points(&at[..chunk.len()], chunk);
             }
         }
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for m in &self.steps {
+            m.lanes(x, y);
+        }
+    }
+
+    fn algebra(&self) -> Option<Algebra> {
+        let mut all = Algebra { degree: 1, rational: false };
+        for m in &self.steps {
+            let a = m.algebra()?;
+            all = Algebra { degree: all.degree.checked_mul(a.degree)?, rational: all.rational || a.rational };
+        }
+        Some(all)
+    }
+
+    /// With F₁ = (X₁, Y₁)/W₁ and a second map of degree d₂, the chain's denominator is W₁^d₂ · (W₂ ∘ F₁).
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        let (mut x, mut y, mut all) = (*x, *y, [1.0; 8]);
+        for m in &self.steps {
+            let power = m.algebra().map_or(1, |a| a.degree) as i32;
+            let own = m.denominators(&x, &y);
+            for (w, o) in all.iter_mut().zip(own) {
+                *w = f64::powi(*w, power) * o;
+            }
+            m.lanes(&mut x, &mut y);
+        }
+        all
     }
 
     fn class(&self) -> Class {

@@ -1,6 +1,6 @@
 //! The short way to write a map: one formula, any number type.
 
-use super::{Class, Creases, Dual, Jet, Map, RationalBezier, Real};
+use super::{Algebra, Class, Creases, Dual, Jet, Map, RationalBezier, Real};
 use kurbo::Point;
 use std::sync::Arc;
 
@@ -44,6 +44,16 @@ pub trait Formula: Send + Sync {
         None
     }
 
+    /// See [`Map::algebra`].
+    fn algebra(&self) -> Option<Algebra> {
+        None
+    }
+
+    /// See [`Map::denominators`].
+    fn denominators(&self, _x: &[f64; 8], _y: &[f64; 8]) -> [f64; 8] {
+        [1.0; 8]
+    }
+
     /// See [`Map::inverse`].
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         None
@@ -62,6 +72,12 @@ impl<F: Formula> Map for F {
         self.f(p.x, p.y).into()
     }
 
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            (*x, *y) = self.f(*x, *y);
+        }
+    }
+
     fn class(&self) -> Class {
         Formula::class(self)
     }
@@ -76,6 +92,14 @@ impl<F: Formula> Map for F {
 
     fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         Formula::image_of(self, curve)
+    }
+
+    fn algebra(&self) -> Option<Algebra> {
+        Formula::algebra(self)
+    }
+
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        Formula::denominators(self, x, y)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -1,6 +1,6 @@
 //! Projective maps of the plane.
 
-use super::{Class, Crease, Creases, Jet, Level, Map, RationalBezier};
+use super::{Algebra, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -119,6 +119,13 @@ impl Map for Homography {
         Point::new((m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r, (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r)
     }
 
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+
     fn class(&self) -> Class {
         self.as_affine().map_or(Class::Projective(*self), Class::Affine)
     }
@@ -132,6 +139,14 @@ impl Map for Homography {
 
     fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         Some(curve.mapped(|v| mul_vec(&self.m, v)))
+    }
+
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 1, rational: true })
+    }
+
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        std::array::from_fn(|i| self.w(Point::new(x[i], y[i])))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

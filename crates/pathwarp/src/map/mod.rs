@@ -4,7 +4,7 @@
 //! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
 
 mod affine;
-mod bernstein;
+pub(crate) mod bernstein;
 mod birational;
 mod bspline;
 mod chain;
@@ -78,6 +78,20 @@ pub trait Map: Send + Sync {
         }
     }
 
+    /// Eight values in place, coordinates apart: the layout the compiler turns into vector instructions. The refitter
+    /// samples through this.
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        let mut source = [Point::ORIGIN; 8];
+        for (p, (x, y)) in source.iter_mut().zip(x.iter().zip(y.iter())) {
+            *p = Point::new(*x, *y);
+        }
+        let mut image = [Point::ORIGIN; 8];
+        self.points(&source, &mut image);
+        for (p, (x, y)) in image.iter().zip(x.iter_mut().zip(y)) {
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+
     /// The kind of map.
     fn class(&self) -> Class {
         Class::Smooth
@@ -97,10 +111,29 @@ pub trait Map: Send + Sync {
         None
     }
 
+    /// If the map is a quotient of polynomials, of what kind: enough to prove error bounds without writing the image out.
+    fn algebra(&self) -> Option<Algebra> {
+        None
+    }
+
+    /// The denominators of an [`Algebra`] map at eight places.
+    fn denominators(&self, _x: &[f64; 8], _y: &[f64; 8]) -> [f64; 8] {
+        [1.0; 8]
+    }
+
     /// The inverse map, where there is one.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         None
     }
+}
+
+/// (x, y) ↦ (X/W, Y/W) with polynomials X, Y, W.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Algebra {
+    /// The largest total degree (exponents of x and y together) of X, Y and W.
+    pub degree: usize,
+    /// Whether W is anything but 1. [`Map::denominators`] gives its values.
+    pub rational: bool,
 }
 
 impl<M: Map + ?Sized> Map for Arc<M> {
@@ -116,6 +149,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         (**self).points(ps, out);
     }
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        (**self).lanes(x, y);
+    }
     fn class(&self) -> Class {
         (**self).class()
     }
@@ -127,6 +163,12 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         (**self).image_of(curve)
+    }
+    fn algebra(&self) -> Option<Algebra> {
+        (**self).algebra()
+    }
+    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+        (**self).denominators(x, y)
     }
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         (**self).inverse()

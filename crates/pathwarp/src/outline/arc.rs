@@ -177,20 +177,38 @@ impl EllipticArc {
         CubicBez::new(self.p0, self.p0 + d0 * k, self.p1 - d1 * k, self.p1)
     }
 
+    /// The longer semi-axis of the ellipse: the larger singular value of the matrix (a b).
+    #[must_use]
+    pub fn major(&self) -> f64 {
+        let (aa, bb, ab) = (self.a.hypot2(), self.b.hypot2(), self.a.dot(self.b));
+        (0.5 * (aa + bb) + (0.5 * (aa - bb)).hypot(ab)).sqrt()
+    }
+
+    /// How far `n` cubics for equal parts of the arc stray from it at most: for the sweep φ of one, a cubic misses a unit circle
+    /// by (2/27)·sin⁶(φ/4)/cos²(φ/4) (Goldapp, *Approximation of circular arcs by cubic polynomials*, 1991), and an affine
+    /// image of the circle by at most the major semi-axis times that.
+    #[must_use]
+    pub fn cubics_error(&self, n: usize) -> f64 {
+        let (s, c) = (self.sweep / n as f64 / 4.0).sin_cos();
+        2.0 / 27.0 * s.powi(6) / (c * c) * self.major()
+    }
+
+    /// How many cubics stay within `tolerance` of the arc: at least one per quarter turn.
+    #[must_use]
+    pub fn cubics_needed(&self, tolerance: f64) -> usize {
+        /// Enough for 1e-16 of the radius.
+        const MOST: usize = 1000;
+        let mut n = ((self.sweep.abs() / (PI / 2.0) - 1e-9).ceil().max(1.0) as usize).min(MOST);
+        while n < MOST && self.cubics_error(n) > tolerance {
+            n += 1;
+        }
+        n
+    }
+
     /// Cubics that stay within `tolerance` of the arc.
     pub fn to_cubics(&self, tolerance: f64) -> impl Iterator<Item = CubicBez> + '_ {
-        // A cubic for the sweep φ misses a unit circle by (2/27)·sin⁶(φ/4)/cos²(φ/4) at most, of order φ⁶ (Goldapp 1991).
-        let radius = self.a.hypot().max(self.b.hypot());
-        let mut n = (self.sweep.abs() / (PI / 2.0) - 1e-9).ceil().max(1.0);
-        let miss = |n: f64| {
-            let (s, c) = (self.sweep / n / 4.0).sin_cos();
-            2.0 / 27.0 * s.powi(6) / (c * c) * radius
-        };
-        if miss(n) > tolerance {
-            const MOST: f64 = 1000.0;
-            n = (n * (miss(n) / tolerance).powf(1.0 / 6.0)).ceil().clamp(n, MOST);
-        }
-        (0..n as usize).map(move |i| self.subsegment(i as f64 / n, (i + 1) as f64 / n).to_cubic())
+        let n = self.cubics_needed(tolerance);
+        (0..n).map(move |i| self.subsegment(i as f64 / n as f64, (i + 1) as f64 / n as f64).to_cubic())
     }
 
     pub(super) fn is_finite(&self, limit: f64) -> bool {
@@ -262,6 +280,21 @@ mod tests {
                 assert!((slope - a.deriv(t)).hypot() < 1e-6);
             }
             assert!(a.bounding_box().inflate(1e-9, 1e-9).contains(a.eval(t)));
+        }
+    }
+
+    #[test]
+    fn the_stated_error_is_the_true_one() {
+        for (sweep, n) in [(TAU, 4), (PI / 2.0, 1), (2.0, 1), (TAU, 7)] {
+            let a = EllipticArc::new(Point::ORIGIN, Vec2::new(60.0, 80.0), Vec2::new(-80.0, 60.0), 0.3, sweep);
+            let cubics =
+                (0..n).map(|i| a.subsegment(f64::from(i) / f64::from(n), f64::from(i + 1) / f64::from(n)).to_cubic());
+            let worst = cubics
+                .flat_map(|c| (0..=2000).map(move |i| kurbo::ParamCurve::eval(&c, f64::from(i) / 2000.0)))
+                .map(|p| (p.to_vec2().hypot() - 100.0).abs())
+                .fold(0.0, f64::max);
+            let stated = a.cubics_error(n as usize);
+            assert!(worst <= stated * (1.0 + 1e-6) && worst > 0.98 * stated, "{sweep}/{n}: {worst} {stated}");
         }
     }
 

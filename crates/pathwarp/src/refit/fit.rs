@@ -25,11 +25,11 @@ use super::source::{Lane, Lanes};
 use kurbo::{CubicBez, Point, Vec2};
 
 /// Evaluations of one fit at most; twelve gain less than a third of a percent of segments.
-const MOST_EVALUATIONS: usize = 6;
-/// First damping, relative to the diagonal: small enough not to be felt where the problem is well posed.
-const DAMPING: f64 = 1e-6;
+const MOST_EVALUATIONS: usize = 7;
+/// Damping relative to the diagonal: just enough to keep the two by two system from being singular.
+const DAMPING: f64 = 1e-11;
 /// A step longer than this share of the samples' length is not trusted.
-const TRUST: f64 = 0.5;
+const TRUST: f64 = 0.15;
 
 /// What is fitted: a curve from the origin to `q` with given end tangents.
 #[derive(Debug, Clone, Copy)]
@@ -39,8 +39,11 @@ pub(super) struct Frame {
     pub(super) t1: Vec2,
     /// Smallest handles allowed.
     pub(super) floor: [f64; 2],
-    /// Length of the polyline through the samples.
-    pub(super) length: f64,
+    /// How far the samples get from the first point, more or less.
+    pub(super) size: f64,
+    /// Where the handles are pulled to, and how strongly: nearly straight pieces leave them undetermined.
+    pub(super) home: [f64; 2],
+    pub(super) pull: f64,
 }
 
 /// A state of the fit.
@@ -72,6 +75,31 @@ impl Frame {
     pub(super) fn power(&self, a: f64, b: f64) -> [Vec2; 3] {
         let (u, v) = (self.t0 * (3.0 * a), self.t1 * (3.0 * b));
         [u, self.q * 3.0 - u * 2.0 - v, self.q * -2.0 + u + v]
+    }
+
+    /// One Newton step for the feet.
+    #[inline(always)]
+    fn settle(&self, g: &Lanes, z: &mut State) {
+        let [c1, c2, c3] = self.power(z.a, z.b);
+        for i in 0..8 {
+            let s = z.s[i];
+            let rx = ((c3.x * s + c2.x) * s + c1.x) * s - g.x[i];
+            let ry = ((c3.y * s + c2.y) * s + c1.y) * s - g.y[i];
+            let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
+            let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
+            z.s[i] = unit(s - (rx * dx + ry * dy) / (dx * dx + dy * dy + f64::MIN_POSITIVE));
+        }
+    }
+
+    /// Adds the pull to the normal equations and the sum of squares.
+    #[inline(always)]
+    fn pulled(&self, (mut sums, squares, error): ([f64; 5], f64, f64), z: &State) -> ([f64; 5], f64, f64) {
+        let (da, db) = (z.a - self.home[0], z.b - self.home[1]);
+        sums[0] += self.pull;
+        sums[2] += self.pull;
+        sums[3] += self.pull * da;
+        sums[4] += self.pull * db;
+        (sums, squares + self.pull * (da * da + db * db), error)
     }
 
     #[inline(always)]
@@ -119,10 +147,17 @@ impl Frame {
                 let better = d < best[i];
                 best[i] = if better { d } else { best[i] };
                 s[i] = if better { t } else { s[i] };
-                next[i] = (t - (rx * dx + ry * dy) * k).clamp(0.0, 1.0);
+                next[i] = unit(t - (rx * dx + ry * dy) * k);
             }
         }
         best
+    }
+
+    /// The other handle on the curve of equal area through `z` whose first handle is `a`.
+    pub(super) fn slide(&self, z: &State, a: f64) -> f64 {
+        let k2 = 0.5 * self.t1.cross(self.t0);
+        let (k0, k1) = (self.q.cross(self.t0), self.t1.cross(self.q));
+        (k0 * z.a + k1 * z.b - k2 * z.a * z.b - k0 * a) / (k1 - k2 * a)
     }
 
     /// The cubic in the plane.
@@ -130,22 +165,23 @@ impl Frame {
         CubicBez::new(p0, p0 + self.t0 * a, p3 - self.t1 * b, p3)
     }
 
-    /// One damped Gauss–Newton step along the valley; `None` where the samples do not determine one.
+    /// One Gauss–Newton step, and how much it promises to take off the sum of squares; `None` where the samples do not
+    /// determine one.
     #[inline(always)]
-    fn step(&self, sums: &[f64; 5], z: &State, damping: f64) -> Option<(f64, f64)> {
+    fn gauss_newton(sums: &[f64; 5]) -> Option<([f64; 2], f64)> {
         let [mut aa, ab, mut bb, an, bn] = *sums;
-        aa += aa * damping;
-        bb += bb * damping;
+        aa += aa * DAMPING;
+        bb += bb * DAMPING;
         let det = aa * bb - ab * ab;
-        /// Below this the two columns are one.
-        const DEPENDENT: f64 = 1e-13;
-        if det.is_nan() || det <= DEPENDENT * aa * bb {
-            return None;
-        }
-        let mut da = (ab * bn - bb * an) / det;
-        let mut db = (ab * an - aa * bn) / det;
+        let k = 1.0 / det;
+        let (da, db) = ((ab * bn - bb * an) * k, (ab * an - aa * bn) * k);
+        (det > 0.0 && k.is_finite()).then_some(([da, db], -(da * an + db * bn)))
+    }
+
+    /// The step shortened to `most` and bent along the valley.
+    #[inline(always)]
+    fn bent(&self, [mut da, mut db]: [f64; 2], z: &State, most: f64) -> (f64, f64, f64) {
         let longest = da.abs().max(db.abs());
-        let most = TRUST * self.length;
         if longest > most {
             da *= most / longest;
             db *= most / longest;
@@ -159,8 +195,15 @@ impl Frame {
             da += e * ga / g2;
             db += e * gb / g2;
         }
-        Some(((z.a + da).max(self.floor[0]) - z.a, (z.b + db).max(self.floor[1]) - z.b))
+        ((z.a + da).max(self.floor[0]) - z.a, (z.b + db).max(self.floor[1]) - z.b, longest.min(most))
     }
+}
+
+/// Clamped to [0, 1]. Comparisons in this form are one instruction each.
+#[inline(always)]
+pub(super) fn unit(s: f64) -> f64 {
+    let s = if s > 0.0 { s } else { 0.0 };
+    if s < 1.0 { s } else { 1.0 }
 }
 
 #[inline(always)]
@@ -196,40 +239,51 @@ fn normal_equations(r: &Residuals, w: &Lane) -> ([f64; 5], f64, f64) {
 pub(super) struct Fit {
     pub(super) z: State,
     pub(super) error: f64,
+    /// The Newton step that is still to be taken by the feet.
+    pub(super) ds: Lane,
 }
 
-/// Fits from `z` until the largest residual is at most `enough`, or no longer improves.
-pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, enough: f64) -> Fit {
+/// Fits from `z` until the largest residual is at most `enough`, or no longer improves. Where it stays far above `wanted`, a
+/// rough fit will do: it only tells how many pieces are needed.
+pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64; 2]) -> Fit {
+    /// Far above.
+    const FAR: f64 = 3.0;
+    /// A step that promises less than this share of the sum of squares is not taken.
+    const GAIN: f64 = 0.01;
+    /// The same far above what is wanted.
+    const ROUGH: f64 = 0.1;
     let ones = [1.0; 8];
+    frame.settle(g, &mut z);
     let mut r = frame.residuals(g, &z);
-    let (mut sums, mut squares, mut error) = normal_equations(&r, &ones);
-    if error <= enough {
-        return Fit { z, error };
-    }
-    let mut best = Fit { z, error };
-    let mut damping = DAMPING;
-    for _ in 1..MOST_EVALUATIONS {
-        let Some((da, db)) = frame.step(&sums, &z, damping) else { break };
+    let (mut sums, mut squares, error) = frame.pulled(normal_equations(&r, &ones), &z);
+    let mut best = Fit { z, error, ds: r.ds };
+    let mut trust = TRUST * frame.size;
+    for k in 1..MOST_EVALUATIONS {
+        if best.error <= enough || (k > 4 && best.error > FAR * wanted) {
+            break;
+        }
+        let Some((step, gain)) = Frame::gauss_newton(&sums) else { break };
+        let worth = if best.error > FAR * wanted { ROUGH } else { GAIN };
+        if k > 1 && gain < worth * squares {
+            break;
+        }
+        let (da, db, length) = frame.bent(step, &z, trust);
         let mut next = State { a: z.a + da, b: z.b + db, s: z.s };
         for i in 0..8 {
-            let s = z.s[i] + r.ds[i] + da * r.sa[i] + db * r.sb[i];
-            next.s[i] = s.clamp(0.0, 1.0);
+            next.s[i] = unit(z.s[i] + r.ds[i] + da * r.sa[i] + db * r.sb[i]);
         }
+        frame.settle(g, &mut next);
         let rn = frame.residuals(g, &next);
-        let (sn, sq, en) = normal_equations(&rn, &ones);
+        let (sn, sq, en) = frame.pulled(normal_equations(&rn, &ones), &next);
         // The first steps also settle the feet, which may raise the sum a little.
-        if sq <= squares * 1.0001 || (sq.is_finite() && squares == 0.0) {
-            let slow = sq > 0.98 * squares;
-            (z, r, sums, squares, error) = (next, rn, sn, sq, en);
-            if error < best.error {
-                best = Fit { z, error };
+        if sq <= squares {
+            (z, r, sums, squares) = (next, rn, sn, sq);
+            if en < best.error {
+                best = Fit { z, error: en, ds: r.ds };
             }
-            if error <= enough || slow {
-                break;
-            }
-            damping *= 0.1;
+            trust *= 2.0;
         } else {
-            damping = (damping * 30.0).max(1e-2);
+            trust = 0.25 * length;
         }
     }
     best
@@ -244,7 +298,7 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
     for k in 0..=steps {
         let r = [frame.residuals(g[0], &z[0]), frame.residuals(g[1], &z[1])];
         let ([mut sums, more], error) = {
-            let (s0, _, e0) = normal_equations(&r[0], &w[0]);
+            let (s0, _, e0) = frame.pulled(normal_equations(&r[0], &w[0]), &z[0]);
             let (s1, _, e1) = normal_equations(&r[1], &w[1]);
             ([s0, s1], e0.max(e1))
         };
@@ -257,12 +311,13 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
         for (a, b) in sums.iter_mut().zip(more) {
             *a += b;
         }
-        let Some((da, db)) = frame.step(&sums, &z[0], 0.0) else { break };
+        let Some((step, _)) = Frame::gauss_newton(&sums) else { break };
+        let (da, db, _) = frame.bent(step, &z[0], TRUST * frame.size);
         for h in 0..2 {
             z[h].a += da;
             z[h].b += db;
             for i in 0..8 {
-                z[h].s[i] = (z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]).clamp(0.0, 1.0);
+                z[h].s[i] = unit(z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]);
                 w[h][i] *= r[h].n[i].abs() / error + 1e-3;
             }
         }

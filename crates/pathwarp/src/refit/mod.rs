@@ -5,7 +5,11 @@
 
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
 #[allow(clippy::needless_range_loop)]
+mod certify;
+#[allow(clippy::needless_range_loop)]
 mod fit;
+#[allow(clippy::needless_range_loop)]
+mod merge;
 #[allow(clippy::needless_range_loop)]
 mod source;
 mod split;
@@ -15,10 +19,11 @@ mod step;
 mod verify;
 
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Jet, Map};
+use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
+use certify::Algebra;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point};
-use source::{End, Source};
+use source::{Curve, End, Source};
 
 /// How a path is refitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,8 +187,15 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
             match seg.transformed(m) {
                 Seg::Line(l) => pieces.push(Piece::Line(l)),
                 Seg::Arc(a) => {
-                    pieces.extend(a.to_cubics(options.tolerance).map(Piece::Cubic));
-                    out.note(options.tolerance, Assurance::Certified);
+                    let (canonical, flipped) = split::canonical(seg);
+                    let start = pieces.len();
+                    if let Seg::Arc(c) = canonical.transformed(m) {
+                        pieces.extend(c.to_cubics(options.tolerance).map(Piece::Cubic));
+                    }
+                    if flipped {
+                        turn(&mut pieces[start..]);
+                    }
+                    out.note(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
                 }
                 other => pieces.push(Piece::Cubic(other.to_cubic())),
             }
@@ -211,6 +223,8 @@ fn warp_subpath(
     }
     let start = node.1.p;
     let mut pieces = Vec::with_capacity(sub.segs.len());
+    // Where each segment's pieces begin.
+    let mut bounds = vec![0];
     for seg in &sub.segs {
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
@@ -223,9 +237,16 @@ fn warp_subpath(
         }
         if projective && matches!(seg, Seg::Line(_)) {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
+            bounds.push(pieces.len());
             continue;
         }
         warp_seg(seg, [first, last], map, creases, options, &mut pieces, &mut out.report).map_err(infinity)?;
+        bounds.push(pieces.len());
+    }
+    let smooth = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
+    if options.merge && !options.certify && smooth && bounds.len() == sub.segs.len() + 1 {
+        let merger = merge::Merger { map, tolerance: options.tolerance };
+        pieces = merger.merged(&sub.segs, &pieces, &bounds, &mut out.report).map_err(infinity)?;
     }
     out.subpath(start, &pieces, sub.closed);
     Ok(())
@@ -262,56 +283,110 @@ fn warp_seg(
     report: &mut PathReport,
 ) -> Result<(), Point> {
     let (canonical, flipped) = split::canonical(seg);
-    let jets = if flipped { [jets[1], jets[0]] } else { jets };
-    let first = pieces.len();
-    let whole = Source::new(canonical, map);
-    if whole.size() == 0.0 {
-        // A segment that goes nowhere stays one: it carries line caps and markers.
-        pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
-        return Ok(());
-    }
-    let slow = split::slow(&canonical);
-    let splits = creases.splits(&canonical);
-    let nodes = [jets[0].p, jets[1].p];
-    let mut from = (0.0, nodes[0]);
-    for i in 0..=splits.len() {
-        let to = match splits.get(i) {
-            Some(&t) => (t, map.jet(canonical.eval(t)).p),
-            None => (1.0, nodes[1]),
-        };
-        let branch = map.branch(canonical.eval(0.5 * (from.0 + to.0)));
-        if let (Some(Class::Affine(m)), Some(part)) = (branch.as_ref().map(Map::class), canonical.part(from.0, to.0)) {
-            affine_part(&part.transformed(m), from.1, to.1, options.tolerance, pieces);
-            from = to;
-            continue;
-        }
-        let source = branch.as_ref().map_or(whole, |b| Source::new(canonical, b));
-        // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
-        let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
-            if branch.is_none() && (t == 0.0 || t == 1.0) {
-                let at = if t == 0.0 { canonical.start() } else { canonical.end() };
-                return Ok((source.end_with(t, Some(p), *jet, at)?, false));
+    let [first, last] = if flipped { [jets[1], jets[0]] } else { jets };
+    let start = pieces.len();
+    let job = Job { map, creases, options };
+    match &canonical {
+        Seg::Arc(a) if options.certify && a.sweep.abs() > MOST_RATIONAL && map.algebra().is_some() => {
+            // Only arcs of less than half a turn are quotients of polynomials with positive denominators.
+            let n = (a.sweep.abs() / MOST_RATIONAL).ceil();
+            let mut from = first;
+            for i in 0..n as usize {
+                let part = a.subsegment(i as f64 / n, (i + 1) as f64 / n);
+                let to = if i + 1 == n as usize { last } else { map.jet(part.p1) };
+                job.warp(&Seg::Arc(part), [from, to], pieces, report)?;
+                from = to;
             }
-            let own = source.end(t, None)?;
-            let torn = own.p.distance(p) > TORN * options.tolerance;
-            Ok((if torn { own } else { End { p, ..own } }, torn))
-        };
-        let ((e0, torn0), (e1, torn1)) = (end(from, &jets[0])?, end(to, &jets[1])?);
-        if torn0 {
-            pieces.push(Piece::Line(Line::new(from.1, e0.p)));
         }
-        let mut stepper = step::Stepper { source, slow, tolerance: options.tolerance, attempts: 0 };
-        stepper.cover(e0, e1, pieces, report)?;
-        if torn1 {
-            pieces.push(Piece::Line(Line::new(e1.p, to.1)));
-        }
-        from = to;
+        _ => job.warp(&canonical, [first, last], pieces, report)?,
     }
     if flipped {
-        pieces[first..].reverse();
-        for p in &mut pieces[first..] {
-            *p = p.reversed();
-        }
+        turn(&mut pieces[start..]);
     }
     Ok(())
+}
+
+/// The pieces run backwards.
+fn turn(pieces: &mut [Piece]) {
+    pieces.reverse();
+    for p in pieces {
+        *p = p.reversed();
+    }
+}
+
+/// Shorter than this share of its coordinates, a segment is rounding of two equal points.
+const ROUNDING: f64 = 1e-15;
+
+/// Arcs that are to be proven are cut into parts of at most this angle (a little over a third of a turn).
+const MOST_RATIONAL: f64 = 2.2;
+
+/// What all segments of a path share.
+struct Job<'a> {
+    map: &'a dyn Map,
+    creases: &'a Creases,
+    options: &'a Options,
+}
+
+impl Job<'_> {
+    /// Appends the image of a segment in its canonical direction, given the jets at its ends.
+    fn warp(&self, seg: &Seg, jets: [Jet; 2], pieces: &mut Vec<Piece>, report: &mut PathReport) -> Result<(), Point> {
+        let map = self.map;
+        let certify = self.options.certify;
+        let whole = Source::new(seg, map).rational_if(certify);
+        if whole.size() <= ROUNDING * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
+            // A segment that goes nowhere stays one (it carries line caps and markers), and has no direction to keep.
+            pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
+            return Ok(());
+        }
+        let slow = split::slow(seg).map(|t| whole.param(t));
+        let splits = self.creases.splits(seg);
+        let nodes = [jets[0].p, jets[1].p];
+        let tolerance = self.options.tolerance;
+        let mut from = (0.0, nodes[0]);
+        let mut from_t = 0.0;
+        for i in 0..=splits.len() {
+            let to_t = splits.get(i).copied().unwrap_or(1.0);
+            let to = match splits.get(i) {
+                Some(&t) => (whole.param(t), map.jet(seg.eval(t)).p),
+                None => (1.0, nodes[1]),
+            };
+            let branch = map.branch(whole.at(0.5 * (from.0 + to.0)));
+            if let (Some(Class::Affine(m)), Some(part)) = (branch.as_ref().map(Map::class), seg.part(from_t, to_t)) {
+                affine_part(&part.transformed(m), from.1, to.1, tolerance, pieces);
+                (from, from_t) = (to, to_t);
+                continue;
+            }
+            let inside;
+            let source = match &branch {
+                None => &whole,
+                Some(b) => {
+                    inside = Source::new(seg, b).rational_if(certify);
+                    &inside
+                }
+            };
+            // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
+            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
+                if branch.is_none() && (t == 0.0 || t == 1.0) {
+                    let at = if t == 0.0 { seg.start() } else { seg.end() };
+                    return Ok((source.end_with(t, Some(p), *jet, at)?, false));
+                }
+                let own = source.end_at(t, None)?;
+                let torn = own.p.distance(p) > TORN * tolerance;
+                Ok((if torn { own } else { End { p, ..own } }, torn))
+            };
+            let ((e0, torn0), (e1, torn1)) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            if torn0 {
+                pieces.push(Piece::Line(Line::new(from.1, e0.p)));
+            }
+            let algebra = if certify { Algebra::of(source) } else { None };
+            let mut stepper = step::Stepper { source, slow: &slow, tolerance, algebra, careful: false, attempts: 0 };
+            stepper.cover(e0, e1, pieces, report)?;
+            if torn1 {
+                pieces.push(Piece::Line(Line::new(e1.p, to.1)));
+            }
+            from_t = to_t;
+            from = to;
+        }
+        Ok(())
+    }
 }

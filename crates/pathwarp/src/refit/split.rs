@@ -45,6 +45,14 @@ impl Slow {
         }
     }
 
+    /// The same spots in another parameter.
+    pub(super) fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for t in &mut self.t[..self.len] {
+            *t = f(*t);
+        }
+        self
+    }
+
     /// Those well inside (t0, t1), the one nearest the middle first.
     pub(super) fn inside(&self, t0: f64, t1: f64) -> Option<f64> {
         /// A stretch shorter than this share is not worth a piece of its own.

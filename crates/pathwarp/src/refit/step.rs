@@ -4,8 +4,9 @@
 //! of what one piece can do: its difficulty. Difficulties add up along the curve. One attempt on the whole tells how many
 //! pieces are needed; the breaks then go to the quantiles of the difficulty measured so far, until every piece fits.
 
-use super::fit::{self, Frame, State};
-use super::source::{End, Lane, Lanes, Source};
+use super::certify::{self, Algebra};
+use super::fit::{self, Fit, Frame, State};
+use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate};
 use super::{Assurance, PathReport, Piece};
@@ -18,23 +19,36 @@ const SHORTEST: f64 = 1e-8;
 /// Pieces planned at once.
 const MOST_PLANNED: usize = 8;
 /// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
-/// leading form s²(1−s)²((s−½)²−c) grows by four percent at most.
-const PLAIN: f64 = 0.95;
+/// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
+const PLAIN: f64 = 0.9;
+/// The same for the dense check, whose samples are four times as many.
+const DENSE: f64 = 0.995;
+/// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
+/// is let pass (κ about the inverse of the piece's size, δ a share of that size).
+const FLAT: f64 = 0.02;
 /// A fit this good is not improved further.
 const ENOUGH: f64 = 0.77;
+
+/// A handle longer or shorter than Hermite's by the piece's size counts like a residual of this share of the tolerance.
+const PULL: f64 = 0.05;
 
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
 const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
 /// Samples j/17 that check the fit, between them.
 const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
+/// Whether the checked sample follows (1) or precedes (−1) the fitted one of the same number.
+const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
+/// Paces along a piece may differ by this factor (squared) before its samples are thought too few.
+const PACE: f64 = 400.0;
 /// Spacing.
 const UNIT: f64 = 1.0 / 17.0;
 
 /// What came of fitting one piece to a stretch.
 #[derive(Debug, Clone, Copy)]
-enum Outcome {
+pub(super) enum Outcome {
     Fits {
         piece: Piece,
+        /// Proven, if there is something to prove it with.
         error: f64,
     },
     Misses {
@@ -49,20 +63,26 @@ enum Outcome {
 impl Outcome {
     /// The share of one piece's capacity that the stretch takes.
     fn difficulty(&self, tolerance: f64) -> f64 {
+        /// Eight pieces; also where nothing is known.
+        const MOST: f64 = 2.6e5;
         let (Self::Fits { error, .. } | Self::Misses { error, .. }) = self;
-        (error / tolerance).clamp(1e-3, 1e6).powf(1.0 / 6.0)
+        (error / tolerance).clamp(1e-3, MOST).powf(1.0 / 6.0)
     }
 }
 
 /// Fits one smooth part of a segment.
-pub(super) struct Stepper<'a> {
-    pub(super) source: Source<'a>,
-    pub(super) slow: Slow,
+pub(super) struct Stepper<'a, C> {
+    pub(super) source: &'a C,
+    pub(super) slow: &'a Slow,
     pub(super) tolerance: f64,
+    /// What proofs need, if there are to be any.
+    pub(super) algebra: Option<Algebra>,
+    /// Whether to look at every piece closely.
+    pub(super) careful: bool,
     pub(super) attempts: usize,
 }
 
-impl Stepper<'_> {
+impl<C: Curve> Stepper<'_, C> {
     /// Appends pieces for the stretch between two break points. `Err`: a source place where the map is not finite.
     pub(super) fn cover(
         &mut self,
@@ -91,7 +111,7 @@ impl Stepper<'_> {
             };
             let h = to.t - from.t;
             if self.attempts >= MOST_ATTEMPTS || h < SHORTEST {
-                report.over_budget.push(self.source.seg.eval(0.5 * (from.t + to.t)));
+                report.over_budget.push(self.source.at(0.5 * (from.t + to.t)));
                 report.max_error = report.max_error.max(error);
                 report.assurance = report.assurance.min(Assurance::Checked);
                 out.push(piece);
@@ -99,7 +119,7 @@ impl Stepper<'_> {
             }
             let split = self.slow.inside(from.t, to.t).or(sharp);
             if let Some(t) = split {
-                let mid = self.source.end(t, None)?;
+                let mid = self.source.end(t)?;
                 stack.push((mid, to, None));
                 stack.push((from, mid, None));
                 continue;
@@ -110,10 +130,15 @@ impl Stepper<'_> {
     }
 
     fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut PathReport) {
-        // What may hide between the samples, see PLAIN.
-        let bound = (error * 1.05).min(self.tolerance).max(error);
-        report.max_error = report.max_error.max(bound);
-        report.assurance = report.assurance.min(Assurance::Checked);
+        if self.algebra.is_some() {
+            report.max_error = report.max_error.max(error);
+            report.assurance = report.assurance.min(Assurance::Certified);
+        } else {
+            // What may hide between the samples, see PLAIN.
+            let bound = (error * 1.05).min(self.tolerance).max(error);
+            report.max_error = report.max_error.max(bound);
+            report.assurance = report.assurance.min(Assurance::Checked);
+        }
         out.push(piece);
     }
 
@@ -134,7 +159,7 @@ impl Stepper<'_> {
         let mut got: [Option<Outcome>; MOST_PLANNED] = [None; MOST_PLANNED];
         ends[n] = to;
         for i in 1..n {
-            ends[i] = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64, None)?;
+            ends[i] = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64)?;
         }
         let mut round = 0;
         loop {
@@ -173,7 +198,7 @@ impl Stepper<'_> {
                     at += 1;
                 }
                 let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
-                ends[i] = self.source.end(old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0), None)?;
+                ends[i] = self.source.end(old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0))?;
             }
             ends[next] = to;
             got = [None; MOST_PLANNED];
@@ -185,104 +210,204 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
+    pub(super) fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
-        let at = |set: &Lane| -> Lane {
-            let mut t = [0.0; 8];
-            for i in 0..8 {
-                t[i] = t0 + h * (set[i] * UNIT);
-            }
-            t
-        };
-        let mut g = self.source.images(&at(&FITTED))?;
-        relative(&mut g, from.p);
+        let tol = self.tolerance;
+        let g = self.samples(from, h, &FITTED)?;
         let q = to.p - from.p;
-        let shape = Shape::of(&g, q);
-        if let Some(line) = straight(&g, q, from.p, to.p, &shape) {
-            return Ok(Outcome::Fits { piece: line, error: 0.0 });
+        let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
+        let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
+        if let Some(line) = straight(&g, q, from.p, to.p, size) {
+            return self.line(from, to, line, size);
         }
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
-        let hermite = [from.speed * h / 3.0, to.speed * h / 3.0];
-        let floor = hermite.map(|a| if a > 0.0 { a.min(1e-3 * shape.length) } else { 1e-5 * shape.length });
-        let frame = Frame { q, t0: from.away, t1: to.into, floor, length: shape.length };
+        let third = h * (1.0 / 3.0);
+        let hermite = [from.speed * third, to.speed * third];
+        let least = |a: f64| if a > 0.0 { a.min(1e-3 * size) } else { 1e-5 * size };
+        let floor = [least(hermite[0]), least(hermite[1])];
+        let pull = (PULL * tol / size).powi(2);
+        let frame = Frame { q, t0: from.away, t1: to.into, floor, size, home: hermite, pull };
         let mut z = State { a: hermite[0].max(floor[0]), b: hermite[1].max(floor[1]), s: [0.0; 8] };
         for i in 0..8 {
             z.s[i] = FITTED[i] * UNIT;
         }
-        let mut check = self.source.images(&at(&CHECKED))?;
-        relative(&mut check, from.p);
-        let job = Job { from, to, frame, g: &g, check: &check, careful: shape.sharp || self.slow_inside(from, to) };
-        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0)
-            && let Some(o) = hermite_exact(&job, hermite)
+        let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
+        let check = self.samples(from, h, &CHECKED)?;
+        let job = Job { from, to, frame, g: &g, check: &check, careful };
+        // Most pieces end here: the Hermite cubic does.
+        let (first, drift) = job.glance(&z);
+        if first <= PLAIN * tol
+            && !careful
+            && drift * drift * size <= FLAT * tol
+            && hermite[0] > 0.0
+            && hermite[1] > 0.0
         {
-            return Ok(o);
-        }
-        let tol = self.tolerance;
-        let mut f = fit::fit(&frame, &g, z, ENOUGH * tol);
-        let mut error = f.error;
-        let mut best = (f.error, f.z.a, f.z.b);
-        for stage in 0..3 {
+            let error = if self.algebra.is_some() { self.proven(&job, &z, first)? } else { first };
             if error <= tol {
-                let e = self.check(&job, &f.z)?;
-                if e <= tol {
-                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&f.z)), error: e });
-                }
-                error = e;
-                best = (e, f.z.a, f.z.b);
+                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
             }
-            if stage == 0 {
-                if f.error <= ENOUGH * tol {
-                    f = fit::fit(&frame, &g, f.z, 0.0);
-                    error = error.max(f.error);
-                    if f.error <= tol {
-                        error = f.error;
-                        continue;
+        }
+        self.improve(&job, z, hermite)
+    }
+
+    /// A stretch whose image is straight to rounding.
+    #[cold]
+    fn line(&self, from: &End, to: &End, line: Piece, size: f64) -> Result<Outcome, Point> {
+        if self.algebra.is_none() || size == 0.0 {
+            return Ok(Outcome::Fits { piece: line, error: 0.0 });
+        }
+        let q = to.p - from.p;
+        let length = q.hypot();
+        let unit = if length > 0.0 { q / length } else { Vec2::ZERO };
+        let frame = Frame { q, t0: unit, t1: unit, floor: [0.0; 2], size, home: [length / 3.0; 2], pull: 0.0 };
+        let error = match (&self.algebra, self.source.single()) {
+            (None, _) | (_, None) => 0.0,
+            (Some(algebra), Some(source)) => {
+                let c = Candidate { t0: from.t, t1: to.t, p0: from.p, frame, a: length / 3.0, b: length / 3.0 };
+                certify::line(source, algebra, &c)?
+            }
+        };
+        if error <= self.tolerance {
+            return Ok(Outcome::Fits { piece: line, error });
+        }
+        Ok(Outcome::Misses { piece: line, error, sharp: None })
+    }
+
+    /// The proven error of a state that was measured to have `error`; what it was measured at where there is nothing to prove
+    /// it with.
+    #[inline(never)]
+    fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
+        let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
+        let mut s0 = z.s;
+        job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
+        let mut s1 = between(&s0);
+        job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
+        let mut feet = [0.0; 16];
+        for i in 0..8 {
+            feet[FITTED[i] as usize - 1] = s0[i];
+            feet[CHECKED[i] as usize - 1] = s1[i];
+        }
+        let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
+        certify::bound(source, algebra, &c, &feet)
+    }
+
+    /// The measured error, and if that will do, the proven one.
+    fn judge(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
+        let error = self.check(job, f)?;
+        if error <= self.tolerance { self.proven(job, &f.z, error) } else { Ok(error) }
+    }
+
+    /// Images at the given samples of the stretch, relative to its first point.
+    #[inline(always)]
+    fn samples(&self, from: &End, h: f64, set: &Lane) -> Result<Lanes, Point> {
+        let mut t = [0.0; 8];
+        for i in 0..8 {
+            t[i] = from.t + h * (set[i] * UNIT);
+        }
+        let mut g = self.source.images(&t)?;
+        for i in 0..8 {
+            g.x[i] -= from.p.x;
+            g.y[i] -= from.p.y;
+        }
+        Ok(g)
+    }
+
+    /// What else can be done where the first fit does not do.
+    #[inline(never)]
+    fn improve(&mut self, job: &Job<'_>, z: State, hermite: [f64; 2]) -> Result<Outcome, Point> {
+        let tol = self.tolerance;
+        let frame = &job.frame;
+        let (from, to) = (job.from, job.to);
+        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0) && hermite_exact(job, hermite) {
+            let error = self.proven(job, &State { a: hermite[0], b: hermite[1], s: z.s }, 0.0)?;
+            let z = State { a: hermite[0], b: hermite[1], ..z };
+            if error <= tol {
+                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+            }
+        }
+        let mut f = fit::fit(frame, job.g, z, [ENOUGH * tol, tol]);
+        let mut error = f.error;
+        if error <= tol {
+            error = self.judge(job, &f)?;
+            if error > tol && f.error <= ENOUGH * tol {
+                f = fit::fit(frame, job.g, f.z, [0.0, tol]);
+                error = f.error;
+                if error <= tol {
+                    error = self.judge(job, &f)?;
+                }
+            }
+        }
+        if error > tol && error < 5.0 * tol {
+            for k in [1.6, 0.625] {
+                let a = f.z.a * k;
+                let b = frame.slide(&f.z, a);
+                if !(b > frame.floor[1] && b < frame.size) {
+                    continue;
+                }
+                let g = fit::fit(frame, job.g, State { a, b, s: f.z.s }, [ENOUGH * tol, tol]);
+                if g.error < 0.98 * error {
+                    let e = if g.error <= tol { self.judge(job, &g)? } else { g.error };
+                    if e < error {
+                        error = e;
+                        f = g;
                     }
                 }
-            } else if stage == 2 {
-                break;
-            }
-            // Minimax: worth it only where it can bring the error below the tolerance.
-            const REACH: f64 = 1.9;
-            if error > REACH * tol {
-                break;
-            }
-            let other = State { s: between(&f.z.s), ..f.z };
-            let (z, e) = fit::lawson(&frame, [&g, &check], [f.z, other], 4);
-            f = fit::Fit { z: z[0], error: e };
-            error = e;
-            if e < best.0 {
-                best = (e, z[0].a, z[0].b);
-            }
-            if e > tol {
-                break;
             }
         }
+        // Minimax: worth it only where it can bring the error below the tolerance.
+        const REACH: f64 = 1.9;
+        if error > tol && error <= REACH * tol {
+            let other = State { s: between(&f.z.s), ..f.z };
+            let (z, e) = fit::lawson(frame, [job.g, job.check], [f.z, other], 4);
+            if e < error {
+                f = Fit { z: z[0], error: e, ds: [1.0; 8] };
+                error = e;
+                if e <= tol {
+                    error = self.judge(job, &f)?;
+                }
+            }
+        }
+        let piece = Piece::Cubic(job.cubic(&f.z));
+        if error <= tol {
+            return Ok(Outcome::Fits { piece, error });
+        }
+        let shape = Shape::of(job.g, frame.q);
         let sharp = if shape.sharp { self.sharpest(from, to, shape.length) } else { None };
-        let z = State { a: best.1, b: best.2, ..f.z };
-        let error = best.0.max(tol * 1.0001);
-        Ok(Outcome::Misses { piece: Piece::Cubic(job.cubic(&z)), error, sharp })
+        Ok(Outcome::Misses { piece, error, sharp })
     }
 
-    fn slow_inside(&self, from: &End, to: &End) -> bool {
-        self.slow.all().iter().any(|t| *t > from.t && *t < to.t)
-    }
-
-    /// The error of a state: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
-    fn check(&self, job: &Job<'_>, z: &State) -> Result<f64, Point> {
-        let mut s0 = z.s;
-        let mut s1 = between(&z.s);
-        let d0 = job.frame.distances(job.g, z.a, z.b, &mut s0, 1);
-        let d1 = job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
-        let error = fit::largest(&d0).max(fit::largest(&d1)).sqrt();
+    /// The error of a fit: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
+    #[inline(always)]
+    fn check(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
+        let frame = &job.frame;
+        let z = &f.z;
+        let mut s0 = [0.0; 8];
+        let mut drift = [0.0; 8];
+        for i in 0..8 {
+            s0[i] = fit::unit(z.s[i] + f.ds[i]);
+            drift[i] = f.ds[i].abs();
+        }
+        let drift = fit::largest(&drift);
+        let mut error = f.error;
+        if drift * drift * frame.size > FLAT * self.tolerance {
+            s0 = z.s;
+            error = fit::largest(&frame.distances(job.g, z.a, z.b, &mut s0, 2)).sqrt();
+        }
+        let mut s1 = between(&s0);
+        let d1 = frame.distances(job.check, z.a, z.b, &mut s1, 1);
+        let error = error.max(fit::largest(&d1).sqrt());
         if error > self.tolerance {
             return Ok(error);
         }
-        let sound = job.sound(z, &s0, &s1);
-        if !job.careful && sound && error <= PLAIN * self.tolerance {
+        if job.sound(z, &s0, &s1) && !job.careful && error <= PLAIN * self.tolerance {
             return Ok(error);
         }
+        self.dense(job, z, &s0, &s1, error)
+    }
+
+    #[inline(never)]
+    fn dense(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane, error: f64) -> Result<f64, Point> {
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
         let mut feet = [(0.0, 0.0); 18];
         feet[17] = (1.0, 1.0);
@@ -290,7 +415,8 @@ impl Stepper<'_> {
             feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
             feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
         }
-        verify::dense(&self.source, &c, &feet, &self.slow, self.tolerance).map(|e| e.max(error))
+        let e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
+        Ok(if e > DENSE * self.tolerance { e / DENSE } else { e })
     }
 
     /// Where the image is slowest within the stretch, if it nearly stops there.
@@ -325,7 +451,7 @@ impl Stepper<'_> {
 /// The Hermite cubic, if the image is that to rounding: so maps that change little give cusps and coincident handles back as
 /// they were.
 #[cold]
-fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> Option<Outcome> {
+fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> bool {
     /// Exact to rounding.
     const EXACT: f64 = 1e-11;
     let [c1, c2, c3] = job.frame.power(hermite[0], hermite[1]);
@@ -333,13 +459,12 @@ fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> Option<Outcome> {
         for i in 0..8 {
             let s = set[i] * UNIT;
             let c = (c1 + (c2 + c3 * s) * s) * s;
-            if (c - Vec2::new(g.x[i], g.y[i])).hypot() > EXACT * job.frame.length {
-                return None;
+            if (c - Vec2::new(g.x[i], g.y[i])).hypot() > EXACT * job.frame.size {
+                return false;
             }
         }
     }
-    let z = State { a: hermite[0], b: hermite[1], s: [0.0; 8] };
-    Some(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error: 0.0 })
+    true
 }
 
 /// One attempt's data.
@@ -357,28 +482,76 @@ impl Job<'_> {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
     }
 
-    /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, and its direction at every foot
-    /// is that of the image there.
+    /// The largest normal residual of all samples at the feet that go with an even pace, and how far the feet have to move;
+    /// infinite where the samples are not [`Job::sound`].
+    #[inline(always)]
+    fn glance(&self, z: &State) -> (f64, f64) {
+        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+        let (g, c) = (self.g, self.check);
+        let mut worst = [0.0; 8];
+        let mut drift = [0.0; 8];
+        let mut margin = [0.0; 8];
+        let mut pace = [0.0; 8];
+        let mut slowness = [0.0; 8];
+        for i in 0..8 {
+            let residual = |s: f64, x: f64, y: f64| {
+                let rx = ((c3.x * s + c2.x) * s + c1.x) * s - x;
+                let ry = ((c3.y * s + c2.y) * s + c1.y) * s - y;
+                let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
+                let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
+                let d2 = dx * dx + dy * dy + f64::MIN_POSITIVE;
+                let n = rx * dy - ry * dx;
+                (n * n / d2, ((rx * dx + ry * dy) / d2).abs(), dx, dy, d2)
+            };
+            let (n0, s0, dx, dy, d2) = residual(FITTED[i] * UNIT, g.x[i], g.y[i]);
+            let (n1, s1, ..) = residual(CHECKED[i] * UNIT, c.x[i], c.y[i]);
+            worst[i] = if n0 > n1 { n0 } else { n1 };
+            drift[i] = if s0 > s1 { s0 } else { s1 };
+            let (x, y) = (c.x[i] - g.x[i], c.y[i] - g.y[i]);
+            let l2 = x * x + y * y;
+            let along = (dx * x + dy * y) * SIDE[i];
+            let straight = 2.0 * along * along - d2 * l2;
+            margin[i] = -(if along < straight { along } else { straight });
+            pace[i] = l2;
+            slowness[i] = -l2;
+        }
+        // Half the spacing each: feet cannot change order.
+        let drift = fit::largest(&drift);
+        let sound =
+            fit::largest(&margin) < 0.0 && drift < 0.5 * UNIT && fit::largest(&pace) < -PACE * fit::largest(&slowness);
+        if sound { (fit::largest(&worst).sqrt(), drift) } else { (f64::INFINITY, drift) }
+    }
+
+    /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
+    /// that of the image there, and the image's pace varies little enough for the samples to have seen all of that.
+    #[inline(always)]
     fn sound(&self, z: &State, s0: &Lane, s1: &Lane) -> bool {
         /// Feet may be this far from where an even pace would put them.
         const UNEVEN: f64 = 0.18;
         let [c1, c2, c3] = self.frame.power(z.a, z.b);
-        let mut ok = [true; 8];
+        let mut margin = [0.0; 8];
+        let mut pace = [0.0; 8];
+        let mut slowness = [0.0; 8];
         for i in 0..8 {
-            let drift = (s0[i] - FITTED[i] * UNIT).abs().max((s1[i] - CHECKED[i] * UNIT).abs());
+            let a = UNEVEN - (s0[i] - FITTED[i] * UNIT).abs();
+            let b = UNEVEN - (s1[i] - CHECKED[i] * UNIT).abs();
             let s = s0[i];
             let (dx, dy) = ((c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x, (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y);
             let (x, y) = (self.check.x[i] - self.g.x[i], self.check.y[i] - self.g.y[i]);
+            let (d2, l2) = (dx * dx + dy * dy, x * x + y * y);
             // The checked sample follows the fitted one in the first half and precedes it in the second.
-            let side = if i < 4 { 1.0 } else { -1.0 };
-            let along = (dx * x + dy * y) * side;
-            let order = (s1[i] - s0[i]) * side;
-            ok[i] = drift < UNEVEN
-                && order > 0.0
-                && along > 0.0
-                && 2.0 * along * along >= (dx * dx + dy * dy) * (x * x + y * y);
+            let along = (dx * x + dy * y) * SIDE[i];
+            let order = (s1[i] - s0[i]) * SIDE[i];
+            let straight = 2.0 * along * along - d2 * l2;
+            // The least of all these, negated, for the one reduction there is.
+            let m = if a < b { a } else { b };
+            let m = if m < order { m } else { order };
+            let m = if m < along { m } else { along };
+            margin[i] = -(if m < straight { m } else { straight });
+            pace[i] = l2;
+            slowness[i] = -l2;
         }
-        ok.iter().all(|b| *b)
+        fit::largest(&margin) < 0.0 && fit::largest(&pace) < -PACE * fit::largest(&slowness)
     }
 }
 
@@ -396,14 +569,6 @@ fn between(s: &Lane) -> Lane {
         0.5 * (s[5] + s[6]),
         0.5 * (s[6] + s[7]),
     ]
-}
-
-#[inline(always)]
-fn relative(g: &mut Lanes, to: Point) {
-    for i in 0..8 {
-        g.x[i] -= to.x;
-        g.y[i] -= to.y;
-    }
 }
 
 /// What the polyline through the samples looks like.
@@ -436,45 +601,49 @@ impl Shape {
             bent[i] = dot <= 0.0 || 4.0 * dot * dot < l[i] * l[i + 1];
         }
         let mut length = 0.0;
-        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        let (mut least, mut most) = ((0, f64::INFINITY), 0.0f64);
         for (i, l2) in l.iter().enumerate() {
             let l = l2.sqrt();
             length += l;
             // Lengths per unit of the parameter: the end stretches are half as long, the middle one half as long again.
             let pace = l * [2.0, 1.0, 1.0, 1.0, 2.0 / 3.0, 1.0, 1.0, 1.0, 2.0][i];
-            least = if pace < least { pace } else { least };
-            most = if pace > most { pace } else { most };
+            if pace < least.1 {
+                least = (i, pace);
+            }
+            most = most.max(pace);
         }
-        Self { length, sharp: bent.iter().any(|b| *b) || 6.0 * least < most }
+        // At the ends it slows down where a handle is short, which is no sharp turn.
+        let slows = 6.0 * least.1 < most && (1..8).contains(&least.0);
+        Self { length, sharp: bent.iter().any(|b| *b) || slows }
     }
 }
 
 /// The line between the ends, if the image is that line to rounding and runs along it one way.
 #[inline(always)]
-fn straight(g: &Lanes, q: Vec2, p0: Point, p1: Point, shape: &Shape) -> Option<Piece> {
+fn straight(g: &Lanes, q: Vec2, p0: Point, p1: Point, size: f64) -> Option<Piece> {
     /// Rounding of a coordinate after a map's arithmetic, relative to its size.
     const ROUNDING: f64 = 4e-15;
-    let size = (p0.x.abs() + p0.y.abs()).max(p1.x.abs() + p1.y.abs());
-    let line = Some(Piece::Line(Line::new(p0, p1)));
-    if shape.length <= ROUNDING * size {
-        return line;
-    }
-    let n2 = q.hypot2();
-    let most = 1e-12 * n2 + ROUNDING * size * n2.sqrt();
-    let mut off = [0.0; 8];
-    for i in 0..8 {
-        off[i] = (g.x[i] * q.y - g.y[i] * q.x).abs();
-    }
-    if fit::largest(&off) > most {
+    let from_origin = (p0.x.abs() + p0.y.abs()).max(p1.x.abs() + p1.y.abs());
+    let most = size * (1e-12 * size + ROUNDING * from_origin);
+    // One sample tells nearly all bent pieces.
+    if (g.x[2] * q.y - g.y[2] * q.x).abs() > most {
         return None;
+    }
+    straight_at_all(g, q, size, most, ROUNDING * from_origin).then_some(Piece::Line(Line::new(p0, p1)))
+}
+
+#[inline(never)]
+fn straight_at_all(g: &Lanes, q: Vec2, size: f64, most: f64, rounding: f64) -> bool {
+    if size <= rounding {
+        return g.x.iter().chain(&g.y).all(|v| v.abs() <= rounding);
     }
     let mut last = 0.0;
     for i in 0..8 {
         let along = g.x[i] * q.x + g.y[i] * q.y;
-        if along <= last {
-            return None;
+        if along <= last || (g.x[i] * q.y - g.y[i] * q.x).abs() > most {
+            return false;
         }
         last = along;
     }
-    if last < n2 { line } else { None }
+    last < q.hypot2()
 }

@@ -1,7 +1,7 @@
 //! Dense checks of a fitted piece against the true image, both ways.
 
 use super::fit::Frame;
-use super::source::{Lane, Lanes, Source};
+use super::source::{Curve, Lane, Lanes};
 use super::split::Slow;
 use kurbo::{Point, Vec2};
 
@@ -27,7 +27,7 @@ impl Candidate {
     }
 
     /// Images at `tau` (shares of the piece), relative to its first point.
-    fn images(&self, source: &Source<'_>, tau: &Lane) -> Result<Lanes, Point> {
+    fn images(&self, source: &impl Curve, tau: &Lane) -> Result<Lanes, Point> {
         let mut t = [0.0; 8];
         for i in 0..8 {
             t[i] = self.param(tau[i]);
@@ -54,28 +54,23 @@ impl Candidate {
 /// The distance between the candidate and the image over its stretch, by many samples, more of them around slow spots.
 /// `feet` are known pairs (share of the piece, foot), sorted, from 0 to 1: first guesses.
 pub(super) fn dense(
-    source: &Source<'_>,
+    source: &impl Curve,
     c: &Candidate,
     feet: &[(f64, f64)],
     slow: &Slow,
     tolerance: f64,
 ) -> Result<f64, Point> {
     let mut worst = 0.0f64;
-    let mut last = (0.0, c.frame.t0);
+    let mut last = Foot { tau: 0.0, s: 0.0, slope: c.frame.t0 };
     let mut sound = true;
+    let walk = |tau: &Lane, worst: &mut f64, last: &mut Foot, depth: u32| -> Result<bool, Point> {
+        walk(source, c, feet, tau, worst, last, depth)
+    };
     for k in 0..BATCHES {
-        let tau: Lane = std::array::from_fn(|i| (k * 8 + i) as f64 / (BATCHES * 8) as f64 + 0.5 / (BATCHES * 8) as f64);
-        let mut s: Lane = tau.map(|t| guess(feet, t));
-        let g = c.images(source, &tau)?;
-        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
-        worst = d.iter().copied().fold(worst, f64::max);
-        for s in s {
-            let v = c.slope(s);
-            sound &= s >= last.0 && turns_little(last.1, v);
-            last = (s, v);
-        }
+        let tau: Lane = std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (BATCHES * 8) as f64);
+        sound &= walk(&tau, &mut worst, &mut last, 0)?;
     }
-    sound &= turns_little(last.1, c.frame.t1);
+    sound &= turns_little(last.slope, c.frame.t1) || walk(&spread(last.tau, 1.0), &mut worst, &mut last, 1)?;
     for t in slow.all() {
         let at = (t - c.t0) / (c.t1 - c.t0);
         if at > 0.0 && at < 1.0 {
@@ -90,8 +85,61 @@ pub(super) fn dense(
             }
         }
     }
+    for chunk in source.places(c.t0, c.t1).chunks(8) {
+        let tau: Lane = std::array::from_fn(|i| (chunk[i.min(chunk.len() - 1)] - c.t0) / (c.t1 - c.t0));
+        let mut s: Lane = tau.map(|t| guess(feet, t));
+        let g = c.images(source, &tau)?;
+        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+        worst = d.iter().copied().fold(worst, f64::max);
+    }
     let worst = worst.sqrt();
-    if sound && worst <= tolerance { Ok(worst) } else { thorough(source, c, slow) }
+    if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
+}
+
+/// A sample's foot on the cubic.
+#[derive(Debug, Clone, Copy)]
+struct Foot {
+    tau: f64,
+    s: f64,
+    slope: Vec2,
+}
+
+/// Eight shares between two.
+fn spread(a: f64, b: f64) -> Lane {
+    std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 8.0)
+}
+
+/// Measures the next eight samples; between two whose feet see the cubic turn much, eight more. Returns whether the feet
+/// advance, and the cubic between them is known.
+fn walk(
+    source: &impl Curve,
+    c: &Candidate,
+    feet: &[(f64, f64)],
+    tau: &Lane,
+    worst: &mut f64,
+    last: &mut Foot,
+    depth: u32,
+) -> Result<bool, Point> {
+    /// Sixty-four samples, eight and eight more in between.
+    const DEPTH: u32 = 2;
+    /// Feet this close are in order.
+    const ROUNDING: f64 = 1e-9;
+    let mut s: Lane = tau.map(|t| guess(feet, t));
+    let g = c.images(source, tau)?;
+    let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+    *worst = d.iter().copied().fold(*worst, f64::max);
+    let mut sound = true;
+    for i in 0..8 {
+        let next = Foot { tau: tau[i], s: s[i], slope: c.slope(s[i]) };
+        if next.s < last.s - ROUNDING {
+            return Ok(false);
+        }
+        if !turns_little(last.slope, next.slope) {
+            sound &= depth < DEPTH && walk(source, c, feet, &spread(last.tau, next.tau), worst, last, depth + 1)?;
+        }
+        *last = next;
+    }
+    Ok(sound)
 }
 
 /// Whether two directions are less than 60° apart.
@@ -111,7 +159,8 @@ fn guess(feet: &[(f64, f64)], tau: f64) -> f64 {
 }
 
 /// Both one-sided distances, with no help from the fit: nearest samples by search, then Newton steps.
-pub(super) fn thorough(source: &Source<'_>, c: &Candidate, slow: &Slow) -> Result<f64, Point> {
+#[cold]
+pub(super) fn thorough(source: &impl Curve, c: &Candidate, slow: &Slow, tolerance: f64) -> Result<f64, Point> {
     let mut taus = Vec::with_capacity(THOROUGH + 72);
     taus.extend((0..=THOROUGH).map(|i| i as f64 / THOROUGH as f64));
     for t in slow.all() {
@@ -137,19 +186,36 @@ pub(super) fn thorough(source: &Source<'_>, c: &Candidate, slow: &Slow) -> Resul
         images.extend((0..8).map(|i| Vec2::new(g.x[i], g.y[i])));
     }
     let curve: Vec<Vec2> = (0..=THOROUGH).map(|i| c.at(i as f64 / THOROUGH as f64)).collect();
-    let nearest = |set: &[Vec2], p: Vec2| {
-        let mut best = (0, f64::INFINITY);
-        for (i, q) in set.iter().enumerate() {
-            let d = (*q - p).hypot2();
-            if d < best.1 {
-                best = (i, d);
+    // Downhill from the last nearest; all of them where that is not near enough.
+    let enough = tolerance * tolerance;
+    let nearest = |set: &[Vec2], from: usize, p: Vec2| {
+        let d = |i: usize| (set[i] - p).hypot2();
+        let (mut at, mut best) = (from, d(from));
+        loop {
+            if at + 1 < set.len() && d(at + 1) < best {
+                at += 1;
+            } else if at > 0 && d(at - 1) < best {
+                at -= 1;
+            } else {
+                break;
+            }
+            best = d(at);
+        }
+        if best > enough {
+            for (i, q) in set.iter().enumerate() {
+                let d = (*q - p).hypot2();
+                if d < best {
+                    (at, best) = (i, d);
+                }
             }
         }
-        best
+        (at, best)
     };
+    let mut from = 0;
     let mut worst = 0.0f64;
     for p in &images {
-        let (i, mut best) = nearest(&curve, *p);
+        let (i, mut best) = nearest(&curve, from, *p);
+        from = i;
         let mut s = i as f64 / THOROUGH as f64;
         for _ in 0..4 {
             let (r, v) = (c.at(s) - *p, c.slope(s));
@@ -159,8 +225,10 @@ pub(super) fn thorough(source: &Source<'_>, c: &Candidate, slow: &Slow) -> Resul
         worst = worst.max(best);
     }
     let origin = c.p0.to_vec2();
+    from = 0;
     for q in &curve {
-        let (i, mut best) = nearest(&images, *q);
+        let (i, mut best) = nearest(&images, from, *q);
+        from = i;
         let mut tau = taus[i];
         let h = c.t1 - c.t0;
         // Farther than what is already known to be the error only if Newton finds nothing nearer.

@@ -1,0 +1,273 @@
+//! The bilinear map: a rectangle onto four corners, its four sides divided evenly.
+//!
+//! F(u, v) = (1−u)(1−v)·P + u(1−v)·Q + uv·R + (1−u)v·S = P + u·a + v·b + uv·c with a = Q−P, b = S−P, c = P−Q+R−S.
+//! Lines along the rectangle's sides stay straight and are divided evenly; other lines become parabolas. A curve of degree n has
+//! an image of degree 2n, exactly.
+//!
+//! Inverse: with q = F − P, eliminating v from q − u·a = v·(b + u·c) leaves −(a×c)·u² + (q×c − a×b)·u + q×b = 0. At a solution
+//! twice the leading coefficient times u plus the middle one is −det F', so the root is chosen by the side of the fold that the
+//! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
+
+use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use crate::anchors::{self, Anchors};
+use crate::error::{Error, GeometryError};
+use crate::map::{
+    AffineMap, Chain, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real, bernstein::Scaled,
+};
+use crate::param::{Param, Settings};
+use kurbo::{Affine, Point, Vec2};
+use std::sync::Arc;
+
+pub(super) struct Bilinear;
+
+static INFO: Info = Info {
+    name: "bilinear",
+    title: "four corners, sides divided evenly",
+    group: "Envelopes",
+    about: "Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Uprights and levels stay straight \
+and keep their even spacing, where projective would crowd them towards the far side; slanting lines become parabolas.\n\nBoth start \
+with the side that lies lowest on the screen, left to right, unless --base-as-drawn or --target-as-drawn say otherwise.",
+    source: "G. Wolberg, Digital Image Warping, 1990, section 3.6",
+    params: &[
+        Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
+        Param::path("target", "Four anchors where they are to land.").default("0%,100% 100%,80% 100%,20% 0%,0%"),
+        Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
+        Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
+    ],
+    demo: &[("target", "0,100 95,90 75,20 15,5")],
+    examples: &[
+        Example {
+            what: "As it comes: a word that tapers, all letters equally wide",
+            command: "bilinear samples/lettering.svg -o out.svg",
+        },
+        Example {
+            what: "Four corners",
+            command: "bilinear samples/logo.svg --target '0%,100% 90%,110% 100%,0% 15%,-10%' -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("target", "0,0 100,0 100,100 0,100")]),
+        Law::KeepsLines(&[("target", "0,100 100,120 130,20 30,0")]),
+        Law::Area(&[("target", "0,100 200,100 200,0 0,0")], 2.0),
+    ],
+    cases: &[
+        Case { args: FOUR, at: (0.0, 100.0), to: (0.0, 100.0), tolerance: 1e-12 },
+        Case { args: FOUR, at: (100.0, 100.0), to: (95.0, 90.0), tolerance: 1e-12 },
+        Case { args: FOUR, at: (100.0, 0.0), to: (75.0, 20.0), tolerance: 1e-12 },
+        Case { args: FOUR, at: (0.0, 0.0), to: (15.0, 5.0), tolerance: 1e-12 },
+        // The middle goes to the corners' mean, a side's quarter to its quarter.
+        Case { args: FOUR, at: (50.0, 50.0), to: (46.25, 53.75), tolerance: 1e-12 },
+        Case { args: FOUR, at: (25.0, 100.0), to: (23.75, 97.5), tolerance: 1e-12 },
+    ],
+};
+
+const FOUR: super::Pairs = &[("target", "0,100 95,90 75,20 15,5")];
+
+impl Deformation for Bilinear {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let base = match anchors::from_settings(s, "base", "base-as-drawn")? {
+            Some(b) => b,
+            None => anchors::frame_corners(s)?,
+        };
+        let missing =
+            || Error::Missing { param: "--target".into(), hint: "four anchors where the Base is to land".into() };
+        let target = anchors::from_settings(s, "target", "target-as-drawn")?.ok_or_else(missing)?;
+        let (from, to) = (four("--base", &base)?, four("--target", &target)?);
+        let before = anchors::to_standard("--base", &Anchors::Four(from))?;
+        let map = BilinearMap::new(to);
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
+        let mut built = Built::new(Arc::new(Chain::new([before, map.or_affine()])));
+        if corners.iter().any(|d| *d > 0.0) && corners.iter().any(|d| *d < 0.0) {
+            built.warnings.push("bilinear: the Target is not convex: the artwork folds over itself".into());
+        }
+        let overlay = |role, q: [Point; 4]| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
+        built.overlays = vec![overlay(Role::Base, from), overlay(Role::Target, to)];
+        Ok(built)
+    }
+}
+
+fn four(name: &str, a: &Anchors) -> Result<[Point; 4], Error> {
+    match a {
+        Anchors::Four(q) => Ok(*q),
+        Anchors::Two(p) => Err(GeometryError::AnchorCount {
+            path: name.into(),
+            found: 2,
+            anchors: p.to_vec(),
+            expected: "four (for two, use similitude)",
+        }
+        .into()),
+    }
+}
+
+/// P + u·a + v·b + uv·c over the unit square.
+#[derive(Debug, Clone, Copy)]
+struct BilinearMap {
+    p: Vec2,
+    a: Vec2,
+    b: Vec2,
+    c: Vec2,
+}
+
+impl BilinearMap {
+    /// From the images of (0,0), (1,0), (1,1), (0,1).
+    fn new(q: [Point; 4]) -> Self {
+        Self { p: q[0].to_vec2(), a: q[1] - q[0], b: q[3] - q[0], c: (q[0] - q[1]) + (q[2] - q[3]) }
+    }
+
+    fn det(&self, u: f64, v: f64) -> f64 {
+        (self.a + self.c * v).cross(self.b + self.c * u)
+    }
+
+    /// A parallelogram is an affine map.
+    fn or_affine(self) -> Arc<dyn Map> {
+        if self.c.hypot() > 1e-14 * (self.p.hypot() + self.a.hypot() + self.b.hypot()) {
+            return Arc::new(self);
+        }
+        let Self { p, a, b, .. } = self;
+        Arc::new(AffineMap(Affine::new([a.x, a.y, b.x, b.y, p.x, p.y])))
+    }
+}
+
+impl Formula for BilinearMap {
+    fn f<S: Real>(&self, u: S, v: S) -> (S, S) {
+        let Self { p, a, b, c } = *self;
+        let uv = u * v;
+        (u * a.x + v * b.x + uv * c.x + p.x, u * a.y + v * b.y + uv * c.y + p.y)
+    }
+
+    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
+        let (u, v, w) = (coordinate(0), coordinate(1), coordinate(2));
+        let (uv, uw, vw, ww) = (u.times(&v), u.times(&w), v.times(&w), w.times(&w));
+        let sum = |p: f64, a: f64, b: f64, c: f64| {
+            let mut out = Scaled::zero(2 * curve.degree());
+            for (k, term) in [(p, &ww), (a, &uw), (b, &vw), (c, &uv)] {
+                out.add_scaled(k, term);
+            }
+            out.coefficients()
+        };
+        let Self { p, a, b, c } = *self;
+        let (x, y) = (sum(p.x, a.x, b.x, c.x), sum(p.y, a.y, b.y, c.y));
+        let polynomial = curve.is_polynomial();
+        let points = x.into_iter().zip(y).zip(ww.coefficients());
+        Some(RationalBezier { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() })
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        let det = self.det(0.5, 0.5);
+        (det != 0.0 && det.is_finite()).then(|| Arc::new(Inverse { of: *self, side: det.signum() }) as Arc<dyn Map>)
+    }
+}
+
+/// The inverse on the side of the fold where the determinant has the sign `side`.
+#[derive(Debug, Clone, Copy)]
+struct Inverse {
+    of: BilinearMap,
+    side: f64,
+}
+
+impl Inverse {
+    /// The quadratic's coefficients, highest first.
+    fn quadratic<S: Real>(&self, qx: S, qy: S) -> [S; 3] {
+        let BilinearMap { a, b, c, .. } = self.of;
+        let cross = |v: Vec2| qx * v.y - qy * v.x;
+        [S::from(-a.cross(c)), cross(c) - a.cross(b), cross(b)]
+    }
+}
+
+impl Formula for Inverse {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let BilinearMap { p, a, b, c } = self.of;
+        let (qx, qy) = (x - p.x, y - p.y);
+        let [k2, k1, k0] = self.quadratic(qx, qy);
+        // det F' at the solution.
+        let det = (k1 * k1 - k2 * k0 * 4.0).sqrt() * self.side;
+        // −k1 and det have one sign near the unit square unless it is bent far: then the other form cancels less.
+        let u = if (det - k1).value().abs() >= (det + k1).value().abs() {
+            k0 * 2.0 / (det - k1)
+        } else {
+            -(k1 + det) / (k2 * 2.0)
+        };
+        let (ex, ey) = (u * c.x + b.x, u * c.y + b.y);
+        let v = ((qx - u * a.x) * ex + (qy - u * a.y) * ey) / (ex * ex + ey * ey);
+        (u, v)
+    }
+
+    /// Beyond the fold's image there is no source.
+    fn creases(&self, out: &mut Creases) {
+        let own = *self;
+        out.push(Crease::edge(Level::Field(Arc::new(move |at| {
+            let q = at - own.of.p;
+            let [k2, k1, k0] = own.quadratic(q.x, q.y);
+            k1 * k1 - 4.0 * k2 * k0
+        }))));
+    }
+
+    fn class(&self) -> Class {
+        Class::Smooth
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.of))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::outline::Seg;
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Bilinear);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    fn build(pairs: &[(&str, &str)]) -> Built {
+        Bilinear.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap()
+    }
+
+    #[test]
+    fn uprights_and_levels_stay_straight_and_even_and_images_are_of_twice_the_degree() {
+        let m = build(FOUR).map;
+        for (p, q) in [((30.0, 0.0), (30.0, 100.0)), ((0.0, 77.0), (100.0, 77.0))] {
+            let (p, q) = (Point::from(p), Point::from(q));
+            let (a, b) = (m.point(p), m.point(q));
+            for i in 0..=10 {
+                let t = f64::from(i) / 10.0;
+                assert!(m.point(p.lerp(q, t)).distance(a.lerp(b, t)) < 1e-12);
+            }
+        }
+        let cubic = Seg::Cubic(kurbo::CubicBez::new((5.0, 5.0), (90.0, 5.0), (20.0, 80.0), (60.0, 60.0)));
+        assert_eq!(m.image_of(&RationalBezier::from_seg(&cubic).unwrap()).unwrap().degree(), 6);
+    }
+
+    #[test]
+    fn the_inverse_returns_for_every_shape_of_target() {
+        for target in [
+            "0,100 95,90 75,20 15,5",   // as in the cases
+            "0,100 100,100 75,0 25,0",  // a trapezium: two sides parallel
+            "0,100 100,100 100,0 20,0", // one corner moved
+            "100,100 0,90 10,10 95,0",  // mirrored
+        ] {
+            let m = build(&[("target", target), ("target-as-drawn", "true")]).map;
+            let back = m.inverse().unwrap();
+            for p in [(0.0, 0.0), (100.0, 100.0), (50.0, 50.0), (99.0, 1.0), (20.0, 70.0)] {
+                assert!(back.point(m.point(p.into())).distance(p.into()) < 1e-9, "{target} {p:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn folds_are_told() {
+        assert!(build(FOUR).warnings.is_empty());
+        let dented = build(&[("target", "0,100 100,100 20,80 0,0"), ("target-as-drawn", "true")]);
+        assert!(dented.warnings[0].contains("folds"));
+    }
+}

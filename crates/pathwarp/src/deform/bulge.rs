@@ -1,0 +1,263 @@
+//! A bulge, or with a negative amount a pinch: artwork pushed out from a centre, or drawn in, within a disc.
+//!
+//! With q = (r/R)² every point stays on its ray and r' = r·k(q), m = 2^amount being the scale at the centre:
+//!
+//! - sharp: q' = m²q / (1 + (m² − 1)·q), so k = m/√(1 + (m² − 1)·q). In q this is a projective map of the line that keeps 0
+//!   and 1: the inverse is the same with 1/m. At the rim the radial scale jumps from 1/m² to 1,
+//! - soft: k = exp(ln m·(1 − q)²). At the rim value and slope run out. d ln r'/d ln r = 1 − 4·ln m·q(1 − q) > 0 as long as
+//!   |ln m| < 1, which holds for amounts up to 1; the inverse is one equation in one unknown, solved by bracketed Newton.
+//!
+//! Both are smooth at the centre, being smooth in r². Elementary.
+
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::map::{AffineMap, Class, Crease, Creases, Formula, Jet, Level, Map, Real};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Affine, Point, Vec2};
+use std::f64::consts::LN_2;
+use std::sync::Arc;
+
+pub(super) struct Bulge;
+
+static INFO: Info = Info {
+    name: "bulge",
+    title: "blow up the middle, or pinch it",
+    group: "Classics",
+    about: "Pushes artwork away from a centre, most in the middle and not at all at the radius; with a negative amount draws it in \
+(pinch). Outside the radius nothing moves. --edge soft runs out without a kink at the rim; --edge sharp is rounder, and its pinch \
+undoes its bulge exactly.",
+    source: "elementary; see the formulas at the top of deform/bulge.rs",
+    params: &[
+        Param::number("amount", "At 1 the middle is twice as large, at -1 half as large (pinch).")
+            .default("0.7")
+            .within(-1.0, 1.0),
+        Param::new("center", Kind::Point, "The point that everything is pushed away from.").default("50%,50%"),
+        Param::length("radius", Axis::Diagonal, "Where the bulge ends; 50% reaches the artwork's corners.")
+            .default("50%")
+            .within(1e-6, 1e9)
+            .slider(1.0, 1000.0),
+        Param::new("edge", Kind::Choice(&["soft", "sharp"]), "How it ends at the rim: without a kink, or with one.")
+            .default("soft"),
+    ],
+    demo: &[("amount", "1"), ("radius", "40")],
+    examples: &[
+        Example { what: "As it comes", command: "bulge samples/logo.svg -o out.svg" },
+        Example { what: "Pinch a word", command: "bulge samples/lettering.svg --amount -0.6 -o out.svg" },
+        Example {
+            what: "A bubble over a grid",
+            command: "bulge samples/grid.svg --amount 1 --radius 25% --edge sharp -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("amount", "0")]),
+        Law::Identity(&[("amount", "0"), ("edge", "sharp")]),
+        Law::Undoes(&[("amount", "0.8"), ("edge", "sharp")], &[("amount", "-0.8"), ("edge", "sharp")]),
+    ],
+    cases: &[
+        Case { args: &[("radius", "40")], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 0.0 },
+        Case { args: &[("radius", "40")], at: (90.0, 50.0), to: (90.0, 50.0), tolerance: 0.0 },
+        // Half-way out, q = 1/4: sharp k = 2/√(7/4), soft k = 2^(9/16).
+        Case {
+            args: &[("radius", "40"), ("amount", "1"), ("edge", "sharp")],
+            at: (70.0, 50.0),
+            to: (50.0 + 40.0 / 1.322_875_655_532_295_3, 50.0),
+            tolerance: 1e-12,
+        },
+        Case {
+            args: &[("radius", "40"), ("amount", "1")],
+            at: (50.0, 30.0),
+            to: (50.0, 50.0 - 20.0 * 1.476_826_145_939_499_3),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+impl Deformation for Bulge {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        Ok(Built::new(Arc::new(BulgeMap(Inner {
+            center: s.point("center")?,
+            radius: s.number("radius")?,
+            ln_m: s.number("amount")? * LN_2,
+            sharp: s.choice("edge")? == "sharp",
+        }))))
+    }
+}
+
+/// The bulge as it is inside the disc, continued outside.
+#[derive(Debug, Clone, Copy)]
+struct Inner {
+    center: Point,
+    radius: f64,
+    /// The scale at the centre, as its logarithm.
+    ln_m: f64,
+    sharp: bool,
+}
+
+impl Inner {
+    fn within(&self, p: Point) -> bool {
+        (p - self.center).hypot() < self.radius
+    }
+
+    fn crease(&self, out: &mut Creases) {
+        let Self { center, radius, .. } = *self;
+        out.push(Crease::kink(Level::Field(Arc::new(move |p| (p - center).hypot() - radius))));
+    }
+
+    fn class(&self) -> Class {
+        if self.ln_m == 0.0 { Class::Affine(Affine::IDENTITY) } else { Class::Smooth }
+    }
+}
+
+impl Formula for Inner {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let (u, v) = (x - self.center.x, y - self.center.y);
+        let q = (u * u + v * v) / (self.radius * self.radius);
+        let k = if self.sharp {
+            let m = self.ln_m.exp();
+            S::from(m) / (q * (m * m - 1.0) + 1.0).sqrt()
+        } else {
+            ((-q + 1.0).powi(2) * self.ln_m).exp()
+        };
+        (u * k + self.center.x, v * k + self.center.y)
+    }
+}
+
+/// The bulge that ends at the rim.
+#[derive(Debug, Clone, Copy)]
+struct BulgeMap(Inner);
+
+impl Formula for BulgeMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        if self.0.within(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
+    }
+
+    fn class(&self) -> Class {
+        self.0.class()
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        self.0.crease(out);
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        Some(if self.0.within(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        if self.0.sharp {
+            return Some(Arc::new(Self(Inner { ln_m: -self.0.ln_m, ..self.0 })));
+        }
+        Some(Arc::new(SoftInverse(self.0)))
+    }
+}
+
+/// The inverse of the soft bulge.
+#[derive(Debug, Clone, Copy)]
+struct SoftInverse(Inner);
+
+impl SoftInverse {
+    /// The point of the disc that goes to `p`.
+    fn source(&self, p: Point) -> Point {
+        let Inner { center, radius, ln_m, .. } = self.0;
+        let d = p - center;
+        let target = d.hypot2() / (radius * radius);
+        if target == 0.0 || target >= 1.0 {
+            return p;
+        }
+        // g(q) = ln q + 2·ln m·(1 − q)² − ln q' grows from −∞ to above 0 over (0, 1].
+        let (mut lo, mut hi) = (0.0, 1.0);
+        let mut q = (target * (-2.0 * ln_m * (1.0 - target).powi(2)).exp()).clamp(f64::MIN_POSITIVE, 1.0);
+        /// Newton doubles the digits; halving, where it must step in, needs a few more.
+        const ROUNDS: usize = 60;
+        for _ in 0..ROUNDS {
+            let g = (q / target).ln() + 2.0 * ln_m * (1.0 - q).powi(2);
+            if g > 0.0 {
+                hi = q;
+            } else {
+                lo = q;
+            }
+            let next = q - g / (1.0 / q - 4.0 * ln_m * (1.0 - q));
+            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+            if (next - q).abs() <= 1e-16 * q {
+                break;
+            }
+            q = next;
+        }
+        center + d * (q / target).sqrt()
+    }
+}
+
+impl Map for SoftInverse {
+    fn jet(&self, p: Point) -> Jet {
+        if !self.0.within(p) {
+            return Jet { p, dx: Vec2::new(1.0, 0.0), dy: Vec2::new(0.0, 1.0) };
+        }
+        let at = self.source(p);
+        // The inverse of the forward map's Jacobian.
+        let j = self.0.jet(at);
+        let det = j.det();
+        Jet { p: at, dx: Vec2::new(j.dy.y, -j.dx.y) / det, dy: Vec2::new(-j.dy.x, j.dx.x) / det }
+    }
+
+    fn point(&self, p: Point) -> Point {
+        self.source(p)
+    }
+
+    fn class(&self) -> Class {
+        self.0.class()
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        self.0.crease(out);
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(BulgeMap(self.0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Bulge);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    fn build(pairs: &[(&str, &str)]) -> Arc<dyn Map> {
+        Bulge.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap().map
+    }
+
+    #[test]
+    fn the_centre_is_scaled_as_promised_and_nothing_folds() {
+        for edge in ["soft", "sharp"] {
+            for (amount, m) in [("1", 2.0), ("-1", 0.5), ("0.5", 2.0f64.sqrt())] {
+                let map = build(&[("edge", edge), ("amount", amount)]);
+                assert!((map.jet(Point::new(50.0, 50.0)).det() - m * m).abs() < 1e-12);
+                for i in 0..100 {
+                    assert!(map.jet(Point::new(50.0 + 0.7 * f64::from(i), 50.0)).det() > 0.0, "{edge} {amount} {i}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_soft_inverse_has_the_right_derivatives() {
+        let back = build(&[("amount", "-1")]).inverse().unwrap();
+        for (x, y) in [(50.0, 50.0), (50.0 + 1e-9, 50.0), (60.0, 41.0), (20.0, 70.0), (119.0, 50.0)] {
+            let (p, h) = (Point::new(x, y), 1e-5);
+            let j = back.jet(p);
+            let dx = (back.point(p + Vec2::new(h, 0.0)) - back.point(p - Vec2::new(h, 0.0))) / (2.0 * h);
+            let dy = (back.point(p + Vec2::new(0.0, h)) - back.point(p - Vec2::new(0.0, h))) / (2.0 * h);
+            assert!((dx - j.dx).hypot() + (dy - j.dy).hypot() < 1e-6, "{p:?}: {j:?} {dx:?} {dy:?}");
+        }
+    }
+}

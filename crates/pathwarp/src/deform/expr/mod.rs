@@ -1,0 +1,343 @@
+//! Any formula: x' and y' as the user writes them.
+//!
+//! The text becomes a list of operations ([`parse`], [`program`]), which runs on plain and on dual numbers: the derivatives are
+//! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each, and a branch is the list
+//! with the side known.
+
+mod parse;
+mod program;
+
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
+use crate::param::{Frame, Kind, Param, Settings};
+use kurbo::{Affine, Point};
+use parse::{Fault, Names};
+use program::{Binary, Program};
+use std::sync::Arc;
+
+pub(super) struct Expr;
+
+static INFO: Info = Info {
+    name: "expr",
+    title: "any formula for x and y",
+    group: "Formulas",
+    about: "Write where x and y go; what is not given stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \
+x y      the place, in user units, y downwards\n  \
+u v      the same within the artwork's box, from 0 to 1, from the left and the top\n  \
+w h      the box's width and height\n  \
+cx cy    its middle\n  \
+pi tau e the numbers; angles are in radians\n  \
+sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b) hypot(a,b)\n\n\
+--let names a value for those after it. Where abs, min and max have their kinks, curves are split.",
+    source: "forward-mode differentiation of the formula itself; parsing after V. Pratt, Top down operator precedence, POPL 1973",
+    params: &[
+        Param::new("x", Kind::Text("FORMULA"), "Where x goes.").default("x"),
+        Param::new("y", Kind::Text("FORMULA"), "Where y goes.").default("y"),
+        Param::new("let", Kind::Text("NAME=FORMULA"), "A name for a value, used after it; may be given many times.")
+            .repeated(),
+    ],
+    demo: &[("x", "x + 4*sin(y/16)"), ("y", "y + 3*cos(u*pi)^2 - x*y/500")],
+    examples: &[
+        Example {
+            what: "A ripple from side to side",
+            command: "expr samples/logo.svg --x 'x + 4*sin(y/16)' -o out.svg",
+        },
+        Example {
+            what: "A parabola's arch",
+            command: "expr samples/lettering.svg --let 's=2*u-1' --y 'y + h*(s^2/2 - 0.2)' -o out.svg",
+        },
+        Example {
+            what: "A roof, with its ridge in the middle",
+            command: "expr samples/grid.svg --y 'y + 0.25*abs(x - cx) - 0.1*h' -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("x", "x")]),
+        Law::Identity(&[("x", "w*u"), ("y", "v*h")]),
+        Law::Identity(&[("x", "cx + hypot(x-cx, y-cy)*cos(atan2(y-cy, x-cx))"), ("y", "sqrt(y)^2")]),
+        Law::Identity(&[("x", "exp(ln(x+1)) - 1"), ("y", "tan(atan(y))")]),
+        Law::Identity(&[("x", "100*sin(asin(u))"), ("y", "100*cos(acos(v))")]),
+        Law::Area(&[("x", "x + 9*sin(y/9)")], 1.0),
+        Law::KeepsLines(&[("x", "(2*x - y/3 + 1)*2"), ("y", "-(y + x)")]),
+        Law::Same(&[("let", "a=2*pi"), ("let", "b=a*u"), ("y", "y+sin(b)")], &[("y", "y+sin(tau*x/w)")]),
+        Law::Same(&[("x", "x+abs(y-30)")], &[("x", "x+max(y-30, 30-y)")]),
+        Law::Same(&[("x", "-min(-x, -y)^2")], &[("x", "-(max(x, y)**2)")]),
+    ],
+    cases: &[
+        Case {
+            args: &[("x", "x + 4*sin(y/16)")],
+            at: (1.0, 8.0 * std::f64::consts::PI),
+            to: (5.0, 8.0 * std::f64::consts::PI),
+            tolerance: 1e-12,
+        },
+        Case {
+            args: &[("x", "2^3^2 - -2*3"), ("y", "-2^2 + 10/5/2")],
+            at: (1.0, 1.0),
+            to: (518.0, -3.0),
+            tolerance: 0.0,
+        },
+        Case {
+            args: &[("x", "1.5e1 + .5"), ("y", "pow(x, 0.5) + e - e")],
+            at: (9.0, 1.0),
+            to: (15.5, 3.0),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+impl Deformation for Expr {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        if !s.given("x") && !s.given("y") {
+            let hint = "a formula for x, y or both, such as 'x + 4*sin(y/16)'";
+            return Err(Error::Missing { param: "--x".into(), hint: hint.into() });
+        }
+        let mut program = Program::default();
+        let few = "the first few operations always fit";
+        let mut names = builtin(&mut program, s.frame()).ok_or_else(|| Error::usage("x", "", few))?;
+        for text in s.texts("let") {
+            let Some((name, formula)) = text.split_once('=') else {
+                return Err(Error::usage("let", text, "is not NAME=FORMULA"));
+            };
+            let (name, skipped) = (name.trim(), text.len() - formula.len());
+            if !parse::is_name(name) {
+                return Err(Error::usage(
+                    "let",
+                    text,
+                    format!("`{name}` is no name: letters, digits and _ after a letter"),
+                ));
+            }
+            if names.get(name).is_some() || parse::is_function(name) {
+                return Err(Error::usage("let", text, format!("`{name}` is taken already")));
+            }
+            let value = parse::parse(formula, &names, &mut program)
+                .map_err(|f| Error::usage("let", text, Fault { at: f.at + skipped, ..f }.show(text)))?;
+            names.set(name, value);
+        }
+        let mut read = |param: &str| -> Result<u32, Error> {
+            let text = s.texts(param).last().copied().unwrap_or(param);
+            parse::parse(text, &names, &mut program).map_err(|f| Error::usage(param, text, f.show(text)))
+        };
+        let (x, y) = (read("x")?, read("y")?);
+        Ok(Built::new(Arc::new(ExprMap { program: Arc::new(program), x, y })))
+    }
+}
+
+/// The names that are always there.
+fn builtin(p: &mut Program, frame: &Frame) -> Option<Names> {
+    let mut names = Names::new();
+    let r = frame.rect;
+    let (x, y) = (p.x()?, p.y()?);
+    names.set("x", x);
+    names.set("y", y);
+    for (name, of, from, size) in [("u", x, r.x0, r.width()), ("v", y, r.y0, r.height())] {
+        let (from, size) = (p.constant(from)?, p.constant(size)?);
+        let off = p.binary(Binary::Sub, of, from)?;
+        names.set(name, p.binary(Binary::Div, off, size)?);
+    }
+    let c = r.center();
+    for (name, value) in [
+        ("w", r.width()),
+        ("h", r.height()),
+        ("cx", c.x),
+        ("cy", c.y),
+        ("pi", std::f64::consts::PI),
+        ("tau", std::f64::consts::TAU),
+        ("e", std::f64::consts::E),
+    ] {
+        names.set(name, p.constant(value)?);
+    }
+    Some(names)
+}
+
+/// The map itself: a program, and which of its values are x' and y'.
+#[derive(Debug, Clone)]
+struct ExprMap {
+    program: Arc<Program>,
+    x: u32,
+    y: u32,
+}
+
+/// Points evaluated together.
+const LANES: usize = 8;
+
+impl ExprMap {
+    fn some_jets<const N: usize>(&self, ps: [Point; N]) -> [Jet; N] {
+        let x = ps.map(|p| Dual { v: p.x, x: 1.0, y: 0.0 });
+        let y = ps.map(|p| Dual { v: p.y, x: 0.0, y: 1.0 });
+        let values = self.program.run(x, y);
+        let (x, y) = (values[self.x as usize], values[self.y as usize]);
+        std::array::from_fn(|i| Jet {
+            p: Point::new(x[i].v, y[i].v),
+            dx: (x[i].x, y[i].x).into(),
+            dy: (x[i].y, y[i].y).into(),
+        })
+    }
+
+    fn some_points<const N: usize>(&self, ps: [Point; N]) -> [Point; N] {
+        let values = self.program.run(ps.map(|p| p.x), ps.map(|p| p.y));
+        let (x, y) = (values[self.x as usize], values[self.y as usize]);
+        std::array::from_fn(|i| Point::new(x[i], y[i]))
+    }
+}
+
+impl Map for ExprMap {
+    fn jet(&self, p: Point) -> Jet {
+        let [j] = self.some_jets([p]);
+        j
+    }
+
+    fn point(&self, p: Point) -> Point {
+        let [q] = self.some_points([p]);
+        q
+    }
+
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        for (ps, out) in ps.chunks(LANES).zip(out.chunks_mut(LANES)) {
+            match <[Point; LANES]>::try_from(ps) {
+                Ok(all) => out.copy_from_slice(&self.some_jets(all)),
+                Err(_) => ps.iter().zip(out).for_each(|(p, o)| *o = self.jet(*p)),
+            }
+        }
+    }
+
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        for (ps, out) in ps.chunks(LANES).zip(out.chunks_mut(LANES)) {
+            match <[Point; LANES]>::try_from(ps) {
+                Ok(all) => out.copy_from_slice(&self.some_points(all)),
+                Err(_) => ps.iter().zip(out).for_each(|(p, o)| *o = self.point(*p)),
+            }
+        }
+    }
+
+    fn class(&self) -> Class {
+        match (self.program.affine(self.x), self.program.affine(self.y)) {
+            (Some([a, c, e]), Some([b, d, f])) => Class::Affine(Affine::new([a, b, c, d, e, f])),
+            _ => Class::Smooth,
+        }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        for k in self.program.kinks([self.x, self.y]) {
+            let program = self.program.clone();
+            out.push(Crease::kink(Level::Field(Arc::new(move |p| k.level(&program.run([p.x], [p.y]))))));
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        if self.program.kinks([self.x, self.y]).is_empty() {
+            return None;
+        }
+        let program = Arc::new(self.program.branch(inside.x, inside.y));
+        Some(Arc::new(Self { program, ..*self }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Expr);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    fn build(pairs: &[(&str, &str)]) -> Result<Arc<dyn Map>, Error> {
+        Expr.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
+    }
+
+    /// Every function's value and derivatives, through the parser.
+    #[test]
+    fn functions_and_their_derivatives() {
+        let p = Point::new(0.6, 0.3);
+        let (x, y) = (p.x, p.y);
+        for (text, value, dx, dy) in [
+            ("sin(x*y)", (x * y).sin(), y * (x * y).cos(), x * (x * y).cos()),
+            ("tan(x)", x.tan(), 1.0 + x.tan().powi(2), 0.0),
+            ("asin(x)", x.asin(), 1.0 / (1.0 - x * x).sqrt(), 0.0),
+            ("acos(y)", y.acos(), 0.0, -1.0 / (1.0 - y * y).sqrt()),
+            ("atan(x/y)", (x / y).atan(), y / (x * x + y * y), -x / (x * x + y * y)),
+            ("atan2(x,y)", x.atan2(y), y / (x * x + y * y), -x / (x * x + y * y)),
+            ("x^y", x.powf(y), y * x.powf(y - 1.0), x.ln() * x.powf(y)),
+            ("2^x", 2f64.powf(x), 2f64.ln() * 2f64.powf(x), 0.0),
+            ("x^-2", x.powi(-2), -2.0 * x.powi(-3), 0.0),
+            ("x^0.7", x.powf(0.7), 0.7 * x.powf(-0.3), 0.0),
+            ("min(x,y)*max(x,y)", x * y, y, x),
+            ("abs(y-x)", x - y, 1.0, -1.0),
+            ("ln(x)+exp(y)-sqrt(x)", x.ln() + y.exp() - x.sqrt(), 1.0 / x - 0.5 / x.sqrt(), y.exp()),
+            ("hypot(x,y)", x.hypot(y), x / x.hypot(y), y / x.hypot(y)),
+        ] {
+            let j = build(&[("x", text)]).unwrap().jet(p);
+            let off = (j.p.x - value).abs() + (j.dx.x - dx).abs() + (j.dy.x - dy).abs();
+            assert!(off < 1e-13, "{text}: {j:?}, wanted {value} {dx} {dy}");
+        }
+    }
+
+    #[test]
+    fn faults_have_a_caret_below_them() {
+        let fault = |text: &str| build(&[("x", text)]).err().unwrap().to_string();
+        for (text, column, part) in [
+            ("x + sin(y", 7, "never closed"),
+            ("x + * y", 4, "value should stand"),
+            ("2x", 1, "operator is missing"),
+            ("2 + fud(x)", 4, "no `fud`"),
+            ("x +", 3, "ends where"),
+            ("x)", 1, "never opened"),
+            ("sin x", 4, "in brackets"),
+            ("hypot(x)", 7, "two arguments"),
+            ("sin(x, y)", 5, "comma"),
+            ("ä + 1", 0, "value should stand"),
+            ("x + ü", 4, "value should stand"),
+            ("x ; y", 2, "no meaning"),
+            ("1e999", 0, "too large"),
+            ("", 0, "ends where"),
+        ] {
+            let said = fault(text);
+            let lines: Vec<&str> = said.lines().collect();
+            assert!(said.contains(part), "{said}");
+            assert_eq!(lines[lines.len() - 1], format!("  {}^", " ".repeat(column)), "{said}");
+            assert_eq!(lines[lines.len() - 2], format!("  {text}"), "{said}");
+        }
+        let e = build(&[("let", "k = 2 +* 3"), ("x", "k")]).err().unwrap().to_string();
+        assert!(e.starts_with("--let") && e.ends_with("\n         ^"), "{e}");
+        for text in ["sin=3", "x=3", "4=3", "k"] {
+            assert!(build(&[("let", text), ("x", "y")]).is_err(), "{text}");
+        }
+        assert!(build(&[]).is_err());
+    }
+
+    #[test]
+    fn no_input_is_too_deep_or_too_long() {
+        for text in ["(".repeat(5000), "-".repeat(5000), "2^".repeat(4000), "x+".repeat(6000), "sin(".repeat(2000)] {
+            assert!(build(&[("x", &text)]).is_err());
+        }
+        // Long, but flat, is fine as long as its operations are bounded.
+        let sum = vec!["x"; 900].join("+");
+        assert!((build(&[("x", &sum)]).unwrap().point(Point::new(2.0, 0.0)).x - 1800.0).abs() < 1e-9);
+        let many: Vec<String> = (0..1500).map(|i| format!("x^{i}")).collect();
+        assert!(build(&[("x", &many.join("+"))]).is_err());
+    }
+
+    #[test]
+    fn straight_formulas_are_affine_and_kinks_are_creases() {
+        assert_eq!(
+            build(&[("x", "2*(x - y)/4 + w"), ("y", "-x")]).unwrap().class(),
+            Class::Affine(Affine::new([0.5, -1.0, -0.5, 0.0, 100.0, 0.0]))
+        );
+        assert_eq!(build(&[("x", "x*y")]).unwrap().class(), Class::Smooth);
+        let roof = build(&[("y", "y + abs(x - cx)"), ("let", "unused=abs(x-3)")]).unwrap();
+        let mut creases = Creases::default();
+        roof.creases(&mut creases);
+        assert_eq!(creases.items().len(), 1);
+        let line = crate::Outline::from_svg("M0,0 H100").unwrap();
+        let w = crate::refit::warp_path(&line, &*roof, &crate::refit::Options::new(1e-6)).unwrap();
+        assert_eq!(w.report.segments_out, 2, "{:?}", w.path);
+    }
+}

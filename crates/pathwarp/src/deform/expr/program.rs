@@ -1,0 +1,266 @@
+//! A formula as a list of operations, each on values before it: evaluated for several points at a time, so that reading the
+//! list costs little.
+//!
+//! Equal operations are kept once, constants are folded.
+
+use crate::map::Real;
+use std::array::from_fn;
+
+/// More than this would make every point a day's work.
+const MOST_OPS: usize = 2000;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unary {
+    Neg,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sqrt,
+    Exp,
+    Ln,
+    Abs,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Pow,
+    Atan2,
+    Hypot,
+    Min,
+    Max,
+}
+
+/// One operation; operands are the numbers of earlier ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Op {
+    Const(f64),
+    X,
+    Y,
+    One(Unary, u32),
+    Two(Binary, u32, u32),
+    Powi(u32, i32),
+    Powf(u32, f64),
+    /// An earlier value as it is: what is left of |a|, min and max where it is known which side they take.
+    Same(u32),
+}
+
+/// A list of operations.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Program {
+    ops: Vec<Op>,
+}
+
+impl Program {
+    /// The number of the value of `op`; `None` if there are too many.
+    fn push(&mut self, op: Op) -> Option<u32> {
+        if let Some(i) = self.ops.iter().position(|o| *o == op) {
+            return u32::try_from(i).ok();
+        }
+        if self.ops.len() >= MOST_OPS {
+            return None;
+        }
+        self.ops.push(op);
+        u32::try_from(self.ops.len() - 1).ok()
+    }
+
+    fn value_of(&self, i: u32) -> Option<f64> {
+        if let Some(Op::Const(c)) = self.ops.get(i as usize) { Some(*c) } else { None }
+    }
+
+    pub(super) fn constant(&mut self, c: f64) -> Option<u32> {
+        self.push(Op::Const(c))
+    }
+
+    pub(super) fn x(&mut self) -> Option<u32> {
+        self.push(Op::X)
+    }
+
+    pub(super) fn y(&mut self) -> Option<u32> {
+        self.push(Op::Y)
+    }
+
+    pub(super) fn unary(&mut self, op: Unary, a: u32) -> Option<u32> {
+        match self.value_of(a) {
+            Some(v) => self.constant(one(op, v)),
+            None => self.push(Op::One(op, a)),
+        }
+    }
+
+    pub(super) fn binary(&mut self, op: Binary, a: u32, b: u32) -> Option<u32> {
+        /// Whole powers up to here are exact enough by repeated squaring.
+        const WHOLE: f64 = 1e4;
+        match (self.value_of(a), self.value_of(b)) {
+            (Some(u), Some(v)) if op == Binary::Pow => self.constant(u.powf(v)),
+            (Some(u), Some(v)) => self.constant(two(op, u, v)),
+            (None, Some(n)) if op == Binary::Pow && n.fract() == 0.0 && n.abs() < WHOLE => {
+                self.push(Op::Powi(a, n as i32))
+            }
+            (None, Some(n)) if op == Binary::Pow => self.push(Op::Powf(a, n)),
+            _ => self.push(Op::Two(op, a, b)),
+        }
+    }
+
+    /// All values at N points.
+    pub(super) fn run<S: Real, const N: usize>(&self, x: [S; N], y: [S; N]) -> Vec<[S; N]> {
+        let mut out: Vec<[S; N]> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let at = |i: u32| &out[i as usize];
+            let value = match *op {
+                Op::Const(c) => [S::from(c); N],
+                Op::X => x,
+                Op::Y => y,
+                // The commonest ones with the choice outside the loop.
+                Op::Two(Binary::Add, a, b) => from_fn(|i| at(a)[i] + at(b)[i]),
+                Op::Two(Binary::Sub, a, b) => from_fn(|i| at(a)[i] - at(b)[i]),
+                Op::Two(Binary::Mul, a, b) => from_fn(|i| at(a)[i] * at(b)[i]),
+                Op::Two(f, a, b) => from_fn(|i| two(f, at(a)[i], at(b)[i])),
+                Op::One(f, a) => at(a).map(|v| one(f, v)),
+                Op::Powi(a, n) => at(a).map(|v| v.powi(n)),
+                Op::Powf(a, n) => at(a).map(|v| v.powf(n)),
+                Op::Same(a) => *at(a),
+            };
+            out.push(value);
+        }
+        out
+    }
+
+    /// The places where value `of` and those it needs have kinks: pairs of values that are equal there.
+    pub(super) fn kinks(&self, of: [u32; 2]) -> Vec<Kink> {
+        let needed = self.needed(of);
+        let ops = self.ops.iter().enumerate().filter(|(i, _)| needed[*i]);
+        ops.filter_map(|(_, op)| match *op {
+            Op::One(Unary::Abs, a) => Some(Kink(a, None)),
+            Op::Two(Binary::Min | Binary::Max, a, b) => Some(Kink(a, Some(b))),
+            _ => None,
+        })
+        .collect()
+    }
+
+    fn needed(&self, of: [u32; 2]) -> Vec<bool> {
+        let mut needed = vec![false; self.ops.len()];
+        for i in of {
+            needed[i as usize] = true;
+        }
+        // Operands come before their users, so one run downwards reaches everything.
+        for i in (0..self.ops.len()).rev() {
+            if needed[i] {
+                self.mark(i, &mut needed);
+            }
+        }
+        needed
+    }
+
+    fn mark(&self, i: usize, needed: &mut [bool]) {
+        match self.ops[i] {
+            Op::One(_, a) | Op::Powi(a, _) | Op::Powf(a, _) | Op::Same(a) => needed[a as usize] = true,
+            Op::Two(_, a, b) => {
+                needed[a as usize] = true;
+                needed[b as usize] = true;
+            }
+            Op::Const(_) | Op::X | Op::Y => {}
+        }
+    }
+
+    /// The same with every |a|, min and max replaced by the side it takes at (x, y).
+    pub(super) fn branch(&self, x: f64, y: f64) -> Self {
+        let v: Vec<f64> = self.run([x], [y]).into_iter().map(|[v]| v).collect();
+        let ops = self.ops.iter().map(|op| match *op {
+            Op::One(Unary::Abs, a) if v[a as usize] < 0.0 => Op::One(Unary::Neg, a),
+            Op::One(Unary::Abs, a) => Op::Same(a),
+            Op::Two(f @ (Binary::Min | Binary::Max), a, b) => {
+                let first = (v[a as usize] <= v[b as usize]) == (f == Binary::Min);
+                Op::Same(if first { a } else { b })
+            }
+            other => other,
+        });
+        Self { ops: ops.collect() }
+    }
+
+    /// The coefficients of x, y and 1, if value `i` is written as such a sum.
+    pub(super) fn affine(&self, i: u32) -> Option<[f64; 3]> {
+        let mut forms: Vec<Option<[f64; 3]>> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let at = |i: u32| forms[i as usize];
+            let constant = |i: u32| at(i).filter(|f| f[0] == 0.0 && f[1] == 0.0).map(|f| f[2]);
+            let scaled = |i: u32, k: f64| at(i).map(|f| f.map(|c| c * k));
+            forms.push(match *op {
+                Op::Const(c) => Some([0.0, 0.0, c]),
+                Op::X => Some([1.0, 0.0, 0.0]),
+                Op::Y => Some([0.0, 1.0, 0.0]),
+                Op::Same(a) => at(a),
+                Op::One(Unary::Neg, a) => scaled(a, -1.0),
+                Op::Two(Binary::Add, a, b) => at(a).zip(at(b)).map(|(a, b)| from_fn(|i| a[i] + b[i])),
+                Op::Two(Binary::Sub, a, b) => at(a).zip(at(b)).map(|(a, b)| from_fn(|i| a[i] - b[i])),
+                Op::Two(Binary::Mul, a, b) => match (constant(a), constant(b)) {
+                    (_, Some(k)) => scaled(a, k),
+                    (Some(k), _) => scaled(b, k),
+                    _ => None,
+                },
+                Op::Two(Binary::Div, a, b) => constant(b).and_then(|k| at(a).map(|f| f.map(|c| c / k))),
+                _ => None,
+            });
+        }
+        forms[i as usize].filter(|f| f.iter().all(|c| c.is_finite()))
+    }
+}
+
+/// Where two values are equal, or one is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Kink(u32, Option<u32>);
+
+impl Kink {
+    /// Zero at the kink.
+    pub(super) fn level(self, values: &[[f64; 1]]) -> f64 {
+        values[self.0 as usize][0] - self.1.map_or(0.0, |b| values[b as usize][0])
+    }
+}
+
+fn one<S: Real>(op: Unary, a: S) -> S {
+    let rest = |a: S| (-(a * a) + 1.0).sqrt();
+    match op {
+        Unary::Neg => -a,
+        Unary::Sin => a.sin(),
+        Unary::Cos => a.cos(),
+        Unary::Tan => a.sin() / a.cos(),
+        Unary::Asin => a.atan2(rest(a)),
+        Unary::Acos => rest(a).atan2(a),
+        Unary::Atan => a.atan2(S::from(1.0)),
+        Unary::Sqrt => a.sqrt(),
+        Unary::Exp => a.exp(),
+        Unary::Ln => a.ln(),
+        Unary::Abs => a.abs(),
+    }
+}
+
+fn two<S: Real>(op: Binary, a: S, b: S) -> S {
+    match op {
+        Binary::Add => a + b,
+        Binary::Sub => a - b,
+        Binary::Mul => a * b,
+        Binary::Div => a / b,
+        Binary::Pow => (a.ln() * b).exp(),
+        Binary::Atan2 => a.atan2(b),
+        Binary::Hypot => a.hypot(b),
+        Binary::Min => {
+            if a.value() <= b.value() {
+                a
+            } else {
+                b
+            }
+        }
+        Binary::Max => {
+            if a.value() <= b.value() {
+                b
+            } else {
+                a
+            }
+        }
+    }
+}

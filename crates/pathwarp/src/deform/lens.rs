@@ -1,0 +1,285 @@
+//! Lenses: from one way in which lenses draw the world to another, as fisheye pictures are made and straightened.
+//!
+//! A ray that makes the angle θ with the axis meets the picture at a distance r = f·ρ(θ) from its middle:
+//!
+//! | lens | ρ(θ) | reaches |
+//! |---|---|---|
+//! | rectilinear (a pinhole; straight lines stay straight) | tan θ | θ < 90° |
+//! | stereographic (small shapes are kept) | 2·tan(θ/2) | θ < 180° |
+//! | equidistant (angles from the axis to scale) | θ | θ < 180° |
+//! | equisolid (areas to scale) | 2·sin(θ/2) | θ < 180° |
+//! | orthographic | sin θ | θ < 90° |
+//!
+//! r' = f'·ρ'(ρ⁻¹(r/f)), directions kept. The inverse is the same with the lenses exchanged. The five projections are in
+//! Kannala & Brandt, *A generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses*, IEEE
+//! PAMI 28 (2006), equations (1)–(5).
+
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
+use crate::param::{Kind, Param, Settings};
+use kurbo::{Affine, Point};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+pub(super) struct Lens;
+
+const LENSES: &[&str] = &["rectilinear", "stereographic", "equidistant", "equisolid", "orthographic"];
+
+static INFO: Info = Info {
+    name: "lens",
+    title: "fisheye, and fisheye straightened",
+    group: "Classics",
+    about: "Redraws the artwork as another lens would have taken it. From rectilinear to one of the fisheyes, straight lines bow \
+outwards and the middle swells; the other way a fisheye picture is straightened. --field says how wide the view is from corner to \
+corner of the artwork's box: the wider, the stronger.",
+    source: "J. Kannala and S. Brandt, A generic camera model and calibration method for conventional, wide-angle, and fish-eye \
+lenses, IEEE PAMI 28, 2006, equations (1)-(5)",
+    params: &[
+        Param::new("from", Kind::Choice(LENSES), "The lens that the artwork is drawn with.").default("rectilinear"),
+        Param::new("to", Kind::Choice(LENSES), "The lens to draw it with.").default("equisolid"),
+        Param::angle("field", "The angle of view across the diagonal of the artwork's box.")
+            .default("110")
+            .within(0.01, 359.0),
+        Param::new("center", Kind::Point, "Where the lens looks at.").default("50%,50%"),
+        Param::new(
+            "keep",
+            Kind::Choice(&["corners", "middle"]),
+            "What keeps its size: the corners stay in place (corners), or the scale in the middle is kept (middle).",
+        )
+        .default("corners"),
+    ],
+    demo: &[],
+    examples: &[
+        Example { what: "As it comes: a fisheye", command: "lens samples/grid.svg -o out.svg" },
+        Example {
+            what: "Straighten a picture taken with a fisheye",
+            command: "lens samples/badge.svg --from equidistant --to rectilinear --field 120 -o out.svg",
+        },
+        Example {
+            what: "The middle to scale, the rest shrinking outwards",
+            command: "lens samples/logo.svg --keep middle --field 150 -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("from", "equisolid"), ("to", "equisolid")]),
+        Law::KeepsLines(&[("from", "orthographic"), ("to", "orthographic")]),
+        Law::Undoes(
+            &[("from", "rectilinear"), ("to", "stereographic")],
+            &[("from", "stereographic"), ("to", "rectilinear")],
+        ),
+        Law::Undoes(
+            &[("from", "orthographic"), ("to", "equidistant"), ("center", "40,45"), ("field", "100")],
+            &[("from", "equidistant"), ("to", "orthographic"), ("center", "40,45"), ("field", "100")],
+        ),
+    ],
+    cases: &[
+        Case { args: &[], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 0.0 },
+        Case { args: &[], at: (100.0, 0.0), to: (100.0, 0.0), tolerance: 1e-12 },
+        // A right angle of view: tan θ = 1/2 half-way to the corner; to equidistant, θ / 45° of the way.
+        Case {
+            args: &[("field", "90"), ("to", "equidistant")],
+            at: (75.0, 75.0),
+            to: (50.0 + 50.0 * 0.590_334_470_601_733, 50.0 + 50.0 * 0.590_334_470_601_733),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+impl Deformation for Lens {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let (from, to) = (Kernel::named(s.choice("from")?), Kernel::named(s.choice("to")?));
+        let half = s.number("field")?.to_radians() / 2.0;
+        for (name, lens) in [("from", from), ("to", to)] {
+            if half >= lens.most() {
+                let most = 2.0 * lens.most().to_degrees();
+                return Err(Error::usage(
+                    "field",
+                    format!("{:.6}", 2.0 * half.to_degrees()),
+                    format!("is more than the lens of --{name} can see: it must be below {most} degrees"),
+                ));
+            }
+        }
+        let rect = s.frame().rect;
+        let corner = 0.5 * rect.width().hypot(rect.height());
+        if corner <= 0.0 {
+            return Err(Error::usage(
+                "field",
+                format!("{:.6}", 2.0 * half.to_degrees()),
+                "spans artwork that has no size",
+            ));
+        }
+        let f = corner / from.radius(half);
+        let f1 = if s.choice("keep")? == "middle" { f } else { corner / to.radius(half) };
+        let map = LensMap { center: s.point("center")?, from, to, f, f1 };
+        let mut built = Built::new(Arc::new(map));
+        built.notes.push(format!("focal lengths {f:.6} and {f1:.6}"));
+        Ok(built)
+    }
+}
+
+/// How a lens draws.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kernel {
+    Rectilinear,
+    Stereographic,
+    Equidistant,
+    Equisolid,
+    Orthographic,
+}
+
+impl Kernel {
+    fn named(name: &str) -> Self {
+        match name {
+            "stereographic" => Self::Stereographic,
+            "equidistant" => Self::Equidistant,
+            "equisolid" => Self::Equisolid,
+            "orthographic" => Self::Orthographic,
+            _ => Self::Rectilinear,
+        }
+    }
+
+    /// The angle it reaches.
+    fn most(self) -> f64 {
+        if matches!(self, Self::Rectilinear | Self::Orthographic) { PI / 2.0 } else { PI }
+    }
+
+    /// ρ(θ).
+    fn radius<S: Real>(self, angle: S) -> S {
+        let half = angle * 0.5;
+        match self {
+            Self::Rectilinear => angle.sin() / angle.cos(),
+            Self::Stereographic => half.sin() / half.cos() * 2.0,
+            Self::Equidistant => angle,
+            Self::Equisolid => half.sin() * 2.0,
+            Self::Orthographic => angle.sin(),
+        }
+    }
+
+    /// θ, ρ⁻¹(r).
+    fn angle<S: Real>(self, r: S) -> S {
+        let atan = |v: S| v.atan2(S::from(1.0));
+        let asin = |v: S| v.atan2((-(v * v) + 1.0).sqrt());
+        match self {
+            Self::Rectilinear => atan(r),
+            Self::Stereographic => atan(r * 0.5) * 2.0,
+            Self::Equidistant => r,
+            Self::Equisolid => asin(r * 0.5) * 2.0,
+            Self::Orthographic => asin(r),
+        }
+    }
+}
+
+/// The map itself.
+#[derive(Debug, Clone, Copy)]
+struct LensMap {
+    center: Point,
+    from: Kernel,
+    to: Kernel,
+    /// Focal lengths.
+    f: f64,
+    f1: f64,
+}
+
+impl LensMap {
+    /// Where the source's lens, or the other one, ends; infinite if neither does.
+    fn reach(&self) -> f64 {
+        let most = self.from.most().min(self.to.most());
+        let ends = match self.from {
+            Kernel::Rectilinear => false,
+            Kernel::Stereographic => most < PI,
+            _ => true,
+        };
+        if ends { self.f * self.from.radius(most) } else { f64::INFINITY }
+    }
+}
+
+impl Formula for LensMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        /// ρ and ρ⁻¹ are r·(1 + O(r²)): nearer to the middle the scale is f'/f to the last bit.
+        const TINY: f64 = 1e-9;
+        let (u, v) = (x - self.center.x, y - self.center.y);
+        let r = u.hypot(v) / self.f;
+        let k = if r.value() < TINY {
+            S::from(self.f1 / self.f)
+        } else {
+            self.to.radius(self.from.angle(r)) / r * (self.f1 / self.f)
+        };
+        (u * k + self.center.x, v * k + self.center.y)
+    }
+
+    fn class(&self) -> Class {
+        if self.from != self.to {
+            return Class::Smooth;
+        }
+        let o = self.center.to_vec2();
+        Class::Affine(Affine::translate(o) * Affine::scale(self.f1 / self.f) * Affine::translate(-o))
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let (reach, center) = (self.reach(), self.center);
+        if reach.is_finite() && self.from != self.to {
+            out.push(Crease::edge(Level::Field(Arc::new(move |p| reach - p.distance(center)))));
+        }
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Self { from: self.to, to: self.from, f: self.f1, f1: self.f, ..*self }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Lens);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
+        Lens.build_from(&Args::from_pairs(pairs), &check::frame())
+    }
+
+    #[test]
+    fn every_pair_of_lenses_returns_and_is_smooth_in_the_middle() {
+        for from in LENSES {
+            for to in LENSES {
+                let m = build(&[("from", from), ("to", to)]).unwrap().map;
+                let back = m.inverse().unwrap();
+                for p in [(50.0, 50.0), (50.0, 50.0 + 1e-8), (52.0, 49.0), (3.0, 4.0)] {
+                    assert!(back.point(m.point(p.into())).distance(p.into()) < 1e-10, "{from} {to}");
+                }
+                let (a, b) = (m.jet(Point::new(50.0, 50.0)), m.jet(Point::new(50.0, 50.0 + 1e-6)));
+                assert!((a.dx - b.dx).hypot() + (a.dy - b.dy).hypot() < 1e-7, "{from} {to}: {a:?} {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn stereographic_from_equisolid_and_the_rest_agree_with_the_definitions() {
+        // 100 degrees off the axis, by hand.
+        let th = 100f64.to_radians();
+        let m =
+            build(&[("from", "equisolid"), ("to", "stereographic"), ("field", "240"), ("keep", "middle")]).unwrap().map;
+        let f = 50.0 * 2f64.sqrt() / (2.0 * 60f64.to_radians().sin());
+        let p = m.point(Point::new(50.0 + f * 2.0 * (th / 2.0).sin(), 50.0));
+        assert!((p.x - 50.0 - f * 2.0 * (th / 2.0).tan()).abs() < 1e-10);
+    }
+
+    #[test]
+    fn too_wide_a_field_is_refused_and_the_edge_of_a_lens_is_an_edge() {
+        let e = build(&[("field", "180")]).err().unwrap().to_string();
+        assert!(e.contains("--from") && e.contains("180 degrees"), "{e}");
+        let m = build(&[("from", "equidistant"), ("to", "rectilinear"), ("field", "160")]).unwrap().map;
+        let art = crate::Outline::from_svg("M50,50 H200").unwrap();
+        assert!(crate::refit::warp_path(&art, &*m, &crate::refit::Options::new(0.1)).is_err());
+    }
+}

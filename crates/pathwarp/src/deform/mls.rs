@@ -1,0 +1,388 @@
+//! Moving least squares: points of the artwork are moved, everything else follows as stiffly as asked.
+//!
+//! S. Schaefer, T. `McPhail`, J. Warren, *Image deformation using moving least squares*, SIGGRAPH 2006. At a point v the handles
+//! pᵢ → qᵢ weigh wᵢ = 1/|pᵢ − v|^(2α); p*, q* are the weighted means, p̂ᵢ = pᵢ − p*, q̂ᵢ = qᵢ − q*, and F(v) = M·(v − p*) + q*, M
+//! being the best (weighted least squares)
+//!
+//! - affine map: M = (Σ wᵢ q̂ᵢp̂ᵢᵀ)(Σ wᵢ p̂ᵢp̂ᵢᵀ)⁻¹ (equation 5),
+//! - similarity: in complex numbers M = Σ wᵢ q̂ᵢ·conj(p̂ᵢ) / Σ wᵢ|p̂ᵢ|² (equation 6),
+//! - rigid motion: the same sum divided by its own length (Theorem 2.1 and equation 8).
+//!
+//! Numerically: weights only matter up to a common factor, so they are taken as (d²/|pᵢ − v|²)^α with d the distance to the
+//! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
+//! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
+
+use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use crate::anchors;
+use crate::error::{Error, GeometryError};
+use crate::map::{AffineMap, Formula, Real};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Affine, BezPath, Point, Vec2};
+use std::sync::Arc;
+
+pub(super) struct Mls;
+
+static INFO: Info = Info {
+    name: "mls",
+    title: "move points, the rest follows",
+    group: "Points",
+    about: "Say where points of the artwork are to go; everything else follows smoothly, most where it is near. --pair moves a \
+point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \
+it can, similar also lets them grow and shrink, affine lets them shear as well (it needs three pairs that are not on one line).",
+    source: "S. Schaefer, T. McPhail, J. Warren, Image deformation using moving least squares, SIGGRAPH 2006",
+    params: &[
+        Param::new("pair", Kind::Text("X,Y:X,Y"), "A point of the artwork and where it goes; may be given many times.")
+            .repeated(),
+        Param::new("pin", Kind::Text("X,Y"), "A point that stays; may be given many times.").repeated(),
+        Param::path("from", "A path whose anchors are moved, in order, to those of --to."),
+        Param::path("to", "A path with as many anchors as --from."),
+        Param::new("kind", Kind::Choice(&["rigid", "similar", "affine"]), "How stiff it is.").default("rigid"),
+        Param::number("alpha", "How local: the influence of a pair falls off with this power of the squared distance.")
+            .default("1")
+            .within(1.0, 4.0),
+    ],
+    demo: &[("pin", "10,90"), ("pin", "90,90"), ("pair", "50,15:60,5"), ("pair", "52,55:45,48")],
+    examples: &[
+        Example {
+            what: "Hold the bottom corners, pull the top to the right",
+            command: "mls samples/logo.svg --pin 0%,100% --pin 100%,100% --pair '50%,0%:65%,-10%' -o out.svg",
+        },
+        Example {
+            what: "Bend a word",
+            command: "mls samples/lettering.svg --kind similar --pair '0%,50%:0%,80%' --pair '50%,50%:50%,20%' --pair '100%,50%:100%,80%' -o out.svg",
+        },
+        Example {
+            what: "The anchors of one path to those of another",
+            command: "mls samples/grid.svg --from samples/anchors.svg#base4 --to samples/anchors.svg#target4 --kind affine -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("pin", "10,10"), ("pin", "90,20"), ("pin", "40,80")]),
+        Law::Identity(&[("pin", "10,10"), ("pin", "90,20"), ("pin", "40,80"), ("kind", "affine")]),
+        // A motion, a similitude, an affine map are reproduced by the kind that holds them.
+        Law::Area(&[("pair", "0,0:5,5"), ("pair", "10,0:5,15"), ("pair", "0,10:-5,5")], 1.0),
+        Law::Area(&[("kind", "similar"), ("pair", "0,0:5,5"), ("pair", "10,0:5,35"), ("pair", "0,10:-25,5")], 9.0),
+        Law::KeepsLines(&[("kind", "affine"), ("pair", "0,0:5,5"), ("pair", "90,0:70,33"), ("pair", "0,80:20,99")]),
+        Law::Same(&[("pair", "1,2:3,4")], &[("pair", "50,60:52,62")]),
+        Law::KeepsAngles(&[("pair", "0,0:0,0"), ("pair", "10,0:20,20"), ("kind", "similar")]),
+    ],
+    cases: &[
+        // Handles land to the last bit.
+        Case { args: THREE, at: (50.0, 50.0), to: (60.0, 45.0), tolerance: 0.0 },
+        Case { args: THREE, at: (10.0, 20.0), to: (10.0, 20.0), tolerance: 0.0 },
+        // One handle is a shift.
+        Case { args: &[("pair", "1,2:3,5")], at: (10.0, 10.0), to: (12.0, 13.0), tolerance: 1e-12 },
+        // Two handles, similar: the similitude, here z ↦ 2iz.
+        Case {
+            args: &[("kind", "similar"), ("pair", "0,0:0,0"), ("pair", "10,0:0,20")],
+            at: (3.0, 4.0),
+            to: (-8.0, 6.0),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+const THREE: super::Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")];
+
+/// More handles than this would make every point a day's work.
+const MOST: usize = 1000;
+
+impl Deformation for Mls {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let kind = match s.choice("kind")? {
+            "similar" => Stiffness::Similar,
+            "affine" => Stiffness::Affine,
+            _ => Stiffness::Rigid,
+        };
+        let handles = handles(s)?;
+        let from: Vec<Point> = handles.iter().map(|h| h.0).collect();
+        if handles.len() > MOST {
+            return Err(Error::usage("pair", handles.len().to_string(), format!("pairs are too many: at most {MOST}")));
+        }
+        anchors::distinct("the points to be moved", &from)?;
+        let mut built = Built::new(match handles[..] {
+            [] => {
+                return Err(Error::Missing {
+                    param: "--pair".into(),
+                    hint: "a point and where it goes, such as 10,20:15,20".into(),
+                });
+            }
+            [(p, q)] => Arc::new(AffineMap(Affine::translate(q - p))),
+            [(p, q), (p1, q1)] if kind == Stiffness::Similar => {
+                // The points are distinct.
+                Arc::new(AffineMap::similitude(p, p1, q, q1).unwrap_or(AffineMap::IDENTITY))
+            }
+            _ => {
+                if kind == Stiffness::Affine && on_a_line(&from) {
+                    return Err(GeometryError::Collinear {
+                        path: "the points to be moved (--kind affine)".into(),
+                        which: [1, 2, handles.len()],
+                        points: from.into_iter().take(8).collect(),
+                    }
+                    .into());
+                }
+                Arc::new(MlsMap { handles: handles.clone(), kind, alpha: s.number("alpha")? })
+            }
+        });
+        let crosses = |pick: fn(&(Point, Point)) -> Point| {
+            crosses(handles.iter().map(pick), s.frame().extent(Axis::Diagonal) / 100.0)
+        };
+        built.overlays = vec![
+            Overlay { role: Role::Base, path: crosses(|h| h.0) },
+            Overlay { role: Role::Target, path: crosses(|h| h.1) },
+        ];
+        Ok(built)
+    }
+}
+
+fn handles(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
+    let mut out = Vec::new();
+    for text in s.texts("pair") {
+        let (p, q) = text
+            .split_once(':')
+            .ok_or_else(|| Error::usage("pair", text, "is not two places x,y:X,Y with a colon between them"))?;
+        out.push((s.point_in("pair", p)?, s.point_in("pair", q)?));
+    }
+    for text in s.texts("pin") {
+        let p = s.point_in("pin", text)?;
+        out.push((p, p));
+    }
+    match (s.path_if("from")?, s.path_if("to")?) {
+        (Some(from), Some(to)) => {
+            let anchors = |p: &crate::param::NamedPath| -> Vec<Point> {
+                p.outline.subpaths.iter().flat_map(crate::Subpath::anchors).collect()
+            };
+            let (a, b) = (anchors(&from), anchors(&to));
+            if a.len() != b.len() {
+                let problem = format!("has {} anchors, {} has {}", b.len(), from.name, a.len());
+                return Err(Error::usage("to", to.name, problem));
+            }
+            out.extend(a.into_iter().zip(b));
+        }
+        (None, None) => {}
+        (from, _) => {
+            let (here, missing) = if from.is_some() { ("--from", "--to") } else { ("--to", "--from") };
+            return Err(Error::Missing { param: missing.into(), hint: format!("{here} needs it beside it") });
+        }
+    }
+    Ok(out)
+}
+
+/// Whether all points lie on one line, to the rounding that the affine fit could live with.
+fn on_a_line(p: &[Point]) -> bool {
+    let n = p.len() as f64;
+    let mean = p.iter().fold(Vec2::ZERO, |s, q| s + q.to_vec2()) / n;
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for q in p {
+        let d = q.to_vec2() - mean;
+        (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
+    }
+    xx * yy - xy * xy <= 1e-12 * (xx + yy) * (xx + yy)
+}
+
+fn crosses(points: impl Iterator<Item = Point>, size: f64) -> BezPath {
+    let mut out = BezPath::new();
+    for p in points {
+        for d in [Vec2::new(size, size), Vec2::new(size, -size)] {
+            out.move_to(p - d);
+            out.line_to(p + d);
+        }
+    }
+    out
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Stiffness {
+    Rigid,
+    Similar,
+    Affine,
+}
+
+/// The map itself, for two handles or more.
+#[derive(Debug, Clone)]
+struct MlsMap {
+    handles: Vec<(Point, Point)>,
+    kind: Stiffness,
+    alpha: f64,
+}
+
+/// A 2×2 matrix, row by row.
+type Matrix<S> = [[S; 2]; 2];
+
+impl MlsMap {
+    /// The nearest handle and its squared distance.
+    fn nearest(&self, v: Point) -> (usize, f64) {
+        let mut best = (0, f64::INFINITY);
+        for (i, (p, _)) in self.handles.iter().enumerate() {
+            let d = (*p - v).hypot2();
+            if d < best.1 {
+                best = (i, d);
+            }
+        }
+        best
+    }
+
+    /// M from the weighted sums of p̂p̂ᵀ and q̂p̂ᵀ.
+    fn matrix<S: Real>(&self, pp: [S; 3], qp: Matrix<S>) -> Matrix<S> {
+        let [xx, xy, yy] = pp;
+        let [[a, b], [c, d]] = qp;
+        if self.kind == Stiffness::Affine {
+            let det = xx * yy - xy * xy;
+            return [
+                [(a * yy - b * xy) / det, (b * xx - a * xy) / det],
+                [(c * yy - d * xy) / det, (d * xx - c * xy) / det],
+            ];
+        }
+        // Σ q̂·conj(p̂).
+        let (re, im) = (a + d, c - b);
+        let n = if self.kind == Stiffness::Rigid { re.hypot(im) } else { xx + yy };
+        let (re, im) = (re / n, im / n);
+        [[re, -im], [im, re]]
+    }
+
+    /// The sums with these weights, the places counted from p* and q*; `only` leaves handle k out.
+    fn sums<S: Real>(
+        &self,
+        weights: &dyn Fn(Point) -> S,
+        k: usize,
+        p: [S; 2],
+        q: [S; 2],
+        leave: bool,
+    ) -> ([S; 3], Matrix<S>) {
+        let zero = S::from(0.0);
+        let (pk, qk) = self.handles[k];
+        let (mut pp, mut qp) = ([zero; 3], [[zero; 2]; 2]);
+        for (i, (pi, qi)) in self.handles.iter().enumerate() {
+            if leave && i == k {
+                continue;
+            }
+            let w = weights(*pi);
+            let (dp, dq) = (*pi - pk, *qi - qk);
+            let (px, py) = (-p[0] + dp.x, -p[1] + dp.y);
+            let (qx, qy) = (-q[0] + dq.x, -q[1] + dq.y);
+            let (wx, wy) = (w * px, w * py);
+            pp = [pp[0] + wx * px, pp[1] + wx * py, pp[2] + wy * py];
+            qp = [[qp[0][0] + qx * wx, qp[0][1] + qx * wy], [qp[1][0] + qy * wx, qp[1][1] + qy * wy]];
+        }
+        (pp, qp)
+    }
+}
+
+impl Formula for MlsMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        /// Squared distance, against the nearest handle's distance from the next: nearer counts as on the handle.
+        const ON: f64 = 1e-28;
+        let zero = S::from(0.0);
+        let v = Point::new(x.value(), y.value());
+        let (k, d2) = self.nearest(v);
+        let (pk, qk) = self.handles[k];
+        let (vx, vy) = (x - pk.x, y - pk.y);
+        let scale =
+            self.handles.iter().map(|(p, _)| (*p - pk).hypot2()).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
+        if d2 <= ON * scale {
+            let weight = |p: Point| S::from(((p - pk).hypot2() / scale).powf(-self.alpha));
+            let (pp, qp) = self.sums(&weight, k, [zero; 2], [zero; 2], true);
+            let m = self.matrix(pp, qp);
+            return (m[0][0] * vx + m[0][1] * vy + qk.x, m[1][0] * vx + m[1][1] * vy + qk.y);
+        }
+        let weight = |p: Point| {
+            let (dx, dy) = (x - p.x, y - p.y);
+            let ratio = S::from(d2) / (dx * dx + dy * dy);
+            if self.alpha == 1.0 { ratio } else { ratio.powf(self.alpha) }
+        };
+        // Means, counted from the nearest handle.
+        let (mut w, mut p, mut q) = (zero, [zero; 2], [zero; 2]);
+        for (pi, qi) in &self.handles {
+            let wi = weight(*pi);
+            let (dp, dq) = (*pi - pk, *qi - qk);
+            w = w + wi;
+            p = [p[0] + wi * dp.x, p[1] + wi * dp.y];
+            q = [q[0] + wi * dq.x, q[1] + wi * dq.y];
+        }
+        let (p, q) = (p.map(|s| s / w), q.map(|s| s / w));
+        let (pp, qp) = self.sums(&weight, k, p, q, false);
+        let m = self.matrix(pp, qp);
+        let (vx, vy) = (vx - p[0], vy - p[1]);
+        (m[0][0] * vx + m[0][1] * vy + q[0] + qk.x, m[1][0] * vx + m[1][1] * vy + q[1] + qk.y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::map::Map;
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Mls);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
+        Mls.build_from(&Args::from_pairs(pairs), &check::frame())
+    }
+
+    /// Continuous and finite with its derivative on, and next to, every handle.
+    #[test]
+    fn handles_are_no_holes() {
+        for kind in ["rigid", "similar", "affine"] {
+            for alpha in ["1", "1.5", "2"] {
+                let mut pairs = THREE.to_vec();
+                pairs.extend([("kind", kind), ("alpha", alpha), ("pair", "20,90:30,80")]);
+                let m = build(&pairs).unwrap().map;
+                for p in [(10.0, 20.0), (50.0, 50.0), (80.0, 10.0), (20.0, 90.0)] {
+                    let at = m.jet(p.into());
+                    for h in [1e-13, 1e-9, 1e-6] {
+                        let beside = m.jet(Point::new(p.0 + 0.6 * h, p.1 - 0.8 * h));
+                        assert!(beside.is_finite());
+                        assert!(at.p.distance(beside.p) < 10.0 * h + 1e-12, "{kind} {alpha} {p:?} {h}");
+                        let jump = (at.dx - beside.dx).hypot() + (at.dy - beside.dy).hypot();
+                        assert!(jump < 1e-4, "{kind} {alpha} {p:?} {h}: {at:?} {beside:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// The definition, straight from the paper, as a program that knows nothing of scaling and shifting.
+    #[test]
+    fn agrees_with_the_definition() {
+        let handles: [[(f64, f64); 2]; 3] =
+            [[(10.0, 20.0), (10.0, 20.0)], [(50.0, 50.0), (60.0, 45.0)], [(80.0, 10.0), (80.0, 15.0)]];
+        let v = Point::new(33.0, 71.0);
+        let w = handles.map(|[p, _]| 1.0 / (Point::from(p) - v).hypot2());
+        let mean = |side: usize| {
+            let sum = handles.iter().zip(w).fold(Vec2::ZERO, |s, (h, w)| s + Vec2::from(h[side]) * w);
+            sum / w.iter().sum::<f64>()
+        };
+        let (p, q) = (mean(0), mean(1));
+        // Equation (8): f = |v − p*|·g/|g| + q*, g = Σ q̂ᵢ·(wᵢ·(p̂ᵢ; −p̂ᵢ⊥)(v − p*; −(v − p*)⊥)ᵀ).
+        let d = v.to_vec2() - p;
+        let mut g = Vec2::ZERO;
+        for ([pi, qi], w) in handles.iter().zip(w) {
+            let (a, b) = (Vec2::from(*pi) - p, Vec2::from(*qi) - q);
+            g += Vec2::new(b.x * a.dot(d) - b.y * a.cross(d), b.x * a.cross(d) + b.y * a.dot(d)) * w;
+        }
+        let want = q + g * (d.hypot() / g.hypot());
+        let m = build(&[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")]).unwrap().map;
+        assert!(m.point(v).distance(want.to_point()) < 1e-12, "{:?} {want:?}", m.point(v));
+    }
+
+    #[test]
+    fn faults_are_named() {
+        let fault = |pairs: &[(&str, &str)]| build(pairs).err().unwrap().to_string();
+        assert!(fault(&[]).contains("--pair is needed"));
+        assert!(fault(&[("pair", "1,2")]).contains("colon"));
+        assert!(fault(&[("pin", "1,2"), ("pair", "1,2:3,4")]).contains("coincide"));
+        assert!(fault(&[("pin", "1,1"), ("pin", "2,2"), ("pin", "3,3"), ("kind", "affine")]).contains("one line"));
+        assert!(fault(&[("pin", "1,1"), ("pin", "9,1"), ("kind", "affine")]).contains("one line"));
+        assert!(fault(&[("from", "0,0 1,1"), ("to", "0,0 1,1 2,2")]).contains("3 anchors"));
+        assert!(fault(&[("from", "0,0 1,1")]).contains("--to is needed"));
+    }
+}

@@ -1,0 +1,295 @@
+//! Möbius maps: w = (a·z + b)/(c·z + d) in complex numbers, ad ≠ bc.
+//!
+//! Circles and lines become circles and lines, angles are kept. The map is given by its pole, by three points and their images,
+//! or by the coefficients.
+//!
+//! - By the pole P: w = z₀ + (z − z₀)/(1 − (z − z₀)/(P − z₀)) leaves z₀ and a small neighbourhood of it as they are.
+//! - By three points: with H(z) = (z − p₁)(p₂ − p₃)/((z − p₃)(p₂ − p₁)), which takes p₁, p₂, p₃ to 0, 1, ∞, and K the same for their images, the map is
+//!   K⁻¹ ∘ H (the cross-ratio is kept).
+//!
+//! With z = Z/W a rational Bézier curve in homogeneous form, w = (aZ + bW)·conj(cZ + dW) / |cZ + dW|²: the image of degree n is
+//! rational of degree 2n, exactly. The inverse is (d·w − b)/(a − c·w). Ahlfors, *Complex Analysis* (3rd ed. 1979), §3.3;
+//! Needham, *Visual Complex Analysis* (1997), chapter 3.
+
+use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use crate::anchors;
+use crate::error::{Error, GeometryError, show};
+use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real, bernstein::Scaled};
+use crate::param::{Kind, Param, Settings};
+use kurbo::{Affine, Point, Vec2};
+use std::sync::Arc;
+
+pub(super) struct Mobius;
+
+static INFO: Info = Info {
+    name: "mobius",
+    title: "circles to circles: a Möbius map by its pole, three points or coefficients",
+    group: "Classics",
+    about: "Straight lines become arcs of circles, circles stay circles, and angles are kept: small squares stay small squares. The \
+simplest way in is the pole, the point that goes to infinity: artwork grows towards it and shrinks away from it. Or say where three \
+points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d), z = x + iy.\n\nArtwork must keep clear of the pole.",
+    source: "L. Ahlfors, Complex Analysis, 3rd edition 1979, section 3.3",
+    params: &[
+        Param::new(
+            "pole",
+            Kind::Point,
+            "The point that goes to infinity; the middle of the artwork stays as it is. Default: below the middle, 1.6 diagonals away.",
+        ),
+        Param::path("from", "Three anchors in the source; with --to, instead of --pole."),
+        Param::path("to", "Three anchors where they are to land."),
+        Param::new("coefficients", Kind::Numbers(8), "Real and imaginary parts of a, b, c, d; instead of --pole."),
+    ],
+    demo: &[("pole", "60,250")],
+    examples: &[
+        Example { what: "As it comes", command: "mobius samples/logo.svg -o out.svg" },
+        Example {
+            what: "Both ends of a word up, its middle kept",
+            command: "mobius samples/lettering.svg --from '0%,50% 50%,50% 100%,50%' --to '5%,10% 50%,50% 95%,10%' -o out.svg",
+        },
+        Example { what: "A grid of circles", command: "mobius samples/grid.svg --pole 130%,-40% -o out.svg" },
+    ],
+    laws: &[
+        Law::Identity(&[("from", "0,0 50,20 100,0"), ("to", "0,0 50,20 100,0")]),
+        Law::KeepsAngles(&[]),
+        Law::KeepsAngles(&[("from", "0,100 50,100 100,100"), ("to", "0,100 50,80 100,100")]),
+        // w = z₀ + (z − z₀)/(1 − (z − z₀)/(P − z₀)) with z₀ = 50 + 50i, P = 50 + 250i, multiplied out.
+        Law::Same(&[("pole", "50,250")], &[("coefficients", "-50,150 0,5000 -1,0 50,250")]),
+        Law::Same(&[("coefficients", "0,1 3,4 0,0 2,0")], &[("coefficients", "0,-2 -6,-8 0,0 -4,0")]),
+        Law::KeepsLines(&[("from", "0,0 50,0 100,0"), ("to", "0,0 50,50 100,100")]),
+    ],
+    cases: &[
+        Case { args: &[("pole", "50,250")], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 1e-12 },
+        // Half-way to the pole, as far again as the pole.
+        Case { args: &[("pole", "50,250")], at: (50.0, 150.0), to: (50.0, 250.0), tolerance: 1e-11 },
+        // 1/z takes 3 + 4i to (3 − 4i)/25.
+        Case { args: &[("coefficients", "0 0 1 0 1 0 0 0")], at: (3.0, 4.0), to: (0.12, -0.16), tolerance: 1e-15 },
+        Case {
+            args: &[("from", "0,100 50,100 100,100"), ("to", "0,100 50,80 100,100")],
+            at: (50.0, 100.0),
+            to: (50.0, 80.0),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+/// The artwork must keep this share of the frame's diagonal away from the pole.
+const CLEAR: f64 = 0.02;
+/// How far away the pole is unless it is given, in diagonals of the frame.
+const DEFAULT_DISTANCE: f64 = 1.6;
+/// A pole farther away than this many diagonals is rounding: the map is a similitude.
+const FAR: f64 = 1e12;
+
+impl Deformation for Mobius {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let frame = s.frame().rect;
+        let mut overlays = Vec::new();
+        let (m, named) = match (s.numbers_if("coefficients")?, s.path_if("from")?, s.path_if("to")?) {
+            (Some(v), None, None) if !s.given("pole") => {
+                (std::array::from_fn(|i| Vec2::new(v[2 * i], v[2 * i + 1])), "coefficients")
+            }
+            (None, Some(from), Some(to)) if !s.given("pole") => {
+                let (p, q) = (three(&from)?, three(&to)?);
+                for (role, path) in [(Role::Base, &from), (Role::Target, &to)] {
+                    overlays.push(Overlay { role, path: path.outline.to_bez_path(0.0) });
+                }
+                (by_points(p, q), "to")
+            }
+            (None, None, None) => {
+                let below = Vec2::new(0.0, DEFAULT_DISTANCE * frame.width().hypot(frame.height()));
+                let pole = if s.given("pole") { s.point("pole")? } else { frame.center() + below };
+                (by_pole(frame.center(), pole), "pole")
+            }
+            (Some(_), ..) => {
+                return Err(Error::usage("coefficients", "", "are the whole map: leave --pole, --from and --to away"));
+            }
+            (None, Some(_), Some(_)) => {
+                return Err(Error::usage("pole", "", "follows from --from and --to: leave it away"));
+            }
+            (None, from, _) => {
+                let (here, missing) = if from.is_some() { ("--from", "--to") } else { ("--to", "--from") };
+                return Err(Error::Missing { param: missing.into(), hint: format!("{here} needs it beside it") });
+            }
+        };
+        let [a, b, c, d] = m;
+        let det = mul(a, d) - mul(b, c);
+        let size = mul(a, d).hypot() + mul(b, c).hypot();
+        if !(det.hypot() > 1e-12 * size && det.hypot().is_finite()) {
+            return Err(Error::usage(named, "", "gives no Möbius map: everything would go to one point"));
+        }
+        // The diagonal, or something like it where the artwork is a point.
+        let diagonal = frame.width().hypot(frame.height()).max(1e-9);
+        let pole = (c != Vec2::ZERO).then(|| div(-d, c).to_point());
+        let near = pole.filter(|p| p.distance(frame.center()) < FAR * diagonal);
+        let Some(pole) = near else {
+            let (a, b) = (div(a, d), div(b, d));
+            let m = Affine::new([a.x, a.y, -a.y, a.x, b.x, b.y]);
+            return Ok(Built { overlays, ..Built::new(Arc::new(AffineMap(m))) });
+        };
+        let mut built = Built::new(Arc::new(MobiusMap { m, clear: CLEAR * diagonal }));
+        built.overlays = overlays;
+        built.notes.push(format!("pole at {}", show(pole)));
+        if frame.contains(pole) {
+            built.warnings.push(format!(
+                "mobius: the pole {} lies within the artwork's box: shapes around it are turned inside out",
+                show(pole)
+            ));
+        }
+        Ok(built)
+    }
+}
+
+/// The three distinct anchors of a path.
+fn three(path: &crate::param::NamedPath) -> Result<[Point; 3], Error> {
+    let a = anchors::only_subpath(path, "three")?.anchors();
+    let [p, q, r] = a[..] else {
+        return Err(GeometryError::AnchorCount {
+            path: path.name.clone(),
+            found: a.len(),
+            anchors: a.into_iter().take(8).collect(),
+            expected: "three",
+        }
+        .into());
+    };
+    anchors::distinct(&path.name, &a)?;
+    Ok([p, q, r])
+}
+
+fn mul(a: Vec2, b: Vec2) -> Vec2 {
+    Vec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
+}
+
+fn div(a: Vec2, b: Vec2) -> Vec2 {
+    mul(a, Vec2::new(b.x, -b.y)) / b.hypot2()
+}
+
+const ONE: Vec2 = Vec2::new(1.0, 0.0);
+
+/// z₀ + (z − z₀)/(1 − (z − z₀)/(P − z₀)), multiplied out over P − z₀.
+fn by_pole(z0: Point, pole: Point) -> [Vec2; 4] {
+    let (z0, p) = (z0.to_vec2(), pole.to_vec2());
+    let k = p - z0;
+    [k - z0, mul(z0, p) - mul(z0, k), -ONE, p]
+}
+
+/// K⁻¹ ∘ H.
+fn by_points(p: [Point; 3], q: [Point; 3]) -> [Vec2; 4] {
+    let h = |p: [Point; 3]| {
+        let [p1, p2, p3] = p.map(Point::to_vec2);
+        [p2 - p3, -mul(p1, p2 - p3), p2 - p1, -mul(p3, p2 - p1)]
+    };
+    let ([a, b, c, d], [e, f, g, i]) = (h(q), h(p));
+    // The inverse of (a b; c d) is (d −b; −c a) up to a factor.
+    [mul(d, e) - mul(b, g), mul(d, f) - mul(b, i), mul(a, g) - mul(c, e), mul(a, i) - mul(c, f)]
+}
+
+/// The map itself, with c ≠ 0.
+#[derive(Debug, Clone, Copy)]
+struct MobiusMap {
+    /// a, b, c, d.
+    m: [Vec2; 4],
+    /// Undefined nearer to the pole than this.
+    clear: f64,
+}
+
+impl Formula for MobiusMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let [a, b, c, d] = self.m;
+        let (nx, ny) = (x * a.x - y * a.y + b.x, x * a.y + y * a.x + b.y);
+        let (dx, dy) = (x * c.x - y * c.y + d.x, x * c.y + y * c.x + d.y);
+        let n = dx * dx + dy * dy;
+        ((nx * dx + ny * dy) / n, (ny * dx - nx * dy) / n)
+    }
+
+    fn class(&self) -> Class {
+        Class::Smooth
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let (pole, clear) = (div(-self.m[3], self.m[2]).to_point(), self.clear);
+        out.push(Crease::edge(Level::Field(Arc::new(move |p| p.distance(pole) - clear))));
+    }
+
+    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        let [a, b, c, d] = self.m;
+        let part = |f: &dyn Fn([f64; 3]) -> f64| Scaled::new(curve.points.iter().map(|p| f(*p)));
+        let (nx, ny) = (part(&|[x, y, w]| x * a.x - y * a.y + w * b.x), part(&|[x, y, w]| x * a.y + y * a.x + w * b.y));
+        let (dx, dy) = (part(&|[x, y, w]| x * c.x - y * c.y + w * d.x), part(&|[x, y, w]| x * c.y + y * c.x + w * d.y));
+        let sum = |p: &Scaled, q: &Scaled, k: f64, r: &Scaled, s: &Scaled| {
+            let mut out = p.times(q);
+            out.add_scaled(k, &r.times(s));
+            out.coefficients()
+        };
+        let (x, y) = (sum(&nx, &dx, 1.0, &ny, &dy), sum(&ny, &dx, -1.0, &nx, &dy));
+        let w = sum(&dx, &dx, 1.0, &dy, &dy);
+        Some(RationalBezier { points: x.into_iter().zip(y).zip(w).map(|((x, y), w)| [x, y, w]).collect() })
+    }
+
+    /// |F − a/c|·|z − pole| is the same everywhere: points far out in the source are those near the inverse's pole.
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        let [a, b, c, d] = self.m;
+        let product = ((mul(a, d) - mul(b, c)).hypot()) / c.hypot2();
+        let far = self.clear / (CLEAR * CLEAR);
+        Some(Arc::new(Self { m: [d, -b, -c, a], clear: product / far }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::outline::{EllipticArc, Seg};
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Mobius);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
+        Mobius.build_from(&Args::from_pairs(pairs), &check::frame())
+    }
+
+    /// The circle through three points of the image holds all other points of the image.
+    #[test]
+    fn circles_and_lines_go_to_circles() {
+        let m = build(&[("pole", "110,-20")]).unwrap().map;
+        let circle = EllipticArc::new(Point::new(40.0, 50.0), Vec2::new(30.0, 0.0), Vec2::new(0.0, 30.0), 0.0, 6.0);
+        for seg in [Seg::Arc(circle), Seg::Line(kurbo::Line::new((0.0, 90.0), (100.0, 35.0)))] {
+            let p: Vec<Point> = (0..=20).map(|i| m.point(seg.eval(f64::from(i) / 20.0))).collect();
+            let (a, b, c) = (p[0], p[7], p[14]);
+            let (u, v) = (b - a, c - a);
+            let k = 2.0 * u.cross(v);
+            let centre = a + Vec2::new(v.y * u.hypot2() - u.y * v.hypot2(), u.x * v.hypot2() - v.x * u.hypot2()) / k;
+            for q in &p {
+                assert!((q.distance(centre) - a.distance(centre)).abs() < 1e-9 * a.distance(centre));
+            }
+        }
+    }
+
+    #[test]
+    fn all_three_anchors_land() {
+        let (from, to) = ("3,4 90,20 40,77", "10,10 60,80 -5,33");
+        let m = build(&[("from", from), ("to", to)]).unwrap().map;
+        for (p, q) in [((3.0, 4.0), (10.0, 10.0)), ((90.0, 20.0), (60.0, 80.0)), ((40.0, 77.0), (-5.0, 33.0))] {
+            assert!(m.point(p.into()).distance(q.into()) < 1e-10);
+        }
+    }
+
+    #[test]
+    fn what_is_no_map_or_meets_the_pole_is_refused() {
+        assert!(build(&[("coefficients", "1 0 2 0 2 0 4 0")]).is_err());
+        assert!(build(&[("from", "0,0 1,0 2,0")]).is_err());
+        assert!(build(&[("from", "0,0 1,0 0,0"), ("to", "0,0 1,0 2,0")]).is_err());
+        assert!(build(&[("pole", "50,50")]).is_err());
+        let b = build(&[("pole", "50,80")]).unwrap();
+        assert!(b.warnings[0].contains("pole 50,80"));
+        let art = crate::Outline::from_svg("M0,80 H100").unwrap();
+        let e = crate::refit::warp_path(&art, &*b.map, &crate::refit::Options::new(0.1)).unwrap_err();
+        assert!(e.to_string().contains("infinity at 4"), "{e}");
+    }
+}

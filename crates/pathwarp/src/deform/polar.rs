@@ -1,0 +1,312 @@
+//! Polar coordinates: a rectangle bent into a sector of a ring, or into the whole ring.
+//!
+//! Uprights become rays and levels become circles. With κ = sweep / width and x counted from the artwork's middle, the angle
+//! from the vertical is φ = κ·x, and with y counted upwards from the inner edge the radius is
+//!
+//! - even: r = ρ + g·y, uprights are divided evenly; g = 1 unless both radii are given,
+//! - conformal: r = ρ·exp(κ·y), the complex exponential: angles are kept, heights grow with the radius.
+//!
+//! ρ = 1/κ gives the inner edge its own length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
+//! inner one. F = C + r·(sin φ, −cos φ) is computed from the image O of the artwork's middle, F = O + (r·sin φ, r(yₘ) − r +
+//! 2r·sin²(φ/2)), which loses nothing where the sweep is small and C far away. Inverse: r and φ from the distance to C and the
+//! direction, exact up to the ray opposite the middle, where a whole turn meets itself. Elementary.
+
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Point, Vec2};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+pub(super) struct Polar;
+
+static INFO: Info = Info {
+    name: "polar",
+    title: "bend a rectangle into an arch or a whole ring",
+    group: "Bends",
+    about: "Uprights become rays, levels become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
+--inner and --outer set the radii instead. A negative sweep bends downwards (a smile). The middle of the artwork stays where it is, \
+unless --center says where the centre lies. With --spacing conformal, squares stay squares: heights grow with the width.",
+    source: "elementary (polar coordinates; the complex exponential)",
+    params: &[
+        Param::angle("sweep", "The angle that the artwork's width is bent into; negative bends downwards.")
+            .default("60")
+            .within(-360.0, 360.0),
+        Param::length("inner", Axis::X, "Radius of the inner edge. Default: so that it keeps its length.")
+            .within(0.0, 1e9)
+            .slider(0.0, 500.0),
+        Param::length("outer", Axis::X, "Radius of the outer edge. Default: so that heights are kept.")
+            .within(0.0, 1e9)
+            .slider(0.0, 500.0),
+        Param::angle("turn", "Turn the whole, clockwise on the screen.").default("0"),
+        Param::new("center", Kind::Point, "Where the rays meet. Default: so that the middle of the artwork stays."),
+        Param::new(
+            "spacing",
+            Kind::Choice(&["even", "conformal"]),
+            "How heights become radii: even, or conformal (angles are kept).",
+        )
+        .default("even"),
+    ],
+    demo: &[("turn", "15")],
+    examples: &[
+        Example { what: "An arch", command: "polar samples/lettering.svg -o out.svg" },
+        Example {
+            what: "A whole ring about the middle",
+            command: "polar samples/grid.svg --sweep 360 --inner 15% --outer 50% --center 50%,50% -o out.svg",
+        },
+        Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 -o out.svg" },
+    ],
+    laws: &[
+        Law::Identity(&[("sweep", "0")]),
+        Law::KeepsAngles(&[("spacing", "conformal"), ("sweep", "200")]),
+        Law::KeepsAngles(&[("spacing", "conformal"), ("sweep", "-77"), ("turn", "10")]),
+        Law::Same(&[("sweep", "-360"), ("inner", "10"), ("outer", "60")], SMILE),
+    ],
+    cases: &[
+        // A ring about 0,0: bottom middle at the top of the inner circle, the top's right end at the bottom of the outer one.
+        Case { args: RING, at: (50.0, 100.0), to: (0.0, -10.0), tolerance: 1e-12 },
+        Case { args: RING, at: (75.0, 0.0), to: (60.0, 0.0), tolerance: 1e-12 },
+        Case { args: RING, at: (100.0, 0.0), to: (0.0, 60.0), tolerance: 1e-12 },
+        Case { args: RING, at: (25.0, 50.0), to: (-35.0, 0.0), tolerance: 1e-12 },
+        // Half a turn: the bottom's length 100 is π·ρ.
+        Case {
+            args: &[("sweep", "180"), ("center", "0,0")],
+            at: (100.0, 100.0),
+            to: (100.0 / PI, 0.0),
+            tolerance: 1e-12,
+        },
+        Case { args: &[("sweep", "180")], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 1e-12 },
+        // A smile: the top is the inner edge and the middle of the bottom lies straight below the centre.
+        Case { args: SMILE_AT_0, at: (50.0, 100.0), to: (0.0, 60.0), tolerance: 1e-12 },
+        Case { args: SMILE_AT_0, at: (100.0, 0.0), to: (10.0, 0.0), tolerance: 1e-12 },
+    ],
+};
+
+const RING: super::Pairs = &[("sweep", "360"), ("inner", "10"), ("outer", "60"), ("center", "0,0")];
+const SMILE: super::Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
+const SMILE_AT_0: super::Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
+
+impl Deformation for Polar {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let rect = s.frame().rect;
+        let sweep = s.number("sweep")?.to_radians();
+        let (inner, outer) = (s.number_if("inner")?, s.number_if("outer")?);
+        let conformal = s.choice("spacing")? == "conformal";
+        let degrees = sweep.to_degrees().to_string();
+        if sweep == 0.0 {
+            if inner.or(outer).is_some() || s.given("center") {
+                return Err(Error::usage("sweep", degrees, "bends nothing, so there is no radius and no centre"));
+            }
+            return Ok(Built::new(Arc::new(AffineMap::IDENTITY)));
+        }
+        let (width, height) = (rect.width(), rect.height());
+        if width <= 0.0 {
+            return Err(Error::usage("sweep", degrees, "cannot bend artwork that has no width"));
+        }
+        if conformal && outer.is_some() {
+            return Err(Error::usage("outer", "", "follows from --inner and --sweep with --spacing conformal"));
+        }
+        let (near, far) = match (inner, outer) {
+            (None, None) => (width / sweep.abs(), width / sweep.abs() + height),
+            (Some(i), None) => (i, i + height),
+            (None, Some(o)) => (o - height, o),
+            (Some(i), Some(o)) => (i, o),
+        };
+        if near < 0.0 || far <= near && height > 0.0 || conformal && near == 0.0 {
+            return Err(Error::usage(
+                if outer.is_some() { "outer" } else { "inner" },
+                "",
+                format!("leaves no ring: the inner radius would be {near:.6}, the outer one {far:.6}"),
+            ));
+        }
+        let up = sweep.signum();
+        let mut map = PolarMap {
+            conformal,
+            up,
+            sweep: sweep.abs(),
+            k: sweep / width,
+            radius: up * near,
+            gain: if height > 0.0 && !conformal { (far - near) / height } else { 1.0 },
+            edge: if up > 0.0 { rect.y1 } else { rect.y0 },
+            middle: rect.center(),
+            to: rect.center(),
+            turn: Vec2::from_angle(s.number("turn")?.to_radians()),
+        };
+        if s.given("center") {
+            // The centre lies r(yₘ) below the image of the middle, before the turn.
+            map.to = s.point("center")? + map.turned(Vec2::new(0.0, -map.radius_at(map.middle.y)));
+        }
+        let mut built = Built::new(Arc::new(map));
+        built.notes.push(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
+        Ok(built)
+    }
+}
+
+/// The map itself.
+#[derive(Debug, Clone, Copy)]
+struct PolarMap {
+    conformal: bool,
+    /// +1 for an arch, −1 for a smile.
+    up: f64,
+    /// The whole angle, radians, positive.
+    sweep: f64,
+    /// κ, radians per unit of x.
+    k: f64,
+    /// ρ, negative for a smile.
+    radius: f64,
+    /// Radius per unit of height.
+    gain: f64,
+    /// The inner edge's y.
+    edge: f64,
+    /// The artwork's middle, and where it goes.
+    middle: Point,
+    to: Point,
+    /// The unit vector that the x direction is turned to.
+    turn: Vec2,
+}
+
+impl PolarMap {
+    fn turned(&self, v: Vec2) -> Vec2 {
+        Vec2::new(v.x * self.turn.x - v.y * self.turn.y, v.x * self.turn.y + v.y * self.turn.x)
+    }
+
+    /// r at a level.
+    fn radius_at<S: Real>(&self, y: S) -> S {
+        let h = -(y - self.edge);
+        if self.conformal { (h * self.k).exp() * self.radius } else { h * self.gain + self.radius }
+    }
+
+    fn centre(&self) -> Point {
+        self.to + self.turned(Vec2::new(0.0, self.radius_at(self.middle.y)))
+    }
+}
+
+impl Formula for PolarMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let r = self.radius_at(y);
+        let angle = (x - self.middle.x) * self.k;
+        let down = if self.conformal { -r + self.radius_at(self.middle.y) } else { (y - self.middle.y) * self.gain };
+        let (a, half) = (r * angle.sin(), (angle * 0.5).sin());
+        let b = down + r * half * half * 2.0;
+        let t = self.turn;
+        (a * t.x - b * t.y + self.to.x, a * t.y + b * t.x + self.to.y)
+    }
+
+    /// The level that becomes the centre.
+    fn creases(&self, out: &mut Creases) {
+        if !self.conformal {
+            let c = self.up * (self.radius + self.gain * self.edge);
+            out.push(Crease::edge(Level::Line { a: 0.0, b: -self.up * self.gain, c }));
+        }
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Unrolled(*self)))
+    }
+}
+
+/// The inverse: the ring unrolled.
+#[derive(Debug, Clone, Copy)]
+struct Unrolled(PolarMap);
+
+impl Unrolled {
+    /// Distance from the centre and angle from the middle.
+    fn polar<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let Unrolled(m) = self;
+        let (c, t) = (m.centre(), m.turn);
+        let (u, v) = (x - c.x, y - c.y);
+        let (a, b) = (u * t.x + v * t.y, v * t.x - u * t.y);
+        (a.hypot(b), (a * m.up).atan2(b * -m.up))
+    }
+}
+
+impl Formula for Unrolled {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let Unrolled(m) = self;
+        let (r, angle) = self.polar(x, y);
+        let r = r * m.up;
+        let h = if m.conformal { (r / m.radius).ln() / m.k } else { (r - m.radius) / m.gain };
+        (angle / m.k + m.middle.x, -h + m.edge)
+    }
+
+    /// Undefined on the ray opposite the middle: half of what the sweep leaves free goes to either end. A whole turn leaves
+    /// nothing free; artwork across that ray is then torn.
+    fn creases(&self, out: &mut Creases) {
+        let own = *self;
+        let most = 0.5 * (0.5 * own.0.sweep + PI) * (1.0 - 1e-9);
+        out.push(Crease::edge(Level::Field(Arc::new(move |p| most - own.polar(p.x, p.y).1.abs()))));
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Polar);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
+        Polar.build_from(&Args::from_pairs(pairs), &check::frame())
+    }
+
+    #[test]
+    fn a_small_sweep_tends_to_the_identity_without_losing_digits() {
+        for (sweep, spacing) in [("1e-9", "even"), ("-1e-9", "even"), ("1e-5", "conformal")] {
+            let m = build(&[("sweep", sweep), ("spacing", spacing)]).unwrap().map;
+            for p in [(0.0, 0.0), (100.0, 30.0), (20.0, 100.0)] {
+                let p = Point::from(p);
+                assert!(m.point(p).distance(p) < 1e-5, "{sweep} {spacing} {p:?} {:?}", m.point(p));
+            }
+        }
+    }
+
+    #[test]
+    fn inverses_return_in_every_kind() {
+        for pairs in [
+            &[("sweep", "-200"), ("turn", "77")][..],
+            &[("spacing", "conformal"), ("sweep", "300")],
+            &[("sweep", "359"), ("inner", "20"), ("outer", "25"), ("center", "7,8")],
+        ] {
+            let m = build(pairs).unwrap().map;
+            let back = m.inverse().unwrap();
+            let mut creases = Creases::default();
+            back.creases(&mut creases);
+            for p in [(0.5, 1.0), (99.5, 99.0), (30.0, 60.0)] {
+                let q = m.point(p.into());
+                assert!(creases.defined_at(q) && back.point(q).distance(p.into()) < 1e-9, "{pairs:?} {p:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn rings_that_are_none_are_refused() {
+        for pairs in [
+            &[("inner", "50"), ("outer", "40")][..],
+            &[("outer", "30")],
+            &[("sweep", "0"), ("inner", "4")],
+            &[("spacing", "conformal"), ("outer", "40")],
+            &[("spacing", "conformal"), ("inner", "0")],
+        ] {
+            assert!(matches!(build(pairs), Err(Error::Usage { .. })), "{pairs:?}");
+        }
+        // Artwork that reaches below the centre is refused where it does.
+        let m = build(&[("inner", "0"), ("outer", "50")]).unwrap().map;
+        let art = crate::Outline::from_svg("M10,10 L20,150").unwrap();
+        let e = crate::refit::warp_path(&art, &*m, &crate::refit::Options::new(0.1)).unwrap_err();
+        assert!(e.to_string().contains("infinity"), "{e}");
+    }
+}

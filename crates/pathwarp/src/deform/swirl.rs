@@ -1,0 +1,193 @@
+//! A swirl: artwork turned about a centre, the more the nearer to it.
+//!
+//! In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), with one of
+//!
+//! - soft: f(ρ) = (1 − ρ²)² inside the disc ρ < 1, nothing outside; value and slope run out at the rim, the curvature jumps,
+//! - sharp: f(ρ) = 1 − ρ inside, nothing outside; the slope jumps at the rim,
+//! - endless: f(ρ) = exp(−2ρ²), smooth everywhere and nothing only far out.
+//!
+//! r is kept, so areas are kept (the map is a shear in r²/2 and θ) and the inverse is the same swirl with −α. Elementary; the
+//! twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius for the axis.
+
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, Real};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Affine, Point};
+use std::sync::Arc;
+
+pub(super) struct Swirl;
+
+static INFO: Info = Info {
+    name: "swirl",
+    title: "turn the middle, the rim stays",
+    group: "Classics",
+    about: "Turns artwork about a centre by an angle that falls off to nothing at the radius. Circles about the centre stay what \
+they are, no area changes, and outside the radius nothing moves (with --falloff endless, hardly anything).",
+    source: "elementary; the twist of A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984, in the plane",
+    params: &[
+        Param::angle("angle", "How far the middle is turned, clockwise on the screen.").default("45").slider(-360.0, 360.0),
+        Param::new("center", Kind::Point, "The point it turns about.").default("50%,50%"),
+        Param::length("radius", Axis::Diagonal, "Where the swirl ends; 50% reaches the artwork's corners.")
+            .default("50%")
+            .within(1e-6, 1e9)
+            .slider(1.0, 1000.0),
+        Param::new(
+            "falloff",
+            Kind::Choice(&["soft", "sharp", "endless"]),
+            "How the angle falls off: soft at centre and rim, sharp (evenly, with a kink at the rim), or endless (a bell curve).",
+        )
+        .default("soft"),
+    ],
+    demo: &[("angle", "120"), ("radius", "40"), ("falloff", "sharp")],
+    examples: &[
+        Example { what: "As it comes", command: "swirl samples/logo.svg -o out.svg" },
+        Example {
+            what: "A whole turn of the middle only",
+            command: "swirl samples/grid.svg --angle 1turn --radius 30% -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("angle", "0")]),
+        Law::Area(&[], 1.0),
+        Law::Area(&[("falloff", "sharp")], 1.0),
+        Law::Area(&[("falloff", "endless"), ("angle", "-400")], 1.0),
+        Law::Undoes(&[("angle", "200"), ("center", "30,40")], &[("angle", "-200"), ("center", "30,40")]),
+        Law::Undoes(&[("falloff", "endless")], &[("falloff", "endless"), ("angle", "-45")]),
+    ],
+    cases: &[
+        // The centre and the rim stay; half-way out, sharp turns by half the angle and soft by 9/16 of it.
+        Case { args: &[("radius", "40")], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 0.0 },
+        Case { args: &[("radius", "40")], at: (90.0, 50.0), to: (90.0, 50.0), tolerance: 0.0 },
+        Case {
+            args: &[("radius", "40"), ("angle", "180"), ("falloff", "sharp")],
+            at: (70.0, 50.0),
+            to: (50.0, 70.0),
+            tolerance: 1e-12,
+        },
+        Case { args: &[("radius", "40"), ("angle", "160")], at: (70.0, 50.0), to: (50.0, 70.0), tolerance: 1e-12 },
+        Case {
+            args: &[("radius", "40"), ("angle", "148.41315910257657"), ("falloff", "endless")],
+            at: (90.0, 50.0),
+            // exp(−2) of it: 20.0855… degrees.
+            to: (50.0 + 40.0 * 0.939_180_971_610_258_4, 50.0 + 40.0 * 0.343_422_629_663_816_7),
+            tolerance: 1e-9,
+        },
+    ],
+};
+
+impl Deformation for Swirl {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let falloff = match s.choice("falloff")? {
+            "sharp" => Falloff::Sharp,
+            "endless" => Falloff::Endless,
+            _ => Falloff::Soft,
+        };
+        let inner = Inner {
+            center: s.point("center")?,
+            radius: s.number("radius")?,
+            angle: s.number("angle")?.to_radians(),
+            falloff,
+        };
+        Ok(Built::new(if falloff == Falloff::Endless { Arc::new(inner) } else { Arc::new(SwirlMap(inner)) }))
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Falloff {
+    Soft,
+    Sharp,
+    Endless,
+}
+
+/// The swirl as it is inside the disc, continued outside.
+#[derive(Debug, Clone, Copy)]
+struct Inner {
+    center: Point,
+    radius: f64,
+    /// Radians.
+    angle: f64,
+    falloff: Falloff,
+}
+
+impl Formula for Inner {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let (u, v) = (x - self.center.x, y - self.center.y);
+        let f = match self.falloff {
+            Falloff::Sharp => -(u.hypot(v) / self.radius) + 1.0,
+            Falloff::Soft => (-((u * u + v * v) / (self.radius * self.radius)) + 1.0).powi(2),
+            Falloff::Endless => ((u * u + v * v) * (-2.0 / (self.radius * self.radius))).exp(),
+        };
+        let (sin, cos) = ((f * self.angle).sin(), (f * self.angle).cos());
+        (u * cos - v * sin + self.center.x, u * sin + v * cos + self.center.y)
+    }
+
+    fn class(&self) -> Class {
+        if self.angle == 0.0 { Class::Affine(Affine::IDENTITY) } else { Class::Smooth }
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Self { angle: -self.angle, ..*self }))
+    }
+}
+
+/// The swirl that ends at the rim.
+#[derive(Debug, Clone, Copy)]
+struct SwirlMap(Inner);
+
+impl SwirlMap {
+    fn within(&self, p: Point) -> bool {
+        (p - self.0.center).hypot() < self.0.radius
+    }
+}
+
+impl Formula for SwirlMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        if self.within(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
+    }
+
+    fn class(&self) -> Class {
+        Formula::class(&self.0)
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let Inner { center, radius, .. } = self.0;
+        out.push(Crease::kink(Level::Field(Arc::new(move |p| (p - center).hypot() - radius))));
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        Some(if self.within(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Self(Inner { angle: -self.0.angle, ..self.0 })))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::param::Args;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Swirl);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    #[test]
+    fn the_centre_turns_by_the_whole_angle() {
+        for falloff in ["soft", "sharp", "endless"] {
+            let b =
+                Swirl.build_from(&Args::from_pairs(&[("falloff", falloff), ("angle", "90")]), &check::frame()).unwrap();
+            let j = b.map.jet(Point::new(50.0, 50.0));
+            assert!((j.dx - kurbo::Vec2::new(0.0, 1.0)).hypot() < 1e-12, "{falloff}: {j:?}");
+            assert!((j.dy - kurbo::Vec2::new(-1.0, 0.0)).hypot() < 1e-12, "{falloff}: {j:?}");
+        }
+    }
+}

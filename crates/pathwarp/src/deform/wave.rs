@@ -1,0 +1,172 @@
+//! A sine wave: artwork pushed to and fro across the direction the wave runs in, or along it.
+//!
+//! With the unit vector d along the wave, n a quarter turn to its left on the screen, and s = (p − o)·d counted from where the
+//! artwork begins,
+//!
+//! shear: F(p) = p + a(s)·sin(2π·s/λ + φ)·n,  push: F(p) = p + a(s)·sin(2π·s/λ + φ)·d,
+//!
+//! a(s) = h·(1 − g + g·s/S), S the artwork's extent along d: with g = 1 the wave grows from nothing, like a flag at its pole.
+//! The shear leaves s alone: its determinant is 1, and its inverse is the same wave with −h. Both are elementary; waves of this
+//! kind are in A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, as profiles of offsets along an axis.
+
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::map::{Class, Formula, Map, Real};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Affine, Vec2};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+pub(super) struct Wave;
+
+static INFO: Info = Info {
+    name: "wave",
+    title: "a sine wave across the artwork, or a flag in the wind",
+    group: "Classics",
+    about: "Pushes the artwork up and down in a sine wave that runs from left to right, or in any direction. Lines across the wave \
+stay straight, and no area changes. With --grow the wave is nothing at the start and full at the end: a flag at its pole. \
+--kind push moves points along the wave instead of across it: the artwork is squeezed and stretched in turns.",
+    source: "elementary; offsets along an axis as in A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984",
+    params: &[
+        Param::length("height", Axis::Y, "How far a crest is from the middle.").default("10%").slider(0.0, 100.0),
+        Param::length("length", Axis::X, "From crest to crest.").default("60%").within(1e-3, 1e9).slider(1.0, 1000.0),
+        Param::angle("angle", "Where the wave runs: 0 to the right, 90 downwards.").default("0"),
+        Param::angle("phase", "Where in the wave the artwork begins: 0 in the middle, 90 on a crest.").default("0"),
+        Param::number("grow", "How much of the height is missing at the start: 0 none of it, 1 all.")
+            .default("0")
+            .within(0.0, 1.0),
+        Param::new("kind", Kind::Choice(&["shear", "push"]), "Move points across the wave (shear) or along it (push).")
+            .default("shear"),
+    ],
+    demo: &[("angle", "20"), ("phase", "30"), ("grow", "0.5")],
+    examples: &[
+        Example { what: "As it comes", command: "wave samples/logo.svg -o out.svg" },
+        Example {
+            what: "A flag at its pole",
+            command: "wave samples/badge.svg --grow 1 --height 12% --length 70% -o out.svg",
+        },
+        Example { what: "From side to side", command: "wave samples/grid.svg --angle 90 --length 100% -o out.svg" },
+    ],
+    laws: &[
+        Law::Identity(&[("height", "0")]),
+        Law::Area(&[("angle", "33"), ("phase", "50")], 1.0),
+        Law::Area(&[("grow", "1"), ("angle", "-70")], 1.0),
+        Law::Undoes(&[("height", "13"), ("angle", "20")], &[("height", "-13"), ("angle", "20")]),
+        Law::Same(&[("height", "7"), ("phase", "180")], &[("height", "-7")]),
+    ],
+    cases: &[
+        // A quarter of the wave on, the crest; half of it, the middle; with grow, half the height half-way.
+        Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 2.0), tolerance: 1e-12 },
+        Case { args: &[("length", "40"), ("height", "3")], at: (20.0, 5.0), to: (20.0, 5.0), tolerance: 1e-12 },
+        Case {
+            args: &[("length", "200"), ("height", "6"), ("grow", "1")],
+            at: (50.0, 5.0),
+            to: (50.0, 2.0),
+            tolerance: 1e-12,
+        },
+        Case {
+            args: &[("length", "40"), ("height", "3"), ("kind", "push"), ("angle", "90")],
+            at: (7.0, 10.0),
+            to: (7.0, 13.0),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+impl Deformation for Wave {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let d = Vec2::from_angle(s.number("angle")?.to_radians());
+        let along: Vec<f64> = s.frame().corners().iter().map(|c| c.to_vec2().dot(d)).collect();
+        let start = along.iter().copied().fold(f64::INFINITY, f64::min);
+        let extent = along.iter().copied().fold(f64::NEG_INFINITY, f64::max) - start;
+        let push = s.choice("kind")? == "push";
+        let (height, length, grow) = (s.number("height")?, s.number("length")?, s.number("grow")?);
+        let map = WaveMap {
+            d,
+            to: if push { d } else { Vec2::new(d.y, -d.x) },
+            origin: start,
+            wave: TAU / length,
+            phase: s.number("phase")?.to_radians(),
+            height,
+            // Artwork without extent has no room for the wave to grow.
+            grow: if extent > 0.0 { grow / extent } else { 0.0 },
+            least: 1.0 - grow,
+        };
+        let mut built = Built::new(Arc::new(map));
+        if push && (height / length).abs() * TAU > 1.0 {
+            built.warnings.push(format!(
+                "wave: with --kind push the artwork folds over itself where --height is more than --length/2π = {:.6}",
+                length / TAU
+            ));
+        }
+        Ok(built)
+    }
+}
+
+/// The map itself.
+#[derive(Clone)]
+struct WaveMap {
+    /// Unit vector the wave runs along.
+    d: Vec2,
+    /// Unit vector points are moved along.
+    to: Vec2,
+    /// p·d where the artwork begins.
+    origin: f64,
+    /// Radians per unit.
+    wave: f64,
+    phase: f64,
+    height: f64,
+    /// Height at the start, and its gain per unit, as shares of `height`.
+    least: f64,
+    grow: f64,
+}
+
+impl Formula for WaveMap {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let s = x * self.d.x + y * self.d.y - self.origin;
+        let a = (s * self.grow + self.least) * self.height;
+        let off = a * (s * self.wave + self.phase).sin();
+        (x + off * self.to.x, y + off * self.to.y)
+    }
+
+    fn class(&self) -> Class {
+        if self.height == 0.0 { Class::Affine(Affine::IDENTITY) } else { Class::Smooth }
+    }
+
+    /// Where points move across the wave, s is kept and the offset can be taken off again.
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        let across = self.d.dot(self.to) == 0.0;
+        across.then(|| Arc::new(Self { height: -self.height, ..self.clone() }) as Arc<dyn Map>)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::param::Args;
+    use kurbo::Point;
+
+    #[test]
+    fn is_sound() {
+        let faults = check::entry(&Wave);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+
+    #[test]
+    fn a_push_that_folds_is_told_and_has_no_closed_inverse() {
+        let build = |h: &str| {
+            Wave.build_from(&Args::from_pairs(&[("kind", "push"), ("length", "40"), ("height", h)]), &check::frame())
+        };
+        let (gentle, steep) = (build("6").unwrap(), build("7").unwrap());
+        assert!(gentle.warnings.is_empty() && steep.warnings[0].contains("folds"), "{:?}", steep.warnings);
+        assert!(gentle.map.inverse().is_none());
+        // The determinant changes sign just where the warning says: 1 + h·2π/λ·cos is negative half a wave on.
+        let det = |b: &Built| b.map.jet(Point::new(20.0, 0.0)).det();
+        assert!(det(&gentle) > 0.0 && det(&steep) < 0.0);
+    }
+}
