@@ -305,6 +305,24 @@ mod tests {
         }
     }
 
+    /// Artwork without width, height or either, and huge artwork: a map or an error, never a panic.
+    #[test]
+    fn degenerate_frames_are_survived() {
+        for (w, h) in [(0.0, 0.0), (100.0, 0.0), (0.0, 100.0), (1e-200, 1e-200), (1e99, 1e99)] {
+            let frame = Frame::new(Rect::new(5.0, 5.0, 5.0 + w, 5.0 + h));
+            for e in Registry::builtin().entries() {
+                let Ok(b) = e.build_from(&Args::from_pairs(e.info().demo), &frame) else { continue };
+                let mut creases = Creases::default();
+                b.map.creases(&mut creases);
+                for p in [(5.0, 5.0), (0.0, 0.0), (5.0 + w, 5.0 + h), (1e30, -1e30)].map(Point::from) {
+                    let _ = (b.map.jet(p), b.map.point(p), creases.defined_at(p));
+                    let _ = b.map.branch(p).map(|m| m.jet(p));
+                    let _ = b.map.inverse().map(|m| m.jet(p));
+                }
+            }
+        }
+    }
+
     /// A deformation with a fault of every kind that `entry` looks for.
     struct Bad;
     struct BadMap;

@@ -200,7 +200,7 @@ impl Deformation for Bend {
         let map = BendMap { pieces, length, closed, place, reach: (rect.x0 - rect.width(), rect.x1 + rect.width()) };
 
         let mut built = Built::new(map.simplest());
-        built.notes.push(format!("skeleton: {} pieces, length {length:.6}", map.pieces.len()));
+        built.notes.push(format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" }));
         built.notes.extend(joined.notes);
         for c in joined.corners {
             built.warnings.push(format!(
