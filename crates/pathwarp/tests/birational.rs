@@ -1,5 +1,7 @@
 //! The birational map against the paper's exact numbers, and undone over many random lattices.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use kurbo::{CubicBez, Point, Rect, Vec2};
 use pathwarp::map::{Birational, Class, Map, Monoid, RationalBezier, Ray, Rows};
 use pathwarp::refit::{Options, warp_path};
