@@ -4,7 +4,7 @@
 //! earlier maps: φ ∘ F. A path is split where it crosses them.
 
 use crate::outline::Seg;
-use kurbo::{Point, common::solve_cubic};
+use kurbo::{Point, Rect, common::solve_cubic};
 use std::fmt;
 use std::sync::Arc;
 
@@ -20,6 +20,17 @@ pub enum Level {
         /// Constant term.
         c: f64,
     },
+    /// The part of a straight line within a box: away from it the map is smooth across the line.
+    Stretch {
+        /// Coefficient of x.
+        a: f64,
+        /// Coefficient of y.
+        b: f64,
+        /// Constant term.
+        c: f64,
+        /// The box.
+        within: Rect,
+    },
     /// Any continuous function.
     Field(Arc<dyn Fn(Point) -> f64 + Send + Sync>),
 }
@@ -28,17 +39,18 @@ impl fmt::Debug for Level {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line { a, b, c } => write!(f, "{a}·x + {b}·y + {c}"),
+            Self::Stretch { a, b, c, within } => write!(f, "{a}·x + {b}·y + {c} within {within:?}"),
             Self::Field(_) => f.write_str("field"),
         }
     }
 }
 
 impl Level {
-    /// The function's value.
+    /// The function's value; for a [`Level::Stretch`] the whole line's.
     #[must_use]
     pub fn at(&self, p: Point) -> f64 {
         match self {
-            Self::Line { a, b, c } => a * p.x + b * p.y + c,
+            Self::Line { a, b, c } | Self::Stretch { a, b, c, .. } => a * p.x + b * p.y + c,
             Self::Field(f) => f(p),
         }
     }
@@ -46,13 +58,20 @@ impl Level {
     /// Adds the parameters in (0, 1) where `seg` meets the zero set: exactly for a straight one and Bézier pieces, by
     /// bracketing between samples otherwise.
     pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) {
+        let within = if let Self::Stretch { within, .. } = self {
+            // Wider by the rounding of a crossing's place.
+            let room = 1e-9 * (within.width() + within.height());
+            Some(within.inflate(room, room))
+        } else {
+            None
+        };
         let mut add = |t: f64| {
-            if t > 0.0 && t < 1.0 {
+            if t > 0.0 && t < 1.0 && within.is_none_or(|b| b.contains(seg.eval(t))) {
                 out.push(t);
             }
         };
         match (self, seg) {
-            (Self::Line { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
+            (Self::Line { .. } | Self::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
                 let c = seg.to_cubic();
                 let [q0, q1, q2, q3] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.at(p));
                 // Bernstein to power basis.
@@ -99,7 +118,7 @@ fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64
 /// What happens at a crease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CreaseKind {
-    /// The map is continuous but its derivative jumps.
+    /// The derivative jumps, or the value itself: a path that crosses is drawn on by a straight line then.
     Kink,
     /// The map is defined only where the level is positive.
     Edge,

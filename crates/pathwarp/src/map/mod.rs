@@ -5,13 +5,17 @@
 
 mod affine;
 pub(crate) mod bernstein;
+mod bspline;
 mod chain;
 mod crease;
 mod dual;
 mod formula;
 mod homography;
+mod inverse;
 mod jet;
+mod lattice;
 pub mod net;
+mod patch;
 mod rational;
 
 pub use affine::AffineMap;
@@ -20,8 +24,11 @@ pub use crease::{Crease, CreaseKind, Creases, Level};
 pub use dual::{Dual, Real};
 pub use formula::Formula;
 pub use homography::Homography;
+pub use inverse::NewtonInverse;
 pub use jet::Jet;
+pub use lattice::{Lattice, LatticeMap};
 pub use net::BicubicNet;
+pub use patch::Patch;
 pub use rational::RationalBezier;
 
 use kurbo::{Affine, Point};

@@ -1,0 +1,116 @@
+//! Uniform clamped B-splines over [0, 1]: knots, the places of regular control points, and Bézier form by blossoming.
+//!
+//! A clamped knot vector of degree d with c cells is 0 (d+1 times), 1/c, 2/c, …, 1 (d+1 times); it has d + c control points.
+//! With one cell the spline is a Bézier curve. The pieces meet with d − 1 continuous derivatives.
+//!
+//! The Bézier points of a cell \[a, b\] are blossom values f(a,…,a,b,…,b) (L. Ramshaw, *Blossoms are polar forms*, CAGD 6,
+//! 1989), which is what inserting each knot until it has multiplicity d gives (W. Boehm, *Inserting new knots into B-spline
+//! curves*, CAD 12, 1980).
+
+/// The knots.
+fn knots(degree: usize, cells: usize) -> Vec<f64> {
+    let inner = (1..cells).map(|k| k as f64 / cells as f64);
+    let (zeros, ones) = (std::iter::repeat_n(0.0, degree + 1), std::iter::repeat_n(1.0, degree + 1));
+    zeros.chain(inner).chain(ones).collect()
+}
+
+/// Where the control points lie that make the spline the identity: the means of `degree` consecutive knots (Greville's
+/// abscissae); i/n for one cell.
+pub(crate) fn regular(degree: usize, cells: usize) -> Vec<f64> {
+    if cells == 1 {
+        return (0..=degree).map(|i| i as f64 / degree as f64).collect();
+    }
+    let t = knots(degree, cells);
+    (0..degree + cells).map(|i| t[i + 1..=i + degree].iter().sum::<f64>() / degree as f64).collect()
+}
+
+/// For each cell, the matrix that makes Bézier points (one row each) of the `degree` + 1 control points that begin with the
+/// cell's number.
+pub(crate) fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
+    let t = knots(degree, cells);
+    let bezier = |cell: usize| -> Vec<Vec<f64>> {
+        let span = cell + degree;
+        let (a, b) = (t[span], t[span + 1]);
+        let mut rows = vec![vec![0.0; degree + 1]; degree + 1];
+        for l in 0..=degree {
+            // The blossom is linear in the control points: one at a time.
+            for (k, row) in rows.iter_mut().enumerate() {
+                let mut d = vec![0.0; degree + 1];
+                d[l] = 1.0;
+                for r in 1..=degree {
+                    let u = if r <= k { b } else { a };
+                    for j in (r..=degree).rev() {
+                        let (lo, hi) = (t[j + span - degree], t[j + 1 + span - r]);
+                        let w = (u - lo) / (hi - lo);
+                        d[j] = (1.0 - w) * d[j - 1] + w * d[j];
+                    }
+                }
+                row[l] = d[degree];
+            }
+        }
+        rows
+    };
+    (0..cells).map(bezier).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By the recursion that defines B-splines (Cox, de Boor).
+    fn by_definition(degree: usize, cells: usize, c: &[f64], x: f64) -> f64 {
+        fn basis(t: &[f64], i: usize, d: usize, x: f64) -> f64 {
+            if d == 0 {
+                return f64::from(u8::from(t[i] <= x && x < t[i + 1]));
+            }
+            let part = |num: f64, den: f64, b: f64| if den > 0.0 { num / den * b } else { 0.0 };
+            part(x - t[i], t[i + d] - t[i], basis(t, i, d - 1, x))
+                + part(t[i + d + 1] - x, t[i + d + 1] - t[i + 1], basis(t, i + 1, d - 1, x))
+        }
+        let t = knots(degree, cells);
+        c.iter().enumerate().map(|(i, c)| c * basis(&t, i, degree, x)).sum()
+    }
+
+    fn bezier(c: &[f64], s: f64) -> f64 {
+        let mut c = c.to_vec();
+        for n in (1..c.len()).rev() {
+            for i in 0..n {
+                c[i] += s * (c[i + 1] - c[i]);
+            }
+        }
+        c[0]
+    }
+
+    #[test]
+    fn bezier_pieces_are_the_spline() {
+        for (degree, cells) in [(1, 1), (1, 4), (2, 3), (3, 5), (5, 2), (10, 1), (4, 7)] {
+            let c: Vec<f64> = (0..degree + cells).map(|i| ((i * i * 7 + 3) % 11) as f64 - 4.0).collect();
+            for (cell, rows) in extraction(degree, cells).iter().enumerate() {
+                let local = &c[cell..=cell + degree];
+                let points: Vec<f64> =
+                    rows.iter().map(|r| r.iter().zip(local).map(|(a, b)| a * b).sum::<f64>()).collect();
+                for k in 0..10 {
+                    let s = f64::from(k) / 10.0;
+                    let x = (cell as f64 + s) / cells as f64;
+                    let (a, b) = (bezier(&points, s), by_definition(degree, cells, &c, x));
+                    // At a knot the recursion may fall into the cell before: same value.
+                    assert!((a - b).abs() < 1e-12, "{degree} {cells} {cell} {s}: {a} {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn regular_points_give_the_identity_and_one_cell_is_bezier() {
+        for (degree, cells) in [(1, 3), (3, 4), (4, 2)] {
+            let c = regular(degree, cells);
+            for x in [0.0, 0.1, 0.37, 0.9] {
+                assert!((by_definition(degree, cells, &c, x) - x).abs() < 1e-15);
+            }
+        }
+        let identity = &extraction(4, 1)[0];
+        for (k, row) in identity.iter().enumerate() {
+            assert!(row.iter().enumerate().all(|(l, v)| *v == f64::from(u8::from(k == l))));
+        }
+    }
+}
