@@ -14,6 +14,7 @@ mod projective;
 mod shaper;
 mod similitude;
 mod swirl;
+mod triangle;
 mod wave;
 
 use crate::error::Error;
@@ -28,6 +29,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
         Arc::new(bilinear::Bilinear),
+        Arc::new(triangle::Triangle),
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),

@@ -71,12 +71,28 @@ impl Level {
             }
         };
         match (self, seg) {
-            (Self::Line { .. } | Self::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
+            (Self::Line { .. } | Self::Stretch { .. }, Seg::Line(s)) => {
+                let (a, b) = (self.at(s.p0), self.at(s.p1));
+                add(a / (a - b));
+            }
+            (Self::Line { .. } | Self::Stretch { .. }, Seg::Quad(_) | Seg::Cubic(_)) => {
                 let c = seg.to_cubic();
                 let [q0, q1, q2, q3] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.at(p));
                 // Bernstein to power basis.
-                let roots = solve_cubic(q0, 3.0 * (q1 - q0), 3.0 * (q2 - 2.0 * q1 + q0), q3 - 3.0 * q2 + 3.0 * q1 - q0);
-                roots.into_iter().for_each(add);
+                let (k1, k2, k3) = (3.0 * (q1 - q0), 3.0 * (q2 - 2.0 * q1 + q0), q3 - 3.0 * q2 + 3.0 * q1 - q0);
+                // What is left of a vanishing leading term is rounding, and leads the solver astray.
+                let size = [q0, q1, q2, q3].into_iter().fold(0.0, |m, q| f64::max(m, q.abs()));
+                let tidy = |k: f64| if k.abs() <= 16.0 * f64::EPSILON * size { 0.0 } else { k };
+                for mut t in solve_cubic(q0, k1, tidy(k2), tidy(k3)) {
+                    for _ in 0..2 {
+                        let step = (((k3 * t + k2) * t + k1) * t + q0) / ((3.0 * k3 * t + 2.0 * k2) * t + k1);
+                        // At a double root the slope vanishes and the step is noise.
+                        if step.abs() < 1e-6 {
+                            t -= step;
+                        }
+                    }
+                    add(t);
+                }
             }
             _ => {
                 /// Finer than any wiggle a cubic's image usually has; a crease touched and left between two samples is missed.

@@ -14,9 +14,12 @@ mod homography;
 mod inverse;
 mod jet;
 mod lattice;
+mod local;
 pub mod net;
 mod patch;
+mod quotient;
 mod rational;
+pub mod triangle;
 
 pub use affine::AffineMap;
 pub use chain::Chain;
@@ -27,9 +30,12 @@ pub use homography::Homography;
 pub use inverse::NewtonInverse;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
+pub use local::Local;
 pub use net::BicubicNet;
 pub use patch::Patch;
+pub use quotient::Quotient;
 pub use rational::RationalBezier;
+pub use triangle::TriangleNet;
 
 use kurbo::{Affine, Point};
 use std::sync::Arc;
