@@ -7,6 +7,7 @@
 //! whatever its direction: a triangle of degree n has total degree n, a rectangle of degree n × n twice that.
 //!
 //! To evaluate it, the net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓ by running de Casteljau's algorithm on polynomials.
+//! That multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, 3ⁿ in a corner: nothing at the degrees people use.
 
 use super::local::Local;
 use super::quotient::{Plane, Quotient};
