@@ -1,5 +1,6 @@
 //! Chores of the workspace, run as `cargo xtask NAME`.
 
+mod corpus;
 mod docs;
 mod new_deformation;
 
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
                         .help("The workspace to write to [default: this one]"),
                 ),
         )
+        .subcommand(Command::new("corpus").about("Fetch the icons that the refitting is measured on (needs npm)"))
         .subcommand(Command::new("docs").about("Write a page and a picture for every deformation"))
         .get_matches();
     let done = match matches.subcommand() {
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
             let name = m.get_one::<String>("NAME").map_or("", String::as_str);
             new_deformation::run(m.get_one::<PathBuf>("root").unwrap_or(&root), name)
         }
+        Some(("corpus", _)) => corpus::run().map(|()| "wrote corpus/icons.txt".to_owned()).map_err(|e| e.to_string()),
         Some(("docs", _)) => docs::run(&root),
         _ => Err("no such chore".into()),
     };
