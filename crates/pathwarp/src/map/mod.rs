@@ -4,10 +4,12 @@
 //! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
 
 mod affine;
+pub mod anamorph;
 pub(crate) mod bernstein;
 mod bspline;
 mod chain;
 mod crease;
+pub mod dilation;
 mod dual;
 mod formula;
 mod homography;
@@ -19,6 +21,7 @@ pub mod net;
 mod patch;
 mod quotient;
 mod rational;
+pub mod surface;
 pub mod triangle;
 
 pub use affine::AffineMap;
