@@ -122,11 +122,11 @@ a held side: the first side of a triangle, the edge of a box if --local.",
         },
         Example {
             what: "A paper cup",
-            command: "anamorph samples/logo.svg --distance 40cm --picture-width 70mm --onto cone:top=45mm,bottom=30mm,height=100mm -o out.svg",
+            command: "anamorph samples/logo.svg --distance 40cm --picture-width 60mm --onto cone:top=45mm,bottom=30mm,height=100mm -o out.svg",
         },
         Example {
             what: "Into a dome, as another visitor sees it",
-            command: "anamorph samples/grid.svg --distance 200 --onto sphere:eye --view=-150,120,150 -o out.svg",
+            command: "anamorph samples/grid.svg --distance 200 --onto sphere:eye --view 60,120,120 -o out.svg",
         },
         Example {
             what: "Swell a word away from an eye below it",
