@@ -1,16 +1,20 @@
 //! The command line itself, made from the registry.
 
 use crate::failure::Failure;
-use crate::{Outcome, common, compare, output, paths, render};
+use crate::{Outcome, common, compare, output, paths, query, recipe_file, render, unwarp};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Args, Kind, Param};
-use pathwarp::recipe::Step;
+use pathwarp::recipe::{Recipe, Step};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::io::IsTerminal;
+use std::path::PathBuf;
 
 const ABOUT: &str = "Bends, warps and deforms SVG artwork, and gives clean Bézier curves back.";
+
+/// The switch that every deformation has.
+const INVERSE: &str = "inverse";
 
 const AFTER: &str = "Path references (PATHREF), wherever an option takes a path:
   FILE#NAME       the path of that id, label or title in an SVG file
@@ -37,7 +41,11 @@ pub(crate) fn build(registry: &Registry) -> Command {
     for e in registry.entries() {
         c = c.subcommand(deformation(e.info()));
     }
-    c.subcommand(Command::new("list").about("List the deformations"))
+    c.subcommand(run_command())
+        .subcommand(Command::new("list").about("List the deformations"))
+        .subcommand(query::command(registry))
+        .subcommand(unwarp::command())
+        .subcommand(Command::new("schema").about("Print the JSON schema of recipe files"))
         .subcommand(paths::command())
         .subcommand(render::command())
         .subcommand(compare::command())
@@ -50,24 +58,32 @@ pub(crate) fn build(registry: &Registry) -> Command {
 }
 
 /// A deformation's own options, without the common ones.
-fn own_args(info: &Info) -> impl Iterator<Item = Arg> {
-    info.params.iter().map(|p| {
-        let mut help = p.help.to_owned();
-        if let Some(d) = p.default {
-            let _ = write!(help, " [default: {d}]");
-        }
-        let arg = Arg::new(p.name).long(p.name).help(help).help_heading("Options");
-        if p.kind == Kind::Flag {
-            return arg.action(ArgAction::SetTrue);
-        }
-        // Coordinates may start with a minus; a missing value must still not swallow the next option.
-        arg.value_name(p.value_name())
-            .allow_hyphen_values(true)
-            .value_parser(|t: &str| {
-                if t.starts_with("--") { Err("a value is missing before this option") } else { Ok(t.to_owned()) }
-            })
-            .action(if p.repeat { ArgAction::Append } else { ArgAction::Set })
-    })
+pub(crate) fn own_args(info: &Info) -> impl Iterator<Item = Arg> {
+    let inverse = Arg::new(INVERSE)
+        .long(INVERSE)
+        .action(ArgAction::SetTrue)
+        .help_heading("Options")
+        .help("Undo it: the inverse map, where there is one (give --frame: percentages mean the source's box)");
+    info.params
+        .iter()
+        .map(|p| {
+            let mut help = p.help.to_owned();
+            if let Some(d) = p.default {
+                let _ = write!(help, " [default: {d}]");
+            }
+            let arg = Arg::new(p.name).long(p.name).help(help).help_heading("Options");
+            if p.kind == Kind::Flag {
+                return arg.action(ArgAction::SetTrue);
+            }
+            // Coordinates may start with a minus; a missing value must still not swallow the next option.
+            arg.value_name(p.value_name())
+                .allow_hyphen_values(true)
+                .value_parser(|t: &str| {
+                    if t.starts_with("--") { Err("a value is missing before this option") } else { Ok(t.to_owned()) }
+                })
+                .action(if p.repeat { ArgAction::Append } else { ArgAction::Set })
+        })
+        .chain([inverse])
 }
 
 fn deformation(info: &Info) -> Command {
@@ -84,13 +100,53 @@ fn deformation(info: &Info) -> Command {
         .args(common::args())
 }
 
+/// `pathwarp run RECIPE [INPUT…]`: a saved command line, whose options the ones given here overrule.
+fn run_command() -> Command {
+    Command::new("run")
+        .about("Run a recipe file, as --write-recipe saves it")
+        .arg(Arg::new("RECIPE").required(true).value_parser(value_parser!(PathBuf)).help("A recipe (TOML)"))
+        .arg(
+            Arg::new(INVERSE)
+                .long(INVERSE)
+                .action(ArgAction::SetTrue)
+                .help("Undo it: the inverse of every step, the last first (give --frame: the source's box)"),
+        )
+        .args(common::args())
+        .args_override_self(true)
+        .after_help(
+            "A recipe:\n  pathwarp = 1\n  [options]\n  tolerance = \"0.01\"\n  [[step]]\n  deformation = \"shaper\"\n  \
+             shaper = \"cage.svg#flag\"   # relative to the recipe's own folder\n\nExamples:\n  pathwarp shaper logo.svg \
+             --shaper cage.svg -o out.svg --write-recipe flag.toml\n  pathwarp run flag.toml other.svg -o other-out.svg",
+        )
+}
+
+/// The recipe that `run` names, and its command line with the recipe's options before the ones given.
+pub(crate) fn run_recipe(
+    registry: &Registry,
+    words: &[OsString],
+    m: &ArgMatches,
+) -> Result<(Recipe, ArgMatches), Failure> {
+    let file = m.get_one::<PathBuf>("RECIPE").cloned().unwrap_or_default();
+    let saved = recipe_file::read(registry, &file)?;
+    let at = words.iter().position(|w| w == "run").map_or(1, |i| i + 1);
+    let mut line = vec![OsString::from("run")];
+    line.extend(saved.options.iter().map(OsString::from));
+    line.extend_from_slice(&words[at..]);
+    // The words given were understood before; what is wrong now comes from the file.
+    let merged = run_command()
+        .try_get_matches_from(line)
+        .map_err(|e| Failure::file(&file, format!("its [options] are no options of the command line: {e}")))?;
+    let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
+    Ok((recipe, merged))
+}
+
 /// The step that a parsed subcommand stands for.
-pub(crate) fn step(registry: &Registry, name: &str, m: &ArgMatches) -> Step {
+fn step(registry: &Registry, name: &str, m: &ArgMatches) -> Step {
     let mut args = Args::new();
     for p in registry.get(name).map_or(&[][..], |e| e.info().params) {
         read(p, m, &mut args);
     }
-    Step { deformation: name.to_owned(), args }
+    Step { inverse: m.get_flag(INVERSE), ..Step::new(name, args) }
 }
 
 fn read(p: &Param, m: &ArgMatches, args: &mut Args) {
@@ -106,7 +162,7 @@ fn read(p: &Param, m: &ArgMatches, args: &mut Args) {
 }
 
 /// A step after a `+`: a deformation and its own options, nothing else.
-pub(crate) fn chained_step(registry: &Registry, words: &[OsString]) -> Result<Step, Failure> {
+fn chained_step(registry: &Registry, words: &[OsString]) -> Result<Step, Failure> {
     let mut c = Command::new("pathwarp … +")
         .no_binary_name(true)
         .disable_help_flag(true)
@@ -119,6 +175,20 @@ pub(crate) fn chained_step(registry: &Registry, words: &[OsString]) -> Result<St
     m.subcommand()
         .map(|(name, sub)| step(registry, name, sub))
         .ok_or_else(|| Failure::usage("a deformation must follow `+`"))
+}
+
+/// A deformation's matches and the parts after each `+`, as a recipe.
+pub(crate) fn recipe(
+    registry: &Registry,
+    name: &str,
+    m: &ArgMatches,
+    rest: &[Vec<OsString>],
+) -> Result<Recipe, Failure> {
+    let mut steps = vec![step(registry, name, m)];
+    for part in rest {
+        steps.push(chained_step(registry, part)?);
+    }
+    Ok(Recipe { steps })
 }
 
 /// `pathwarp list`: a menu.

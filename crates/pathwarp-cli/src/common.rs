@@ -1,6 +1,7 @@
 //! The options that every deformation shares.
 
 use crate::failure::Failure;
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use pathwarp::kurbo::Rect;
 use std::path::PathBuf;
@@ -37,6 +38,10 @@ pub(crate) struct Common {
     pub(crate) on_error: pathwarp_svg::OnError,
     pub(crate) report: Option<PathBuf>,
     pub(crate) preview: Option<PathBuf>,
+    pub(crate) write_recipe: Option<PathBuf>,
+    pub(crate) embed_recipe: bool,
+    /// The options that shape the result, as given: what a recipe saves.
+    pub(crate) given: Vec<(String, Vec<String>)>,
     pub(crate) explain: bool,
     pub(crate) jobs: Option<usize>,
     pub(crate) quiet: bool,
@@ -69,7 +74,7 @@ pub(crate) fn args() -> Vec<Arg> {
             .allow_negative_numbers(true)
             .help("Largest distance between the true curve and the output, in user units; default 1e-4 of the artwork's diagonal"),
         flag("certify").help("Prove the distance where the deformation allows it, rather than measure it"),
-        choice("merge", &["on", "off"]).help("Join pieces across smooth joints where that saves nodes [default: off]"),
+        choice("merge", &["on", "off"]).help("Join pieces across smooth joints where that saves nodes; off keeps every node of the source [default: on]"),
         Arg::new("frame")
             .long("frame")
             .value_name("artwork|viewbox|X,Y,W,H")
@@ -101,6 +106,8 @@ pub(crate) fn args() -> Vec<Arg> {
         ),
         choice("on-error", &["stop", "skip"]).help("A shape that cannot be warped: stop, or leave it as it is [default: stop]"),
         file("report").help("Write what was done, shape by shape, as JSON"),
+        file("write-recipe").help("Save this command line as a recipe for `pathwarp run`"),
+        flag("embed-recipe").help("Keep the recipe and the source in the output's <metadata>; `pathwarp unwarp` gives them back"),
         file("preview").help("Draw the artwork, its guides and the result as a PNG"),
         flag("explain").help("Say what was decided on your behalf: corners, sides, directions"),
         Arg::new("jobs").short('j').long("jobs").value_name("N").value_parser(value_parser!(u16).range(1..)).help(
@@ -109,6 +116,42 @@ pub(crate) fn args() -> Vec<Arg> {
         flag("quiet").short('q').help("No warnings, no progress"),
     ];
     all.into_iter().map(|a| if a.get_id() == "INPUT" { a } else { a.help_heading("Common options") }).collect()
+}
+
+/// Options that say where things go or how loud to be, rather than what the result is.
+const OF_THE_RUN: [&str; 11] = [
+    "INPUT",
+    "out",
+    "out-dir",
+    "report",
+    "preview",
+    "write-recipe",
+    "embed-recipe",
+    "explain",
+    "jobs",
+    "quiet",
+    "inverse",
+];
+
+/// The options that a recipe may hold, with their help.
+pub(crate) fn recipe_options() -> impl Iterator<Item = (String, String)> {
+    let shaping = args().into_iter().filter(|a| !OF_THE_RUN.contains(&a.get_id().as_str()));
+    shaping.map(|a| (a.get_id().to_string(), a.get_help().map(ToString::to_string).unwrap_or_default()))
+}
+
+fn given(m: &ArgMatches) -> Vec<(String, Vec<String>)> {
+    let mut out = Vec::new();
+    for a in args() {
+        let id = a.get_id().as_str();
+        if OF_THE_RUN.contains(&id) || m.value_source(id) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        let values = m.get_raw(id).into_iter().flatten().map(|v| v.to_string_lossy().into_owned());
+        let values: Vec<String> =
+            if a.get_action().takes_values() { values.collect() } else { vec!["true".to_owned()] };
+        out.push((id.to_owned(), values));
+    }
+    out
 }
 
 impl Common {
@@ -129,7 +172,7 @@ impl Common {
             out_dir: path("out-dir"),
             tolerance: positive("tolerance")?,
             certify: m.get_flag("certify"),
-            merge: word("merge") == "on",
+            merge: word("merge") != "off",
             frame: frame(m.get_one::<String>("frame"))?,
             select: words("select"),
             exclude: words("exclude"),
@@ -158,6 +201,9 @@ impl Common {
             },
             report: path("report"),
             preview: path("preview"),
+            write_recipe: path("write-recipe"),
+            embed_recipe: m.get_flag("embed-recipe"),
+            given: given(m),
             explain: m.get_flag("explain"),
             jobs: m.get_one::<u16>("jobs").map(|n| usize::from(*n)),
             quiet: m.get_flag("quiet"),
@@ -184,16 +230,15 @@ fn frame(text: Option<&String>) -> Result<FrameChoice, Failure> {
     match text.map(String::as_str) {
         None | Some("artwork") => Ok(FrameChoice::Artwork),
         Some("viewbox") => Ok(FrameChoice::ViewBox),
-        Some(t) => {
-            let numbers: Result<Vec<f64>, _> = t.split(',').map(|w| w.trim().parse::<f64>()).collect();
-            match numbers.as_deref() {
-                Ok(&[x, y, w, h]) if w > 0.0 && h > 0.0 && (x + y + w + h).is_finite() => {
-                    Ok(FrameChoice::Rect(Rect::new(x, y, x + w, y + h)))
-                }
-                _ => Err(Failure::usage(format!(
-                    "--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive)"
-                ))),
-            }
-        }
+        Some(t) => rect(t).map(FrameChoice::Rect),
+    }
+}
+
+/// A box typed as X,Y,W,H.
+pub(crate) fn rect(t: &str) -> Result<Rect, Failure> {
+    let numbers: Result<Vec<f64>, _> = t.split(',').map(|w| w.trim().parse::<f64>()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, w, h]) if w > 0.0 && h > 0.0 && (x + y + w + h).is_finite() => Ok(Rect::new(x, y, x + w, y + h)),
+        _ => Err(Failure::usage(format!("--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive)"))),
     }
 }

@@ -5,16 +5,16 @@ use crate::failure::Failure;
 use crate::output::{self, Pending};
 use crate::reference::References;
 use crate::report::{self, Report, Totals};
-use crate::{Outcome, preview, terminal};
+use crate::{Outcome, preview, recipe_file, terminal};
 use clap::ArgMatches;
 use pathwarp::deform::Registry;
 use pathwarp::fold::{self, Orientation};
 use pathwarp::map::Map;
 use pathwarp::outline::Outline;
 use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
+use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::refit;
-use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, Warped};
+use pathwarp_svg::{Document, Origin, ReadOptions, Selection, WarpOptions, Warped};
 use rayon::prelude::*;
 use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ struct Job {
 }
 
 /// `pathwarp DEFORMATION …`.
-pub(crate) fn run(registry: &Registry, steps: &[Step], matches: &ArgMatches) -> Result<Outcome, Failure> {
+pub(crate) fn run(registry: &Registry, recipe: &Recipe, matches: &ArgMatches) -> Result<Outcome, Failure> {
     let started = Instant::now();
     let common = Common::read(matches)?;
     let inputs = if common.inputs.is_empty() { vec![PathBuf::from("-")] } else { common.inputs.clone() };
@@ -44,7 +44,7 @@ pub(crate) fn run(registry: &Registry, steps: &[Step], matches: &ArgMatches) -> 
     let bar = progress(&common, inputs.len());
     let jobs: Result<Vec<Job>, Failure> = pool.install(|| {
         let one = |(input, target): (&PathBuf, &Option<PathBuf>)| {
-            let job = warp(registry, steps, &common, input, target.as_deref());
+            let job = warp(registry, recipe, &common, input, target.as_deref());
             bar.inc(1);
             job.map_err(|f| f.about(&display(input)))
         };
@@ -75,7 +75,7 @@ pub(crate) fn run(registry: &Registry, steps: &[Step], matches: &ArgMatches) -> 
         let report = Report {
             tool: "pathwarp",
             version: env!("CARGO_PKG_VERSION"),
-            steps: steps.iter().map(|s| s.deformation.clone()).collect(),
+            steps: recipe.steps.iter().map(|s| s.deformation.clone()).collect(),
             totals: Totals::of(&reports, started.elapsed().as_secs_f64()),
             inputs: reports,
         };
@@ -83,11 +83,20 @@ pub(crate) fn run(registry: &Registry, steps: &[Step], matches: &ArgMatches) -> 
         json.push(b'\n');
         pending.push(Pending::new(file, &json)?);
     }
+    if let Some(file) = &common.write_recipe {
+        let text = saved(registry, recipe, &common, file.parent().unwrap_or(Path::new("")))?;
+        pending.push(Pending::new(file, text.as_bytes())?);
+    }
     Pending::commit_all(pending)?;
     for bytes in printed {
         output::to_stdout(&bytes)?;
     }
     Ok(outcome)
+}
+
+/// The recipe file for this run.
+fn saved(registry: &Registry, recipe: &Recipe, common: &Common, folder: &Path) -> Result<String, Failure> {
+    recipe_file::write(registry, recipe, &common.given, folder).map_err(Failure::Input)
 }
 
 /// Where each input's result goes; `None` is standard output.
@@ -150,22 +159,15 @@ pub(crate) fn read_options(input: &Path) -> ReadOptions {
 
 fn warp(
     registry: &Registry,
-    steps: &[Step],
+    recipe: &Recipe,
     common: &Common,
     input: &Path,
     target: Option<&Path>,
 ) -> Result<Job, Failure> {
     let doc = document(input)?;
-    let mut references = References::new(&doc);
-    let mut recipe = Recipe { steps: steps.to_vec() };
-    for step in &mut recipe.steps {
-        if let Some(e) = registry.get(&step.deformation) {
-            step.args.resolve_paths(e.info().params, |r| references.look_up(r))?;
-            step.args.resolve_files(e.info().params, |f| {
-                std::fs::read_to_string(f).map_err(|e| pathwarp::Error::input(f, format!("cannot be read: {e}")))
-            })?;
-        }
-    }
+    let mut references = References::new(Some(&doc));
+    let mut recipe = recipe.clone();
+    references.resolve(registry, &mut recipe)?;
     let selection =
         Selection { select: common.select.clone(), exclude: common.exclude.clone(), guides: references.guides };
     let artwork_box = doc.artwork_box(&selection);
@@ -192,7 +194,11 @@ fn warp(
             ..refit::Options::new(tolerance)
         })
     };
-    let warped = doc.warp(&built.map, &options)?;
+    let mut warped = doc.warp(&built.map, &options)?;
+    if common.embed_recipe {
+        let text = saved(registry, &recipe, common, Path::new(""))?;
+        warped.svg = Origin { recipe: text, source: doc.source().to_vec() }.embed(&warped.svg)?;
+    }
     let report = report(&doc, &built, &options, &warped, &display(input), target);
 
     let mut output = Vec::new();

@@ -20,10 +20,14 @@ mod failure;
 mod output;
 mod paths;
 mod preview;
+mod query;
+mod recipe_file;
 mod reference;
 mod render;
 mod report;
+mod schema;
 mod terminal;
+mod unwarp;
 
 use failure::Failure;
 use pathwarp::deform::Registry;
@@ -74,7 +78,7 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
     let Some((name, sub)) = matches.subcommand() else {
         return Err(Failure::usage("no command is given; `pathwarp list` shows the deformations"));
     };
-    if registry.get(name).is_none() && !rest.is_empty() {
+    if registry.get(name).is_none() && name != "map" && !rest.is_empty() {
         return Err(Failure::usage(format!("`+` chains deformations; {name} is none")));
     }
     match name {
@@ -83,13 +87,14 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         "man" => command::man(registry),
         "paths" => paths::run(sub),
         "render" => render::run(sub),
-        "compare" => compare::run(sub),
-        _ => {
-            let mut steps = vec![command::step(registry, name, sub)];
-            for part in &rest {
-                steps.push(command::chained_step(registry, part)?);
-            }
-            deform::run(registry, &steps, sub)
+        "schema" => schema::run(registry),
+        "unwarp" => unwarp::run(sub),
+        "run" => {
+            let (recipe, merged) = command::run_recipe(registry, &first, sub)?;
+            deform::run(registry, &recipe, &merged)
         }
+        "map" => query::run(registry, sub, &rest),
+        "compare" => compare::run(sub),
+        _ => deform::run(registry, &command::recipe(registry, name, sub, &rest)?, sub),
     }
 }

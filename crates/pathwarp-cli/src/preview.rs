@@ -2,15 +2,22 @@
 
 use crate::failure::Failure;
 use pathwarp::deform::Role;
+use pathwarp::kurbo::{Rect, Shape};
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview, encode_png};
-use pathwarp_svg::{Document, ReadOptions};
+use pathwarp_svg::{Document, ReadOptions, Selection};
 
 /// The PNG. Bases are drawn over the source, targets and cages over the result.
 pub(crate) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &ReadOptions) -> Result<Vec<u8>, Failure> {
     let after = Document::read(warped.as_bytes(), "the result", read)?;
     let mut left = Panel::new(doc.tree(), doc.user_to_px(), doc.view_box());
     let mut right = Panel::new(after.tree(), after.user_to_px(), after.view_box());
+    let everything = Selection::default();
+    // All there is to see, also what the warp has moved off the page.
+    let artwork = [doc, &after].into_iter().filter_map(|d| d.artwork_box(&everything));
+    let guides = built.steps.iter().flat_map(|s| s.overlays.iter().map(|o| o.path.bounding_box()));
+    let seen = artwork.chain(guides).filter(Rect::is_finite);
+    let view = seen.fold(doc.view_box().union(after.view_box()), |all, r| all.union(r));
     let last = built.steps.len().saturating_sub(1);
     for (i, step) in built.steps.iter().enumerate() {
         let has_target = step.overlays.iter().any(|o| o.role == Role::Target);
@@ -27,5 +34,5 @@ pub(crate) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &Rea
             *panel = panel.clone().with(Overlay::new(kind, o.path.clone()));
         }
     }
-    Ok(encode_png(&Preview::new(left, right).render()?)?)
+    Ok(encode_png(&Preview::new(left, right).view(view).render()?)?)
 }

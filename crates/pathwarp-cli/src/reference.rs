@@ -1,25 +1,41 @@
 //! Path references: `FILE#NAME`, `FILE`, `#NAME`.
 
+use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
+use pathwarp::recipe::Recipe;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::{Document, ReadOptions};
 use std::path::{Path, PathBuf};
 
 /// Looks references up, in the input document and in files.
 pub(crate) struct References<'a> {
-    input: &'a Document,
+    input: Option<&'a Document>,
     /// Names in the input document that were used: guides, not artwork.
     pub(crate) guides: Vec<String>,
 }
 
 impl<'a> References<'a> {
-    pub(crate) fn new(input: &'a Document) -> Self {
+    pub(crate) fn new(input: Option<&'a Document>) -> Self {
         Self { input, guides: Vec::new() }
     }
 
-    pub(crate) fn look_up(&mut self, reference: &str) -> Result<Outline, Error> {
+    /// Everything in a recipe that lies in files: paths and texts.
+    pub(crate) fn resolve(&mut self, registry: &Registry, recipe: &mut Recipe) -> Result<(), Error> {
+        for step in &mut recipe.steps {
+            if let Some(e) = registry.get(&step.deformation) {
+                step.args.resolve_paths(e.info().params, |r| self.look_up(r))?;
+                step.args.resolve_files(e.info().params, |f| {
+                    std::fs::read_to_string(f).map_err(|e| Error::input(f, format!("cannot be read: {e}")))
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn look_up(&mut self, reference: &str) -> Result<Outline, Error> {
         if let Some(name) = reference.strip_prefix('#') {
-            let path = self.input.path(name)?;
+            let nowhere = || Error::input(reference, "there is no input document here to find a path in");
+            let path = self.input.ok_or_else(nowhere)?.path(name)?;
             self.guides.push(name.to_owned());
             return Ok(path.outline);
         }

@@ -2,6 +2,7 @@
 
 use crate::geometry::Reader;
 use crate::read::{self, ReadOptions};
+use crate::resolve;
 use crate::scene::{self, Role, Scene};
 use crate::select::{self, Selection};
 use crate::source::{ElementId, Source, is_shape};
@@ -19,6 +20,8 @@ pub struct Document {
     pub(crate) shapes: Vec<Shape>,
     pub(crate) missing_fonts: Vec<String>,
     pub(crate) page: Size,
+    /// Whether walking it takes little stack.
+    pub(crate) shallow: bool,
     tree: Arc<usvg::Tree>,
     dpi: f64,
 }
@@ -66,26 +69,31 @@ impl Document {
         let text = read::text(data, name, options)?;
         let bytes = data.to_vec();
         let dpi = f64::from(options.dpi);
-        read::with_stack(name, || {
-            let source = Source::parse(text, name)?;
+        let source = Source::parse(text, name)?;
+        let shallow = read::is_shallow(&source);
+        let resolve = || {
             let (instrumented, ids) = source.instrumented();
             // Where positions are not to be trusted, the text must not be touched.
             let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
             let (tree, missing_fonts) = read::tree(text, name, options)?;
-            let scene = scene::build(&tree, &source, &ids, dpi);
+            let scene = resolve::build(&tree, &source, &ids, dpi);
             let shapes = shapes(&scene, &source);
             let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
-            Ok(Self {
-                name: name.to_owned(),
-                bytes,
-                source,
-                scene,
-                shapes,
-                missing_fonts,
-                page,
-                tree: Arc::new(tree),
-                dpi,
-            })
+            Ok((tree, missing_fonts, scene, shapes, page))
+        };
+        let (tree, missing_fonts, scene, shapes, page) =
+            if shallow { resolve()? } else { read::with_stack(name, resolve)? };
+        Ok(Self {
+            name: name.to_owned(),
+            bytes,
+            source,
+            scene,
+            shapes,
+            missing_fonts,
+            page,
+            shallow,
+            tree: Arc::new(tree),
+            dpi,
         })
     }
 

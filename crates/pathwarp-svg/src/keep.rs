@@ -294,6 +294,7 @@ impl<'a> Keeper<'a, '_> {
             }
         }
         self.edits.set_attr(e, "d", part_data(p, Some(done)));
+        self.animated(e);
         let fit = done.fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
         for (name, paint) in
             [("fill", p.fill.as_ref().map(usvg::Fill::paint)), ("stroke", p.stroke.as_ref().map(usvg::Stroke::paint))]
@@ -321,6 +322,24 @@ impl<'a> Keeper<'a, '_> {
                     self.edits.set_property(e, "stroke-dashoffset", short(f64::from(s.dashoffset()) * scale));
                 }
             }
+        }
+    }
+
+    /// An animation of a shape's own geometry still knows the old one.
+    fn animated(&mut self, e: ElementId) {
+        if !self.source.animated {
+            return;
+        }
+        let end = self.source.elements[e].range.end;
+        let inside = (e + 1..self.source.elements.len()).take_while(|&c| self.source.elements[c].range.start < end);
+        let moves = |c: ElementId| {
+            self.source.attr(c, "attributeName").is_some_and(|n| n == "points" || GEOMETRY.contains(&&*n))
+        };
+        if inside.into_iter().any(moves) {
+            self.writer.notes.add(
+                "animations of a shape's geometry were left as they are and no longer fit",
+                &self.source.display_name(e),
+            );
         }
     }
 

@@ -21,8 +21,10 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 
+mod defs;
 mod document;
 mod edit;
+mod embed;
 mod filter;
 mod fonts;
 mod geometry;
@@ -31,6 +33,7 @@ mod number;
 mod options;
 mod paint;
 mod read;
+mod resolve;
 mod scene;
 mod select;
 mod source;
@@ -39,6 +42,7 @@ mod warp;
 mod write;
 
 pub use document::{Document, NamedPath, Shape};
+pub use embed::Origin;
 pub use fonts::GenericFamilies;
 pub use options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
 pub use read::{ReadOptions, parse_tree};

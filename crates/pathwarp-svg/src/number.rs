@@ -8,9 +8,49 @@ pub(crate) const MOST_DECIMALS: u8 = 14;
 
 /// Appends `v` rounded to `decimals`, without trailing zeros and never as `-0`.
 pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
+    let decimals = usize::from(decimals.min(MOST_DECIMALS));
+    // Whole numbers up to here are exact in f64, and integers are written far faster than exact decimals.
+    const WHOLE: f64 = 9e15;
+    let scaled = (v * POWERS[decimals]).round();
+    if scaled.abs() >= WHOLE || !scaled.is_finite() {
+        return push_exactly(out, v, decimals);
+    }
+    let mut n = scaled.abs() as u64;
+    if n == 0 {
+        return out.push('0');
+    }
+    if scaled < 0.0 {
+        out.push('-');
+    }
+    let mut decimals = decimals;
+    while decimals > 0 && n.is_multiple_of(10) {
+        n /= 10;
+        decimals -= 1;
+    }
+    // Digits from the right; a u64 has at most twenty.
+    let mut buffer = [b'0'; 24];
+    let mut at = buffer.len();
+    let mut written = 0;
+    while n > 0 || written <= decimals {
+        at -= 1;
+        if written == decimals && decimals > 0 {
+            buffer[at] = b'.';
+            at -= 1;
+        }
+        buffer[at] = b'0' + (n % 10) as u8;
+        n /= 10;
+        written += 1;
+    }
+    out.extend(buffer[at..].iter().map(|b| char::from(*b)));
+}
+
+const POWERS: [f64; MOST_DECIMALS as usize + 1] =
+    [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
+
+fn push_exactly(out: &mut String, v: f64, decimals: usize) {
     let start = out.len();
     // Writing to a String cannot fail.
-    let _ = write!(out, "{v:.*}", usize::from(decimals.min(MOST_DECIMALS)));
+    let _ = write!(out, "{v:.decimals$}");
     if out[start..].contains('.') {
         let kept = out.trim_end_matches('0').trim_end_matches('.').len();
         out.truncate(kept);
@@ -31,16 +71,13 @@ pub(crate) fn significant(v: f64, digits: i32) -> String {
     let mut out = String::new();
     if v == 0.0 || !v.is_finite() {
         out.push('0');
-    } else {
-        let size = v.abs().log10().floor() as i32 + 1;
-        let decimals = (digits - size).clamp(0, 30);
-        let _ = write!(out, "{v:.*}", decimals as usize);
-        if out.contains('.') {
-            out.truncate(out.trim_end_matches('0').trim_end_matches('.').len());
-        }
-        if out == "-0" {
-            out = "0".into();
-        }
+        return out;
+    }
+    let size = v.abs().log10().floor() as i32 + 1;
+    match u8::try_from((digits - size).max(0)) {
+        Ok(d) if d <= MOST_DECIMALS => push(&mut out, v, d),
+        // Nothing in a drawing is smaller than thirty decimals can tell.
+        _ => push_exactly(&mut out, v, (digits - size).clamp(0, 30) as usize),
     }
     out
 }
@@ -114,6 +151,9 @@ fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)>
 
 /// Text made safe for an attribute value in double quotes, and for element content.
 pub(crate) fn escape(text: &str) -> String {
+    if !text.contains(['&', '<', '>', '"', '\n', '\r', '\t']) {
+        return text.to_owned();
+    }
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -145,6 +185,11 @@ mod tests {
         assert_eq!(n(-0.0001, 2), "0");
         assert_eq!(n(100.0, 2), "100");
         assert_eq!(n(1e6 + 0.001, 3), "1000000.001");
+        assert_eq!(n(-0.05, 3), "-0.05");
+        assert_eq!(n(0.007, 3), "0.007");
+        assert_eq!(n(120.0, 0), "120");
+        assert_eq!(n(1e20, 3), "100000000000000000000");
+        assert_eq!(n(-12345.678, 2), "-12345.68");
         assert_eq!(short(0.000_012_345), "0.000012345");
         assert_eq!(short(1234.5), "1234.5");
         assert_eq!(short(-1e-40), "0");

@@ -1,6 +1,7 @@
 //! From bytes to text and to usvg's tree: unpacking, bounds, fonts, and a stack that is deep enough.
 
 use crate::fonts::{self, GenericFamilies, Missing};
+use crate::source::Source;
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::io::Read as _;
@@ -63,6 +64,20 @@ pub(crate) fn text(data: &[u8], name: &str, options: &ReadOptions) -> Result<Str
         };
         Error::input(format!("{name}: byte {at}"), hint)
     })
+}
+
+/// Whether a drawing nests so little that any stack holds it. What is referred to may hold references in turn.
+pub(crate) fn is_shallow(source: &Source) -> bool {
+    /// Elements deep, references followed. A level takes a few kilobytes.
+    const SHALLOW: usize = 80;
+    let mut depths: Vec<usize> = Vec::with_capacity(source.elements.len());
+    let mut references = 1;
+    for e in &source.elements {
+        depths.push(e.parent.map_or(0, |p| depths[p] + 1));
+        let refers = matches!(e.tag.as_str(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
+        references += usize::from(refers);
+    }
+    source.unpatchable.is_none() && depths.iter().max().is_none_or(|d| d * references <= SHALLOW)
 }
 
 /// Runs `f` with a stack for the deepest nesting that the parsers let through (1024 elements). A panic inside, which no known

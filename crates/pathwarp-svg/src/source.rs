@@ -64,6 +64,8 @@ pub(crate) struct Source {
     pub(crate) css: String,
     /// Element and property names that a selector or a declaration of the style sheets mentions.
     css_words: HashSet<String>,
+    /// Whether anything moves.
+    pub(crate) animated: bool,
     /// Why the text cannot be patched in place.
     pub(crate) unpatchable: Option<String>,
     line_starts: Vec<usize>,
@@ -137,7 +139,8 @@ impl Source {
         let css_words = words(&css);
         let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
         drop(doc);
-        Ok(Self { text, elements, by_id, css, css_words, unpatchable, line_starts })
+        let animated = elements.iter().any(|e| e.tag == "animate");
+        Ok(Self { animated, text, elements, by_id, css, css_words, unpatchable, line_starts })
     }
 
     /// Line and column (in characters), counted from 1.
@@ -155,6 +158,12 @@ impl Source {
     pub(crate) fn attr_in(&self, e: ElementId, namespace: Namespace, name: &str) -> Option<Cow<'_, str>> {
         let el = self.elements.get(e)?;
         el.attrs.iter().find(|a| a.namespace == namespace && a.name == name).map(|a| a.value(&self.text))
+    }
+
+    /// The target of `href` or `xlink:href`, without the `#`.
+    pub(crate) fn href(&self, e: ElementId) -> Option<String> {
+        let link = self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))?;
+        link.trim().strip_prefix('#').map(ToOwned::to_owned)
     }
 
     /// The element and its ancestors, innermost first.

@@ -6,7 +6,7 @@ use crate::options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptio
 use crate::paint::{self, Fit};
 use crate::scene::{Part, Role, Scene};
 use crate::select::Selection;
-use crate::{keep, stroke, write};
+use crate::{keep, read, stroke, write};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::map::{Class, Map};
 use pathwarp::refit::{self, Assurance};
@@ -135,14 +135,18 @@ impl Document {
         let meant = self.chosen(options);
         let parts = &self.scene.parts;
         let slots = self.place_slots(map, &meant, &options.selection);
-        let results: Vec<Option<Result<Done, GeometryError>>> = parts
-            .par_iter()
-            .zip(&meant)
-            .map(|(p, meant)| {
-                let write = written(&self.scene, &slots, p.slot, p.frame);
-                (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
-            })
-            .collect();
+        let one = |(p, meant): (&Part, &bool)| {
+            let write = written(&self.scene, &slots, p.slot, p.frame);
+            (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
+        };
+        /// Below so many segments the work is done before another thread has woken up.
+        const WORTH_IT: usize = 100;
+        let segments: usize = parts.iter().map(|p| p.local.segs().count()).sum();
+        let results: Vec<Option<Result<Done, GeometryError>>> = if segments < WORTH_IT {
+            parts.iter().zip(&meant).map(one).collect()
+        } else {
+            parts.par_iter().zip(&meant).map(one).collect()
+        };
         let mut outcomes = Vec::with_capacity(parts.len());
         let mut last = None;
         for (i, r) in results.into_iter().enumerate() {
@@ -171,14 +175,26 @@ impl Document {
             out.warnings
                 .push(format!("text is set in another font, for want of {names}; install it or outline the text"));
         }
-        let mut notes = Notes::default();
         let job = write::Job { document: self, outcomes: &outcomes, slots: &slots, map, options };
-        let kept = match (options.structure, &self.scene.unkeepable) {
+        // The walk over the drawing's groups wants a stack as deep as they are. Nothing in there waits for other threads: a
+        // caller that runs on a thread pool, as does the work above, would wait for itself.
+        if self.shallow {
+            self.write(&job, &mut out)?;
+        } else {
+            read::with_stack(&self.name, || self.write(&job, &mut out))?;
+        }
+        Ok(out)
+    }
+
+    fn write(&self, job: &write::Job<'_>, out: &mut Warped) -> Result<(), Error> {
+        let structure = job.options.structure;
+        let mut notes = Notes::default();
+        let kept = match (structure, &self.scene.unkeepable) {
             (Structure::Flatten, _) => None,
             (_, Some(why)) => Some(Err(why.clone())),
-            _ => Some(keep::write(&job, &mut out.skipped, &mut notes)),
+            _ => Some(keep::write(job, &mut out.skipped, &mut notes)),
         };
-        out.svg = match (kept, options.structure) {
+        out.svg = match (kept, structure) {
             (Some(Ok(svg)), _) => svg,
             (Some(Err(why)), Structure::Keep) => {
                 return Err(Error::input(&self.name, format!("the file's structure cannot be kept: {why}")));
@@ -187,11 +203,11 @@ impl Document {
                 if let Some(Err(why)) = kept {
                     out.warnings.push(format!("the file is written anew, its structure could not be kept: {why}"));
                 }
-                write::flat(&job, &mut out.skipped, &mut notes)
+                write::flat(job, &mut out.skipped, &mut notes)
             }
         };
         out.warnings.extend(notes.lines());
-        Ok(out)
+        Ok(())
     }
 
     /// Where filtered groups and images go: the affine fit of the map over each.

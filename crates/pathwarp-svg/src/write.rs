@@ -8,13 +8,13 @@ use crate::number::{escape, matrix, path_data, short};
 use crate::options::WarpOptions;
 use crate::scene::{Group, Node, Part};
 use crate::source::ElementId;
-use crate::warp::{self, Done, Notes, Outcome, Placed, Skipped, StrokeDone};
-use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
+use crate::warp::{Done, Notes, Outcome, Placed, Skipped, StrokeDone};
+use pathwarp::kurbo::{Affine, BezPath, Shape as _};
 use pathwarp::map::Map;
-use pathwarp::refit;
+use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
-use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRendering, SpreadMethod};
+use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRendering};
 
 /// Everything a writer needs to know.
 #[derive(Clone, Copy)]
@@ -37,17 +37,19 @@ pub(crate) struct Writer<'a> {
     /// Elements' prefix, mostly "".
     prefix: String,
     /// Whether the result stands in the source, whose definitions can be referred to.
-    in_source: bool,
+    pub(crate) in_source: bool,
     /// Properties go into style attributes, where style sheets cannot reach them.
-    styled: bool,
+    pub(crate) styled: bool,
     /// Definitions written so far.
     pub(crate) defs: String,
-    taken: HashSet<String>,
+    pub(crate) taken: HashSet<String>,
     /// Ids of clip paths and masks by number, once they have one.
     pub(crate) clip_ids: Vec<Option<String>>,
     pub(crate) mask_ids: Vec<Option<String>>,
-    servers: HashMap<(usize, [u64; 6]), String>,
-    filters: HashMap<usize, String>,
+    pub(crate) servers: HashMap<(usize, [u64; 6]), String>,
+    pub(crate) filters: HashMap<usize, String>,
+    /// Which properties the source speaks of at all.
+    mentioned: RefCell<HashMap<&'static str, bool>>,
     pub(crate) skipped: &'a mut Vec<Skipped>,
     pub(crate) notes: &'a mut Notes,
 }
@@ -68,6 +70,7 @@ impl<'a> Writer<'a> {
             mask_ids: vec![None; scene.masks.len()],
             servers: HashMap::new(),
             filters: HashMap::new(),
+            mentioned: RefCell::default(),
             skipped,
             notes,
         }
@@ -85,8 +88,9 @@ impl<'a> Writer<'a> {
     }
 
     /// Whether an ancestor in the source may have set a property, so that its default must be written out.
-    fn may_inherit(&self, name: &str) -> bool {
-        self.in_source && self.job.document.source.text.contains(name)
+    pub(crate) fn may_inherit(&self, name: &'static str) -> bool {
+        let look = || self.job.document.source.text.contains(name);
+        self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(look)
     }
 
     pub(crate) fn tag(&self, name: &str) -> String {
@@ -183,7 +187,7 @@ impl<'a> Writer<'a> {
         format!("<{0}{head}>{lead}{inner}</{0}>", self.tag("g"))
     }
 
-    fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
+    pub(crate) fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
         format!("<{}{id} d=\"{d}\"{}/>", self.tag("path"), self.attributes(properties))
     }
 
@@ -339,274 +343,6 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn gradient(&mut self, tag: &str, g: &usvg::BaseGradient, key: usize, place: &str, fit: Affine) -> String {
-        let key = (key, fit.as_coeffs().map(f64::to_bits));
-        if let Some(id) = self.servers.get(&key) {
-            return format!("url(#{id})");
-        }
-        let id = self.new_id(g.id());
-        let mut out = format!("<{} id=\"{}\" gradientUnits=\"userSpaceOnUse\" {place}", self.tag(tag), escape(&id));
-        let t = fit * crate::geometry::affine(g.transform());
-        if t != Affine::IDENTITY {
-            let _ = write!(out, " gradientTransform=\"{}\"", matrix(t));
-        }
-        match g.spread_method() {
-            SpreadMethod::Pad => {}
-            SpreadMethod::Reflect => out.push_str(" spreadMethod=\"reflect\""),
-            SpreadMethod::Repeat => out.push_str(" spreadMethod=\"repeat\""),
-        }
-        let source = &self.job.document.source;
-        let gradient = |e: ElementId| source.elements[e].tag.ends_with("Gradient");
-        let own = source.by_id.get(g.id()).is_some_and(|v| v.len() == 1 && gradient(v[0]));
-        if self.in_source && own {
-            // The stops stay with the original.
-            let _ = write!(out, " {}=\"#{}\"/>", self.link(), escape(g.id()));
-        } else {
-            out.push('>');
-            for s in g.stops() {
-                let c = s.color();
-                let mut properties = vec![("stop-color", format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue))];
-                if s.opacity().get() < 1.0 || self.styled {
-                    properties.push(("stop-opacity", short(s.opacity().get().into())));
-                }
-                let offset = short(s.offset().get().into());
-                let _ = write!(out, "<{} offset=\"{offset}\"{}/>", self.tag("stop"), self.attributes(&properties));
-            }
-            let _ = write!(out, "</{}>", self.tag(tag));
-        }
-        self.define(&out);
-        self.servers.insert(key, id.clone());
-        format!("url(#{id})")
-    }
-
-    fn pattern(&mut self, pattern: &std::sync::Arc<usvg::Pattern>, fit: Affine) -> String {
-        let key = (std::sync::Arc::as_ptr(pattern) as usize, fit.as_coeffs().map(f64::to_bits));
-        if let Some(id) = self.servers.get(&key) {
-            return format!("url(#{id})");
-        }
-        let scene = &self.job.document.scene;
-        let Some(tile) = scene.tiles.iter().find(|t| std::sync::Arc::ptr_eq(&t.pattern, pattern)) else {
-            return "none".into();
-        };
-        self.notes.add("patterns follow the warp as a whole, their tiles are not bent", pattern.id());
-        let id = self.new_id(pattern.id());
-        self.servers.insert(key, id.clone());
-        let r = pattern.rect();
-        let mut out = format!(
-            "<{} id=\"{}\" patternUnits=\"userSpaceOnUse\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-            self.tag("pattern"),
-            escape(&id),
-            short(r.x().into()),
-            short(r.y().into()),
-            short(r.width().into()),
-            short(r.height().into())
-        );
-        let t = fit * crate::geometry::affine(pattern.transform());
-        if t != Affine::IDENTITY {
-            let _ = write!(out, " patternTransform=\"{}\"", matrix(t));
-        }
-        let inner = self.group(&tile.root, "");
-        let _ = write!(out, ">{inner}</{}>", self.tag("pattern"));
-        self.define(&out);
-        format!("url(#{id})")
-    }
-
-    pub(crate) fn define(&mut self, text: &str) {
-        self.defs.push_str(text);
-        self.defs.push('\n');
-    }
-
-    /// A clip path's id; it is written when first asked for.
-    pub(crate) fn clip_id(&mut self, i: usize) -> String {
-        if let Some(id) = &self.clip_ids[i] {
-            return id.clone();
-        }
-        let id = self.new_id(&self.job.document.scene.clips[i].id.clone());
-        self.clip_ids[i] = Some(id.clone());
-        let text = self.clip(i, &format!(" id=\"{}\"", escape(&id)));
-        self.define(&text);
-        id
-    }
-
-    /// A clip path, all transforms on its paths, as it must not hold groups.
-    pub(crate) fn clip(&mut self, i: usize, head: &str) -> String {
-        let scene = &self.job.document.scene;
-        let c = &scene.clips[i];
-        let mut out = format!("<{}{head}", self.tag("clipPath"));
-        if c.transform != Affine::IDENTITY {
-            let _ = write!(out, " transform=\"{}\"", matrix(c.transform));
-        }
-        if let Some(next) = c.clip {
-            let id = self.clip_id(next);
-            out.push_str(&self.attributes(&vec![("clip-path", format!("url(#{id})"))]));
-        }
-        out.push('>');
-        self.clip_children(&c.root, c.root.transform, None, &mut out);
-        let _ = write!(out, "</{}>", self.tag("clipPath"));
-        out
-    }
-
-    fn clip_children(&mut self, g: &Group, t: Affine, clip: Option<usize>, out: &mut String) {
-        let job = self.job;
-        if clip.is_some() && g.clip.is_some() {
-            self.notes.add("a shape in a clip path is clipped twice over; one of the two is left out", "");
-        }
-        let clip = g.clip.or(clip);
-        for n in &g.children {
-            match n {
-                Node::Group(g) => self.clip_children(g, t * g.transform, clip, out),
-                Node::Text { content, .. } => self.clip_children(content, t * content.transform, clip, out),
-                Node::Image(_) => {}
-                Node::Part(i) => {
-                    let p = &job.document.scene.parts[*i];
-                    if !p.visible {
-                        continue;
-                    }
-                    let mut properties = Properties::new();
-                    let rule = p.fill.as_ref().map_or(FillRule::NonZero, usvg::Fill::rule);
-                    if rule == FillRule::EvenOdd {
-                        properties.push(("clip-rule", "evenodd".into()));
-                    } else if self.may_inherit("clip-rule") {
-                        properties.push(("clip-rule", "nonzero".into()));
-                    }
-                    if let Some(i) = clip {
-                        let id = self.clip_id(i);
-                        properties.push(("clip-path", format!("url(#{id})")));
-                    }
-                    let transform =
-                        if t == Affine::IDENTITY { String::new() } else { format!(" transform=\"{}\"", matrix(t)) };
-                    let d = part_data(p, job.outcomes[*i].done());
-                    out.push_str(&self.path(&d, &transform, &properties));
-                }
-            }
-        }
-    }
-
-    /// A mask's id; it is written when first asked for.
-    pub(crate) fn mask_id(&mut self, i: usize) -> String {
-        if let Some(id) = &self.mask_ids[i] {
-            return id.clone();
-        }
-        let id = self.new_id(&self.job.document.scene.masks[i].id.clone());
-        self.mask_ids[i] = Some(id.clone());
-        let text = self.mask(i, &format!(" id=\"{}\"", escape(&id)));
-        self.define(&text);
-        id
-    }
-
-    pub(crate) fn mask(&mut self, i: usize, head: &str) -> String {
-        let scene = &self.job.document.scene;
-        let m = &scene.masks[i];
-        let region = self.mask_region(i);
-        let mut properties = Properties::new();
-        if m.kind == usvg::MaskType::Alpha {
-            properties.push(("mask-type", "alpha".into()));
-        }
-        if let Some(next) = m.mask {
-            let id = self.mask_id(next);
-            properties.push(("mask", format!("url(#{id})")));
-        }
-        let mut inner = self.group(&m.root, "");
-        if let Some(edge) = self.mask_edge(i) {
-            let id = self.new_id(&format!("{}-edge", m.id));
-            let path = self.path(&edge, "", &Properties::new());
-            self.define(&format!("<{0} id=\"{1}\">{path}</{0}>", self.tag("clipPath"), escape(&id)));
-            let clip = self.attributes(&vec![("clip-path", format!("url(#{id})"))]);
-            inner = format!("<{0}{clip}>{inner}</{0}>", self.tag("g"));
-        }
-        let attrs: String = region.into_iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
-        format!("<{0}{head}{attrs}{1}>{inner}</{0}>", self.tag("mask"), self.attributes(&properties))
-    }
-
-    /// The attributes that say where a mask counts: about all that its content covers after the warp.
-    pub(crate) fn mask_region(&self, i: usize) -> Vec<(&'static str, String)> {
-        let scene = &self.job.document.scene;
-        let m = &scene.masks[i];
-        let mut area = m.rect;
-        if self.changes(m.parts.clone()) {
-            for i in m.parts.clone() {
-                let p = &scene.parts[i];
-                let written = |slot, frame| warp::written(scene, self.job.slots, slot, frame);
-                let to_frame = written(m.slot, m.frame).inverse() * written(p.slot, p.frame);
-                let done = self.job.outcomes[i].done();
-                let wide = match (&p.stroke, done.map(|d| &d.stroke)) {
-                    (_, Some(StrokeDone::Outlined(o))) => Rect::bounding_box(&o.bounding_box()),
-                    (Some(s), _) => {
-                        let reach = f64::from(s.width().get()) * stroke_scale(done) * f64::from(s.miterlimit().get());
-                        part_path(p, done).bounding_box().inflate(reach, reach)
-                    }
-                    (None, _) => part_path(p, done).bounding_box(),
-                };
-                area = area.union(to_frame.transform_rect_bbox(wide));
-            }
-            // The source's own region stays inside; a renderer only pays for it.
-            let margin = 0.01 * area.width().max(area.height());
-            area = area.inflate(margin, margin);
-        }
-        vec![
-            ("maskUnits", "userSpaceOnUse".into()),
-            ("x", short(area.x0)),
-            ("y", short(area.y0)),
-            ("width", short(area.width())),
-            ("height", short(area.height())),
-        ]
-    }
-
-    /// Whether anything among these parts is warped.
-    pub(crate) fn changes(&self, parts: std::ops::Range<usize>) -> bool {
-        self.job.outcomes[parts].iter().any(|o| o.done().is_some())
-    }
-
-    /// The warped border of a mask's region, where it cuts the content.
-    pub(crate) fn mask_edge(&self, i: usize) -> Option<String> {
-        let m = &self.job.document.scene.masks[i];
-        let inside = m.rect.union(m.content) == m.rect;
-        if inside || !self.changes(m.parts.clone()) {
-            return None;
-        }
-        let mut border = pathwarp::outline::Builder::default();
-        let r = m.rect;
-        border.move_to((r.x0, r.y0).into());
-        for p in [(r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)] {
-            border.line_to(p.into());
-        }
-        border.close();
-        let border = border.finish().transformed(m.frame);
-        let warped = refit::warp_path(&border, self.job.map, &self.job.options.refit).ok()?;
-        let mut path = warped.path;
-        path.apply_affine(warp::written(&self.job.document.scene, self.job.slots, m.slot, m.frame).inverse());
-        Some(path_data(&path, crate::number::MOST_DECIMALS.min(9)))
-    }
-
-    /// A reference to a filter: the source's own, or one written here.
-    fn filter(&mut self, f: &std::sync::Arc<usvg::filter::Filter>) -> String {
-        let source = &self.job.document.source;
-        self.notes.add(FILTERS, f.id());
-        let own = source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
-        if self.in_source && own {
-            return format!("url(#{})", f.id());
-        }
-        format!("url(#{})", self.filter_id(f))
-    }
-
-    /// The id of a filter written here, in user space.
-    pub(crate) fn filter_id(&mut self, f: &std::sync::Arc<usvg::filter::Filter>) -> String {
-        let key = std::sync::Arc::as_ptr(f) as usize;
-        if let Some(id) = self.filters.get(&key) {
-            return id.clone();
-        }
-        let id = self.new_id(f.id());
-        self.filters.insert(key, id.clone());
-        let text = self.filter_element(f, &format!(" id=\"{}\"", escape(&id)));
-        self.define(&text);
-        id
-    }
-
-    /// How links are written where this stands.
-    pub(crate) fn link(&self) -> &'static str {
-        if self.in_source && !self.job.document.source.text.contains("xmlns:xlink=") { "href" } else { "xlink:href" }
-    }
-
     fn image(&mut self, image: &usvg::Image) -> String {
         self.notes.add("images in copies follow the warp as a whole, they are not bent", "");
         if !image.is_visible() {
@@ -644,7 +380,7 @@ impl<'a> Writer<'a> {
 }
 
 /// A part's path in its own user space.
-fn part_path(p: &Part, done: Option<&Done>) -> BezPath {
+pub(crate) fn part_path(p: &Part, done: Option<&Done>) -> BezPath {
     /// Fine against any stroke or pixel, for parts that are written but not warped.
     const FINE: f64 = 1e-4;
     match done {

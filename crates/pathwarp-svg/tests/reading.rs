@@ -104,11 +104,25 @@ fn files_made_to_hurt_end_in_an_error_or_a_drawing() {
          transform='scale(0)'><path d='M0 0h9v9z'/></g><path id='' d='M0 0h9v9z'/><path id='d' d='M0 0h9v9z'/><path \
          id='d' d='M5 0h9v9z'/><use href='#d'/><path/><circle r='-5'/>",
     );
-    for svg in [deep, deeper, bomb, loops, odd] {
+    let circle = drawing(
+        "<linearGradient id='a' href='#b'><stop stop-color='red'/><stop offset='1'/></linearGradient><linearGradient id='b' \
+         href='#a'><stop stop-color='red'/><stop offset='1'/></linearGradient><path d='M0 0h90v90z' fill='url(#a)'/>",
+    );
+    for svg in [deep, deeper, bomb, loops, odd, circle] {
         if let Ok(d) = Document::read(svg.as_bytes(), "f.svg", &options()) {
             let options = pathwarp_svg::WarpOptions { on_error: pathwarp_svg::OnError::Skip, ..warp_options() };
             let w = d.warp(&Bend, &options).unwrap();
             assert!(Document::read(w.svg.as_bytes(), "again.svg", &self::options()).is_ok());
         }
     }
+}
+
+#[test]
+fn many_deep_drawings_at_once_do_not_wait_for_each_other() {
+    use rayon::prelude::*;
+    let shapes = "<path d='M0 0C9 9 0 20 30 30z'/>".repeat(120);
+    let deep = drawing(&format!("{}{shapes}{}", "<g>".repeat(120), "</g>".repeat(120)));
+    let sizes: Vec<usize> =
+        (0..16).into_par_iter().map(|_| read(&deep).warp(&Bend, &warp_options()).unwrap().svg.len()).collect();
+    assert!(sizes.iter().all(|s| *s == sizes[0]));
 }

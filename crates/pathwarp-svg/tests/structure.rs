@@ -114,3 +114,11 @@ fn large_coordinates_keep_their_detail() {
     assert_eq!(o.subpaths[0].start.x, 1_100_000.002);
     assert!((o.bounding_box().unwrap().width() - 0.001).abs() < 1e-9);
 }
+
+#[test]
+fn an_animation_of_the_geometry_is_named() {
+    let body = "<circle id='c' r='9'><animate attributeName='r' to='20'/></circle><circle r='5'><animate \
+                attributeName='opacity' to='0'/></circle>";
+    let w = warp(&drawing(body), oblique());
+    assert!(w.warnings.iter().any(|w| w.contains("animations") && w.ends_with(": c")), "{:?}", w.warnings);
+}

@@ -220,6 +220,13 @@ fn refitting(map: &dyn Map, faults: &mut Faults) {
     }
 }
 
+/// How far the image of a point between `p` and `q` is off the line through theirs.
+fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
+    let (a, b, c) = (m.point(p), m.point(p.lerp(q, 0.4)), m.point(q));
+    let n = (c - a).hypot();
+    if n > 0.0 { ((b - a).cross(c - a) / n).abs() } else { 0.0 }
+}
+
 fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Faults) {
     const NEAR: f64 = 1e-9;
     let mut with = |pairs: Pairs| {
@@ -240,14 +247,25 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Faults) {
             (off > NEAR).then(|| format!("{a:?} and {b:?} should be one map; they differ by {off:e}"))
         }),
         Law::KeepsLines(pairs) => with(pairs).and_then(|m| {
-            let bent = |p: Point| {
-                let q = Point::new(97.0 - p.x, 0.3 * p.y + 11.0);
-                let (a, b, c) = (m.point(p), m.point(p.lerp(q, 0.4)), m.point(q));
-                let n = (c - a).hypot();
-                if n > 0.0 { ((b - a).cross(c - a) / n).abs() } else { 0.0 }
-            };
-            let off = worst(&*m, &bent);
+            let off = worst(&*m, &|p| bent(&*m, p, Point::new(97.0 - p.x, 0.3 * p.y + 11.0)));
             (off > NEAR).then(|| format!("{pairs:?} should keep lines straight; it bends one by {off:e}"))
+        }),
+        Law::KeepsLinesAlong(pairs, (x, y)) => with(pairs).and_then(|m| {
+            let off = worst(&*m, &|p| bent(&*m, p, p + Vec2::new(x, y) * (9.0 / x.hypot(y))));
+            (off > NEAR).then(|| format!("{pairs:?} should keep lines along {x},{y} straight; it bends one by {off:e}"))
+        }),
+        Law::FixedOutside(pairs, [x0, y0, x1, y1]) => with(pairs).and_then(|m| {
+            let inside = Rect::new(x0, y0, x1, y1);
+            let off = worst(&*m, &|p| if inside.contains(p) { 0.0 } else { m.point(p).distance(p) });
+            let moves = worst(&*m, &|p| m.point(p).distance(p)) > 0.0;
+            let inert = format!("{pairs:?} moves nothing at all");
+            (off > 0.0 || !moves).then(|| {
+                if moves {
+                    format!("{pairs:?} should move nothing outside {inside:?}; it moves a point by {off:e}")
+                } else {
+                    inert
+                }
+            })
         }),
         Law::Area(pairs, factor) => with(pairs).and_then(|m| {
             let off = worst(&*m, &|p| (m.jet(p).det() - factor).abs());
@@ -284,6 +302,24 @@ mod tests {
         for e in Registry::builtin().entries() {
             let faults = entry(e.as_ref());
             assert!(faults.is_empty(), "{faults:#?}");
+        }
+    }
+
+    /// Artwork without width, height or either, and huge artwork: a map or an error, never a panic.
+    #[test]
+    fn degenerate_frames_are_survived() {
+        for (w, h) in [(0.0, 0.0), (100.0, 0.0), (0.0, 100.0), (1e-200, 1e-200), (1e99, 1e99)] {
+            let frame = Frame::new(Rect::new(5.0, 5.0, 5.0 + w, 5.0 + h));
+            for e in Registry::builtin().entries() {
+                let Ok(b) = e.build_from(&Args::from_pairs(e.info().demo), &frame) else { continue };
+                let mut creases = Creases::default();
+                b.map.creases(&mut creases);
+                for p in [(5.0, 5.0), (0.0, 0.0), (5.0 + w, 5.0 + h), (1e30, -1e30)].map(Point::from) {
+                    let _ = (b.map.jet(p), b.map.point(p), creases.defined_at(p));
+                    let _ = b.map.branch(p).map(|m| m.jet(p));
+                    let _ = b.map.inverse().map(|m| m.jet(p));
+                }
+            }
         }
     }
 
@@ -330,6 +366,8 @@ mod tests {
         laws: &[
             Law::Identity(&[]),
             Law::KeepsLines(&[]),
+            Law::KeepsLinesAlong(&[], (1.0, 2.0)),
+            Law::FixedOutside(&[], [0.0, 0.0, 50.0, 50.0]),
             Law::Area(&[], 7.0),
             Law::KeepsAngles(&[]),
             Law::Undoes(&[], &[]),
@@ -359,6 +397,8 @@ mod tests {
             "inverse takes",
             "identity",
             "straight",
+            "along 1,2 straight",
+            "nothing outside",
             "areas",
             "keep angles",
             "should undo",

@@ -93,6 +93,25 @@ pub enum GeometryError {
         /// Where.
         at: Point,
     },
+    /// A control point of a row lies on, or beyond, the line through the row's end and the facing row's.
+    #[error(
+        "{path}: point {which} ({}) lies {} the line through the {end} points of both rows ({}), so that the map would have a pole: move it off, to the side of the other points{}",
+        show(*at), if *on { "on" } else { "beyond" }, show_all(line), if *on { "" } else { ", or allow poles" }
+    )]
+    WrongSide {
+        /// The row as the user named it.
+        path: String,
+        /// The point's number, counted from 1.
+        which: usize,
+        /// Where it is.
+        at: Point,
+        /// Which end: first or last.
+        end: &'static str,
+        /// The line.
+        line: [Point; 2],
+        /// Whether it lies on the line itself, where no weight helps.
+        on: bool,
+    },
     /// A projective map between these corners has its horizon among them.
     #[error(
         "{path}: the projective map from {} to {} hits infinity between these corners, because one of the quadrilaterals is convex and the other is not; move a corner, or mind their order",

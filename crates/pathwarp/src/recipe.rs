@@ -1,10 +1,10 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
 
-use crate::deform::{Built, Registry};
+use crate::deform::{Built, Overlay, Registry, Role};
 use crate::error::Error;
-use crate::map::{Chain, Map};
+use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
-use crate::param::{Args, Frame};
+use crate::param::{Args, Axis, Frame};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -15,6 +15,16 @@ pub struct Step {
     pub deformation: String,
     /// Its arguments, paths looked up.
     pub args: Args,
+    /// Whether it is the inverse map that is meant.
+    pub inverse: bool,
+}
+
+impl Step {
+    /// A step forwards.
+    #[must_use]
+    pub fn new(deformation: impl Into<String>, args: Args) -> Self {
+        Self { deformation: deformation.into(), args, inverse: false }
+    }
 }
 
 /// Steps in order.
@@ -57,11 +67,45 @@ impl Recipe {
             if i > 0 {
                 frame = image_box(artwork.clone(), &map).map_or(frame, Frame::new);
             }
-            let built = entry.build_from(&step.args, &frame)?;
+            let mut built = entry.build_from(&step.args, &frame)?;
+            if step.inverse {
+                built = inverted(built, &frame);
+            }
             map.push(Arc::clone(&built.map));
             steps.push(built);
         }
         Ok(BuiltRecipe { map, steps })
+    }
+}
+
+/// The same deformation turned round: by its own inverse, or by Newton's method over the frame.
+fn inverted(built: Built, frame: &Frame) -> Built {
+    /// How far beyond the frame an answer may lie, as a share of its diagonal: strokes and handles reach over it.
+    const REACH: f64 = 0.25;
+    /// Enough starts for a map that bends a few times across the frame.
+    const PIECES: [usize; 2] = [6, 6];
+    let map = built.map.inverse().unwrap_or_else(|| {
+        let reach = REACH * frame.extent(Axis::Diagonal);
+        Arc::new(NewtonInverse::new(Arc::clone(&built.map), frame.rect, reach, PIECES))
+    });
+    // What was the source is now the result.
+    let overlays = built.overlays.into_iter().map(|o| {
+        let role = match o.role {
+            Role::Base => Role::Target,
+            Role::Target => Role::Base,
+            Role::Cage => Role::Cage,
+        };
+        Overlay { role, ..o }
+    });
+    Built { map, overlays: overlays.collect(), ..built }
+}
+
+impl Recipe {
+    /// The recipe that undoes this one: the steps' inverses, the last first.
+    #[must_use]
+    pub fn inverted(&self) -> Self {
+        let turned = |s: &Step| Step { inverse: !s.inverse, ..s.clone() };
+        Self { steps: self.steps.iter().rev().map(turned).collect() }
     }
 }
 
@@ -88,8 +132,7 @@ mod tests {
     #[test]
     fn later_percentages_mean_the_box_at_that_step() {
         let art = Outline::from_svg("M0,0 H100 V50 H0 Z").unwrap();
-        let step =
-            |name: &str, pairs: &[(&str, &str)]| Step { deformation: name.into(), args: Args::from_pairs(pairs) };
+        let step = |name: &str, pairs: &[(&str, &str)]| Step::new(name, Args::from_pairs(pairs));
         let recipe = Recipe {
             steps: vec![step("affine", &[("scale-x", "2"), ("about", "0,0")]), step("affine", &[("move-x", "50%")])],
         };
@@ -101,5 +144,24 @@ mod tests {
         let unknown = Recipe { steps: vec![step("wobble", &[])] };
         let e = unknown.build(&Registry::builtin(), Frame::new(Rect::ZERO), &std::iter::once(&art)).err().unwrap();
         assert!(e.to_string().contains("shaper"), "{e}");
+    }
+
+    #[test]
+    fn an_inverted_recipe_undoes_it() {
+        let art = Outline::from_svg("M0,0 H100 V50 H0 Z").unwrap();
+        let step = |name: &str, pairs: &[(&str, &str)]| Step::new(name, Args::from_pairs(pairs));
+        let recipe = Recipe {
+            steps: vec![
+                step("affine", &[("rotate", "30"), ("about", "10,20")]),
+                step("projective", &[("base", "0,50 100,50 100,0 0,0"), ("target", "0,60 110,50 80,5 10,0")]),
+            ],
+        };
+        let frame = Frame::new(art.bounding_box().unwrap());
+        let build = |r: &Recipe| r.build(&Registry::builtin(), frame, &std::iter::once(&art)).unwrap().map;
+        let (there, back) = (build(&recipe), build(&recipe.inverted()));
+        for p in [Point::new(3.0, 4.0), Point::new(77.0, 31.0)] {
+            assert!(back.point(there.point(p)).distance(p) < 1e-12);
+        }
+        assert_eq!(recipe.inverted().inverted(), recipe);
     }
 }

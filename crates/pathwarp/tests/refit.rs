@@ -75,6 +75,69 @@ fn corpus_has_no_violation() {
     assert_eq!(bad, 0);
 }
 
+/// The same for merged paths, subpath by subpath.
+#[test]
+#[ignore = "minutes; needs the fetched icons"]
+#[allow(clippy::print_stdout)]
+fn merged_corpus_has_no_violation() {
+    let (outlines, _) = support::corpus();
+    let every: usize = std::env::var("EVERY").ok().and_then(|v| v.parse().ok()).unwrap_or(1);
+    let mut bad = 0;
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.1, 0.01, 0.001] {
+            let (mut segs, mut n, mut worst) = (0, 0, 0.0f64);
+            for sub in outlines.iter().step_by(every).flat_map(|o| &o.subpaths).filter(|s| !s.segs.is_empty()) {
+                let o = Options { merge: true, ..Options::new(tolerance) };
+                let w = warp_path(&Outline { subpaths: vec![sub.clone()] }, map.as_ref(), &o).unwrap();
+                let out = support::cubics(&w.path);
+                (segs, n) = (segs + sub.segs.len(), n + w.report.segments_out);
+                let e = support::distance_of_run(&sub.segs, map.as_ref(), &out, 400, 0.9 * tolerance) / tolerance;
+                worst = worst.max(e);
+                if e > 1.0001 {
+                    bad += 1;
+                    println!("  {name} {tolerance}: {e:.4}, {} to {}: {}", sub.segs.len(), out.len(), w.path.to_svg());
+                }
+            }
+            println!("{name} {tolerance}: out/in {:.4}, worst {worst:.4}", n as f64 / segs as f64);
+        }
+    }
+    assert_eq!(bad, 0);
+}
+
+#[test]
+fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
+    // A circle in sixteen pieces, and a rounded square.
+    let circle = {
+        use pathwarp::outline::EllipticArc;
+        let d = 300.0;
+        let a = |i: i32| f64::from(i) * std::f64::consts::TAU / 16.0;
+        let arc =
+            |i| EllipticArc::new(Point::new(500.0, 500.0), (d, 0.0).into(), (0.0, d).into(), a(i), a(1)).to_cubic();
+        let segs: Vec<Seg> = (0..16).map(|i| Seg::Cubic(arc(i))).collect();
+        Subpath { start: segs[0].start(), segs, closed: false }
+    };
+    let square =
+        Outline::from_svg("M300 200H700Q800 200 800 300V700L700 800H300L200 700V300Q200 200 300 200Z").unwrap();
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.01] {
+            for (sub, corners) in [(&circle, 0), (&square.subpaths[0], 4)] {
+                let outline = Outline { subpaths: vec![sub.clone()] };
+                let w =
+                    |merge| warp_path(&outline, map.as_ref(), &Options { merge, ..Options::new(tolerance) }).unwrap();
+                let (plain, merged) = (w(false), w(true));
+                assert!(merged.report.segments_out <= plain.report.segments_out);
+                assert!(corners > 0 || merged.report.segments_out * 10 <= 6 * plain.report.segments_out, "{name}");
+                let out = support::cubics(&merged.path);
+                let e = support::distance_of_run(&sub.segs, map.as_ref(), &out, 400, 0.0);
+                assert!(e <= tolerance * 1.0001, "{name} {tolerance}: {e}");
+                let sharp =
+                    out.windows(2).filter(|w| support::turn(support::arriving(&w[0]), support::leaving(&w[1])) > 0.01);
+                assert_eq!(sharp.count(), corners, "{name} {tolerance}");
+            }
+        }
+    }
+}
+
 #[test]
 fn failure_modes_stay_within_the_tolerance() {
     let cases = [

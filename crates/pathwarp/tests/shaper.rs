@@ -15,7 +15,7 @@ const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40
 
 fn shaper(pairs: &[(&str, &str)]) -> Result<Arc<dyn Map>, Error> {
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
-    let recipe = Recipe { steps: vec![Step { deformation: "shaper".into(), args: Args::from_pairs(pairs) }] };
+    let recipe = Recipe { steps: vec![Step::new("shaper", Args::from_pairs(pairs))] };
     let built = recipe.build(&Registry::builtin(), frame, &std::iter::empty())?;
     Ok(Arc::new(built.map))
 }

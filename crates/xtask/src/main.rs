@@ -1,5 +1,6 @@
 //! Chores of the workspace, run as `cargo xtask NAME`.
 
+mod docs;
 mod new_deformation;
 
 use clap::{Arg, Command, value_parser};
@@ -27,12 +28,14 @@ fn main() -> ExitCode {
                         .help("The workspace to write to [default: this one]"),
                 ),
         )
+        .subcommand(Command::new("docs").about("Write a page and a picture for every deformation"))
         .get_matches();
     let done = match matches.subcommand() {
         Some(("new-deformation", m)) => {
             let name = m.get_one::<String>("NAME").map_or("", String::as_str);
             new_deformation::run(m.get_one::<PathBuf>("root").unwrap_or(&root), name)
         }
+        Some(("docs", _)) => docs::run(&root),
         _ => Err("no such chore".into()),
     };
     match done {

@@ -11,7 +11,7 @@ use pathwarp::{Outline, Seg};
 pub const BOX: f64 = 1000.0;
 
 /// A bicubic map of the box, power basis: c[i][j] goes with uⁱvʲ, u = x/1000, v = y/1000.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Bicubic {
     pub x: [[f64; 4]; 4],
     pub y: [[f64; 4]; 4],
@@ -281,6 +281,38 @@ pub fn distance(seg: &Seg, map: &dyn Map, out: &[CubicBez], samples: usize, enou
     a.max(b)
 }
 
+/// As [`distance`], for the image of a run of segments.
+pub fn distance_of_run(segs: &[Seg], map: &dyn Map, out: &[CubicBez], per: usize, enough: f64) -> f64 {
+    // Segments of no length would be many samples in one place.
+    let segs: Vec<Seg> = segs.iter().filter(|s| extent(&s.to_cubic()) > 1e-9).copied().collect();
+    let out: Vec<CubicBez> = out.iter().filter(|c| extent(c) > 1e-9).copied().collect();
+    let image = |t: f64| {
+        let k = (t as usize).min(segs.len() - 1);
+        map.point(segs[k].eval(t - k as f64))
+    };
+    let curve = |t: f64| {
+        let k = (t as usize).min(out.len() - 1);
+        out[k].eval(t - k as f64)
+    };
+    let g: Vec<Point> = (0..=per * segs.len()).map(|i| image(i as f64 / per as f64)).collect();
+    let c: Vec<Point> = (0..=per * out.len()).map(|i| curve(i as f64 / per as f64)).collect();
+    let near =
+        |k: usize, n: usize| ((k as f64 - 1.0).max(0.0) / per as f64, ((k as f64 + 1.0) / per as f64).min(n as f64));
+    let a = one_sided(&g, &c, enough, |k, p| {
+        let (lo, hi) = near(k, out.len());
+        golden(lo, hi, |t| curve(t).distance(p))
+    });
+    let b = one_sided(&c, &g, enough, |k, p| {
+        let (lo, hi) = near(k, segs.len());
+        golden(lo, hi, |t| image(t).distance(p))
+    });
+    a.max(b)
+}
+
+fn extent(c: &CubicBez) -> f64 {
+    [c.p1, c.p2, c.p3].iter().map(|p| p.distance(c.p0)).fold(0.0, f64::max)
+}
+
 /// The smallest value between `lo` and `hi`, by golden sections: slow, but cusps do not confuse it.
 fn golden(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     const G: f64 = 0.381_966_011_250_105;
@@ -321,16 +353,18 @@ fn one_sided(from: &[Point], to: &[Point], enough: f64, refine: impl Fn(usize, P
             e = e.min(refine(at, *p));
         }
         if e > enough && e > worst {
-            // Every sample that is nearer than its neighbours: branches of a hairpin may lie closer than samples do.
-            let mut dips: Vec<usize> = (0..to.len())
-                .filter(|&k| (k == 0 || d(k) <= d(k - 1)) && (k + 1 == to.len() || d(k) <= d(k + 1)))
-                .collect();
-            dips.sort_by(|a, b| d(*a).total_cmp(&d(*b)));
-            for k in dips.into_iter().take(6) {
-                for k in [k.saturating_sub(1), k, (k + 1).min(to.len() - 1)] {
-                    if e > enough {
-                        e = e.min(refine(k, *p));
-                    }
+            // The chords between samples that are nearest: the samples themselves may be far apart, and branches of a hairpin
+            // nearer to each other than samples are.
+            let chord = |k: usize| {
+                let (a, v) = (to[k], to[k + 1] - to[k]);
+                let s = ((*p - a).dot(v) / (v.hypot2() + 1e-300)).clamp(0.0, 1.0);
+                (a + v * s).distance(*p)
+            };
+            let mut near: Vec<(f64, usize)> = (0..to.len() - 1).map(|k| (chord(k), k)).collect();
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (_, k) in near.into_iter().take(8) {
+                if e > enough {
+                    e = e.min(refine(k, *p)).min(refine(k + 1, *p));
                 }
             }
         }

@@ -4,9 +4,12 @@
 
 mod affine;
 mod anamorph;
+mod bend;
 mod bilinear;
+mod birational;
 mod bulge;
 mod expr;
+mod ffd;
 mod lens;
 mod mls;
 mod mobius;
@@ -30,11 +33,14 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
         Arc::new(bilinear::Bilinear),
+        Arc::new(ffd::Ffd),
+        Arc::new(birational::BirationalDeformation),
         Arc::new(triangle::Triangle),
         Arc::new(projective::Projective),
         Arc::new(anamorph::Anamorph),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
+        Arc::new(bend::Bend),
         Arc::new(polar::Polar),
         Arc::new(mls::Mls),
         Arc::new(wave::Wave),
@@ -112,6 +118,10 @@ pub enum Law {
     Same(Pairs, Pairs),
     /// With these values straight lines stay straight.
     KeepsLines(Pairs),
+    /// With these values straight lines in this direction stay straight.
+    KeepsLinesAlong(Pairs, (f64, f64)),
+    /// With these values nothing moves outside the box x0, y0, x1, y1.
+    FixedOutside(Pairs, [f64; 4]),
     /// With these values every area is multiplied by this.
     Area(Pairs, f64),
     /// With these values angles between curves are kept (and nothing is mirrored).

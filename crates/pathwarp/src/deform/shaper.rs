@@ -57,7 +57,7 @@ corners of the artwork's box.",
     examples: &[
         Example {
             what: "Bend a logo into a path of another file",
-            command: "shaper samples/logo.svg --shaper samples/cages.svg#flag -o out.svg",
+            command: "shaper samples/logo.svg --shaper samples/banner.svg -o out.svg",
         },
         Example {
             what: "The paper's example: Base, Target and Shaper are paths of the document itself",

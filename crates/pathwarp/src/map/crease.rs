@@ -4,7 +4,10 @@
 //! earlier maps: φ ∘ F. A path is split where it crosses them.
 
 use crate::outline::Seg;
-use kurbo::{Point, Rect, common::solve_cubic};
+use kurbo::{
+    Point, Rect,
+    common::{solve_cubic, solve_quadratic},
+};
 use std::fmt;
 use std::sync::Arc;
 
@@ -71,28 +74,8 @@ impl Level {
             }
         };
         match (self, seg) {
-            (Self::Line { .. } | Self::Stretch { .. }, Seg::Line(s)) => {
-                let (a, b) = (self.at(s.p0), self.at(s.p1));
-                add(a / (a - b));
-            }
-            (Self::Line { .. } | Self::Stretch { .. }, Seg::Quad(_) | Seg::Cubic(_)) => {
-                let c = seg.to_cubic();
-                let [q0, q1, q2, q3] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.at(p));
-                // Bernstein to power basis.
-                let (k1, k2, k3) = (3.0 * (q1 - q0), 3.0 * (q2 - 2.0 * q1 + q0), q3 - 3.0 * q2 + 3.0 * q1 - q0);
-                // What is left of a vanishing leading term is rounding, and leads the solver astray.
-                let size = [q0, q1, q2, q3].into_iter().fold(0.0, |m, q| f64::max(m, q.abs()));
-                let tidy = |k: f64| if k.abs() <= 16.0 * f64::EPSILON * size { 0.0 } else { k };
-                for mut t in solve_cubic(q0, k1, tidy(k2), tidy(k3)) {
-                    for _ in 0..2 {
-                        let step = (((k3 * t + k2) * t + k1) * t + q0) / ((3.0 * k3 * t + 2.0 * k2) * t + k1);
-                        // At a double root the slope vanishes and the step is noise.
-                        if step.abs() < 1e-6 {
-                            t -= step;
-                        }
-                    }
-                    add(t);
-                }
+            (Self::Line { .. } | Self::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => {
+                straight_crossings(|p| self.at(p), seg).into_iter().for_each(add);
             }
             _ => {
                 /// Finer than any wiggle a cubic's image usually has; a crease touched and left between two samples is missed.
@@ -112,6 +95,48 @@ impl Level {
             }
         }
     }
+}
+
+/// Where an affine function vanishes on a Bézier piece: roots of a polynomial of its degree.
+fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
+    /// A leading coefficient this small against the values is rounding; the closed forms would blow it up.
+    const NOISE: f64 = 1e-14;
+    // Power basis.
+    let c = match seg {
+        Seg::Line(s) => {
+            let [a, b] = [s.p0, s.p1].map(level);
+            [a, b - a, 0.0, 0.0]
+        }
+        Seg::Quad(s) => {
+            let [a, b, c] = [s.p0, s.p1, s.p2].map(level);
+            [a, 2.0 * (b - a), c - 2.0 * b + a, 0.0]
+        }
+        _ => {
+            let s = seg.to_cubic();
+            let [a, b, c, d] = [s.p0, s.p1, s.p2, s.p3].map(level);
+            [a, 3.0 * (b - a), 3.0 * (c - 2.0 * b + a), d - 3.0 * c + 3.0 * b - a]
+        }
+    };
+    let small = NOISE * c.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+    let degree = (1..4).rev().find(|&k| c[k].abs() > small).unwrap_or(0);
+    let mut roots: Vec<f64> = match degree {
+        0 => Vec::new(),
+        1 => vec![-c[0] / c[1]],
+        2 => solve_quadratic(c[0], c[1], c[2]).into_iter().collect(),
+        _ => solve_cubic(c[0], c[1], c[2], c[3]).into_iter().collect(),
+    };
+    for t in &mut roots {
+        // Newton steps wash out the closed forms' cancellation; near a double root they may only help.
+        for _ in 0..3 {
+            let value = |t: f64| ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
+            let slope = (3.0 * c[3] * *t + 2.0 * c[2]) * *t + c[1];
+            let next = *t - value(*t) / slope;
+            if next.is_finite() && value(next).abs() < value(*t).abs() {
+                *t = next;
+            }
+        }
+    }
+    roots
 }
 
 fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64 {
@@ -221,5 +246,30 @@ impl Creases {
             }
         }
         ts.into_iter().min_by(f64::total_cmp).map(|t| seg.eval(t))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::{CubicBez, Line, QuadBez};
+
+    /// Pieces that are straight, or nearly, are no worse than bent ones.
+    #[test]
+    fn straight_creases_are_crossed_exactly() {
+        let line = Seg::Line(Line::new((0.0, 50.0), (140.0, 50.0)));
+        let (q, c) = (Seg::Quad(QuadBez::new((0.0, 0.0), (70.1, 9.0), (140.0, 0.0))), Seg::Cubic(line.to_cubic()));
+        for at in [20.000000000031, 63.7, 120.0] {
+            let level = Level::Line { a: 1.0, b: 0.0, c: -at };
+            for seg in [line, q, c] {
+                let mut ts = Vec::new();
+                level.crossings(&seg, &mut ts);
+                assert!(ts.len() == 1 && (seg.eval(ts[0]).x - at).abs() < 1e-13 * at, "{seg:?} {ts:?}");
+            }
+        }
+        let s = Seg::Cubic(CubicBez::new((0.0, 0.0), (100.0, 0.0), (-50.0, 0.0), (50.0, 0.0)));
+        let mut ts = Vec::new();
+        Level::Line { a: 1.0, b: 0.0, c: -25.0 }.crossings(&s, &mut ts);
+        assert!(ts.len() == 3 && ts.iter().all(|t| (s.eval(*t).x - 25.0).abs() < 1e-13), "{ts:?}");
     }
 }

@@ -286,6 +286,13 @@ impl LatticeMap {
     /// Calls `f` with each run of points in one cell, and `still` with each run outside.
     #[inline]
     fn runs(&self, ps: &[Point], mut f: impl FnMut(Option<&Patch>, std::ops::Range<usize>)) {
+        let (c, half) = (self.inside.center(), self.inside.size() * 0.5);
+        let all = |ps: &[Point]| {
+            ps.iter().fold(true, |all, p| all & ((p.x - c.x).abs() <= half.width) & ((p.y - c.y).abs() <= half.height))
+        };
+        if self.patches.len() == 1 && (self.extended || all(ps)) {
+            return f(Some(&self.patches[0]), 0..ps.len());
+        }
         let mut from = 0;
         while from < ps.len() {
             let cell = self.cell(ps[from]);
@@ -421,7 +428,8 @@ impl LatticeInverse {
             (false, _) => (0.0, Arc::new(LatticeMap { extended: true, affine: None, ..map.clone() })),
         };
         let domain = r.inflate(beyond * r.width(), beyond * r.height());
-        let reach = map.inside.x1 - r.x1;
+        // Beyond the border by more than the width over which places still count as inside, so that no gap is left between.
+        let reach = 1e3 * (map.inside.x1 - r.x1);
         Self { map: map.clone(), inner: Arc::new(NewtonInverse::new(pieces, domain, reach, map.cells)) }
     }
 

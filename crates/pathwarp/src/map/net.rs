@@ -4,7 +4,7 @@
 //! affine function of the source point. Evaluated in power form, where a completed net loses its four highest terms.
 
 use super::bernstein::Scaled;
-use super::{Class, Jet, Map, RationalBezier};
+use super::{Algebra, Class, Jet, Map, RationalBezier};
 use kurbo::{Affine, Point, Vec2};
 
 /// Rows r = 0..3 (v) of columns s = 0..3 (u).
@@ -113,6 +113,20 @@ impl Map for BicubicNet {
         let Point { x: u, y: v } = self.pre * p;
         let r = self.rows(u);
         (((r[3] * v + r[2]) * v + r[1]) * v + r[0]).to_point()
+    }
+
+    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+
+    fn algebra(&self) -> Option<Algebra> {
+        let rows = self.c.iter().enumerate();
+        let terms = rows.flat_map(|(j, r)| r.iter().enumerate().map(move |(i, v)| (i + j, *v)));
+        let degree = terms.filter(|t| t.1 != Vec2::ZERO).map(|t| t.0).max().unwrap_or(0).max(1);
+        Some(Algebra { degree, rational: false })
     }
 
     fn class(&self) -> Class {

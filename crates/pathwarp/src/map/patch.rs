@@ -14,6 +14,8 @@ use std::sync::Arc;
 
 /// Points evaluated side by side.
 const LANES: usize = 8;
+/// Jets evaluated side by side: three results for each coordinate are what the registers hold.
+const JET_LANES: usize = 4;
 /// A coefficient this much smaller than the largest is rounding.
 const NOISE: f64 = 1e-15;
 
@@ -131,7 +133,7 @@ impl Patch {
     /// The denominator at `p`: positive where the map is defined.
     #[must_use]
     pub fn denominator(&self, p: Point) -> f64 {
-        if self.w.is_empty() { 1.0 } else { self.values(&self.w, &self.local([p]))[0] }
+        if self.w.is_empty() { 1.0 } else { self.values::<1, 0>(&self.w, &self.local([p]))[0] }
     }
 
     #[inline(always)]
@@ -144,44 +146,49 @@ impl Patch {
         out
     }
 
-    /// The polynomial `plane` at L places.
+    /// The polynomial `plane` at L places. `W` is its width, or 0 for any: known widths are unrolled by the compiler.
     #[inline(always)]
-    fn values<const L: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [f64; L] {
-        // The usual widths in a form that the compiler unrolls.
-        match self.width {
-            2 => horner::<L, 2>(plane, u, v),
-            3 => horner::<L, 3>(plane, u, v),
-            4 => horner::<L, 4>(plane, u, v),
-            _ => {
-                let mut out = [0.0; L];
-                for row in plane.chunks_exact(self.width).rev() {
-                    let mut r = [0.0; L];
-                    for c in row.iter().rev() {
-                        for i in 0..L {
-                            r[i] = r[i] * u[i] + c;
-                        }
-                    }
-                    for i in 0..L {
-                        out[i] = out[i] * v[i] + r[i];
-                    }
+    fn values<const L: usize, const W: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [f64; L] {
+        let width = if W == 0 { self.width } else { W };
+        let across = |row: &[f64]| {
+            let mut r = [row[width - 1]; L];
+            for k in (0..width - 1).rev() {
+                for i in 0..L {
+                    r[i] = r[i] * u[i] + row[k];
                 }
-                out
+            }
+            r
+        };
+        let mut rows = plane.chunks_exact(width).rev();
+        let mut out = rows.next().map_or([0.0; L], across);
+        for row in rows {
+            let r = across(row);
+            for i in 0..L {
+                out[i] = out[i] * v[i] + r[i];
             }
         }
+        out
     }
 
     /// Value, ∂/∂u and ∂/∂v of `plane` at L places.
     #[inline(always)]
-    fn slopes<const L: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [[f64; L]; 3] {
-        let (mut out, mut du, mut dv) = ([0.0; L], [0.0; L], [0.0; L]);
-        for row in plane.chunks_exact(self.width).rev() {
-            let (mut r, mut d) = ([0.0; L], [0.0; L]);
-            for c in row.iter().rev() {
+    fn slopes<const L: usize, const W: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [[f64; L]; 3] {
+        let width = if W == 0 { self.width } else { W };
+        let across = |row: &[f64]| {
+            let (mut r, mut d) = ([row[width - 1]; L], [0.0; L]);
+            for k in (0..width - 1).rev() {
                 for i in 0..L {
-                    d[i] = d[i] * u[i] + r[i];
-                    r[i] = r[i] * u[i] + c;
+                    d[i] = if k + 2 == width { r[i] } else { d[i] * u[i] + r[i] };
+                    r[i] = r[i] * u[i] + row[k];
                 }
             }
+            (r, d)
+        };
+        let mut rows = plane.chunks_exact(width).rev();
+        let (mut out, mut du) = rows.next().map_or(([0.0; L], [0.0; L]), across);
+        let mut dv = [0.0; L];
+        for row in rows {
+            let (r, d) = across(row);
             for i in 0..L {
                 dv[i] = dv[i] * v[i] + out[i];
                 out[i] = out[i] * v[i] + r[i];
@@ -192,16 +199,16 @@ impl Patch {
     }
 
     #[inline(always)]
-    fn points_at<const L: usize>(&self, p: [Point; L]) -> [Point; L] {
+    fn points_at<const L: usize, const W: usize>(&self, p: [Point; L]) -> [Point; L] {
         let at = self.local(p);
-        let (x, y) = (self.values(&self.x, &at), self.values(&self.y, &at));
+        let (x, y) = (self.values::<L, W>(&self.x, &at), self.values::<L, W>(&self.y, &at));
         let mut out = p;
         if self.w.is_empty() {
             for i in 0..L {
                 out[i] += Vec2::new(x[i], y[i]);
             }
         } else {
-            let w = self.values(&self.w, &at);
+            let w = self.values::<L, W>(&self.w, &at);
             for i in 0..L {
                 let r = 1.0 / w[i];
                 out[i] = Point::new(self.centre.x + x[i] * r, self.centre.y + y[i] * r);
@@ -211,9 +218,9 @@ impl Patch {
     }
 
     #[inline(always)]
-    fn jets_at<const L: usize>(&self, p: [Point; L]) -> [Jet; L] {
+    fn jets_at<const L: usize, const W: usize>(&self, p: [Point; L]) -> [Jet; L] {
         let at = self.local(p);
-        let (x, y) = (self.slopes(&self.x, &at), self.slopes(&self.y, &at));
+        let (x, y) = (self.slopes::<L, W>(&self.x, &at), self.slopes::<L, W>(&self.y, &at));
         let Vec2 { x: kx, y: ky } = self.k;
         let mut out = [Jet::default(); L];
         if self.w.is_empty() {
@@ -225,7 +232,7 @@ impl Patch {
                 };
             }
         } else {
-            let w = self.slopes(&self.w, &at);
+            let w = self.slopes::<L, W>(&self.w, &at);
             for i in 0..L {
                 let r = 1.0 / w[0][i];
                 let (a, b) = (x[0][i] * r, y[0][i] * r);
@@ -237,6 +244,28 @@ impl Patch {
             }
         }
         out
+    }
+
+    fn points_in<const W: usize>(&self, ps: &[Point], out: &mut [Point]) {
+        let (from, rest) = ps.as_chunks::<LANES>();
+        let (to, rest_out) = out.as_chunks_mut::<LANES>();
+        for (p, o) in from.iter().zip(to) {
+            *o = self.points_at::<LANES, W>(*p);
+        }
+        for (p, o) in rest.iter().zip(rest_out) {
+            [*o] = self.points_at::<1, W>([*p]);
+        }
+    }
+
+    fn jets_in<const W: usize>(&self, ps: &[Point], out: &mut [Jet]) {
+        let (from, rest) = ps.as_chunks::<JET_LANES>();
+        let (to, rest_out) = out.as_chunks_mut::<JET_LANES>();
+        for (p, o) in from.iter().zip(to) {
+            *o = self.jets_at::<JET_LANES, W>(*p);
+        }
+        for (p, o) in rest.iter().zip(rest_out) {
+            [*o] = self.jets_at::<1, W>([*p]);
+        }
     }
 
     /// The coefficients of uⁱvʲ as (i, j, X, Y, W), those that vanish left out; X and Y counted from the origin.
@@ -269,23 +298,6 @@ impl Patch {
 fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
     let at = |a: f64, size: f64, i: usize, n: usize| a + size * (i as f64 / n as f64);
     Point::new(at(rect.x0, rect.width(), i, degree[0]), at(rect.y0, rect.height(), j, degree[1]))
-}
-
-#[inline(always)]
-fn horner<const L: usize, const W: usize>(plane: &[f64], u: &[f64; L], v: &[f64; L]) -> [f64; L] {
-    let mut out = [0.0; L];
-    for row in plane.as_chunks::<W>().0.iter().rev() {
-        let mut r = [row[W - 1]; L];
-        for k in (0..W - 1).rev() {
-            for i in 0..L {
-                r[i] = r[i] * u[i] + row[k];
-            }
-        }
-        for i in 0..L {
-            out[i] = out[i] * v[i] + r[i];
-        }
-    }
-    out
 }
 
 /// Bernstein coefficients over (s, t), row by row, to powers of u = 2s − 1 and v = 2t − 1.
@@ -328,33 +340,34 @@ fn centred(n: usize) -> Vec<Vec<f64>> {
 
 impl Map for Patch {
     fn jet(&self, p: Point) -> Jet {
-        self.jets_at([p])[0]
+        match self.width {
+            4 => self.jets_at::<1, 4>([p])[0],
+            _ => self.jets_at::<1, 0>([p])[0],
+        }
     }
 
     fn point(&self, p: Point) -> Point {
-        self.points_at([p])[0]
+        match self.width {
+            4 => self.points_at::<1, 4>([p])[0],
+            _ => self.points_at::<1, 0>([p])[0],
+        }
     }
 
     fn points(&self, ps: &[Point], out: &mut [Point]) {
-        let (from, rest) = ps.as_chunks::<LANES>();
-        let (to, rest_out) = out.as_chunks_mut::<LANES>();
-        for (p, o) in from.iter().zip(to) {
-            *o = self.points_at(*p);
-        }
-        for (p, o) in rest.iter().zip(rest_out) {
-            *o = self.point(*p);
+        match self.width {
+            2 => self.points_in::<2>(ps, out),
+            3 => self.points_in::<3>(ps, out),
+            4 => self.points_in::<4>(ps, out),
+            _ => self.points_in::<0>(ps, out),
         }
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        // Twelve results a point: four side by side are what the registers hold.
-        let (from, rest) = ps.as_chunks::<4>();
-        let (to, rest_out) = out.as_chunks_mut::<4>();
-        for (p, o) in from.iter().zip(to) {
-            *o = self.jets_at(*p);
-        }
-        for (p, o) in rest.iter().zip(rest_out) {
-            *o = self.jet(*p);
+        match self.width {
+            2 => self.jets_in::<2>(ps, out),
+            3 => self.jets_in::<3>(ps, out),
+            4 => self.jets_in::<4>(ps, out),
+            _ => self.jets_in::<0>(ps, out),
         }
     }
 

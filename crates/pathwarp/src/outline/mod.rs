@@ -82,6 +82,19 @@ impl Seg {
         }
     }
 
+    /// The stretch between two parameters of a Bézier piece, exact, the whole unchanged; `None` for arcs.
+    #[must_use]
+    pub fn part(&self, t0: f64, t1: f64) -> Option<Self> {
+        let whole = t0 == 0.0 && t1 == 1.0;
+        match self {
+            Self::Arc(_) => None,
+            _ if whole => Some(*self),
+            Self::Line(s) => Some(Self::Line(s.subsegment(t0..t1))),
+            Self::Quad(s) => Some(Self::Quad(s.subsegment(t0..t1))),
+            Self::Cubic(s) => Some(Self::Cubic(s.subsegment(t0..t1))),
+        }
+    }
+
     /// The image under an affine map, exact for every kind.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {

@@ -114,8 +114,9 @@ impl Args {
     }
 }
 
-/// Whether a path reference holds the path itself.
-pub(super) fn is_inline(text: &str) -> bool {
+/// Whether a path reference holds the path itself: path data or points, rather than a name.
+#[must_use]
+pub fn is_inline(text: &str) -> bool {
     is_path_data(text) || unit::looks_like_points(text)
 }
 

@@ -7,7 +7,7 @@ mod args;
 mod settings;
 mod unit;
 
-pub use args::{Args, NamedPath, NamedText};
+pub use args::{Args, NamedPath, NamedText, is_inline};
 pub use settings::Settings;
 
 use kurbo::{Point, Rect};

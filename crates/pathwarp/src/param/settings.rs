@@ -3,7 +3,7 @@
 use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args, unit};
 use crate::error::Error;
 use crate::outline::Outline;
-use kurbo::Point;
+use kurbo::{Point, Rect};
 
 /// A deformation's parameters with their values: what [`build`](crate::deform::Deformation::build) reads.
 #[derive(Debug, Clone, Copy)]
@@ -188,6 +188,16 @@ impl<'a> Settings<'a> {
     /// Not points; the message names the parameter.
     pub fn points_in(&self, name: &str, text: &str) -> Result<Vec<Point>, Error> {
         unit::points(text, self.frame).map_err(|e| Error::usage(name, text, e))
+    }
+
+    /// The box that a text parameter gives: `artwork` (the frame) or `x,y,w,h`, percentages of the frame; `None` if it is the
+    /// frame or not given.
+    ///
+    /// # Errors
+    /// Not a box, or one without area; the message names the parameter.
+    pub fn rect_if(&self, name: &str) -> Result<Option<Rect>, Error> {
+        let Some((text, _)) = self.text(name).filter(|(t, _)| *t != "artwork") else { return Ok(None) };
+        unit::rect(text, self.frame).map(Some).map_err(|e| Error::usage(name, text, e))
     }
 
     /// The file that a parameter of kind [`Kind::File`] names, already read.

@@ -1,7 +1,7 @@
 //! Text to numbers with units.
 
 use super::{Axis, Frame};
-use kurbo::Point;
+use kurbo::{Point, Rect, Size};
 
 /// CSS: 96 px to the inch; one user unit is one px.
 const PX_PER_INCH: f64 = 96.0;
@@ -94,10 +94,21 @@ pub(super) fn point(text: &str, frame: &Frame) -> Result<Point, String> {
     Ok(Point::new(at(x, Axis::X, frame.rect.x0)?, at(y, Axis::Y, frame.rect.y0)?))
 }
 
+/// A box `x,y,w,h`: percentages count from the frame's left and top, and of its width and height.
+pub(super) fn rect(text: &str, frame: &Frame) -> Result<Rect, String> {
+    let parts: Vec<&str> = words(text).collect();
+    let [x, y, w, h] = parts[..] else {
+        return Err("is neither a box x,y,w,h nor the word artwork".into());
+    };
+    let origin = point(&format!("{x},{y}"), frame)?;
+    let (w, h) = (length(w, Axis::X, frame)?, length(h, Axis::Y, frame)?);
+    if w > 0.0 && h > 0.0 { Ok(Rect::from_origin_size(origin, Size::new(w, h))) } else { Err("has no area".into()) }
+}
+
 /// Whether a path reference is plain points `x,y x,y …` rather than a name: it starts like a number, and every word is a
 /// pair of coordinates.
 pub(super) fn looks_like_points(text: &str) -> bool {
-    let unit = Frame::new(kurbo::Rect::new(0.0, 0.0, 1.0, 1.0));
+    let unit = Frame::new(Rect::new(0.0, 0.0, 1.0, 1.0));
     text.contains(',') && points(text, &unit).is_ok()
 }
 
@@ -112,7 +123,6 @@ pub(super) fn points(text: &str, frame: &Frame) -> Result<Vec<Point>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kurbo::Rect;
 
     #[test]
     fn units() {
@@ -124,6 +134,8 @@ mod tests {
         assert_eq!(number("-20%"), Ok(-0.2));
         assert_eq!(point("50%,100%", &f), Ok(Point::new(60.0, 70.0)));
         assert_eq!(points("1,2 3,4;5,6", &f).unwrap().len(), 3);
+        assert_eq!(rect("50%,20,10%,10%", &f), Ok(Rect::new(60.0, 20.0, 70.0, 25.0)));
+        assert!(rect("0,0,0,5", &f).is_err() && rect("1,2,3", &f).is_err());
         assert!(length("3 parsecs", Axis::X, &f).unwrap_err().contains("parsecs"));
         assert!(number("nan").is_err() && number("inf").is_err() && number("").is_err());
         assert!(count("1.5").is_err());

@@ -23,7 +23,7 @@
 //!
 //! Rounding of the samples (some 1e-13 of the coordinates) is added to the bound.
 
-use super::source::{Lane, Source};
+use super::source::{Curve, Lane, Source};
 use super::verify::Candidate;
 use crate::map::RationalBezier;
 use kurbo::Point;
@@ -54,6 +54,8 @@ pub(super) struct Algebra {
     weights: Option<Vec<f64>>,
     /// Degree of the map, the power of the source's own denominator.
     power: i32,
+    /// Degree of D, or of F.
+    total: usize,
 }
 
 impl Algebra {
@@ -62,7 +64,7 @@ impl Algebra {
         let (degree, rational) = source.degree()?;
         let out = if let Some(a) = source.map.algebra() {
             let below = if a.rational || rational { a.degree * degree } else { 0 };
-            Self { degree: a.degree * degree, below, weights: None, power: a.degree as i32 }
+            Self { degree: a.degree * degree, below, weights: None, power: a.degree as i32, total: 0 }
         } else {
             if rational {
                 return None;
@@ -70,11 +72,11 @@ impl Algebra {
             let image = source.map.image_of(&RationalBezier::from_seg(source.seg)?)?;
             let n = image.degree();
             let weights = (!image.is_polynomial()).then(|| image.points.iter().map(|p| p[2]).collect::<Vec<_>>());
-            Self { degree: n, below: if weights.is_some() { n } else { 0 }, weights, power: 1 }
+            Self { degree: n, below: if weights.is_some() { n } else { 0 }, weights, power: 1, total: 0 }
         };
         // F has the degree of VW·C∘φ at most.
         let all = if out.below > 0 { (out.below + COMPOSED).max(out.degree) + V - 1 } else { out.degree.max(COMPOSED) };
-        (all < N && out.below + V - 1 < N).then_some(out)
+        (all < N && out.below + V - 1 < N).then_some(Self { total: all, ..out })
     }
 }
 
@@ -138,7 +140,7 @@ pub(super) fn bound(source: &Source<'_>, algebra: &Algebra, c: &Candidate, feet:
         let k = (0..N).find(|&k| !(x[k] + y[k]).is_finite()).unwrap_or(0);
         return Err(source.at(t[k]));
     }
-    Ok(supremum(&x, &y, most, N - 1) / share + noise(c))
+    Ok(supremum(&x, &y, most, algebra.total) / share + noise(c))
 }
 
 /// Whether φ stays in [0, 1].
@@ -209,7 +211,7 @@ pub(super) fn line(source: &Source<'_>, algebra: &Algebra, c: &Candidate) -> Res
         return Ok(f64::INFINITY);
     }
     let most = across.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    Ok(supremum(&across, &[0.0; N], most, N - 1) / share + noise(c))
+    Ok(supremum(&across, &[0.0; N], most, algebra.total) / share + noise(c))
 }
 
 /// Rounding of the samples.

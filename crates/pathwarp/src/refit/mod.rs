@@ -1,13 +1,20 @@
 //! Back to Béziers: the image of a path under a map, as lines and cubics within a stated distance.
 //!
-//! One entry, [`warp_path`]. Affine maps move control points; elsewhere each source segment is split where the map is not
-//! smooth, and every part's image is fitted adaptively.
+//! One entry, [`warp_path`]. Affine maps move control points; elsewhere each source segment is taken in its canonical direction,
+//! split where the map is not smooth (`split`), sampled eight places at a time (`source`), fitted by cubics with the right end
+//! tangents and the best handle lengths (`fit`), over as few stretches as the tolerance allows (`step`), each looked at
+//! closely where its samples may not tell all (`verify`), and proven where map and segment are quotients of polynomials
+//! (`certify`). Pieces may be merged across smooth joints (`merge`).
 
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
 #[allow(clippy::needless_range_loop)]
 mod certify;
 #[allow(clippy::needless_range_loop)]
 mod fit;
+#[allow(clippy::needless_range_loop)]
+mod merge;
+#[allow(clippy::needless_range_loop)]
+mod samples;
 #[allow(clippy::needless_range_loop)]
 mod source;
 mod split;
@@ -17,11 +24,11 @@ mod step;
 mod verify;
 
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Jet, Map};
+use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use certify::Algebra;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point};
-use source::{End, Source};
+use source::{Curve, End, Source};
 
 /// How a path is refitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,7 +192,14 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
             match seg.transformed(m) {
                 Seg::Line(l) => pieces.push(Piece::Line(l)),
                 Seg::Arc(a) => {
-                    pieces.extend(a.to_cubics(options.tolerance).map(Piece::Cubic));
+                    let (canonical, flipped) = split::canonical(seg);
+                    let start = pieces.len();
+                    if let Seg::Arc(c) = canonical.transformed(m) {
+                        pieces.extend(c.to_cubics(options.tolerance).map(Piece::Cubic));
+                    }
+                    if flipped {
+                        turn(&mut pieces[start..]);
+                    }
                     out.note(a.cubics_error(a.cubics_needed(options.tolerance)), Assurance::Certified);
                 }
                 other => pieces.push(Piece::Cubic(other.to_cubic())),
@@ -214,6 +228,8 @@ fn warp_subpath(
     }
     let start = node.1.p;
     let mut pieces = Vec::with_capacity(sub.segs.len());
+    // Where each segment's pieces begin.
+    let mut bounds = vec![0];
     for seg in &sub.segs {
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
@@ -226,12 +242,39 @@ fn warp_subpath(
         }
         if projective && matches!(seg, Seg::Line(_)) {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
+            bounds.push(pieces.len());
             continue;
         }
         warp_seg(seg, [first, last], map, creases, options, &mut pieces, &mut out.report).map_err(infinity)?;
+        bounds.push(pieces.len());
+    }
+    let smooth = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
+    if options.merge && !options.certify && smooth && bounds.len() == sub.segs.len() + 1 {
+        let merger = merge::Merger { map, tolerance: options.tolerance };
+        pieces = merger.merged(&sub.segs, &pieces, &bounds, &mut out.report).map_err(infinity)?;
     }
     out.subpath(start, &pieces, sub.closed);
     Ok(())
+}
+
+/// Two sides of a crease that are this share of the tolerance apart are torn, not rounded.
+const TORN: f64 = 0.01;
+
+/// A part that an affine branch moves exactly, between the nodes it shares with its neighbours.
+fn affine_part(part: &Seg, from: Point, to: Point, tolerance: f64, pieces: &mut Vec<Piece>) {
+    let near = |a: Point, b: Point| a.distance(b) <= TORN * tolerance;
+    let (a, b) = (part.start(), part.end());
+    if !near(a, from) {
+        pieces.push(Piece::Line(Line::new(from, a)));
+    }
+    let (p0, p3) = (if near(a, from) { from } else { a }, if near(b, to) { to } else { b });
+    pieces.push(match part {
+        Seg::Line(_) => Piece::Line(Line::new(p0, p3)),
+        other => Piece::Cubic(CubicBez { p0, p3, ..other.to_cubic() }),
+    });
+    if !near(b, to) {
+        pieces.push(Piece::Line(Line::new(b, to)));
+    }
 }
 
 /// Appends the image of one segment. The jets are those at its ends. `Err`: where the map is not finite.
@@ -263,12 +306,17 @@ fn warp_seg(
         _ => job.warp(&canonical, [first, last], pieces, report)?,
     }
     if flipped {
-        pieces[start..].reverse();
-        for p in &mut pieces[start..] {
-            *p = p.reversed();
-        }
+        turn(&mut pieces[start..]);
     }
     Ok(())
+}
+
+/// The pieces run backwards.
+fn turn(pieces: &mut [Piece]) {
+    pieces.reverse();
+    for p in pieces {
+        *p = p.reversed();
+    }
 }
 
 /// Shorter than this share of its coordinates, a segment is rounding of two equal points.
@@ -298,13 +346,21 @@ impl Job<'_> {
         let slow = split::slow(seg).map(|t| whole.param(t));
         let splits = self.creases.splits(seg);
         let nodes = [jets[0].p, jets[1].p];
+        let tolerance = self.options.tolerance;
         let mut from = (0.0, nodes[0]);
+        let mut from_t = 0.0;
         for i in 0..=splits.len() {
+            let to_t = splits.get(i).copied().unwrap_or(1.0);
             let to = match splits.get(i) {
                 Some(&t) => (whole.param(t), map.jet(seg.eval(t)).p),
                 None => (1.0, nodes[1]),
             };
             let branch = map.branch(whole.at(0.5 * (from.0 + to.0)));
+            if let (Some(Class::Affine(m)), Some(part)) = (branch.as_ref().map(Map::class), seg.part(from_t, to_t)) {
+                affine_part(&part.transformed(m), from.1, to.1, tolerance, pieces);
+                (from, from_t) = (to, to_t);
+                continue;
+            }
             let inside;
             let source = match &branch {
                 None => &whole,
@@ -313,19 +369,27 @@ impl Job<'_> {
                     &inside
                 }
             };
-            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<End, Point> {
+            // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
+            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
                 if branch.is_none() && (t == 0.0 || t == 1.0) {
                     let at = if t == 0.0 { seg.start() } else { seg.end() };
-                    source.end_with(t, Some(p), *jet, at)
-                } else {
-                    source.end(t, Some(p))
+                    return Ok((source.end_with(t, Some(p), *jet, at)?, false));
                 }
+                let own = source.end_at(t, None)?;
+                let torn = own.p.distance(p) > TORN * tolerance;
+                Ok((if torn { own } else { End { p, ..own } }, torn))
             };
-            let (e0, e1) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            let ((e0, torn0), (e1, torn1)) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            if torn0 {
+                pieces.push(Piece::Line(Line::new(from.1, e0.p)));
+            }
             let algebra = if certify { Algebra::of(source) } else { None };
-            let mut stepper =
-                step::Stepper { source, slow: &slow, tolerance: self.options.tolerance, algebra, attempts: 0 };
+            let mut stepper = step::Stepper { source, slow: &slow, tolerance, algebra, careful: false, attempts: 0 };
             stepper.cover(e0, e1, pieces, report)?;
+            if torn1 {
+                pieces.push(Piece::Line(Line::new(e1.p, to.1)));
+            }
+            from_t = to_t;
             from = to;
         }
         Ok(())

@@ -21,6 +21,24 @@ const VANISHING: f64 = 1e-9;
 /// off by about the same number of radians, a thousandth of the angle the joints are promised to.
 const BESIDE: f64 = 3e-7;
 
+/// A curve that can be fitted: the image of one segment, or of several in a row.
+pub(super) trait Curve {
+    /// Images at eight parameters. `Err`: the source place where the map is not finite.
+    fn images(&self, t: &Lane) -> Result<Lanes, Point>;
+    /// The image's point and derivative at one parameter.
+    fn image(&self, t: f64) -> (Point, Vec2);
+    /// The break point at `t`.
+    fn end(&self, t: f64) -> Result<End, Point>;
+    /// Places in (t0, t1) that a close look must not miss, besides those spread evenly.
+    fn places(&self, _t0: f64, _t1: f64) -> Vec<f64> {
+        Vec::new()
+    }
+    /// The source's point at `t`, to name in messages.
+    fn at(&self, t: f64) -> Point;
+    /// The curve as the image of one segment, which proofs need.
+    fn single(&self) -> Option<&Source<'_>>;
+}
+
 /// A source segment in its canonical direction under the smooth map that holds on it.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
@@ -97,17 +115,6 @@ impl<'a> Source<'a> {
         let (n, dn) = ((c2 * t + c1) * t + c0, c2 * (2.0 * t) + c1);
         let (w, dw) = ((w2 * t + w1) * t + w0, w2 * (2.0 * t) + w1);
         (dn * w - n * dw) / (w * w)
-    }
-
-    /// The source's point.
-    pub(super) fn at(&self, t: f64) -> Point {
-        match (self.seg, self.w) {
-            (Seg::Arc(a), Some([w0, w1, w2])) if t > 0.0 && t < 1.0 => {
-                let [c0, c1, c2, _] = self.c;
-                a.center + ((c2 * t + c1) * t + c0) / ((w2 * t + w1) * t + w0)
-            }
-            _ => self.seg.eval(t),
-        }
     }
 
     /// The parameter here of what the segment has at `t`.
@@ -192,38 +199,19 @@ impl<'a> Source<'a> {
         out
     }
 
-    /// Images at eight parameters. `Err`: the source place where the map is not finite.
-    #[inline(always)]
-    pub(super) fn images(&self, t: &Lane) -> Result<Lanes, Point> {
-        let mut g = self.points(t);
-        self.map.lanes(&mut g.x, &mut g.y);
-        // One test for all: the sum is finite only if every term is (terms too large to add up are too large to fit).
-        let mut sum = [0.0; 8];
-        for i in 0..8 {
-            sum[i] = g.x[i] + g.y[i];
-        }
-        if sum.iter().sum::<f64>().is_finite() { Ok(g) } else { Err(self.not_finite(t, &g)) }
-    }
-
     #[cold]
     fn not_finite(&self, t: &Lane, g: &Lanes) -> Point {
         let i = (0..8).find(|&i| !(g.x[i] + g.y[i]).is_finite()).unwrap_or(0);
         self.at(t[i])
     }
 
-    /// The image's point and derivative at one parameter.
-    pub(super) fn image(&self, t: f64) -> (Point, Vec2) {
-        let j = self.map.jet(self.at(t));
-        (j.p, j.push(self.deriv(t)))
-    }
-
     /// The break point at `t`. `node` is the image of a source node or crease, shared with the neighbours bit by bit.
-    pub(super) fn end(&self, t: f64, node: Option<Point>) -> Result<End, Point> {
+    pub(super) fn end_at(&self, t: f64, node: Option<Point>) -> Result<End, Point> {
         let at = self.at(t);
         self.end_with(t, node, self.map.jet(at), at)
     }
 
-    /// As [`Source::end`], with the map's jet at the place known.
+    /// As [`Source::end_at`], with the map's jet at the place known.
     pub(super) fn end_with(&self, t: f64, node: Option<Point>, jet: Jet, at: Point) -> Result<End, Point> {
         if !jet.is_finite() {
             return Err(at);
@@ -278,5 +266,42 @@ impl<'a> Source<'a> {
             h *= 30.0;
         }
         Vec2::ZERO
+    }
+}
+
+impl Curve for Source<'_> {
+    #[inline(always)]
+    fn images(&self, t: &Lane) -> Result<Lanes, Point> {
+        let mut g = self.points(t);
+        self.map.lanes(&mut g.x, &mut g.y);
+        // One test for all: the sum is finite only if every term is (terms too large to add up are too large to fit).
+        let mut sum = [0.0; 8];
+        for i in 0..8 {
+            sum[i] = g.x[i] + g.y[i];
+        }
+        if sum.iter().sum::<f64>().is_finite() { Ok(g) } else { Err(self.not_finite(t, &g)) }
+    }
+
+    fn image(&self, t: f64) -> (Point, Vec2) {
+        let j = self.map.jet(self.at(t));
+        (j.p, j.push(self.deriv(t)))
+    }
+
+    fn end(&self, t: f64) -> Result<End, Point> {
+        self.end_at(t, None)
+    }
+
+    fn at(&self, t: f64) -> Point {
+        match (self.seg, self.w) {
+            (Seg::Arc(a), Some([w0, w1, w2])) if t > 0.0 && t < 1.0 => {
+                let [c0, c1, c2, _] = self.c;
+                a.center + ((c2 * t + c1) * t + c0) / ((w2 * t + w1) * t + w0)
+            }
+            _ => self.seg.eval(t),
+        }
+    }
+
+    fn single(&self) -> Option<&Source<'_>> {
+        Some(self)
     }
 }

@@ -1,7 +1,7 @@
 //! Dense checks of a fitted piece against the true image, both ways.
 
 use super::fit::Frame;
-use super::source::{Lane, Lanes, Source};
+use super::source::{Curve, Lane, Lanes};
 use super::split::Slow;
 use kurbo::{Point, Vec2};
 
@@ -27,7 +27,7 @@ impl Candidate {
     }
 
     /// Images at `tau` (shares of the piece), relative to its first point.
-    fn images(&self, source: &Source<'_>, tau: &Lane) -> Result<Lanes, Point> {
+    fn images(&self, source: &impl Curve, tau: &Lane) -> Result<Lanes, Point> {
         let mut t = [0.0; 8];
         for i in 0..8 {
             t[i] = self.param(tau[i]);
@@ -54,7 +54,7 @@ impl Candidate {
 /// The distance between the candidate and the image over its stretch, by many samples, more of them around slow spots.
 /// `feet` are known pairs (share of the piece, foot), sorted, from 0 to 1: first guesses.
 pub(super) fn dense(
-    source: &Source<'_>,
+    source: &impl Curve,
     c: &Candidate,
     feet: &[(f64, f64)],
     slow: &Slow,
@@ -85,6 +85,13 @@ pub(super) fn dense(
             }
         }
     }
+    for chunk in source.places(c.t0, c.t1).chunks(8) {
+        let tau: Lane = std::array::from_fn(|i| (chunk[i.min(chunk.len() - 1)] - c.t0) / (c.t1 - c.t0));
+        let mut s: Lane = tau.map(|t| guess(feet, t));
+        let g = c.images(source, &tau)?;
+        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+        worst = d.iter().copied().fold(worst, f64::max);
+    }
     let worst = worst.sqrt();
     if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
 }
@@ -105,7 +112,7 @@ fn spread(a: f64, b: f64) -> Lane {
 /// Measures the next eight samples; between two whose feet see the cubic turn much, eight more. Returns whether the feet
 /// advance, and the cubic between them is known.
 fn walk(
-    source: &Source<'_>,
+    source: &impl Curve,
     c: &Candidate,
     feet: &[(f64, f64)],
     tau: &Lane,
@@ -153,7 +160,7 @@ fn guess(feet: &[(f64, f64)], tau: f64) -> f64 {
 
 /// Both one-sided distances, with no help from the fit: nearest samples by search, then Newton steps.
 #[cold]
-pub(super) fn thorough(source: &Source<'_>, c: &Candidate, slow: &Slow, tolerance: f64) -> Result<f64, Point> {
+pub(super) fn thorough(source: &impl Curve, c: &Candidate, slow: &Slow, tolerance: f64) -> Result<f64, Point> {
     let mut taus = Vec::with_capacity(THOROUGH + 72);
     taus.extend((0..=THOROUGH).map(|i| i as f64 / THOROUGH as f64));
     for t in slow.all() {

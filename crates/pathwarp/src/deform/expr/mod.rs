@@ -45,11 +45,11 @@ sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b)
         },
         Example {
             what: "A parabola's arch",
-            command: "expr samples/lettering.svg --let 's=2*u-1' --y 'y + h*(s^2 - 1)/2' -o out.svg",
+            command: "expr samples/lettering.svg --let 's=2*u-1' --y 'y + h*(s^2/2 - 0.2)' -o out.svg",
         },
         Example {
             what: "A roof, with its ridge in the middle",
-            command: "expr samples/grid.svg --y 'y + 0.4*abs(x - cx)' -o out.svg",
+            command: "expr samples/grid.svg --y 'y + 0.25*abs(x - cx) - 0.1*h' -o out.svg",
         },
     ],
     laws: &[

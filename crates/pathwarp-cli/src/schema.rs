@@ -1,0 +1,63 @@
+//! `pathwarp schema`: the JSON schema of recipe files, from the registry.
+
+use crate::failure::Failure;
+use crate::{Outcome, common, output};
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::{Kind, Param};
+use serde_json::{Map, Value, json};
+
+pub(crate) fn run(registry: &Registry) -> Result<Outcome, Failure> {
+    let text = serde_json::to_string_pretty(&schema(registry)).map_err(|e| Failure::usage(e.to_string()))? + "\n";
+    output::to_stdout(text.as_bytes())?;
+    Ok(Outcome::Done)
+}
+
+fn schema(registry: &Registry) -> Value {
+    let steps: Vec<Value> = registry.entries().iter().map(|e| step(e.info())).collect();
+    let options: Map<String, Value> =
+        common::recipe_options().map(|(name, help)| (name, json!({ "description": help }))).collect();
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "pathwarp recipe",
+        "type": "object",
+        "required": ["pathwarp", "step"],
+        "additionalProperties": false,
+        "properties": {
+            "pathwarp": { "const": 1, "description": "The version of the format." },
+            "options": { "type": "object", "additionalProperties": false, "properties": options },
+            "step": { "type": "array", "minItems": 1, "items": { "oneOf": steps } },
+        },
+    })
+}
+
+fn step(info: &Info) -> Value {
+    let mut properties = Map::new();
+    properties.insert("deformation".into(), json!({ "const": info.name, "description": info.title }));
+    properties.insert("inverse".into(), json!({ "type": "boolean", "description": "The inverse map." }));
+    properties.extend(info.params.iter().map(|p| (p.name.to_owned(), property(p))));
+    let mut required = vec!["deformation"];
+    required.extend(info.params.iter().filter(|p| p.needed).map(|p| p.name));
+    json!({ "type": "object", "required": required, "additionalProperties": false, "properties": properties })
+}
+
+fn property(p: &Param) -> Value {
+    let one = match p.kind {
+        Kind::Flag => json!({ "type": "boolean" }),
+        Kind::Number | Kind::Length(_) | Kind::Angle => json!({ "type": ["number", "string"] }),
+        Kind::Count => json!({ "type": ["integer", "string"] }),
+        Kind::Choice(words) => json!({ "enum": words }),
+        _ => json!({ "type": "string" }),
+    };
+    let mut v = if p.repeat { json!({ "anyOf": [one, { "type": "array", "items": one }] }) } else { one };
+    v["description"] = json!(p.help);
+    if let Some(d) = p.default {
+        v["default"] = json!(d);
+    }
+    for (key, limit) in [("minimum", p.range.0), ("maximum", p.range.1)] {
+        // Limits in user units say nothing about texts with other units, so only plain numbers carry them.
+        if limit.is_finite() && matches!(p.kind, Kind::Number | Kind::Count) {
+            v[key] = json!(limit);
+        }
+    }
+    v
+}

@@ -1,0 +1,128 @@
+//! A drawing that remembers where it came from: the recipe and the source file, kept in `<metadata>`.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use pathwarp::Error;
+use std::io::{Read as _, Write as _};
+use usvg::roxmltree;
+
+/// The namespace of what is embedded.
+const NAMESPACE: &str = "https://github.com/pathwarp/pathwarp/ns/1";
+/// The largest source that is unpacked again, in bytes.
+const LARGEST: u64 = 1 << 29;
+
+/// What a drawing remembers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    /// The recipe, as text.
+    pub recipe: String,
+    /// The source file's bytes.
+    pub source: Vec<u8>,
+}
+
+impl Origin {
+    /// The drawing with this in its `<metadata>`, in place of what it may have remembered before.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `svg` is not XML.
+    pub fn embed(&self, svg: &str) -> Result<String, Error> {
+        let packed = self.pack().map_err(|e| Error::input("the source", format!("cannot be packed: {e}")))?;
+        let element = format!(
+            "<metadata><pathwarp xmlns=\"{NAMESPACE}\"><recipe>{}</recipe><source encoding=\"gzip base64\">{packed}</source></pathwarp></metadata>",
+            escape(&self.recipe)
+        );
+        let doc = parse(svg)?;
+        let mut out = String::with_capacity(svg.len() + element.len() + 1);
+        if let Some(old) = metadata(&doc) {
+            let range = old.range();
+            out.push_str(&svg[..range.start]);
+            out.push_str(&element);
+            out.push_str(&svg[range.end..]);
+            return Ok(out);
+        }
+        let root = doc.root_element().range();
+        let start = &svg[root.clone()];
+        let end = root.start + opening_end(start).ok_or_else(|| Error::input("the drawing", "its root has no end"))?;
+        if svg[..end].ends_with("/>") {
+            return Err(Error::input("the drawing", "is empty; there is nothing to remember"));
+        }
+        out.push_str(&svg[..end]);
+        out.push('\n');
+        out.push_str(&element);
+        out.push_str(&svg[end..]);
+        Ok(out)
+    }
+
+    /// What `svg` remembers, if it does.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `svg` is not XML, or what it remembers is damaged.
+    pub fn read(svg: &str) -> Result<Option<Self>, Error> {
+        let doc = parse(svg)?;
+        let Some(metadata) = metadata(&doc) else { return Ok(None) };
+        let text = |name: &str| {
+            let node = metadata.descendants().find(|n| n.has_tag_name((NAMESPACE, name)));
+            node.map(|n| n.children().filter_map(|c| c.text()).collect::<String>()).unwrap_or_default()
+        };
+        let damaged = |e: &dyn std::fmt::Display| Error::input("the embedded source", format!("is damaged: {e}"));
+        let packed: String = text("source").split_ascii_whitespace().collect();
+        let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
+        let mut source = Vec::new();
+        flate2::read::GzDecoder::new(&bytes[..]).take(LARGEST).read_to_end(&mut source).map_err(|e| damaged(&e))?;
+        Ok(Some(Self { recipe: text("recipe"), source }))
+    }
+
+    fn pack(&self) -> std::io::Result<String> {
+        let mut z = flate2::GzBuilder::new().mtime(0).write(Vec::new(), flate2::Compression::best());
+        z.write_all(&self.source)?;
+        Ok(STANDARD.encode(z.finish()?))
+    }
+}
+
+fn parse(svg: &str) -> Result<roxmltree::Document<'_>, Error> {
+    let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
+    roxmltree::Document::parse_with_options(svg, options).map_err(|e| Error::input("the drawing", e.to_string()))
+}
+
+/// The `<metadata>` that holds ours.
+fn metadata<'a>(doc: &'a roxmltree::Document<'a>) -> Option<roxmltree::Node<'a, 'a>> {
+    let ours = doc.root_element().descendants().find(|n| n.has_tag_name((NAMESPACE, "pathwarp")))?;
+    ours.parent().filter(|p| p.tag_name().name() == "metadata")
+}
+
+/// Where an opening tag ends: the first `>` outside quotes.
+fn opening_end(element: &str) -> Option<usize> {
+    let mut quote = None;
+    for (i, c) in element.char_indices() {
+        match (quote, c) {
+            (None, '>') => return Some(i + 1),
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(q), c) if q == c => quote = None,
+            _ => {}
+        }
+    }
+    None
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_embedded_comes_back_to_the_byte() {
+        let origin = Origin { recipe: "a = '<&>'\n".into(), source: b"\x00\xffsource".to_vec() };
+        let svg = "<?xml version='1.0'?><svg xmlns='http://www.w3.org/2000/svg' a='>'><path d='M0,0'/></svg>";
+        let with = origin.embed(svg).unwrap();
+        assert_eq!(Origin::read(&with).unwrap().as_ref(), Some(&origin));
+        assert_eq!(Origin::read(svg).unwrap(), None);
+        let newer = Origin { recipe: "b".into(), ..origin };
+        let again = newer.embed(&with).unwrap();
+        assert_eq!(Origin::read(&again).unwrap(), Some(newer));
+        assert_eq!(again.matches("<metadata>").count(), 1);
+        assert!(Origin::read(&with.replace("gzip base64\">", "gzip base64\">!")).is_err());
+    }
+}

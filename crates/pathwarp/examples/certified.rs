@@ -1,0 +1,35 @@
+//! A proof of the error instead of a measurement: the map says that it is made of polynomials, and of what degree.
+//!
+//! `cargo run --example certified`
+
+#![allow(clippy::print_stdout)]
+
+use pathwarp::map::{Algebra, Formula, Real};
+use pathwarp::refit::{Options, warp_path};
+use pathwarp::{Error, Outline};
+
+/// A bulge of degree four.
+struct Bulge;
+
+impl Formula for Bulge {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let (u, v) = (x / 100.0, y / 100.0);
+        let k = (u * u - 1.0) * (v * v - 1.0) * 0.4 + 1.0;
+        (x * k, y * k)
+    }
+
+    // x·u²·v² is of degree five.
+    fn algebra(&self) -> Option<Algebra> {
+        Some(Algebra { degree: 5, rational: false })
+    }
+}
+
+fn main() -> Result<(), Error> {
+    let path = Outline::from_svg("M-80 0A80 80 0 0 1 80 0A80 80 0 0 1 -80 0Z M-60 -60L60 60")
+        .map_err(|e| Error::input("path data", e))?;
+    for certify in [false, true] {
+        let r = warp_path(&path, &Bulge, &Options { certify, ..Options::new(0.01) })?.report;
+        println!("{:?}: {} segments, error at most {:.6}", r.assurance, r.segments_out, r.max_error);
+    }
+    Ok(())
+}

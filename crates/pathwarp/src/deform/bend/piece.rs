@@ -1,0 +1,104 @@
+//! One piece of a bent strip: a piece of the skeleton, and the sides that stand on it.
+
+use super::arclength::ArcLength;
+use super::casteljau::Ribbon;
+use crate::map::Dual;
+use crate::outline::Seg;
+use kurbo::{Point, Vec2};
+
+/// What stands on a piece of skeleton.
+#[derive(Debug, Clone)]
+pub(super) enum Shape {
+    /// F = p + s·t + d·n.
+    Straight { p: Point, t: Vec2, n: Vec2 },
+    /// F = C(u(s)) + d·S with S the unit normal, plus at the ends what brings it to the mitre of a corner.
+    Normals { seg: Seg, table: ArcLength, mitres: [Vec2; 2] },
+    /// The paper's polynomial F(u, v), v = d / unit; u by arc length if there is a table, else s / length.
+    Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
+}
+
+/// A piece: where on the skeleton, and what stands on it.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    /// It holds from this distance on; −∞ for the first of an open skeleton.
+    pub(super) from: f64,
+    /// The distance at which its own begins.
+    pub(super) anchor: f64,
+    /// Its length.
+    pub(super) length: f64,
+    pub(super) shape: Shape,
+}
+
+impl Piece {
+    /// F, ∂F/∂s and ∂F/∂d at distance `s` from the piece's begin and height `d`.
+    pub(super) fn jet(&self, s: f64, d: f64) -> (Point, Vec2, Vec2) {
+        match &self.shape {
+            Shape::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
+            Shape::Normals { seg, table, mitres: [a, b] } => {
+                let Moving { p, t, bend } = moving(seg, table.parameter(s));
+                let share = s / self.length;
+                let side = normal(t) + *a * (1.0 - share) + *b * share;
+                let along = t * (1.0 + bend * d) + (*b - *a) * (d / self.length);
+                (p + side * d, along, side)
+            }
+            Shape::Ribbon { ribbon, unit, table } => {
+                let u = table.as_ref().map_or(s / self.length, |t| t.parameter(s));
+                let [x, y] = ribbon.at(Dual { v: u, x: 1.0, y: 0.0 }, Dual { v: d / unit, x: 0.0, y: 1.0 });
+                let slope = match table {
+                    None => 1.0 / self.length,
+                    Some(_) => {
+                        let [x, y] = ribbon.at(Dual { v: u, x: 1.0, y: 0.0 }, Dual::from(0.0));
+                        1.0 / x.x.hypot(y.x).max(f64::MIN_POSITIVE)
+                    }
+                };
+                (Point::new(x.v, y.v), Vec2::new(x.x, y.x) * slope, Vec2::new(x.y, y.y) / *unit)
+            }
+        }
+    }
+}
+
+/// The way up on the screen for somebody who goes along `t`.
+pub(super) fn normal(t: Vec2) -> Vec2 {
+    Vec2::new(t.y, -t.x)
+}
+
+/// A point moving along a piece: where, which way, and how it turns. With N the [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
+pub(super) struct Moving {
+    pub(super) p: Point,
+    /// Unit tangent.
+    pub(super) t: Vec2,
+    /// Curvature, positive where the curve turns clockwise on the screen: away from the side the normal shows to.
+    pub(super) bend: f64,
+}
+
+/// The moving frame at a parameter.
+pub(super) fn moving(seg: &Seg, u: f64) -> Moving {
+    /// Slower than this share of the piece's size is standing still: the direction is taken a little further in.
+    const STILL: f64 = 1e-9;
+    const ASIDE: f64 = 1e-5;
+    let b = seg.bounding_box();
+    let p = seg.eval(u);
+    let mut at = u;
+    if seg.deriv(u).hypot() <= STILL * (b.width() + b.height()) {
+        at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
+    }
+    let (v, a) = (seg.deriv(at), second(seg, at));
+    let speed = v.hypot();
+    Moving { p, t: v / speed, bend: v.cross(a) / speed.powi(3) }
+}
+
+/// The second derivative.
+fn second(seg: &Seg, u: f64) -> Vec2 {
+    match seg {
+        Seg::Line(_) => Vec2::ZERO,
+        Seg::Quad(q) => ((q.p2 - q.p1) - (q.p1 - q.p0)) * 2.0,
+        Seg::Cubic(c) => {
+            let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
+            ((d1 - d0) * (1.0 - u) + (d2 - d1) * u) * 6.0
+        }
+        Seg::Arc(a) => {
+            let (sin, cos) = (a.start + a.sweep * u).sin_cos();
+            (a.a * cos + a.b * sin) * -(a.sweep * a.sweep)
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! The skeleton: a path's pieces in a row, measured, turned the way it was meant, and joined.
+
+use super::arclength::ArcLength;
+use super::casteljau::Ribbon;
+use super::piece::{Moving, Piece, Shape, moving, normal};
+use crate::anchors;
+use crate::error::{Error, show};
+use crate::outline::{Seg, Subpath};
+use crate::param::NamedPath;
+use kurbo::{Point, Vec2};
+
+/// Below this angle (radians) a joint is smooth.
+const SMOOTH: f64 = 1e-6;
+/// Below this one nobody sees the corner.
+const UNSEEN: f64 = 5e-3;
+/// 1 + cos of the turn beyond which a mitre would be longer than eight times the height.
+const SHARPEST: f64 = 1.0 / 32.0;
+
+/// The measured pieces of a path.
+pub(super) struct Skeleton {
+    segs: Vec<(Seg, ArcLength)>,
+    pub(super) closed: bool,
+    pub(super) length: f64,
+    name: String,
+}
+
+/// A joint between two pieces that do not go on straight.
+pub(super) struct Corner {
+    pub(super) at: Point,
+    /// Radians.
+    pub(super) turn: f64,
+}
+
+/// The pieces with their sides, and what is to be said about their joints.
+pub(super) struct Joined {
+    pub(super) pieces: Vec<Piece>,
+    pub(super) corners: Vec<Corner>,
+    pub(super) notes: Vec<String>,
+}
+
+impl Skeleton {
+    /// Takes the only connected run of `path`. Unless `as_drawn`, an open one is run left to right, a closed one clockwise (up
+    /// is then outside). `reverse` turns it round after that.
+    pub(super) fn new(path: &NamedPath, as_drawn: bool, reverse: bool) -> Result<Self, Error> {
+        let mut sub = anchors::only_subpath(path, "a single connected run of them")?;
+        let backwards = if sub.closed { turns_left(&sub) } else { sub.end().x < sub.start.x };
+        if reverse != (backwards && !as_drawn) {
+            sub = sub.reversed();
+        }
+        let measured = sub.segs.into_iter().map(|s| (s, ArcLength::new(&move |u| s.deriv(u).hypot())));
+        let measured: Vec<_> = measured.collect();
+        let length: f64 = measured.iter().map(|(_, t)| t.length()).sum();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(Error::usage("along", path.name.clone(), "has no length"));
+        }
+        let segs = measured.into_iter().filter(|(_, t)| t.length() > 1e-12 * length).collect();
+        Ok(Self { segs, closed: sub.closed, length, name: path.name.clone() })
+    }
+
+    pub(super) fn has_arcs(&self) -> bool {
+        self.segs.iter().any(|(s, _)| matches!(s, Seg::Arc(_)))
+    }
+
+    /// Arcs as cubics within `tolerance`, lines as quadratics if `raise`: what the paper's handles can stand on.
+    pub(super) fn polynomial(mut self, tolerance: f64, raise: bool) -> Self {
+        let segs = std::mem::take(&mut self.segs);
+        for (seg, table) in segs {
+            match seg {
+                Seg::Arc(a) => self.segs.extend(a.to_cubics(tolerance).map(|c| {
+                    let s = Seg::Cubic(c);
+                    (s, ArcLength::new(&move |u| s.deriv(u).hypot()))
+                })),
+                Seg::Line(l) if raise => {
+                    self.segs.push((Seg::Quad(kurbo::QuadBez::new(l.p0, l.p0.midpoint(l.p1), l.p1)), table));
+                }
+                _ => self.segs.push((seg, table)),
+            }
+        }
+        self.length = self.segs.iter().map(|(_, t)| t.length()).sum();
+        self
+    }
+
+    /// The distance of the highest point on the screen.
+    pub(super) fn top(&self) -> f64 {
+        /// Samples a piece: this decides where artwork stands, not how it is bent.
+        const SAMPLES: u32 = 256;
+        let (mut best, mut start) = ((f64::INFINITY, 0.0), 0.0);
+        for (seg, table) in &self.segs {
+            for i in 0..=SAMPLES {
+                let s = table.length() * f64::from(i) / f64::from(SAMPLES);
+                let y = seg.eval(table.parameter(s)).y;
+                if y < best.0 {
+                    best = (y, start + s);
+                }
+            }
+            start += table.length();
+        }
+        best.1
+    }
+
+    /// Joints: the pieces before and after each.
+    fn joints(&self) -> impl Iterator<Item = (usize, usize)> {
+        let n = self.segs.len();
+        (0..if self.closed { n } else { n - 1 }).map(move |i| (i, (i + 1) % n))
+    }
+
+    /// Unit normals at every piece's ends, brought to the mitre at corners; and the corners.
+    fn sides(&self) -> Result<(Vec<[Vec2; 2]>, Vec<Corner>), Error> {
+        let ends: Vec<[Moving; 2]> = self.segs.iter().map(|(s, _)| [moving(s, 0.0), moving(s, 1.0)]).collect();
+        let mut sides: Vec<[Vec2; 2]> = ends.iter().map(|[a, b]| [normal(a.t), normal(b.t)]).collect();
+        let mut corners = Vec::new();
+        for (i, j) in self.joints() {
+            let (n, m) = (sides[i][1], sides[j][0]);
+            let turn = n.cross(m).atan2(n.dot(m));
+            if turn.abs() <= SMOOTH {
+                continue;
+            }
+            let at = ends[j][0].p;
+            if 1.0 + n.dot(m) < SHARPEST {
+                let problem = format!("turns back on itself at {}: artwork cannot follow; round that corner", show(at));
+                return Err(Error::usage("along", self.name.clone(), problem));
+            }
+            if turn.abs() > UNSEEN {
+                corners.push(Corner { at, turn });
+            }
+            let mitre = (n + m) / (1.0 + n.dot(m));
+            (sides[i][1], sides[j][0]) = (mitre, mitre);
+        }
+        Ok((sides, corners))
+    }
+
+    /// Sides are unit normals.
+    pub(super) fn with_normals(self) -> Result<Joined, Error> {
+        let (sides, corners) = self.sides()?;
+        let shapes = self.segs.iter().zip(sides).map(|((seg, table), [a, b])| {
+            let (first, last) = (moving(seg, 0.0), moving(seg, 1.0));
+            let mitres = [a - normal(first.t), b - normal(last.t)];
+            let shape = match seg {
+                Seg::Line(_) if mitres == [Vec2::ZERO; 2] => {
+                    Shape::Straight { p: first.p, t: first.t, n: normal(first.t) }
+                }
+                _ => Shape::Normals { seg: *seg, table: table.clone(), mitres },
+            };
+            (shape, table.length())
+        });
+        let pieces = self.in_a_row(shapes.collect());
+        Ok(Joined { pieces, corners, notes: Vec::new() })
+    }
+
+    /// Sides are the paper's handles: `given` for every piece, or the unit normals of the control polygon's legs times `unit`.
+    pub(super) fn with_handles(
+        self,
+        given: Option<&[Vec<Vec<Vec2>>]>,
+        unit: f64,
+        by_arc_length: bool,
+    ) -> Result<Joined, Error> {
+        let (sides, corners) = if given.is_some() { (Vec::new(), Vec::new()) } else { self.sides()? };
+        if let Some(g) = given.filter(|g| g.len() != self.segs.len()) {
+            let problem = format!("has handles for {} pieces; the skeleton has {}", g.len(), self.segs.len());
+            return Err(Error::input("--handles", problem));
+        }
+        let mut ribbons = Vec::with_capacity(self.segs.len());
+        for (i, (seg, _)) in self.segs.iter().enumerate() {
+            let points = control_points(seg);
+            let degree = points.len() - 1;
+            let levels = match given {
+                Some(g) => g[i].clone(),
+                None => vec![legs(&points, sides[i]).into_iter().map(|n| n * unit).collect()],
+            };
+            let ribbon = Ribbon::new(points, &levels).ok_or_else(|| {
+                let wanted: Vec<String> = (1..=degree).rev().map(|n| n.to_string()).collect();
+                let problem = format!(
+                    "piece {} has degree {degree}: its levels need {} handles; it has {:?}",
+                    i + 1,
+                    wanted.join(", "),
+                    levels.iter().map(Vec::len).collect::<Vec<_>>()
+                );
+                Error::input("--handles", problem)
+            })?;
+            ribbons.push(ribbon);
+        }
+        let mut notes = Vec::new();
+        for (i, j) in self.joints() {
+            let (a, b) = (ribbons[i].side_at_end(1), ribbons[j].side_at_end(0));
+            let at = self.segs[j].0.start();
+            if (a - b).hypot() > 1e-6 * (a.hypot() + b.hypot()) {
+                let problem = format!(
+                    "the handles on both sides of the joint at {} differ: {:.6},{:.6} and {:.6},{:.6}; the artwork would tear",
+                    show(at),
+                    a.x,
+                    a.y,
+                    b.x,
+                    b.y
+                );
+                return Err(Error::input("--handles", problem));
+            }
+        }
+        let shapes = self.segs.iter().zip(ribbons).map(|((_, table), ribbon)| {
+            let length = table.length();
+            (Shape::Ribbon { ribbon, unit, table: by_arc_length.then(|| table.clone()) }, length)
+        });
+        let shapes: Vec<_> = shapes.collect();
+        let joints: Vec<_> = self.joints().collect();
+        let pieces = self.in_a_row(shapes);
+        // The open ends' straight continuations are pieces too.
+        let first = usize::from(!self.closed);
+        for (i, j) in joints {
+            notes.push(continuity(&pieces[first + i], &pieces[first + j], unit));
+        }
+        Ok(Joined { pieces, corners, notes })
+    }
+
+    /// Pieces one after another; an open skeleton goes on straight at both ends.
+    fn in_a_row(&self, shapes: Vec<(Shape, f64)>) -> Vec<Piece> {
+        let mut pieces = Vec::with_capacity(shapes.len() + 2);
+        let mut at = 0.0;
+        for (shape, length) in shapes {
+            pieces.push(Piece { from: at, anchor: at, length, shape });
+            at += length;
+        }
+        let Some((first, last)) = pieces.first().zip(pieces.last()) else { return pieces };
+        if self.closed {
+            return pieces;
+        }
+        let straight = |piece: &Piece, s: f64, t: Vec2| {
+            let (p, _, n) = piece.jet(s, 0.0);
+            Shape::Straight { p, t, n }
+        };
+        let (t0, t1) = (moving(&self.segs[0].0, 0.0).t, moving(&self.segs[self.segs.len() - 1].0, 1.0).t);
+        let (before, after) = (straight(first, 0.0, t0), straight(last, last.length, t1));
+        if !matches!(last.shape, Shape::Straight { .. }) {
+            pieces.push(Piece { from: at, anchor: at, length: 1.0, shape: after });
+        }
+        if matches!(pieces[0].shape, Shape::Straight { .. }) {
+            pieces[0].from = f64::NEG_INFINITY;
+        } else {
+            pieces.insert(0, Piece { from: f64::NEG_INFINITY, anchor: 0.0, length: 1.0, shape: before });
+        }
+        pieces
+    }
+}
+
+/// Whether a closed run goes counter-clockwise on the screen: twice its area, y down, is negative.
+fn turns_left(sub: &Subpath) -> bool {
+    /// Chords a piece.
+    const CHORDS: u32 = 32;
+    let chord = |s: &Seg, i: u32| {
+        let at = |i: u32| s.eval(f64::from(i) / f64::from(CHORDS)) - sub.start;
+        at(i).cross(at(i + 1))
+    };
+    sub.segs.iter().map(|s| (0..CHORDS).map(|i| chord(s, i)).sum::<f64>()).sum::<f64>() < 0.0
+}
+
+fn control_points(seg: &Seg) -> Vec<Point> {
+    match seg {
+        Seg::Line(s) => vec![s.p0, s.p1],
+        Seg::Quad(s) => vec![s.p0, s.p1, s.p2],
+        other => {
+            let c = other.to_cubic();
+            vec![c.p0, c.p1, c.p2, c.p3]
+        }
+    }
+}
+
+/// Unit normals of the control polygon's legs, the outer ones as given (they may be mitred); a leg without length has its
+/// neighbour's.
+fn legs(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
+    let n = points.len() - 1;
+    let size: f64 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
+    let mut out: Vec<Vec2> = Vec::with_capacity(n);
+    for (i, p) in points.windows(2).enumerate() {
+        let leg = p[1] - p[0];
+        let own = (leg.hypot() > 1e-9 * size).then(|| normal(leg / leg.hypot()));
+        out.push(match own {
+            _ if i == 0 => ends[0],
+            _ if i == n - 1 => ends[1],
+            Some(own) => own,
+            None => (ends[0] + ends[1]) * 0.5,
+        });
+    }
+    out
+}
+
+/// What the joint of two pieces is like: the paper's conditions (4) and (5), in distances instead of parameters.
+fn continuity(a: &Piece, b: &Piece, unit: f64) -> String {
+    let ((p, a0, _), (_, a1, _)) = (a.jet(a.length, 0.0), a.jet(a.length, unit));
+    let ((_, b0, _), (_, b1, _)) = (b.jet(0.0, 0.0), b.jet(0.0, unit));
+    let same = |a: Vec2, b: Vec2| (a - b).hypot() <= 1e-6 * (a.hypot() + b.hypot());
+    let along = |a: Vec2, b: Vec2| a.cross(b).abs() <= SMOOTH * a.hypot() * b.hypot() && a.dot(b) > 0.0;
+    let what = if same(a0, b0) && same(a1, b1) {
+        "C¹: everything goes on smoothly"
+    } else if along(a0, b0) && along(a1, b1) {
+        "G¹: directions go on, but lengths are stretched differently on both sides"
+    } else if along(a0, b0) {
+        "G¹ on the skeleton only: beside it, lines along the skeleton have a kink (handles condition)"
+    } else {
+        "C⁰: a corner"
+    };
+    format!("joint at {} is {what}", show(p))
+}

@@ -1,0 +1,159 @@
+use super::*;
+use crate::check;
+use crate::outline::Seg;
+use crate::param::Args;
+
+#[test]
+fn is_sound() {
+    let faults = check::entry(&Bend);
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
+    Bend.build_from(&Args::from_pairs(pairs), &check::frame())
+}
+
+fn with_handles(pairs: &[(&str, &str)], json: &str) -> Result<Built, Error> {
+    let mut args = Args::from_pairs(pairs);
+    args.push("handles", "h.json");
+    args.resolve_files(INFO.params, |_| Ok(json.to_owned()))?;
+    Bend.build_from(&args, &check::frame())
+}
+
+/// Derivatives against differences and branches against the map, on every kind of skeleton, away from the joints.
+#[test]
+fn jets_are_right_on_every_kind_of_skeleton() {
+    for along in [
+        "M0,60 C30,20 70,90 100,50",
+        "M0,60 A60,40 20 0 1 100,50",
+        "0,40 30,60 70,50 110,90",
+        "M10,50 A40,40 0 1 1 90,50 A40,40 0 1 1 10,50 Z",
+        "M0,60 C0,60 50,0 100,50 C120,60 140,60 140,60",
+    ] {
+        for by in ["arclength", "parameter"] {
+            let m = build(&[("along", along), ("by", by), ("stretch", "fit"), ("width", "0.2")]).unwrap().map;
+            for i in 0..40 {
+                let p = Point::new(-20.1 + 3.7 * f64::from(i), 30.0 + f64::from(i));
+                let (j, h) = (m.jet(p), 1e-5);
+                let dx = (m.point(p + Vec2::new(h, 0.0)) - m.point(p - Vec2::new(h, 0.0))) / (2.0 * h);
+                let dy = (m.point(p + Vec2::new(0.0, h)) - m.point(p - Vec2::new(0.0, h))) / (2.0 * h);
+                let off = (dx - j.dx).hypot() + (dy - j.dy).hypot();
+                assert!(off < 1e-5 * (1.0 + j.dx.hypot()), "{along} {by} {p:?} {off:e}: {j:?} {dx:?}");
+                let b = m.branch(p).unwrap().jet(p);
+                assert!(b.p.distance(j.p) < 1e-12 && (b.dx - j.dx).hypot() < 1e-12);
+            }
+        }
+    }
+}
+
+/// Equal steps of x are equal distances along the skeleton, and heights are heights.
+#[test]
+fn by_arc_length_nothing_is_stretched_on_the_skeleton() {
+    let m = build(&[("along", "M0,60 C30,0 60,120 100,50 S 150,0 170,70"), ("align", "start")]).unwrap().map;
+    for i in 0..=100 {
+        let x = f64::from(i);
+        let j = m.jet(Point::new(x, 50.0));
+        assert!((j.dx.hypot() - 1.0).abs() < 1e-12 && (j.dy.hypot() - 1.0).abs() < 1e-12, "{x}: {j:?}");
+        assert!(j.dx.dot(j.dy).abs() < 1e-12);
+    }
+}
+
+/// Neighbouring pieces meet on every joint, corners included, at any height.
+#[test]
+fn joints_do_not_tear() {
+    for by in ["arclength", "parameter"] {
+        let along = "M0,50 L40,20 Q60,10 70,40 C80,70 100,80 120,60 A30,30 0 0 1 150,60";
+        let b = build(&[("along", along), ("by", by), ("align", "start")]).unwrap();
+        assert!(b.warnings.iter().any(|w| w.contains("corner")), "{:?}", b.warnings);
+        let mut creases = Creases::default();
+        b.map.creases(&mut creases);
+        assert!(creases.items().len() >= 4);
+        for c in creases.items() {
+            let Level::Line { a, c, .. } = c.level else { panic!("uprights are lines") };
+            for y in [0.0, 30.0, 77.0] {
+                let at = |dx: f64| b.map.point(Point::new(-c / a + dx, y));
+                assert!(at(-1e-9).distance(at(1e-9)) < 1e-6, "{by} {c} {y}: {:?} {:?}", at(-1e-9), at(1e-9));
+            }
+        }
+    }
+}
+
+#[test]
+fn folds_are_told_with_the_radius() {
+    // A circle of radius 30, up outside: the bottom of the box reaches 50 inwards.
+    let ring = "M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z";
+    let w = build(&[("along", ring)]).unwrap().warnings;
+    assert!(w.iter().any(|w| w.contains("folds") && w.contains("more than 30.0000")), "{w:?}");
+    let w = build(&[("along", ring), ("baseline", "0")]).unwrap().warnings;
+    assert!(w.is_empty(), "{w:?}");
+    let w = build(&[("along", "M0,0 L50,0")]).unwrap().warnings;
+    assert!(w.iter().any(|w| w.contains("straight on")), "{w:?}");
+}
+
+#[test]
+fn a_closed_skeleton_closes_and_runs_on() {
+    let ring = "M20,50 A30,30 0 1 0 80,50 A30,30 0 1 0 20,50 Z";
+    let m = build(&[("along", ring), ("stretch", "fit"), ("baseline", "0")]).unwrap().map;
+    for y in [20.0, 100.0] {
+        assert!(m.point(Point::new(0.0, y)).distance(m.point(Point::new(100.0, y))) < 1e-10);
+        assert!(m.point(Point::new(-30.0, y)).distance(m.point(Point::new(70.0, y))) < 1e-10);
+    }
+    // The middle is on top though the ring starts at the left and was drawn counter-clockwise, and up is outside.
+    assert!(m.point(Point::new(50.0, 100.0)).distance(Point::new(50.0, 20.0)) < 0.2);
+    assert!(m.point(Point::new(50.0, 50.0)).y < 0.0);
+}
+
+#[test]
+fn the_polynomial_mode_has_exact_images() {
+    let m = build(&[("along", "M0,60 C30,20 70,90 100,50 S150,0 200,60"), ("by", "parameter"), ("stretch", "fit")])
+        .unwrap()
+        .map;
+    let source = RationalBezier::from_seg(&Seg::Line(kurbo::Line::new((5.0, 10.0), (40.0, 90.0)))).unwrap();
+    let image = m.branch(Point::new(20.0, 50.0)).unwrap().image_of(&source).unwrap();
+    assert_eq!(image.degree(), 3);
+    for i in 0..=10 {
+        let t = f64::from(i) / 10.0;
+        assert!(image.eval(t).distance(m.point(source.eval(t))) < 1e-10);
+    }
+}
+
+/// Handles as in a file: the box's top edge lies where the handles end, the joint conditions are told.
+#[test]
+fn handles_from_a_file() {
+    let along = ("along", "M0,100 Q50,60 100,100");
+    let args = [along, ("stretch", "fit"), ("by", "parameter"), ("baseline", "0")];
+    let m = with_handles(&args, r#"{"pieces":[{"levels":[[[-10,-50],[20,-70]],[[5,5]]]}]}"#).unwrap().map;
+    let near = |p: (f64, f64), q: (f64, f64)| m.point(p.into()).distance(q.into()) < 1e-12;
+    assert!(
+        near((0.0, 100.0), (0.0, 100.0)) && near((100.0, 100.0), (100.0, 100.0)) && near((50.0, 100.0), (50.0, 80.0))
+    );
+    assert!(near((0.0, 0.0), (-5.0, 55.0)) && near((100.0, 0.0), (125.0, 35.0)) && near((50.0, 0.0), (60.0, 25.0)));
+
+    let two = [("along", "M0,50 Q25,20 50,50 T100,50"), ("stretch", "fit"), ("by", "parameter")];
+    let smooth = r#"{"pieces":[{"levels":[[[0,-9],[4,-12]]]},{"levels":[[[4,-12],[8,-15]]]}]}"#;
+    let notes = with_handles(&two, smooth).unwrap().notes.join("\n");
+    assert!(notes.contains("joint at 50,50 is C¹"), "{notes}");
+    let kinked = r#"{"pieces":[{"levels":[[[0,-9],[4,-12]]]},{"levels":[[[4,-12],[0,-15]]]}]}"#;
+    let notes = with_handles(&two, kinked).unwrap().notes.join("\n");
+    assert!(notes.contains("on the skeleton only"), "{notes}");
+
+    for (json, part) in [
+        (r#"{"pieces":[{"levels":[[[0,-9],[4,-12]]]},{"levels":[[[9,-12],[0,-15]]]}]}"#, "tear"),
+        (r#"{"pieces":[{"levels":[[[0,-9]]]},{"levels":[[[0,-9]]]}]}"#, "need 2, 1 handles"),
+        (r#"{"pieces":[]}"#, "for 0 pieces"),
+        (r#"{"piece":[]}"#, "unknown field"),
+        ("[", "is no file of handles"),
+    ] {
+        let e = with_handles(&two, json).err().unwrap().to_string();
+        assert!(e.contains(part), "{e}");
+    }
+    assert!(with_handles(&[("along", "M0,50 A50,50 0 0 1 100,50")], smooth).is_err());
+}
+
+#[test]
+fn skeletons_that_cannot_be_followed_are_refused() {
+    let fault = |along: &str| build(&[("along", along)]).err().unwrap().to_string();
+    assert!(fault("M0,0 L50,0 L0,0.1").contains("turns back on itself at 50,0"));
+    assert!(fault("M0,0 L5,0 M6,0 L9,9").contains("single connected run"));
+    assert!(fault("M5,5 L5,5").contains("no length"));
+}

@@ -1,0 +1,210 @@
+//! Free-form deformation of degree 1×n with a closed-form inverse.
+//!
+//! Two rows of n + 1 freely placed points face each other; P(s,t) = (1−s)·P₀(t) + s·P₁(t), with weights that make the map one
+//! to one and its inverse rational (T. W. Sederberg, J. Zheng, *Birational 2D free-form deformation of degree 1×n*, CAGD
+//! 2016, equations 11-13 and 26): see [`Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
+//! CAGD 2015.
+
+use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use crate::error::{Error, GeometryError};
+use crate::lattice_file::{MOST_CELLS, MOST_DEGREE};
+use crate::map::{AffineMap, Birational, Class, Map, Rows};
+use crate::outline::Seg;
+use crate::param::{Kind, Param, Settings};
+use kurbo::{BezPath, Point};
+use std::sync::Arc;
+
+pub(super) struct BirationalDeformation;
+
+static INFO: Info = Info {
+    name: "birational",
+    title: "bend between two rows of points, with verticals (or horizontals) kept straight",
+    group: "Envelopes",
+    about: "Draw where the top and the bottom of the artwork are to run, as two rows of equally many points from left to right: \
+verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \
+then horizontals stay straight. The rows are curves that begin and end in their first and last points and are drawn towards the \
+others, as with any Bézier curve.\n\nThe result never folds over, and undoing it is exact and fast: no search is needed.\n\n\
+Each row's inner points must lie between the lines that join the rows' ends; --allow-poles does without that where the artwork \
+keeps off the places where the map is infinite. With --spline, rows of many points become B-splines and bend locally.",
+    source: "T. W. Sederberg, J. Zheng, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 2016",
+    params: &[
+        Param::path(
+            "top",
+            "The top row, left to right: points x,y x,y …, or a path (its anchors; of a single curve its control points).",
+        ),
+        Param::path("bottom", "The bottom row, left to right, with as many points."),
+        Param::path("left", "Instead of top and bottom, the left row, top to bottom."),
+        Param::path("right", "The right row, top to bottom, with as many points."),
+        Param::new(
+            "spline",
+            Kind::Count,
+            "Take the rows for B-splines of this degree; they need at least one point more than that.",
+        )
+        .within(1.0, MOST_DEGREE as f64),
+        Param::new(
+            "region",
+            Kind::Text("artwork|X,Y,W,H"),
+            "The box that is laid between the rows; the map runs on outside it.",
+        )
+        .default("artwork"),
+        Param::flag(
+            "allow-poles",
+            "Accept points outside the lines that join the rows' ends: the map is infinite somewhere then.",
+        ),
+    ],
+    demo: &[("top", "0,10 30,-25 70,30 100,5"), ("bottom", "5,90 35,110 60,70 95,100")],
+    examples: &[
+        Example {
+            what: "A word on a wave, its uprights kept straight",
+            command: "birational samples/lettering.svg --top '0%,20% 30%,-60% 60%,90% 100%,0%' --bottom '0%,100% 35%,60% 60%,170% 100%,100%' -o out.svg",
+        },
+        Example {
+            what: "A logo like a flag blown from the side: horizontals stay straight",
+            command: "birational samples/logo.svg --left '0%,0% -20%,40% 20%,70% 0%,100%' --right '100%,5% 80%,40% 120%,70% 100%,110%' -o out.svg --preview out.png",
+        },
+        Example {
+            what: "Many points: B-spline rows",
+            command: "birational samples/grid.svg --spline 3 --top '0%,0% 20%,-20% 40%,10% 60%,-10% 80%,20% 100%,0%' --bottom '0%,100% 20%,90% 40%,115% 60%,90% 80%,110% 100%,100%' -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("top", "0,0 100,0"), ("bottom", "0,100 100,100")]),
+        Law::Identity(&[("left", "0,0 0,25 0,50 0,75 0,100"), ("right", "100,0 100,25 100,50 100,75 100,100")]),
+        Law::Identity(&[
+            ("spline", "2"),
+            ("top", "10,10 20,10 40,10 50,10"),
+            ("bottom", "10,90 20,90 40,90 50,90"),
+            ("region", "10,10,40,80"),
+        ]),
+        // A path that is one curve means its control points.
+        Law::Same(
+            &[("top", "M0,0 C30,20 60,-20 100,0"), ("bottom", "0,90 30,90 60,80 100,100")],
+            &[("top", "0,0 30,20 60,-20 100,0"), ("bottom", "0,90 30,90 60,80 100,100")],
+        ),
+        Law::KeepsLinesAlong(BENT, (0.0, 1.0)),
+        Law::KeepsLinesAlong(&[("left", "0,0 -20,25 15,55 5,90"), ("right", "80,-10 100,30 70,60 95,110")], (1.0, 0.0)),
+        Law::KeepsLinesAlong(
+            &[("spline", "2"), ("top", "0,0 30,20 60,-20 100,0"), ("bottom", "0,90 30,90 60,80 100,100")],
+            (0.0, 1.0),
+        ),
+    ],
+    cases: &[
+        // Corners on corners.
+        Case { args: BENT, at: (0.0, 0.0), to: (0.0, 0.0), tolerance: 1e-12 },
+        Case { args: BENT, at: (100.0, 100.0), to: (95.0, 110.0), tolerance: 1e-12 },
+        // Between two points that face each other on parallel end lines all weights are 1: the middle of a quadratic.
+        Case {
+            args: &[("top", "0,0 50,-40 100,0"), ("bottom", "0,100 50,100 100,100")],
+            at: (50.0, 0.0),
+            to: (50.0, -20.0),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+const BENT: super::Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,100 60,70 95,110")];
+
+impl Deformation for BirationalDeformation {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let [top, bottom, left, right] = ["top", "bottom", "left", "right"].map(|n| row(s, n));
+        let (rows, names, first, second) = match (top?, bottom?, left?, right?) {
+            (Some(a), Some(b), None, None) => (Rows::TopBottom, ["--top", "--bottom"], a, b),
+            (None, None, Some(a), Some(b)) => (Rows::LeftRight, ["--left", "--right"], a, b),
+            (None, None, None, None) => {
+                return Err(Error::Missing {
+                    param: "--top and --bottom".into(),
+                    hint: "two rows of equally many points, left to right (or --left and --right, top to bottom)"
+                        .into(),
+                });
+            }
+            (None, Some(_), None, None) => return Err(lone("--top", "--bottom")),
+            (Some(_), None, None, None) => return Err(lone("--bottom", "--top")),
+            (None, None, None, Some(_)) => return Err(lone("--left", "--right")),
+            (None, None, Some(_), None) => return Err(lone("--right", "--left")),
+            _ => {
+                let name = if s.given("left") { "left" } else { "right" };
+                return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with --top and --bottom"));
+            }
+        };
+        let counts = |expected| GeometryError::AnchorCount {
+            path: names[1].into(),
+            found: second.len(),
+            anchors: second.iter().copied().take(8).collect(),
+            expected,
+        };
+        if first.len() != second.len() {
+            return Err(counts("as many as the facing row").into());
+        }
+        let spline = s.number_if("spline")?.map(|d| d as usize);
+        let (least, most) = spline.map_or((2, MOST_DEGREE + 1), |d| (d + 1, d + MOST_CELLS));
+        if second.len() < least {
+            return Err(
+                counts(if spline.is_some() { "at least one more than the degree" } else { "at least 2" }).into()
+            );
+        }
+        if second.len() > most {
+            return Err(counts(if spline.is_some() {
+                "at most 64 more than the degree"
+            } else {
+                "at most 11; take --spline 3 for more"
+            })
+            .into());
+        }
+        let region = s.rect_if("region")?.unwrap_or(s.frame().rect);
+        if !(region.width() > 0.0 && region.height() > 0.0) {
+            return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
+        }
+        let allow_poles = s.flag("allow-poles")?;
+        let map = Birational::new(region, rows, [&first, &second], spline, allow_poles, names)?;
+        let mut notes = Vec::new();
+        for (k, [a, b]) in map.monoids().enumerate() {
+            notes.push(format!("weights of piece {}: {:.6?} and {:.6?}", k + 1, a.weights(), b.weights()));
+        }
+        let overlays = vec![
+            Overlay { role: Role::Base, path: kurbo::Shape::to_path(&region, 0.0) },
+            Overlay { role: Role::Cage, path: net(&first, &second) },
+        ];
+        let map: Arc<dyn Map> = match map.class() {
+            Class::Affine(m) => Arc::new(AffineMap(m)),
+            _ => Arc::new(map),
+        };
+        Ok(Built { notes, overlays, ..Built::new(map) })
+    }
+}
+
+fn lone(missing: &str, given: &str) -> Error {
+    Error::Missing { param: missing.into(), hint: format!("the row that faces {given}, with as many points") }
+}
+
+/// A row's points: the anchors of a path, or the control points of a single curve.
+fn row(s: &Settings<'_>, name: &str) -> Result<Option<Vec<Point>>, Error> {
+    let Some(path) = s.path_if(name)? else { return Ok(None) };
+    let points = match path.outline.subpaths.as_slice() {
+        [one] if one.segs.len() == 1 => match one.segs[0] {
+            Seg::Quad(q) => vec![q.p0, q.p1, q.p2],
+            Seg::Cubic(c) => vec![c.p0, c.p1, c.p2, c.p3],
+            _ => one.anchors(),
+        },
+        all => all.iter().flat_map(crate::outline::Subpath::anchors).collect(),
+    };
+    Ok(Some(points))
+}
+
+/// Both rows, and the lines between facing points.
+fn net(a: &[Point], b: &[Point]) -> BezPath {
+    let mut p = BezPath::new();
+    for row in [a, b] {
+        for (k, q) in row.iter().enumerate() {
+            if k == 0 { p.move_to(*q) } else { p.line_to(*q) }
+        }
+    }
+    for (a, b) in a.iter().zip(b) {
+        p.move_to(*a);
+        p.line_to(*b);
+    }
+    p
+}

@@ -1,0 +1,141 @@
+//! Lattices as files.
+//!
+//! ```json
+//! {
+//!   "degree": [2, 1],
+//!   "cells": [1, 1],
+//!   "region": [20, 20, 200, 100],
+//!   "points": [
+//!     [[20, 20], [120, 45], [220, 20]],
+//!     [[20, 120], [120, 95, 2], [220, 120]]
+//!   ]
+//! }
+//! ```
+//!
+//! `points` are rows from the top, each from left to right: x, y and, unless it is 1, the weight, in user units. A row has
+//! degree + cells points; `cells` above 1 mean uniform clamped B-splines, and may stay away otherwise. `region` is x, y, width
+//! and height of the box the lattice works on; without it the box is the artwork's.
+
+use crate::error::Error;
+use crate::map::Lattice;
+use kurbo::{Point, Rect};
+use serde::Deserialize;
+
+/// The highest degree.
+pub(crate) const MOST_DEGREE: usize = 10;
+/// The most Bézier pieces along an axis.
+pub(crate) const MOST_CELLS: usize = 64;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    degree: [usize; 2],
+    #[serde(default = "one")]
+    cells: [usize; 2],
+    region: Option<[f64; 4]>,
+    points: Vec<Vec<Vec<f64>>>,
+}
+
+fn one() -> [usize; 2] {
+    [1, 1]
+}
+
+/// The lattice that a file holds, and whether it names its region (`frame` stands in for it otherwise).
+pub(crate) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool), Error> {
+    let file: File = serde_json::from_str(text)
+        .map_err(|e| Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is no lattice: {e}")))?;
+    let wrong = |what: String| Error::input(name, what);
+    if file.degree.iter().any(|d| !(1..=MOST_DEGREE).contains(d)) {
+        return Err(wrong(format!("its degrees are {:?}; each must be 1 to {MOST_DEGREE}", file.degree)));
+    }
+    if file.cells.iter().any(|c| !(1..=MOST_CELLS).contains(c)) {
+        return Err(wrong(format!("its cells are {:?}; each number must be 1 to {MOST_CELLS}", file.cells)));
+    }
+    let region = match file.region {
+        None => frame,
+        Some([x, y, w, h]) if w > 0.0 && h > 0.0 && [x, y, w, h].iter().all(|v| v.abs() < 1e100) => {
+            Rect::new(x, y, x + w, y + h)
+        }
+        Some(r) => return Err(wrong(format!("its region {r:?} is no box x, y, width, height"))),
+    };
+    let mut lattice = Lattice::regular(region, file.degree, file.cells);
+    if file.points.len() != lattice.rows() {
+        return Err(wrong(format!(
+            "it has {} rows of points; degree {} with {} cells down needs {}",
+            file.points.len(),
+            file.degree[1],
+            file.cells[1],
+            lattice.rows()
+        )));
+    }
+    for (j, row) in file.points.iter().enumerate() {
+        if row.len() != lattice.columns() {
+            return Err(wrong(format!("row {j} has {} points; {} are needed", row.len(), lattice.columns())));
+        }
+        for (i, p) in row.iter().enumerate() {
+            let (x, y, w) = match p[..] {
+                [x, y] => (x, y, 1.0),
+                [x, y, w] => (x, y, w),
+                _ => return Err(wrong(format!("point {i} of row {j} has {} numbers: x, y or x, y, weight", p.len()))),
+            };
+            if [x, y, w].iter().any(|v| v.abs() > 1e100) {
+                return Err(wrong(format!("point {i} of row {j} is larger than 1e100")));
+            }
+            lattice.place(i, j, Point::new(x, y));
+            lattice.set_weight(i, j, w);
+        }
+    }
+    Ok((lattice, file.region.is_some()))
+}
+
+/// A lattice as text.
+pub(crate) fn write(lattice: &Lattice) -> String {
+    let r = lattice.region();
+    let numbers = |v: &[f64]| format!("[{}]", v.iter().map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(", "));
+    let row = |j: usize| {
+        let points = (0..lattice.columns()).map(|i| {
+            let (p, w) = (lattice.point(i, j), lattice.weight(i, j));
+            if w == 1.0 { numbers(&[p.x, p.y]) } else { numbers(&[p.x, p.y, w]) }
+        });
+        format!("    [{}]", points.collect::<Vec<_>>().join(", "))
+    };
+    let [d, c] = [lattice.degree(), lattice.cells()];
+    format!(
+        "{{\n  \"degree\": {d:?},\n  \"cells\": {c:?},\n  \"region\": {},\n  \"points\": [\n{}\n  ]\n}}\n",
+        numbers(&[r.x0, r.y0, r.width(), r.height()]),
+        (0..lattice.rows()).map(row).collect::<Vec<_>>().join(",\n")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::Vec2;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let mut l = Lattice::regular(Rect::new(-5.5, 2.0, 30.0, 40.0), [3, 2], [2, 1]);
+        l.shift(1, 1, Vec2::new(0.1, -7.0));
+        l.set_weight(2, 0, 1.5);
+        let (back, named) = read("l.json", &write(&l), Rect::ZERO).unwrap();
+        assert!(named && write(&back) == write(&l));
+        assert_eq!(back.weight(2, 0), 1.5);
+    }
+
+    #[test]
+    fn faults_are_named() {
+        let fault = |text: &str| read("l.json", text, Rect::new(0.0, 0.0, 1.0, 1.0)).unwrap_err().to_string();
+        assert!(fault("{\"degree\": [1,1],\n\"points\": 5}").contains("l.json:2:"));
+        assert!(fault("{\"degree\": [1,11], \"points\": []}").contains("1 to 10"));
+        assert!(fault("{\"degree\": [1,1], \"points\": [[[0,0],[1,0]]]}").contains("1 rows of points"));
+        assert!(fault("{\"degree\": [1,1], \"points\": [[[0,0],[1,0]],[[0,1]]]}").contains("row 1 has 1 points"));
+        assert!(fault("{\"degree\": [1,1], \"points\": [[[0,0],[1,0]],[[0,1],[1]]]}").contains("point 1 of row 1"));
+        assert!(fault("{\"degree\": [1,1], \"region\": [0,0,0,1], \"points\": []}").contains("no box"));
+        let ok = read(
+            "l.json",
+            "{\"degree\":[1,1],\"points\":[[[0,0],[1,0]],[[0,1],[1,1]]]}",
+            Rect::new(0.0, 0.0, 1.0, 1.0),
+        );
+        assert!(!ok.unwrap().1);
+    }
+}

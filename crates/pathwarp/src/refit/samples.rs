@@ -1,0 +1,217 @@
+//! The sixteen samples of a piece: which they are, and what they tell at a glance.
+
+use super::Piece;
+use super::fit::{self, Frame, State};
+use super::source::{End, Lane, Lanes};
+use kurbo::{Line, Point, Vec2};
+
+/// Samples j/17 that are fitted (both sets symmetric about the middle).
+pub(super) const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
+/// Samples j/17 that check the fit, between them.
+pub(super) const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
+/// Whether the checked sample follows (1) or precedes (−1) the fitted one of the same number.
+const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
+/// Paces along a piece may differ by this factor (squared) before its samples are thought too few.
+const PACE: f64 = 400.0;
+/// Spacing.
+pub(super) const UNIT: f64 = 1.0 / 17.0;
+
+/// The Hermite cubic, if the image is that to rounding: so maps that change little give cusps and coincident handles back as
+/// they were.
+#[cold]
+pub(super) fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> bool {
+    /// Exact to rounding.
+    const EXACT: f64 = 1e-11;
+    let [c1, c2, c3] = job.frame.power(hermite[0], hermite[1]);
+    for (g, set) in [(job.g, &FITTED), (job.check, &CHECKED)] {
+        for i in 0..8 {
+            let s = set[i] * UNIT;
+            let c = (c1 + (c2 + c3 * s) * s) * s;
+            if (c - Vec2::new(g.x[i], g.y[i])).hypot() > EXACT * job.frame.size {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// One attempt's data.
+pub(super) struct Job<'a> {
+    pub(super) from: &'a End,
+    pub(super) to: &'a End,
+    pub(super) frame: Frame,
+    pub(super) g: &'a Lanes,
+    pub(super) check: &'a Lanes,
+    pub(super) careful: bool,
+}
+
+impl Job<'_> {
+    pub(super) fn cubic(&self, z: &State) -> kurbo::CubicBez {
+        self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
+    }
+
+    /// The largest normal residual of all samples at the feet that go with an even pace, and how far the feet have to move;
+    /// infinite where the samples are not [`Job::sound`].
+    #[inline(always)]
+    pub(super) fn glance(&self, z: &State) -> (f64, f64) {
+        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+        let (g, c) = (self.g, self.check);
+        let mut worst = [0.0; 8];
+        let mut drift = [0.0; 8];
+        let mut margin = [0.0; 8];
+        let mut pace = [0.0; 8];
+        let mut slowness = [0.0; 8];
+        for i in 0..8 {
+            let residual = |s: f64, x: f64, y: f64| {
+                let rx = ((c3.x * s + c2.x) * s + c1.x) * s - x;
+                let ry = ((c3.y * s + c2.y) * s + c1.y) * s - y;
+                let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
+                let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
+                let d2 = dx * dx + dy * dy + f64::MIN_POSITIVE;
+                let n = rx * dy - ry * dx;
+                (n * n / d2, ((rx * dx + ry * dy) / d2).abs(), dx, dy, d2)
+            };
+            let (n0, s0, dx, dy, d2) = residual(FITTED[i] * UNIT, g.x[i], g.y[i]);
+            let (n1, s1, ..) = residual(CHECKED[i] * UNIT, c.x[i], c.y[i]);
+            worst[i] = if n0 > n1 { n0 } else { n1 };
+            drift[i] = if s0 > s1 { s0 } else { s1 };
+            let (x, y) = (c.x[i] - g.x[i], c.y[i] - g.y[i]);
+            let l2 = x * x + y * y;
+            let along = (dx * x + dy * y) * SIDE[i];
+            let straight = 2.0 * along * along - d2 * l2;
+            margin[i] = -(if along < straight { along } else { straight });
+            pace[i] = l2;
+            slowness[i] = -l2;
+        }
+        // Half the spacing each: feet cannot change order.
+        let drift = fit::largest(&drift);
+        let sound =
+            fit::largest(&margin) < 0.0 && drift < 0.5 * UNIT && fit::largest(&pace) < -PACE * fit::largest(&slowness);
+        if sound { (fit::largest(&worst).sqrt(), drift) } else { (f64::INFINITY, drift) }
+    }
+
+    /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
+    /// that of the image there, and the image's pace varies little enough for the samples to have seen all of that.
+    #[inline(always)]
+    pub(super) fn sound(&self, z: &State, s0: &Lane, s1: &Lane) -> bool {
+        /// Feet may be this far from where an even pace would put them.
+        const UNEVEN: f64 = 0.18;
+        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+        let mut margin = [0.0; 8];
+        let mut pace = [0.0; 8];
+        let mut slowness = [0.0; 8];
+        for i in 0..8 {
+            let a = UNEVEN - (s0[i] - FITTED[i] * UNIT).abs();
+            let b = UNEVEN - (s1[i] - CHECKED[i] * UNIT).abs();
+            let s = s0[i];
+            let (dx, dy) = ((c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x, (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y);
+            let (x, y) = (self.check.x[i] - self.g.x[i], self.check.y[i] - self.g.y[i]);
+            let (d2, l2) = (dx * dx + dy * dy, x * x + y * y);
+            // The checked sample follows the fitted one in the first half and precedes it in the second.
+            let along = (dx * x + dy * y) * SIDE[i];
+            let order = (s1[i] - s0[i]) * SIDE[i];
+            let straight = 2.0 * along * along - d2 * l2;
+            // The least of all these, negated, for the one reduction there is.
+            let m = if a < b { a } else { b };
+            let m = if m < order { m } else { order };
+            let m = if m < along { m } else { along };
+            margin[i] = -(if m < straight { m } else { straight });
+            pace[i] = l2;
+            slowness[i] = -l2;
+        }
+        fit::largest(&margin) < 0.0 && fit::largest(&pace) < -PACE * fit::largest(&slowness)
+    }
+}
+
+/// Feet of the checked samples from those of the fitted ones, by linear interpolation.
+#[inline(always)]
+pub(super) fn between(s: &Lane) -> Lane {
+    let third = (s[4] - s[3]) / 3.0;
+    [
+        0.5 * (s[0] + s[1]),
+        0.5 * (s[1] + s[2]),
+        0.5 * (s[2] + s[3]),
+        s[3] + third,
+        s[4] - third,
+        0.5 * (s[4] + s[5]),
+        0.5 * (s[5] + s[6]),
+        0.5 * (s[6] + s[7]),
+    ]
+}
+
+/// What the polyline through the samples looks like.
+pub(super) struct Shape {
+    pub(super) length: f64,
+    /// It turns by more than 60° at a sample, or its pace varies more than sixfold.
+    pub(super) sharp: bool,
+}
+
+impl Shape {
+    #[inline(always)]
+    pub(super) fn of(g: &Lanes, q: Vec2) -> Self {
+        let mut dx = [0.0; 9];
+        let mut dy = [0.0; 9];
+        dx[0] = g.x[0];
+        dy[0] = g.y[0];
+        for i in 1..8 {
+            dx[i] = g.x[i] - g.x[i - 1];
+            dy[i] = g.y[i] - g.y[i - 1];
+        }
+        dx[8] = q.x - g.x[7];
+        dy[8] = q.y - g.y[7];
+        let mut l = [0.0; 9];
+        for i in 0..9 {
+            l[i] = dx[i] * dx[i] + dy[i] * dy[i];
+        }
+        let mut bent = [false; 8];
+        for i in 0..8 {
+            let dot = dx[i] * dx[i + 1] + dy[i] * dy[i + 1];
+            bent[i] = dot <= 0.0 || 4.0 * dot * dot < l[i] * l[i + 1];
+        }
+        let mut length = 0.0;
+        let (mut least, mut most) = ((0, f64::INFINITY), 0.0f64);
+        for (i, l2) in l.iter().enumerate() {
+            let l = l2.sqrt();
+            length += l;
+            // Lengths per unit of the parameter: the end stretches are half as long, the middle one half as long again.
+            let pace = l * [2.0, 1.0, 1.0, 1.0, 2.0 / 3.0, 1.0, 1.0, 1.0, 2.0][i];
+            if pace < least.1 {
+                least = (i, pace);
+            }
+            most = most.max(pace);
+        }
+        // At the ends it slows down where a handle is short, which is no sharp turn.
+        let slows = 6.0 * least.1 < most && (1..8).contains(&least.0);
+        Self { length, sharp: bent.iter().any(|b| *b) || slows }
+    }
+}
+
+/// The line between the ends, if the image is that line to rounding and runs along it one way.
+#[inline(always)]
+pub(super) fn straight(g: &Lanes, q: Vec2, p0: Point, p1: Point, size: f64) -> Option<Piece> {
+    /// Rounding of a coordinate after a map's arithmetic, relative to its size.
+    const ROUNDING: f64 = 4e-15;
+    let from_origin = (p0.x.abs() + p0.y.abs()).max(p1.x.abs() + p1.y.abs());
+    let most = size * (1e-12 * size + ROUNDING * from_origin);
+    // One sample tells nearly all bent pieces.
+    if (g.x[2] * q.y - g.y[2] * q.x).abs() > most {
+        return None;
+    }
+    straight_at_all(g, q, size, most, ROUNDING * from_origin).then_some(Piece::Line(Line::new(p0, p1)))
+}
+
+#[inline(never)]
+fn straight_at_all(g: &Lanes, q: Vec2, size: f64, most: f64, rounding: f64) -> bool {
+    if size <= rounding {
+        return g.x.iter().chain(&g.y).all(|v| v.abs() <= rounding);
+    }
+    let mut last = 0.0;
+    for i in 0..8 {
+        let along = g.x[i] * q.x + g.y[i] * q.y;
+        if along <= last || (g.x[i] * q.y - g.y[i] * q.x).abs() > most {
+            return false;
+        }
+        last = along;
+    }
+    last < q.hypot2()
+}

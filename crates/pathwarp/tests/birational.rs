@@ -1,0 +1,221 @@
+//! The birational map against the paper's exact numbers, and undone over many random lattices.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use kurbo::{CubicBez, Point, Rect, Vec2};
+use pathwarp::map::{Birational, Class, Map, Monoid, RationalBezier, Ray, Rows};
+use pathwarp::refit::{Options, warp_path};
+use pathwarp::{GeometryError, Outline, Seg};
+
+const UNIT: Rect = Rect::new(0.0, 0.0, 1.0, 1.0);
+
+fn points(p: &[(f64, f64)]) -> Vec<Point> {
+    p.iter().map(|p| Point::from(*p)).collect()
+}
+
+fn build(left: &[Point], right: &[Point]) -> Result<Birational, GeometryError> {
+    Birational::new(UNIT, Rows::LeftRight, [left, right], None, false, ["--left", "--right"])
+}
+
+/// Equation (7): the weights of degree 1×1.
+fn condition(p: [[Point; 2]; 2]) -> f64 {
+    let det = |a: Point, b: Point, c: Point| (b - a).cross(c - a);
+    let [[p00, p01], [p10, p11]] = p;
+    det(p01, p00, p10) * det(p10, p11, p01) / (det(p11, p01, p00) * det(p00, p10, p11))
+}
+
+#[test]
+fn the_papers_quadrilateral() {
+    let (p00, p10, p01, p11) =
+        (Point::new(0.0, 0.0), Point::new(12.0, 0.0), Point::new(8.0, 6.0), Point::new(12.0, 4.0));
+    // Figure 3.c: A = (20, 0), Q0 = (0, 0) and Q1 = (0, 10) give w01 = 5/3 with the others 1.
+    let row = |a: Point, b: Point| Monoid::with_axis(&[a, b], [20.0, 0.0, 1.0], p00, Point::new(0.0, 10.0)).unwrap();
+    let rows = [row(p00, p01), row(p10, p11)];
+    assert!((rows[0].weights()[1] - 5.0 / 3.0).abs() < 1e-15 && (rows[1].weights()[1] - 1.0).abs() < 1e-15);
+    assert!((condition([[p00, p01], [p10, p11]]) - 3.0 / 5.0).abs() < 1e-15, "w00·w11 / (w01·w10)");
+    let map = Birational::with_monoids(UNIT, Rows::LeftRight, rows);
+    let q = Point::new(8.0, 4.0);
+    let back = Map::inverse(&map).unwrap();
+    assert!(map.point(Point::new(0.4, 2.0 / 3.0)).distance(q) < 1e-14);
+    assert!(back.point(q).distance(Point::new(0.4, 2.0 / 3.0)) < 1e-15);
+    // Equation (6), with 36 where the paper prints 26.
+    for (x, y) in [(8.0, 4.0), (3.0, 1.0), (11.0, 2.5), (6.0, 5.0)] {
+        let by_hand = Point::new((3.0 * x - 4.0 * y) / (36.0 - 4.0 * y), 2.0 * y / (20.0 - x));
+        assert!(back.point(Point::new(x, y)).distance(by_hand) < 1e-14);
+    }
+    // The same points in the normalisation of their own: the same place of other parameters, and the same condition.
+    let own = build(&[p00, p01], &[p10, p11]).unwrap();
+    let rows = own.monoids().next().unwrap();
+    let (w0, w1) = (rows[0].weights(), rows[1].weights());
+    assert!((w0[0] * w1[1] / (w0[1] * w1[0]) - 0.6).abs() < 1e-14 && (w0[1] * w1[1] - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn a_rectangle_is_the_identity_and_a_parallelogram_affine() {
+    let left: Vec<Point> = (0..=4).map(|j| Point::new(0.0, f64::from(j) / 4.0)).collect();
+    let right: Vec<Point> = left.iter().map(|p| *p + Vec2::new(1.0, 0.0)).collect();
+    assert_eq!(build(&left, &right).unwrap().class(), Class::Affine(kurbo::Affine::IDENTITY));
+    let right: Vec<Point> = left.iter().map(|p| *p + Vec2::new(3.0, 2.0)).collect();
+    assert!(matches!(build(&left, &right).unwrap().class(), Class::Affine(_)));
+}
+
+/// s = f₀/(f₀ − f₁), and both rows' equations vanish on them.
+#[test]
+fn the_rows_equations_invert_the_map() {
+    let map = bent();
+    let [a, b] = map.monoids().next().unwrap().clone();
+    for i in 0..=10 {
+        for j in 0..=10 {
+            let p = Point::new(f64::from(i) / 10.0, f64::from(j) / 10.0);
+            let x = map.point(p);
+            let (f0, f1) = (a.implicit(x), b.implicit(x));
+            assert!((f0 / (f0 - f1) - p.x).abs() < 1e-12, "{p:?}");
+            assert!((a.t(x) - p.y).abs() < 1e-13 && (b.t(x) - p.y).abs() < 1e-13);
+            if i == 0 {
+                assert!(f0.abs() < 1e-14, "{f0}");
+            }
+        }
+    }
+}
+
+fn bent() -> Birational {
+    let left = points(&[(0.0, 0.0), (-20.0, 25.0), (15.0, 55.0), (5.0, 90.0)]);
+    let right = points(&[(80.0, -10.0), (100.0, 30.0), (70.0, 60.0), (95.0, 110.0)]);
+    build(&left, &right).unwrap()
+}
+
+#[test]
+fn lines_of_constant_t_stay_straight_and_images_are_exact() {
+    let map = bent();
+    let line = Outline::from_svg("M0.05,0.3 L0.95,0.3").unwrap();
+    let w = warp_path(&line, &map, &Options::new(1e-6)).unwrap();
+    assert_eq!(w.report.segments_out, 1);
+    assert!(matches!(w.path.elements()[1], kurbo::PathEl::LineTo(_)), "{:?}", w.path);
+    let cubic = Seg::Cubic(CubicBez::new((0.1, 0.1), (0.9, 0.0), (0.8, 0.7), (0.2, 0.9)));
+    let source = RationalBezier::from_seg(&cubic).unwrap();
+    let image = map.image_of(&source).unwrap();
+    assert_eq!(image.degree(), 3 * (1 + 3));
+    let back = map.inverted();
+    let again = Map::image_of(&back, &image).unwrap();
+    for i in 0..=20 {
+        let t = f64::from(i) / 20.0;
+        assert!(image.eval(t).distance(map.point(source.eval(t))) < 1e-12);
+        assert!(again.eval(t).distance(source.eval(t)) < 1e-8);
+    }
+    let direct = Map::image_of(&back, &RationalBezier::polynomial(&points(&[(10.0, 20.0), (50.0, 70.0)]))).unwrap();
+    assert_eq!(direct.degree(), 4);
+    for i in 0..=20 {
+        let t = f64::from(i) / 20.0;
+        let q = Point::new(10.0, 20.0).lerp(Point::new(50.0, 70.0), t);
+        assert!(direct.eval(t).distance(back.point(q)) < 1e-12);
+    }
+}
+
+/// Pseudo-random numbers in [-1, 1) (splitmix64).
+struct Random(u64);
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// 10⁵ random lattices of degree 1×1 to 1×5: forth and back within 1e-12 of the lattice's size, measured in the image, and
+/// in the source relative to the map's condition there.
+#[test]
+fn forth_and_back() {
+    let mut random = Random(7);
+    let (mut built, mut worst_image, mut worst_source) = (0, 0.0f64, 0.0f64);
+    while built < 100_000 {
+        let n = 1 + built % 5;
+        let amount = 0.9 / n as f64;
+        let row = |random: &mut Random, x: f64| -> Vec<Point> {
+            let at = |j: usize| 100.0 * j as f64 / n as f64;
+            (0..=n).map(|j| Point::new(x + 40.0 * random.next(), at(j) + 100.0 * amount * random.next())).collect()
+        };
+        let (left, right) = (row(&mut random, 0.0), row(&mut random, 100.0));
+        let Ok(map) = build(&left, &right) else { continue };
+        built += 1;
+        let p = Point::new(0.5 + 0.5 * random.next(), 0.5 + 0.5 * random.next());
+        let back = map.inverted();
+        let jet = map.jet(p);
+        let again = Map::point(&back, jet.p);
+        let steep = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt();
+        // What a rounding error of the image's coordinates moves the source by.
+        let condition = (steep / jet.det().abs() * 150.0).max(1.0);
+        worst_source = worst_source.max(again.distance(p) / condition);
+        worst_image = worst_image.max(map.point(again).distance(jet.p) / 150.0);
+    }
+    assert!(worst_source < 1e-12, "{worst_source:e}");
+    assert!(worst_image < 1e-12, "{worst_image:e}");
+}
+
+#[test]
+fn points_out_of_place_are_named() {
+    let right = points(&[(10.0, 0.0), (10.0, 5.0), (10.0, 10.0)]);
+    let e = build(&points(&[(0.0, 0.0), (-1.0, -2.0), (0.0, 10.0)]), &right).unwrap_err().to_string();
+    assert!(e.contains("--left: point 2 (-1,-2) lies beyond the line through the first points"), "{e}");
+    assert!(e.contains("allow poles"), "{e}");
+    let e = build(&points(&[(0.0, 0.0), (-1.0, 0.0), (0.0, 10.0)]), &right).unwrap_err().to_string();
+    assert!(e.contains("lies on the line") && !e.contains("poles: "), "{e}");
+    let e = build(&points(&[(0.0, 0.0), (3.0, 12.0), (0.0, 10.0)]), &right).unwrap_err().to_string();
+    assert!(e.contains("point 2 (3,12) lies beyond the line through the last points"), "{e}");
+    let e = build(&points(&[(10.0, 0.0), (3.0, 5.0), (0.0, 10.0)]), &right).unwrap_err().to_string();
+    assert!(e.contains("coincide at 10,0"), "{e}");
+    // Poles accepted: defined, and refused only where a path meets one.
+    let left = points(&[(0.0, 0.0), (-1.0, -2.0), (0.0, 10.0)]);
+    let map = Birational::new(UNIT, Rows::LeftRight, [&left, &right], None, true, ["--left", "--right"]).unwrap();
+    let back = map.inverted();
+    let p = Point::new(0.9, 0.1);
+    assert!(Map::point(&back, map.point(p)).distance(p) < 1e-12);
+    let across = Outline::from_svg("M0.01,0 L0.01,1").unwrap();
+    assert!(matches!(warp_path(&across, &map, &Options::new(1e-3)), Err(GeometryError::Infinity { .. })));
+}
+
+#[test]
+fn spline_rows_share_the_lines_between_their_pieces() {
+    let left = points(&[(0.0, 0.0), (-20.0, 25.0), (15.0, 50.0), (-10.0, 80.0), (5.0, 95.0), (0.0, 130.0)]);
+    let right = points(&[(80.0, -5.0), (100.0, 30.0), (70.0, 55.0), (95.0, 70.0), (80.0, 100.0), (90.0, 120.0)]);
+    for degree in [1, 2, 3] {
+        let map = Birational::new(UNIT, Rows::LeftRight, [&left, &right], Some(degree), false, ["--left", "--right"])
+            .unwrap();
+        let pieces = 6 - degree;
+        assert_eq!(map.monoids().count(), pieces);
+        let back = map.inverted();
+        for k in 1..pieces {
+            let t = k as f64 / pieces as f64;
+            for i in 0..=10 {
+                let s = f64::from(i) / 10.0;
+                let (a, b) = (map.jet(Point::new(s, t - 1e-9)), map.jet(Point::new(s, t + 1e-9)));
+                assert!(a.p.distance(b.p) < 1e-6, "{degree} {k} {s}");
+                assert!((a.dx - b.dx).hypot() < 1e-5, "the line between them has one pace");
+                if degree > 1 && (i == 0 || i == 10) {
+                    let turn = a.dy.cross(b.dy) / (a.dy.hypot() * b.dy.hypot());
+                    assert!(turn.abs() < 1e-6, "rows keep their tangents: {turn}");
+                }
+            }
+        }
+        for i in 0..=20 {
+            for j in 0..=20 {
+                let p = Point::new(f64::from(i) / 20.0, 0.003 + f64::from(j) / 20.1);
+                let q = Map::point(&back, map.point(p));
+                assert!(q.distance(p) < 1e-11, "{degree} {p:?} {q:?}");
+            }
+        }
+    }
+    // Regular rows: the identity.
+    let regular: Vec<Point> = [0.0, 1.0 / 6.0, 0.5, 5.0 / 6.0, 1.0].iter().map(|y| Point::new(0.0, *y)).collect();
+    let facing: Vec<Point> = regular.iter().map(|p| *p + Vec2::new(1.0, 0.0)).collect();
+    let map = Birational::new(UNIT, Rows::LeftRight, [&regular, &facing], Some(2), false, ["", ""]).unwrap();
+    assert!(map.point(Point::new(0.3, 0.77)).distance(Point::new(0.3, 0.77)) < 1e-15);
+}
+
+#[test]
+fn rays_through_points() {
+    let r = Ray::join(Point::new(1.0, 1.0), Point::new(3.0, 1.0));
+    assert_eq!(r.at(Point::new(5.0, 1.0)), 0.0);
+    assert_eq!(r.at(Point::new(1.0, 2.0)), 2.0);
+}

@@ -1,0 +1,83 @@
+//! Random segments under random maps: the refit ends within its budget, is finite, and within the tolerance or says that it is
+//! not. The generators prefer what is degenerate: points that coincide, lie on a line, or nearly do.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "../benches/support/mod.rs"]
+mod support;
+
+use kurbo::{CubicBez, Line, Point, QuadBez};
+use pathwarp::outline::EllipticArc;
+use pathwarp::refit::{Assurance, Options, warp_path};
+use pathwarp::{Outline, Seg, Subpath};
+use proptest::prelude::*;
+use support::Bicubic;
+
+/// Coordinates on a coarse grid coincide and line up often; a few are a hair off it.
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => (0u8..=8).prop_map(|i| f64::from(i) * 125.0),
+        2 => 0.0..1000.0f64,
+        1 => ((0u8..=8), -1e-7..1e-7f64).prop_map(|(i, e)| f64::from(i) * 125.0 + e),
+    ]
+}
+
+fn point() -> impl Strategy<Value = Point> {
+    (coordinate(), coordinate()).prop_map(Point::from)
+}
+
+fn seg() -> impl Strategy<Value = Seg> {
+    prop_oneof![
+        1 => (point(), point()).prop_map(|(a, b)| Seg::Line(Line::new(a, b))),
+        1 => (point(), point(), point()).prop_map(|(a, b, c)| Seg::Quad(QuadBez::new(a, b, c))),
+        4 => (point(), point(), point(), point()).prop_map(|(a, b, c, d)| Seg::Cubic(CubicBez::new(a, b, c, d))),
+        // Handles on the ends, and cubics along one line.
+        1 => (point(), point(), point()).prop_map(|(a, b, c)| Seg::Cubic(CubicBez::new(a, a, b, c))),
+        1 => (point(), point(), -2.0..3.0f64, -2.0..3.0f64)
+            .prop_map(|(a, b, s, t)| Seg::Cubic(CubicBez::new(a, a.lerp(b, s), a.lerp(b, t), b))),
+        1 => (point(), 1.0..300.0f64, 0.01..300.0f64, 0.0..6.3f64, -6.2..6.2f64).prop_map(|(c, a, b, start, sweep)| {
+            Seg::Arc(EllipticArc::new(c, (a, a * 0.3).into(), (-b * 0.3, b).into(), start, sweep))
+        }),
+    ]
+}
+
+/// Nets from gentle to folded over.
+fn map() -> impl Strategy<Value = Bicubic> {
+    (prop::array::uniform32(-1.0..1.0f64), prop_oneof![Just(0.0), Just(30.0), Just(150.0), Just(500.0)])
+        .prop_map(|(d, size)| Bicubic::moved(|i, j| (size * d[2 * (4 * i + j)], size * d[2 * (4 * i + j) + 1])))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    #[test]
+    fn within_the_tolerance_or_reported(
+        seg in seg(),
+        map in map(),
+        tolerance in prop_oneof![Just(1.0), Just(0.1), Just(0.01), Just(0.001)],
+        certify: bool,
+    ) {
+        let path = Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] };
+        let w = warp_path(&path, &map, &Options { certify, ..Options::new(tolerance) }).unwrap();
+        let out = support::cubics(&w.path);
+        prop_assert!(out.iter().all(|c| c.p1.is_finite() && c.p2.is_finite() && c.p3.is_finite()));
+        prop_assert!(out.len() < 2000);
+        if w.report.over_budget.is_empty() {
+            prop_assert!(w.report.max_error <= tolerance);
+            prop_assert!(!certify || w.report.assurance >= Assurance::Certified);
+            let e = support::distance(&seg, &map, &out, 1000, 0.9 * tolerance);
+            prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} {:?}", e / tolerance, w.report);
+        }
+        // The other way round it is the same, mirrored; unless the other way round it is the very same segment.
+        if seg.reversed() == seg {
+            return Ok(());
+        }
+        let back = Outline { subpaths: path.subpaths.iter().map(Subpath::reversed).collect() };
+        let b = warp_path(&back, &map, &Options { certify, ..Options::new(tolerance) }).unwrap();
+        let mirrored = support::cubics(&b.path);
+        prop_assert_eq!(out.len(), mirrored.len());
+        for (c, d) in out.iter().zip(mirrored.iter().rev()) {
+            prop_assert!(c.p0 == d.p3 && c.p3 == d.p0);
+        }
+    }
+}

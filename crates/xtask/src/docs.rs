@@ -1,0 +1,151 @@
+//! `cargo xtask docs`: a page for every deformation, from its own table, with a picture made by its first example.
+
+use crate::Fault;
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::Kind;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Where the pages lie.
+const PAGES: &str = "docs/deformations";
+
+/// Writes all pages and pictures.
+pub(crate) fn run(root: &Path) -> Result<String, Fault> {
+    let folder = root.join(PAGES);
+    fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let pages = pages();
+    for (name, text) in &pages {
+        let file = folder.join(name);
+        fs::write(&file, text).map_err(|e| format!("{}: {e}", file.display()))?;
+    }
+    let program = build(root)?;
+    for e in Registry::builtin().entries() {
+        picture(root, &program, e.info())?;
+    }
+    Ok(format!("wrote {} pages to {}; look at every picture before you commit it", pages.len(), folder.display()))
+}
+
+/// The program that draws the pictures.
+fn build(root: &Path) -> Result<std::path::PathBuf, Fault> {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["build", "--quiet", "--release", "--package", "pathwarp-cli", "--target-dir"]).arg(root.join("target"));
+    let done = cargo.current_dir(root).status().map_err(|e| e.to_string())?;
+    if !done.success() {
+        return Err("the program does not build".into());
+    }
+    Ok(root.join("target/release/pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
+}
+
+fn picture(root: &Path, program: &Path, info: &Info) -> Result<(), Fault> {
+    let Some(example) = info.examples.first() else { return Ok(()) };
+    let mut words = words(example.command);
+    // What the example writes is not wanted here, nor a preview of its own.
+    for option in ["-o", "--preview"] {
+        if let Some(i) = words.iter().position(|w| w == option) {
+            words.drain(i..(i + 2).min(words.len()));
+        }
+    }
+    let png = root.join(PAGES).join(format!("{}.png", info.name));
+    let out = Command::new(program)
+        .args(&words)
+        .args(["--quiet", "-o", "-", "--preview"])
+        .arg(&png)
+        .current_dir(root)
+        .output()
+        .map_err(|e| format!("{}: {e}", program.display()))?;
+    if out.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&out.stderr).into_owned()) }
+}
+
+/// Words of a shell command line with single quotes.
+fn words(line: &str) -> Vec<String> {
+    let mut out = Vec::new();
+    for (i, part) in line.split('\'').enumerate() {
+        if i % 2 == 1 {
+            out.push(part.to_owned());
+        } else {
+            out.extend(part.split_whitespace().map(str::to_owned));
+        }
+    }
+    out
+}
+
+/// Every page: file name and text.
+fn pages() -> Vec<(String, String)> {
+    let registry = Registry::builtin();
+    let infos: Vec<&Info> = registry.entries().iter().map(|e| e.info()).collect();
+    let mut all: Vec<(String, String)> = infos.iter().map(|i| (format!("{}.md", i.name), page(i))).collect();
+    all.push(("README.md".into(), index(&infos)));
+    all
+}
+
+fn index(infos: &[&Info]) -> String {
+    let mut out = String::from("# Deformations\n\nMade by `cargo xtask docs` from the deformations' own tables.\n");
+    let mut groups: Vec<&str> = Vec::new();
+    for i in infos {
+        if !groups.contains(&i.group) {
+            groups.push(i.group);
+        }
+    }
+    for g in groups {
+        let _ = write!(out, "\n## {g}\n\n| | |\n|---|---|\n");
+        for i in infos.iter().filter(|i| i.group == g) {
+            let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", i.name, i.title);
+        }
+    }
+    out
+}
+
+fn page(i: &Info) -> String {
+    let mut out = format!("# {}: {}\n\n", i.name, i.title);
+    if let Some(first) = i.examples.first() {
+        let _ = write!(out, "![{}]({}.png)\n\n", first.what, i.name);
+    }
+    let _ = write!(out, "{}\n\n## Examples\n", i.about);
+    for e in i.examples {
+        let _ = write!(out, "\n{}:\n\n```sh\npathwarp {}\n```\n", e.what, e.command);
+    }
+    out.push_str("\n## Options\n\n| option | value | default | |\n|---|---|---|---|\n");
+    for p in i.params {
+        let value = match p.kind {
+            Kind::Flag => String::new(),
+            Kind::Choice(words) => words.join(", "),
+            _ => p.value_name(),
+        };
+        let default =
+            if p.needed { "needed".to_owned() } else { p.default.map(|d| format!("`{d}`")).unwrap_or_default() };
+        let times = if p.repeat { " May be given several times." } else { "" };
+        let _ = writeln!(out, "| `--{}` | {value} | {default} | {}{times} |", p.name, cell(p.help));
+    }
+    out.push_str("| `--inverse` | | | The inverse map, where there is one. |\n");
+    let _ = write!(
+        out,
+        "\nThe options that all deformations share are in `pathwarp help {}`.\n\n## Source\n\n{}\n",
+        i.name, i.source
+    );
+    out
+}
+
+/// Text that may stand in a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pages in the repository are the ones that would be made now.
+    #[test]
+    fn pages_are_up_to_date() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(PAGES);
+        for (name, text) in pages() {
+            let there = fs::read_to_string(folder.join(&name)).unwrap_or_default();
+            assert!(there == text, "{PAGES}/{name} is out of date: run `cargo xtask docs`");
+        }
+        for e in Registry::builtin().entries() {
+            assert!(folder.join(format!("{}.png", e.info().name)).is_file(), "{} has no picture", e.info().name);
+        }
+    }
+}

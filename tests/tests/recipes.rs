@@ -1,0 +1,199 @@
+//! Recipes, inverses, point queries, and drawings that remember their source.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use support::{artwork, expect_code, pathwarp_in, sample};
+
+const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z";
+const ART: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='s' d='M0,0H100V100H0Z'/><circle id='c' cx='50' cy='40' r='20'/></svg>";
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_saved_command_line_runs_to_the_same_bytes() {
+    let dir = tempfile::tempdir().unwrap();
+    let ok = |args: &[&str]| {
+        let out = pathwarp_in(dir.path(), args, ART.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+        out.stdout
+    };
+    fs::write(
+        dir.path().join("cage.svg"),
+        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='{CAGE}'/></svg>"),
+    )
+    .unwrap();
+    let line = [
+        "projective",
+        "--target",
+        "0%,100% 100%,95% 80%,10% 15%,0%",
+        "--tolerance",
+        "0.02",
+        "--strokes",
+        "keep",
+        "--write-recipe",
+        "r.toml",
+        "+",
+        "shaper",
+        "--shaper",
+        "cage.svg",
+        "--base",
+        "0%,90% 100%,100%",
+        "--base-as-drawn",
+    ];
+    let first = ok(&line);
+    assert_eq!(first, ok(&["run", "r.toml"]));
+    // From another folder the recipe still finds its cage.
+    let elsewhere = tempfile::tempdir().unwrap();
+    let file = dir.path().join("r.toml").display().to_string();
+    let out = pathwarp_in(elsewhere.path(), &["run", &file], ART.as_bytes());
+    assert_eq!(first, out.stdout, "{}", text(&out.stderr));
+    // Options given overrule the recipe's.
+    assert_ne!(first, ok(&["run", "r.toml", "--tolerance", "0.0001"]));
+    // Written to another folder, references are made to last.
+    let moved = elsewhere.path().join("moved.toml").display().to_string();
+    let mut line = line;
+    line[8] = &moved;
+    ok(&line);
+    let out = pathwarp_in(elsewhere.path(), &["run", "moved.toml"], ART.as_bytes());
+    assert_eq!(first, out.stdout, "{}", text(&out.stderr));
+}
+
+#[test]
+fn faulty_recipes_are_input_errors_that_name_the_fault() {
+    let dir = tempfile::tempdir().unwrap();
+    for (recipe, part) in [
+        ("", "pathwarp"),
+        ("pathwarp = 2", "version 2"),
+        ("pathwarp = 1", "no [[step]]"),
+        ("pathwarp = 1\n[[step]]\ndeformation = 'wobble'", "wobble"),
+        ("pathwarp = 1\n[[step]]\ndeformation = 'affine'\nrotat = 3", "rotat"),
+        ("pathwarp = 1\n[[step]]\ndeformation = 'affine'\nrotate = {}", "rotate"),
+        ("pathwarp = 1\n[options]\nloud = true\n[[step]]\ndeformation = 'affine'", "loud"),
+        ("pathwarp = 1\nstep = [", "TOML"),
+    ] {
+        fs::write(dir.path().join("r.toml"), recipe).unwrap();
+        let out = pathwarp_in(dir.path(), &["run", "r.toml"], ART.as_bytes());
+        let said = text(&out.stderr);
+        assert_eq!(out.status.code(), Some(3), "{recipe}: {said}");
+        assert!(said.contains("r.toml") && said.contains(part), "{recipe}: {said}");
+    }
+}
+
+/// X and then X --inverse gives the drawing back, within (1 + s) times the tolerance, s the inverse's largest stretch.
+#[test]
+fn inverses_give_the_drawing_back() {
+    let dir = tempfile::tempdir().unwrap();
+    for (args, stretch) in [
+        (&["affine", "--rotate", "30", "--scale-x", "0.5", "--about", "10,20"][..], 2.0),
+        (&["similitude", "--base", "0,100 100,100", "--target", "20,90 80,60"], 1.6),
+        (&["projective", "--base", "0,100 100,100 100,0 0,0", "--target", "0,100 100,90 75,20 15,5"], 6.0),
+        (
+            &[
+                "shaper",
+                "--base",
+                "0,100 100,100 100,0 0,0",
+                "--shaper",
+                "0,100 100,90 90,0 5,5",
+                "--target",
+                "0,100 100,95 90,10 10,0",
+            ],
+            6.0,
+        ),
+    ] {
+        let there =
+            pathwarp_in(dir.path(), &[args, &["--tolerance", "0.001", "--precision", "9"]].concat(), ART.as_bytes());
+        assert_eq!(there.status.code(), Some(0), "{}", text(&there.stderr));
+        let back = pathwarp_in(
+            dir.path(),
+            &[args, &["--inverse", "--tolerance", "0.001", "--precision", "9"]].concat(),
+            &there.stdout,
+        );
+        assert_eq!(back.status.code(), Some(0), "{args:?} {}", text(&back.stderr));
+        fs::write(dir.path().join("a.svg"), ART).unwrap();
+        fs::write(dir.path().join("b.svg"), &back.stdout).unwrap();
+        let compared = pathwarp_in(dir.path(), &["compare", "--json", "a.svg", "b.svg"], b"");
+        let c: Value = serde_json::from_slice(&compared.stdout).unwrap();
+        assert!(c["max_distance"].as_f64().unwrap() <= (1.0 + stretch) * 0.001, "{args:?}: {c}");
+    }
+}
+
+#[test]
+fn a_recipe_runs_backwards() {
+    let dir = tempfile::tempdir().unwrap();
+    let recipe = "pathwarp = 1\n[[step]]\ndeformation = 'affine'\nrotate = 30\nabout = '10,20'\n[[step]]\ndeformation = 'projective'\nbase = '0,100 100,100 100,0 0,0'\ntarget = '0,100 100,90 75,20 15,5'\n";
+    fs::write(dir.path().join("r.toml"), recipe).unwrap();
+    let fine = ["--tolerance", "1e-5", "--precision", "10", "-q"];
+    let art = ART
+        .replace("r='20'", "r='9'")
+        .replace("<path id='s' d='M0,0H100V100H0Z'/>", "<path id='s' d='M30,30h20v20z'/>");
+    let there = pathwarp_in(dir.path(), &[&["run", "r.toml"][..], &fine].concat(), art.as_bytes());
+    let back = pathwarp_in(dir.path(), &[&["run", "r.toml", "--inverse"][..], &fine].concat(), &there.stdout);
+    assert_eq!(back.status.code(), Some(0), "{}", text(&back.stderr));
+    fs::write(dir.path().join("a.svg"), art).unwrap();
+    fs::write(dir.path().join("b.svg"), &back.stdout).unwrap();
+    let out = pathwarp_in(dir.path(), &["compare", "a.svg", "b.svg", "--max-distance", "1e-4"], b"");
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stdout));
+}
+
+#[test]
+fn an_embedded_source_comes_back_to_the_byte() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out.svg").display().to_string();
+    for name in artwork() {
+        let source = fs::read(sample(&name)).unwrap();
+        let input = sample(&name).display().to_string();
+        expect_code(0, &["shaper", &input, "--shaper", CAGE, "--embed-recipe", "-q", "-o", &out]);
+        let back = pathwarp_in(dir.path(), &["unwarp", "out.svg"], b"");
+        assert_eq!(back.stdout, source, "{name}");
+        // The recipe is one that runs.
+        let recipe = pathwarp_in(dir.path(), &["unwarp", "--recipe", "out.svg", "-o", "r.toml"], b"");
+        assert_eq!(recipe.status.code(), Some(0));
+        let again = pathwarp_in(dir.path(), &["run", "r.toml", "-", "--embed-recipe", "-q"], &source);
+        assert_eq!(again.stdout, fs::read(&out).unwrap(), "{name}");
+    }
+    let none = pathwarp_in(dir.path(), &["unwarp", "-"], ART.as_bytes());
+    assert_eq!(none.status.code(), Some(3));
+    assert!(text(&none.stderr).contains("--embed-recipe"));
+}
+
+#[test]
+fn points_are_mapped_line_by_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |args: &[&str], points: &str| pathwarp_in(dir.path(), &[&["map"], args].concat(), points.as_bytes());
+    let out = run(&["affine", "--matrix", "1,2,3,4,5,6"], "10 100\n\n# a comment\n0,0\n");
+    assert_eq!(text(&out.stdout), "315 426\n5 6\n");
+    let out = run(&["affine", "--matrix", "1,2,3,4,5,6", "--jacobian"], "10 100");
+    assert_eq!(text(&out.stdout), "315 426 1 2 3 4\n");
+    let out = run(&["affine", "--matrix", "1,2,3,4,5,6", "--inverse"], "315 426");
+    assert_eq!(text(&out.stdout), "10 100\n");
+    // A chain; and the frame gives percentages their meaning.
+    let out = run(
+        &["affine", "--matrix", "2,0,0,2,0,0", "--frame", "0,0,10,10", "+", "affine", "--matrix", "1,0,0,1,1,0"],
+        "3 4",
+    );
+    assert_eq!(text(&out.stdout), "7 8\n");
+    // Beyond the horizon there is no value.
+    let out = run(&["projective", "--frame", "0,0,100,100", "--target", "0,100 100,100 75,0 25,0"], "50 50\n50 300\n");
+    assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
+    assert!(text(&out.stdout).ends_with("nan nan\n"), "{}", text(&out.stdout));
+    let bad = run(&["affine"], "1 2\n3 four\n");
+    assert_eq!(bad.status.code(), Some(3));
+    assert!(text(&bad.stderr).contains(":2: `3 four`"), "{}", text(&bad.stderr));
+}
+
+#[test]
+fn the_schema_names_every_parameter() {
+    let (schema, _) = expect_code(0, &["schema"]);
+    let schema: Value = serde_json::from_str(&schema).unwrap();
+    let steps = schema["properties"]["step"]["items"]["oneOf"].as_array().unwrap();
+    for e in pathwarp::deform::Registry::builtin().entries() {
+        let step = steps.iter().find(|s| s["properties"]["deformation"]["const"] == e.info().name).unwrap();
+        for p in e.info().params {
+            assert!(step["properties"][p.name]["description"].is_string());
+        }
+    }
+}
