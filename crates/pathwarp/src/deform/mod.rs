@@ -17,6 +17,7 @@ mod projective;
 mod shaper;
 mod similitude;
 mod swirl;
+mod triangle;
 mod wave;
 
 use crate::error::Error;
@@ -33,6 +34,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(bilinear::Bilinear),
         Arc::new(ffd::Ffd),
         Arc::new(birational::BirationalDeformation),
+        Arc::new(triangle::Triangle),
         Arc::new(projective::Projective),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),

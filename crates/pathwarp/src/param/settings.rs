@@ -143,6 +143,37 @@ impl<'a> Settings<'a> {
         unit::length(text, axis, self.frame).map_err(|e| Error::usage(name, text, e))
     }
 
+    /// An angle within a text parameter, in degrees.
+    ///
+    /// # Errors
+    /// Not an angle; the message names the parameter.
+    pub fn angle_in(&self, name: &str, text: &str) -> Result<f64, Error> {
+        unit::angle(text).map_err(|e| Error::usage(name, text, e))
+    }
+
+    /// A plain number or a percentage within a text parameter.
+    ///
+    /// # Errors
+    /// Not a number; the message names the parameter.
+    pub fn number_in(&self, name: &str, text: &str) -> Result<f64, Error> {
+        unit::number(text).map_err(|e| Error::usage(name, text, e))
+    }
+
+    /// A control point's number and what follows: `I,J:REST` or `I,J,K:REST`.
+    ///
+    /// # Errors
+    /// Not of that form, or not `N` whole numbers; the message names the parameter.
+    pub fn node_in<'t, const N: usize>(&self, name: &str, text: &'t str) -> Result<([usize; N], &'t str), Error> {
+        let wrong = || {
+            let node = ["I", "J", "K"][..N.min(3)].join(",");
+            Error::usage(name, text, format!("does not begin with a control point's number and a colon, {node}:"))
+        };
+        let (node, rest) = text.split_once(':').ok_or_else(wrong)?;
+        let numbers: Option<Vec<usize>> = node.split(',').map(|n| n.trim().parse().ok()).collect();
+        let node = numbers.and_then(|n| <[usize; N]>::try_from(n).ok()).ok_or_else(wrong)?;
+        Ok((node, rest.trim()))
+    }
+
     /// A place within a text parameter, percentages from the frame's left and top.
     ///
     /// # Errors

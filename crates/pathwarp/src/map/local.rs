@@ -1,0 +1,200 @@
+//! A map that acts inside a convex polygon only; outside nothing moves.
+//!
+//! The polygon's sides are creases, crossed exactly. Whether the pieces meet there is up to the map inside.
+
+use super::inverse::NOWHERE;
+use super::{AffineMap, Crease, CreaseKind, Creases, Jet, Level, Map, RationalBezier};
+use kurbo::{Point, Rect};
+use std::sync::Arc;
+
+/// How far beyond a side a place still belongs to the inside, relative to the coordinates: curves that end on a side or touch
+/// it do.
+const ROUNDING: f64 = 1e-12;
+
+/// A map inside a convex polygon, the identity outside.
+#[derive(Clone)]
+pub struct Local {
+    /// For each side a·x + b·y + c, the distance to it, positive inside; and the side's box.
+    sides: Vec<([f64; 3], Rect)>,
+    reach: f64,
+    inside: Arc<dyn Map>,
+}
+
+impl Local {
+    /// `inside` within the convex polygon with these corners, in either order.
+    #[must_use]
+    pub fn new(corners: &[Point], inside: Arc<dyn Map>) -> Self {
+        let n = corners.len();
+        let side = |k: usize| {
+            let (p, q, other) = (corners[k], corners[(k + 1) % n], corners[(k + 2) % n]);
+            let along = (q - p).normalize();
+            let turn = if along.cross(other - p) < 0.0 { -1.0 } else { 1.0 };
+            let (a, b) = (-along.y * turn, along.x * turn);
+            ([a, b, -(a * p.x + b * p.y)], Rect::from_points(p, q))
+        };
+        let size = corners.iter().fold(0.0, |m, p| f64::max(m, p.x.abs() + p.y.abs()));
+        Self { sides: (0..n).map(side).collect(), reach: ROUNDING * size, inside }
+    }
+
+    /// How far inside `p` lies: the distance to the nearest side's line, negative outside.
+    fn depth(&self, p: Point) -> f64 {
+        self.sides.iter().map(|([a, b, c], _)| a * p.x + b * p.y + c).fold(f64::INFINITY, f64::min)
+    }
+
+    fn holds(&self, p: Point) -> bool {
+        self.depth(p) >= -self.reach
+    }
+}
+
+impl Map for Local {
+    fn jet(&self, p: Point) -> Jet {
+        if self.holds(p) { self.inside.jet(p) } else { AffineMap::IDENTITY.jet(p) }
+    }
+
+    fn point(&self, p: Point) -> Point {
+        if self.holds(p) { self.inside.point(p) } else { p }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        for ([a, b, c], within) in &self.sides {
+            out.push(Crease::kink(Level::Stretch { a: *a, b: *b, c: *c, within: *within }));
+        }
+        let mut own = Creases::default();
+        self.inside.creases(&mut own);
+        for c in own.items() {
+            let (level, local) = (c.level.clone(), self.clone());
+            let level = Level::Field(Arc::new(move |p| if local.holds(p) { level.at(p) } else { 1.0 }));
+            out.push(Crease { level, kind: c.kind });
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        Some(if self.holds(inside) {
+            self.inside.branch(inside).unwrap_or_else(|| self.inside.clone())
+        } else {
+            Arc::new(AffineMap::IDENTITY)
+        })
+    }
+
+    /// Where the curve's control points, and so the curve, lie on one side.
+    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        let points: Option<Vec<Point>> =
+            curve.points.iter().map(|p| (p[2] > 0.0).then(|| Point::new(p[0] / p[2], p[1] / p[2]))).collect();
+        let points = points?;
+        if points.iter().all(|p| self.holds(*p)) {
+            return self.inside.image_of(curve);
+        }
+        let beyond = |[a, b, c]: [f64; 3]| points.iter().all(|p| a * p.x + b * p.y + c < -self.reach);
+        self.sides.iter().any(|s| beyond(s.0)).then(|| curve.clone())
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        self.inside.inverse().map(|back| Arc::new(LocalInverse { of: self.clone(), back }) as Arc<dyn Map>)
+    }
+}
+
+/// The inverse of a [`Local`] map: that of the map inside where it leads inside, the identity outside.
+#[derive(Clone)]
+struct LocalInverse {
+    of: Local,
+    back: Arc<dyn Map>,
+}
+
+impl LocalInverse {
+    fn leads_inside(&self, q: Point) -> bool {
+        let p = self.back.point(q);
+        p.is_finite() && self.of.holds(p)
+    }
+}
+
+impl Map for LocalInverse {
+    fn jet(&self, q: Point) -> Jet {
+        let found = self.back.jet(q);
+        if found.is_finite() && self.of.holds(found.p) {
+            found
+        } else if !self.of.holds(q) {
+            AffineMap::IDENTITY.jet(q)
+        } else {
+            NOWHERE
+        }
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let own = self.clone();
+        out.push(Crease {
+            kind: CreaseKind::Kink,
+            level: Level::Field(Arc::new(move |q| {
+                let p = own.back.point(q);
+                if p.is_finite() { own.of.depth(p) } else { -1.0 }
+            })),
+        });
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        Some(if self.leads_inside(inside) { self.back.clone() } else { Arc::new(AffineMap::IDENTITY) })
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.of.clone()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Formula, Real};
+    use kurbo::Vec2;
+
+    struct Swell;
+    impl Formula for Swell {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y + x * (S::from(1.0) - x) * 0.3)
+        }
+        fn inverse(&self) -> Option<Arc<dyn Map>> {
+            Some(Arc::new(Shrink))
+        }
+    }
+    struct Shrink;
+    impl Formula for Shrink {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y - x * (S::from(1.0) - x) * 0.3)
+        }
+    }
+
+    #[test]
+    fn inside_moves_outside_stays_and_branches_reach_the_border() {
+        for corners in [[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)]] {
+            let m = Local::new(&corners.map(Point::from), Arc::new(Swell));
+            assert_eq!(m.point((0.25, 0.25).into()), Swell.point((0.25, 0.25).into()));
+            for p in [(0.6, 0.6), (-0.1, 0.2), (0.3, -0.01)] {
+                assert_eq!(m.point(p.into()), p.into());
+                assert_eq!(m.branch(p.into()).unwrap().point((0.2, 0.2).into()), (0.2, 0.2).into());
+            }
+            let b = m.branch((0.3, 0.3).into()).unwrap();
+            assert_eq!(b.jet((0.5, 0.5).into()).dx, Vec2::new(1.0, 0.0));
+            let back = m.inverse().unwrap();
+            for p in [(0.25, 0.25), (0.8, 0.8), (0.5, 0.1)] {
+                assert!(back.point(m.point(p.into())).distance(p.into()) < 1e-15);
+            }
+            // In the gap that the hump left at the bottom there was nothing.
+            assert!(back.point((0.5, 0.01).into()).is_nan());
+        }
+    }
+
+    #[test]
+    fn curves_on_one_side_have_exact_images_and_crossings_are_exact() {
+        let m = Local::new(&[(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)].map(Point::from), Arc::new(AffineMap::IDENTITY));
+        let curve = |ps: &[(f64, f64)]| RationalBezier::polynomial(&ps.iter().map(|p| (*p).into()).collect::<Vec<_>>());
+        assert!(m.image_of(&curve(&[(1.0, 1.0), (2.0, 1.0)])).is_some());
+        assert!(m.image_of(&curve(&[(3.0, 3.0), (4.0, 3.0)])).is_some());
+        assert!(m.image_of(&curve(&[(1.0, 1.0), (4.0, 3.0)])).is_none());
+        let mut creases = Creases::default();
+        m.creases(&mut creases);
+        let seg = crate::outline::Seg::Line(kurbo::Line::new((-1.0, 1.0), (9.0, 1.0)));
+        // Into the left side, out at the slanting one; the bottom side's line is not met, the others' not elsewhere.
+        let at = creases.splits(&seg);
+        assert!(at.len() == 2 && (at[0] - 0.1).abs() < 1e-15 && (at[1] - 0.4).abs() < 1e-15, "{at:?}");
+        let below = crate::outline::Seg::Line(kurbo::Line::new((6.0, -1.0), (6.0, 9.0)));
+        assert!(creases.splits(&below).is_empty());
+    }
+}
