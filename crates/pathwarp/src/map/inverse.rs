@@ -140,6 +140,12 @@ impl NewtonInverse {
     /// The preimage of `q` and the inverse's derivatives there; `None` where there is none in the box.
     #[must_use]
     pub fn solve(&self, q: Point) -> Option<Jet> {
+        self.solve_where(q, |_| true)
+    }
+
+    /// The same among the preimages that `accept` accepts.
+    #[must_use]
+    pub fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() {
             return None;
         }
@@ -148,7 +154,7 @@ impl NewtonInverse {
         let off = |s: &Start| (s.image - q).hypot2();
         if near.is_empty() {
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.from(start.at, q).filter(|found| self.counts(found));
+            return self.from(start.at, q).filter(|found| self.counts(found) && accept(found.p));
         }
         let mut tried = [u32::MAX; TRIES];
         let mut best: Option<(f64, Jet)> = None;
@@ -165,7 +171,7 @@ impl NewtonInverse {
             };
             let Some(k) = all.min_by(less) else { break };
             tried[n] = k;
-            let Some(found) = self.from(self.starts[k as usize].at, q) else { continue };
+            let Some(found) = self.from(self.starts[k as usize].at, q).filter(|f| accept(f.p)) else { continue };
             let beyond = self.beyond(found.p);
             if beyond <= self.reach {
                 return Some(found);

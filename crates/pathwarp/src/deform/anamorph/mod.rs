@@ -32,8 +32,10 @@ use crate::error::Error;
 use crate::map::anamorph::Camera;
 use crate::map::surface::{Anamorphosis, Radial, Surface};
 use crate::map::{AffineMap, Chain, Local, Map};
-use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Affine, Point, Rect};
+use crate::outline::Outline;
+use crate::param::{Axis, Frame, Kind, Param, Settings};
+use crate::refit;
+use kurbo::{Affine, BezPath, Point, Rect, Shape};
 use std::sync::Arc;
 
 pub(super) struct Anamorph;
@@ -122,11 +124,11 @@ a held side: the first side of a triangle, the edge of a box if --local.",
         },
         Example {
             what: "A paper cup",
-            command: "anamorph samples/logo.svg --distance 40cm --picture-width 60mm --onto cone:top=45mm,bottom=30mm,height=100mm -o out.svg",
+            command: "anamorph samples/logo.svg --distance 40cm --picture-width 50mm --onto cone:top=45mm,bottom=30mm,height=100mm -o out.svg",
         },
         Example {
             what: "Into a dome, as another visitor sees it",
-            command: "anamorph samples/grid.svg --distance 200 --onto sphere:eye --view 60,120,120 -o out.svg",
+            command: "anamorph samples/grid.svg --distance 200 --onto sphere:eye --view 105,120,150 -o out.svg",
         },
         Example {
             what: "Swell a word away from an eye below it",
@@ -274,6 +276,10 @@ fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
     let mut built =
         Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
     built.notes.push(scene.size(&*map));
+    built.overlays.push(Overlay { role: Role::Base, path: s.frame().rect.to_path(0.1) });
+    if let Some(path) = scene.outline(&*map) {
+        built.overlays.push(Overlay { role: Role::Target, path });
+    }
     Ok(built)
 }
 
@@ -308,6 +314,14 @@ impl Scene {
             None => scale * s.point("eye")?,
         };
         Ok(Self { frame: scale.transform_rect_bbox(drawn), scale, eye })
+    }
+
+    /// The image of the artwork's box, for the preview.
+    fn outline(&self, map: &dyn Map) -> Option<BezPath> {
+        let r = self.frame;
+        let tolerance = 1e-3 * (r.width() + r.height());
+        let outline = Outline::from_points(&Frame::new(r).corners(), true);
+        refit::warp_path(&outline, map, &refit::Options::new(tolerance)).ok().map(|w| w.path)
     }
 
     /// A line for `--explain`: how large artwork and result are.
