@@ -13,6 +13,7 @@ use pathwarp::refit::{self, Assurance};
 use pathwarp::{Error, GeometryError, Outline};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// A warped document.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,6 +134,11 @@ impl Document {
             return Ok(out);
         }
         let meant = self.chosen(options);
+        let mut options = options.clone();
+        if options.refit.merge {
+            options.refit.shared = Arc::new(refit::SharedEdges::among(self.shapes.iter().map(|s| &s.outline)));
+        }
+        let options = &options;
         let parts = &self.scene.parts;
         let slots = self.place_slots(map, &meant, &options.selection);
         let one = |(p, meant): (&Part, &bool)| {

@@ -8,7 +8,7 @@
 use super::source::{Curve, End, Lane, Lanes, Source};
 use super::split::{self, Slow};
 use super::step::{Outcome, Stepper};
-use super::{Assurance, PathReport, Piece};
+use super::{Assurance, PathReport, Piece, SharedEdges};
 use crate::map::Map;
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
@@ -38,6 +38,7 @@ type Leg = (usize, usize, bool);
 pub(super) struct Merger<'a> {
     pub(super) map: &'a dyn Map,
     pub(super) tolerance: f64,
+    pub(super) shared: &'a SharedEdges,
 }
 
 impl Merger<'_> {
@@ -54,7 +55,7 @@ impl Merger<'_> {
         while i < segs.len() {
             let mut chain = Chain::default();
             let mut j = i;
-            while j < segs.len() && j - i < MOST_IN_CHAIN {
+            while j < segs.len() && j - i < MOST_IN_CHAIN && !self.shared.has(&segs[j]) {
                 let Some(part) = Part::new(&segs[j], self.map)? else { break };
                 if let Some(last) = chain.parts.last()
                     && last.to.into.cross(part.from.away).atan2(last.to.into.dot(part.from.away)).abs() > SMOOTH

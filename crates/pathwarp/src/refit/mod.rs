@@ -15,6 +15,7 @@ mod fit;
 mod merge;
 #[allow(clippy::needless_range_loop)]
 mod samples;
+mod shared;
 #[allow(clippy::needless_range_loop)]
 mod source;
 mod split;
@@ -23,12 +24,15 @@ mod step;
 #[allow(clippy::needless_range_loop)]
 mod verify;
 
+pub use shared::SharedEdges;
+
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use certify::Algebra;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point};
 use source::{Curve, End, Source};
+use std::sync::Arc;
 
 /// How a path is refitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,13 +43,15 @@ pub struct Options {
     pub certify: bool,
     /// Join consecutive pieces across smooth joints where that saves nodes.
     pub merge: bool,
+    /// Edges that merging leaves alone, so that neighbours stay watertight.
+    pub shared: Arc<SharedEdges>,
 }
 
 impl Options {
     /// Checked against `tolerance`, without merging.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, certify: false, merge: false }
+        Self { tolerance, certify: false, merge: false, shared: Arc::default() }
     }
 }
 
@@ -250,7 +256,7 @@ fn warp_subpath(
     }
     let smooth = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
     if options.merge && !options.certify && smooth && bounds.len() == sub.segs.len() + 1 {
-        let merger = merge::Merger { map, tolerance: options.tolerance };
+        let merger = merge::Merger { map, tolerance: options.tolerance, shared: &options.shared };
         pieces = merger.merged(&sub.segs, &pieces, &bounds, &mut out.report).map_err(infinity)?;
     }
     out.subpath(start, &pieces, sub.closed);

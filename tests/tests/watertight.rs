@@ -1,0 +1,54 @@
+//! Neighbours that share an edge share it after the warp, to the last digit: also when pieces are merged.
+
+mod support;
+
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{CubicBez, Point};
+use pathwarp::param::{Args, Frame};
+use pathwarp::{Outline, Seg, refit};
+use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions};
+use std::collections::HashMap;
+use std::fs;
+use support::sample;
+
+const CAGE: &str = "M 10,90 C 60,130 60,60 95,85 C 75,60 115,40 90,15 C 60,-25 40,45 5,10 C 25,40 -10,60 10,90 Z";
+
+/// The cubics of an outline, run from their lexicographically smaller end.
+fn edges(o: &Outline) -> Vec<[(u64, u64); 4]> {
+    let canonical = |c: CubicBez| {
+        let forwards = (c.p0.x, c.p0.y) <= (c.p3.x, c.p3.y);
+        let p = if forwards { [c.p0, c.p1, c.p2, c.p3] } else { [c.p3, c.p2, c.p1, c.p0] };
+        p.map(|p: Point| (p.x.to_bits(), p.y.to_bits()))
+    };
+    o.segs().filter(|s| !matches!(s, Seg::Line(_))).map(|s| canonical(s.to_cubic())).collect()
+}
+
+#[test]
+fn stained_glass_has_no_gaps() {
+    let doc = Document::read(&fs::read(sample("tiles.svg")).unwrap(), "tiles", &ReadOptions::default()).unwrap();
+    let frame = Frame::new(doc.artwork_box(&Selection::default()).unwrap());
+    let map = Registry::builtin()
+        .get("shaper")
+        .unwrap()
+        .build_from(&Args::from_pairs(&[("shaper", CAGE)]), &frame)
+        .unwrap()
+        .map;
+    let count = |o: &mut dyn Iterator<Item = &Outline>| {
+        let mut seen: HashMap<[(u64, u64); 4], usize> = HashMap::new();
+        o.flat_map(edges).for_each(|e| *seen.entry(e).or_default() += 1);
+        seen.values().filter(|n| **n == 2).count()
+    };
+    let shared_before = count(&mut doc.shapes().iter().map(|s| &s.outline));
+    assert!(shared_before > 20, "the sample has shared edges: {shared_before}");
+    for merge in [false, true] {
+        let options = refit::Options { merge, ..refit::Options::new(1e-3) };
+        let warped = doc.warp(&map, &WarpOptions::new(options)).unwrap();
+        let after = Document::read(warped.svg.as_bytes(), "out", &ReadOptions::default()).unwrap();
+        // Every shared source edge gives one or more pieces, each found on both sides.
+        let sources: Vec<Outline> = doc.shapes().iter().map(|s| s.outline.clone()).collect();
+        let shared = refit::SharedEdges::among(&sources);
+        assert_ne!(shared, refit::SharedEdges::default());
+        let shared_after = count(&mut after.shapes().iter().map(|s| &s.outline));
+        assert!(shared_after >= shared_before, "merge {merge}: {shared_before} before, {shared_after} after");
+    }
+}
