@@ -8,7 +8,7 @@
 //!
 //! which are polar coordinates about the cone's apex, written so that the cylinder (κ → 0: X = rθ, Y = y − y₀) is no special
 //! place. Both directions are in closed form: (X, Y) gives R = |(κX, r − κY)|, κθ its angle, σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R),
-//! and a point in space is seen at O + (q − O)·distance/(q_z + distance).
+//! and a point in space is seen at O + (q − O)·D/(z + D), D being the eye's distance and z the point's depth.
 //!
 //! **From elsewhere.** A pinhole camera at C that looks at the image of the drawing's middle, scaled so that things there are
 //! true to size. Where δ is a polynomial of degree n, so are numerators and denominator of the view.

@@ -1,9 +1,9 @@
 //! Bézier triangles as maps of the plane.
 //!
-//! > F(p) = Σ w_ijk P_ijk Bⁿ_ijk(u) / Σ w_ijk Bⁿ_ijk(u),  Bⁿ_ijk(u) = n!/(i!j!k!)·u₀ⁱ u₁ʲ u₂ᵏ,  i + j + k = n
+//! > F(p) = Σ wᵢⱼₖ Pᵢⱼₖ Bⁿᵢⱼₖ(u) / Σ wᵢⱼₖ Bⁿᵢⱼₖ(u),  Bⁿᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱ u₁ʲ u₂ᵏ,  i + j + k = n
 //!
 //! u are the barycentric coordinates of p in a reference triangle ABC (G. Farin, *Triangular Bernstein–Bézier patches*, CAGD
-//! 3, 1986). With P_ijk = (iA + jB + kC)/n and equal weights nothing moves. A straight line becomes a curve of degree n
+//! 3, 1986). With Pᵢⱼₖ = (iA + jB + kC)/n and equal weights nothing moves. A straight line becomes a curve of degree n
 //! whatever its direction: a triangle of degree n has total degree n, a rectangle of degree n × n twice that.
 //!
 //! To evaluate it, the net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓ by running de Casteljau's algorithm on polynomials.
@@ -69,7 +69,7 @@ pub(super) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
     net.pop().unwrap_or_default()
 }
 
-/// The values of all Bⁿ_ijk at `p`, by [`index`].
+/// The values of all Bⁿᵢⱼₖ at `p`, by [`index`].
 #[must_use]
 pub fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
     const THIRD: f64 = 1.0 / 3.0;

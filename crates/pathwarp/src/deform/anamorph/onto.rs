@@ -23,7 +23,7 @@ impl<'t> Words<'t> {
     }
 
     fn has(&self, name: &str) -> bool {
-        self.list.iter().any(|w| *w == (name, None))
+        self.list.contains(&(name, None))
     }
 
     fn value(&self, name: &str) -> Option<&'t str> {
@@ -201,7 +201,7 @@ fn places(r: Rect) -> impl Iterator<Item = Point> {
 
 /// Every ray through the artwork's box must meet the surface.
 pub(super) fn must_be_met(s: &Settings<'_>, cast: &Anamorphosis, frame: Rect) -> Result<(), Error> {
-    let missed = places(frame).find(|p| !(cast.defined(*p) > 0.0));
+    let missed = places(frame).find(|p| cast.defined(*p).max(0.0) == 0.0);
     let Some(p) = missed else { return Ok(()) };
     let advice = match cast.surface {
         Surface::Plane(_) => {

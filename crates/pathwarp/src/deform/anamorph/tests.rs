@@ -186,10 +186,8 @@ fn off_quadric(points: &[Space], others: &[Space]) -> f64 {
         pivots.push(c);
         for i in (0..rows.len()).filter(|i| *i != k) {
             let f = rows[i][c] / rows[k][c];
-            for j in 0..10 {
-                let v = rows[k][j];
-                rows[i][j] -= f * v;
-            }
+            let from = rows[k].clone();
+            rows[i].iter_mut().zip(from).for_each(|(to, v)| *to -= f * v);
         }
     }
     let free = (0..10).find(|c| !pivots.contains(c)).unwrap();
