@@ -74,7 +74,7 @@ pub(crate) fn args() -> Vec<Arg> {
             .allow_negative_numbers(true)
             .help("Largest distance between the true curve and the output, in user units; default 1e-4 of the artwork's diagonal"),
         flag("certify").help("Prove the distance where the deformation allows it, rather than measure it"),
-        choice("merge", &["on", "off"]).help("Join pieces across smooth joints where that saves nodes [default: off]"),
+        choice("merge", &["on", "off"]).help("Join pieces across smooth joints where that saves nodes; off keeps every node of the source [default: on]"),
         Arg::new("frame")
             .long("frame")
             .value_name("artwork|viewbox|X,Y,W,H")
@@ -172,7 +172,7 @@ impl Common {
             out_dir: path("out-dir"),
             tolerance: positive("tolerance")?,
             certify: m.get_flag("certify"),
-            merge: word("merge") == "on",
+            merge: word("merge") != "off",
             frame: frame(m.get_one::<String>("frame"))?,
             select: words("select"),
             exclude: words("exclude"),

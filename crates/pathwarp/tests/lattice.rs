@@ -315,6 +315,23 @@ fn the_inverse_undoes_and_says_where_it_cannot() {
     }
 }
 
+/// Beyond its region an extended lattice may fold back over itself: the preimage in the region goes first.
+#[test]
+fn the_region_goes_before_its_surroundings() {
+    let region = Rect::new(20.0, 20.0, 220.0, 220.0);
+    let mut l = Lattice::regular(region, [3, 2], [1, 1]);
+    l.shift(1, 1, Vec2::new(9.0, 12.0));
+    l.set_weight(1, 1, 2.0);
+    let map = LatticeMap::new(&l, true);
+    let back = map.inverse().unwrap();
+    for i in 0..=40 {
+        for j in 0..=40 {
+            let p = Point::new(20.0 + 5.0 * f64::from(i), 20.0 + 5.0 * f64::from(j));
+            assert!(back.point(map.point(p)).distance(p) < 1e-10, "{p:?}");
+        }
+    }
+}
+
 #[test]
 fn denominators_that_vanish_are_edges() {
     let mut l = Lattice::regular(REGION, [2, 2], [1, 1]);

@@ -35,7 +35,7 @@ const ANY: f64 = f64::INFINITY;
 ///
 /// # Errors
 /// If `npm` or `tar` cannot be run or fail, or a file cannot be read or written.
-pub fn run() -> io::Result<()> {
+pub(crate) fn run() -> io::Result<()> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus");
     std::fs::create_dir_all(&folder)?;
     let mut lines = Vec::new();

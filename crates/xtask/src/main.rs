@@ -1,7 +1,9 @@
 //! Chores of the workspace, run as `cargo xtask NAME`.
 
+mod corpus;
 mod docs;
 mod new_deformation;
+mod refit_report;
 
 use clap::{Arg, Command, value_parser};
 use std::path::{Path, PathBuf};
@@ -28,6 +30,34 @@ fn main() -> ExitCode {
                         .help("The workspace to write to [default: this one]"),
                 ),
         )
+        .subcommand(Command::new("corpus").about("Fetch the icons that the refitting is measured on (needs npm)"))
+        .subcommand(
+            Command::new("refit-report")
+                .about("Draw the pieces, nodes and error of a refitted path")
+                .arg(
+                    Arg::new("path")
+                        .long("path")
+                        .value_name("DATA")
+                        .default_value(refit_report::PATH)
+                        .help("SVG path data"),
+                )
+                .arg(
+                    Arg::new("tolerance")
+                        .long("tolerance")
+                        .value_name("D")
+                        .value_parser(value_parser!(f64))
+                        .default_value("0.05")
+                        .help("Largest distance, user units"),
+                )
+                .arg(
+                    Arg::new("out")
+                        .long("out")
+                        .value_name("FILE.svg")
+                        .value_parser(value_parser!(PathBuf))
+                        .default_value("docs/images/refit.svg")
+                        .help("Where to draw"),
+                ),
+        )
         .subcommand(Command::new("docs").about("Write a page and a picture for every deformation"))
         .get_matches();
     let done = match matches.subcommand() {
@@ -35,7 +65,16 @@ fn main() -> ExitCode {
             let name = m.get_one::<String>("NAME").map_or("", String::as_str);
             new_deformation::run(m.get_one::<PathBuf>("root").unwrap_or(&root), name)
         }
+        Some(("corpus", _)) => corpus::run().map(|()| "wrote corpus/icons.txt".to_owned()).map_err(|e| e.to_string()),
         Some(("docs", _)) => docs::run(&root),
+        Some(("refit-report", m)) => {
+            match (m.get_one::<String>("path"), m.get_one::<f64>("tolerance"), m.get_one::<PathBuf>("out")) {
+                (Some(path), Some(tolerance), Some(out)) if *tolerance > 0.0 => {
+                    refit_report::run(path, *tolerance, out)
+                }
+                _ => Err("the tolerance is a positive number".into()),
+            }
+        }
         _ => Err("no such chore".into()),
     };
     match done {

@@ -23,7 +23,7 @@ static INFO: Info = Info {
     about: "Draw where the top and the bottom of the artwork are to run, as two rows of equally many points from left to right: \
 verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \
 then horizontals stay straight. The rows are curves that begin and end in their first and last points and are drawn towards the \
-others, as with any Bézier curve.\n\nThe result never folds over, and undoing it is exact and fast: no search is needed.\n\n\
+others, as with any Bézier curve.\n\nAs long as the rows do not cross, the result does not fold over, and undoing it is exact and fast: no search is needed.\n\n\
 Each row's inner points must lie between the lines that join the rows' ends; --allow-poles does without that where the artwork \
 keeps off the places where the map is infinite. With --spline, rows of many points become B-splines and bend locally.",
     source: "T. W. Sederberg, J. Zheng, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 2016",
@@ -60,7 +60,7 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
         },
         Example {
             what: "A logo like a flag blown from the side: horizontals stay straight",
-            command: "birational samples/logo.svg --left '0%,0% -20%,40% 20%,70% 0%,100%' --right '100%,5% 80%,40% 120%,70% 100%,110%' -o out.svg --preview out.png",
+            command: "birational samples/logo.svg --left '0%,0% -6%,40% 6%,70% 0%,100%' --right '100%,5% 94%,45% 106%,75% 100%,110%' -o out.svg --preview out.png",
         },
         Example {
             what: "Many points: B-spline rows",

@@ -71,7 +71,7 @@ laid onto that."),
         },
         Example {
             what: "A finer grid whose points act locally, saved for use again",
-            command: "ffd samples/grid.svg --spline --degree 3x3 --cells 5x5 --move 3,3:25,20 --move 5,5:-25,10 --save-lattice lattice.json -o out.svg",
+            command: "ffd samples/grid.svg --spline --degree 3x3 --cells 5x5 --move 3,3:25,20 --move 5,5:-25,10 --save-lattice out.json -o out.svg",
         },
     ],
     laws: &[

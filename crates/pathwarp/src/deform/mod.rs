@@ -3,6 +3,7 @@
 //! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
 
 mod affine;
+mod anamorph;
 mod bend;
 mod bilinear;
 mod birational;
@@ -36,6 +37,7 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(birational::BirationalDeformation),
         Arc::new(triangle::Triangle),
         Arc::new(projective::Projective),
+        Arc::new(anamorph::Anamorph),
         Arc::new(similitude::Similitude),
         Arc::new(affine::AffineDeformation),
         Arc::new(bend::Bend),

@@ -67,7 +67,7 @@ first corner at the top, its second at the bottom left.",
         },
         Example {
             what: "Six points, two of them moved, with no edge",
-            command: "triangle samples/grid.svg --move 1,1,0:-15%,0 --move 1,0,1:15%,0 --extend -o out.svg",
+            command: "triangle samples/grid.svg --move 1,1,0:-30%,30% --move 1,0,1:30%,30% --extend -o out.svg",
         },
     ],
     laws: &[

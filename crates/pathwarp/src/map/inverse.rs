@@ -11,7 +11,8 @@
 //!    fails. L is measured between the starts and doubled: a bound for maps that the grid resolves.
 //!
 //! Everywhere else the inverse is not defined: its values are NaN there. Where a map folds, a place can have several
-//! preimages; the one whose cell has its middle's image nearest is given.
+//! preimages. Those in the *core* (the part of the box the map is meant for) go before others; beyond the core only sheets
+//! that lie the same way up as the core's middle count, and of those the preimage nearest to the core is given.
 
 use super::{Jet, Map};
 use kurbo::{Point, Rect, Vec2};
@@ -24,7 +25,7 @@ const MOST: usize = 96;
 /// Newton steps from one start.
 const STEPS: usize = 40;
 /// Starts tried for one place.
-const TRIES: usize = 12;
+const TRIES: usize = 16;
 
 /// What the inverse says where it is not defined.
 pub(super) const NOWHERE: Jet =
@@ -34,6 +35,9 @@ pub(super) const NOWHERE: Jet =
 pub struct NewtonInverse {
     map: Arc<dyn Map>,
     domain: Rect,
+    core: Rect,
+    /// The sign of the determinant in the core's middle.
+    up: f64,
     reach: f64,
     starts: Vec<Start>,
     /// Starts by the place of their cells' images: a grid of buckets over `bounds`.
@@ -49,6 +53,7 @@ pub struct NewtonInverse {
 struct Start {
     at: Point,
     image: Point,
+    in_core: bool,
 }
 
 impl NewtonInverse {
@@ -56,6 +61,12 @@ impl NewtonInverse {
     /// is divided (1, 1 for one polynomial piece).
     #[must_use]
     pub fn new(map: Arc<dyn Map>, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
+        Self::with_core(map, domain, domain, reach, pieces)
+    }
+
+    /// The same with a core smaller than the box.
+    #[must_use]
+    pub fn with_core(map: Arc<dyn Map>, core: Rect, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
         let [nx, ny] = pieces.map(|n| (n * 4).clamp(LEAST, MOST));
         let cell = Vec2::new(domain.width() / nx as f64, domain.height() / ny as f64);
         let at = |i: usize, j: usize| domain.origin() + Vec2::new((i as f64 + 0.5) * cell.x, (j as f64 + 0.5) * cell.y);
@@ -88,13 +99,16 @@ impl NewtonInverse {
                 0.75 * (j.dx.x.abs() * cell.x + j.dy.x.abs() * cell.y),
                 0.75 * (j.dx.y.abs() * cell.x + j.dy.y.abs() * cell.y),
             );
-            starts.push(Start { at: *at, image: j.p });
+            starts.push(Start { at: *at, image: j.p, in_core: core.contains(*at) });
             boxes.push(Rect::from_points(j.p - half, j.p + half));
         }
         let bounds = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
         let side = nx.max(ny);
+        let up = map.jet(core.center()).det().signum();
         let mut out = Self {
             map,
+            core,
+            up,
             domain,
             reach,
             buckets: vec![Vec::new(); side * side],
@@ -126,27 +140,58 @@ impl NewtonInverse {
     /// The preimage of `q` and the inverse's derivatives there; `None` where there is none in the box.
     #[must_use]
     pub fn solve(&self, q: Point) -> Option<Jet> {
+        self.solve_where(q, |_| true)
+    }
+
+    /// The same among the preimages that `accept` accepts.
+    #[must_use]
+    pub fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() {
             return None;
         }
         let (i, j) = self.bucket(q);
         let near = &self.buckets[j * self.side + i];
         let off = |s: &Start| (s.image - q).hypot2();
-        let mut tried = [u32::MAX; TRIES];
-        for n in 0..TRIES {
-            let all = near.iter().filter(|k| !tried.contains(k));
-            let next = all.min_by(|a, b| off(&self.starts[**a as usize]).total_cmp(&off(&self.starts[**b as usize])));
-            let Some(&k) = next else { break };
-            tried[n] = k;
-            if let Some(found) = self.from(self.starts[k as usize].at, q) {
-                return Some(found);
-            }
-        }
         if near.is_empty() {
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.from(start.at, q);
+            return self.from(start.at, q).filter(|found| self.counts(found) && accept(found.p));
         }
-        None
+        let mut tried = [u32::MAX; TRIES];
+        let mut best: Option<(f64, Jet)> = None;
+        for n in 0..TRIES {
+            // Starts in the core first, then by how near their images are.
+            let key = |k: u32| {
+                let s = &self.starts[k as usize];
+                (!s.in_core, off(s))
+            };
+            let all = near.iter().copied().filter(|k| !tried.contains(k));
+            let less = |a: &u32, b: &u32| {
+                let (a, b) = (key(*a), key(*b));
+                a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+            };
+            let Some(k) = all.min_by(less) else { break };
+            tried[n] = k;
+            let Some(found) = self.from(self.starts[k as usize].at, q).filter(|f| accept(f.p)) else { continue };
+            let beyond = self.beyond(found.p);
+            if beyond <= self.reach {
+                return Some(found);
+            }
+            if self.counts(&found) && best.is_none_or(|(least, _)| beyond < least) {
+                best = Some((beyond, found));
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// How far a place is outside the core.
+    fn beyond(&self, p: Point) -> f64 {
+        let c = &self.core;
+        (c.x0 - p.x).max(p.x - c.x1).max(c.y0 - p.y).max(p.y - c.y1).max(0.0)
+    }
+
+    /// Whether a preimage lies in the core, or on a sheet the same way up.
+    fn counts(&self, found: &Jet) -> bool {
+        found.det().signum() == self.up || self.beyond(found.p) <= self.reach
     }
 
     /// Newton's method from one start.

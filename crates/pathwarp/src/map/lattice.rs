@@ -430,7 +430,7 @@ impl LatticeInverse {
         let domain = r.inflate(beyond * r.width(), beyond * r.height());
         // Beyond the border by more than the width over which places still count as inside, so that no gap is left between.
         let reach = 1e3 * (map.inside.x1 - r.x1);
-        Self { map: map.clone(), inner: Arc::new(NewtonInverse::new(pieces, domain, reach, map.cells)) }
+        Self { map: map.clone(), inner: Arc::new(NewtonInverse::with_core(pieces, r, domain, reach, map.cells)) }
     }
 
     fn outside(&self, q: Point) -> bool {

@@ -3,7 +3,7 @@
 //! The polygon's sides are creases, crossed exactly. Whether the pieces meet there is up to the map inside.
 
 use super::inverse::NOWHERE;
-use super::{AffineMap, Crease, CreaseKind, Creases, Jet, Level, Map, RationalBezier};
+use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -39,6 +39,11 @@ impl Local {
     /// How far inside `p` lies: the distance to the nearest side's line, negative outside.
     fn depth(&self, p: Point) -> f64 {
         self.sides.iter().map(|([a, b, c], _)| a * p.x + b * p.y + c).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The box about the polygon.
+    fn bounds(&self) -> Rect {
+        self.sides.iter().map(|s| s.1).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
     }
 
     fn holds(&self, p: Point) -> bool {
@@ -88,54 +93,90 @@ impl Map for Local {
         self.sides.iter().any(|s| beyond(s.0)).then(|| curve.clone())
     }
 
+    /// The inverse of the map inside where it leads inside, the identity outside.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        self.inside.inverse().map(|back| Arc::new(LocalInverse { of: self.clone(), back }) as Arc<dyn Map>)
+        let back = match self.inside.class() {
+            Class::Smooth => Back::Newton(Arc::new(NewtonInverse::new(
+                self.inside.clone(),
+                self.bounds(),
+                1e-3 * (self.bounds().width() + self.bounds().height()),
+                [1, 1],
+            ))),
+            _ => Back::Closed(self.inside.inverse()?),
+        };
+        Some(Arc::new(LocalInverse { of: self.clone(), back }))
     }
 }
 
-/// The inverse of a [`Local`] map: that of the map inside where it leads inside, the identity outside.
+/// How a place inside is found.
+#[derive(Clone)]
+enum Back {
+    Closed(Arc<dyn Map>),
+    Newton(Arc<NewtonInverse>),
+}
+
+/// The inverse of a [`Local`] map.
 #[derive(Clone)]
 struct LocalInverse {
     of: Local,
-    back: Arc<dyn Map>,
+    back: Back,
 }
 
 impl LocalInverse {
-    fn leads_inside(&self, q: Point) -> bool {
-        let p = self.back.point(q);
-        p.is_finite() && self.of.holds(p)
+    /// The preimage at most `beyond` outside the polygon.
+    fn within(&self, q: Point, beyond: f64) -> Option<Jet> {
+        let holds = |p: Point| self.of.depth(p) >= -beyond;
+        match &self.back {
+            Back::Closed(m) => Some(m.jet(q)).filter(|j| j.is_finite() && holds(j.p)),
+            Back::Newton(m) => m.solve_where(q, holds),
+        }
+    }
+
+    /// Room for the ends of a part that lie on the polygon's sides.
+    fn room(&self) -> f64 {
+        let b = self.of.bounds();
+        1e-3 * (b.width() + b.height())
     }
 }
 
 impl Map for LocalInverse {
     fn jet(&self, q: Point) -> Jet {
-        let found = self.back.jet(q);
-        if found.is_finite() && self.of.holds(found.p) {
-            found
-        } else if !self.of.holds(q) {
-            AffineMap::IDENTITY.jet(q)
-        } else {
-            NOWHERE
+        match self.within(q, self.of.reach) {
+            Some(found) => found,
+            None if !self.of.holds(q) => AffineMap::IDENTITY.jet(q),
+            None => NOWHERE,
         }
     }
 
     fn creases(&self, out: &mut Creases) {
         let own = self.clone();
-        out.push(Crease {
-            kind: CreaseKind::Kink,
-            level: Level::Field(Arc::new(move |q| {
-                let p = own.back.point(q);
-                if p.is_finite() { own.of.depth(p) } else { -1.0 }
-            })),
-        });
+        out.push(Crease::kink(Level::Field(Arc::new(move |q| {
+            let room = own.room();
+            own.within(q, room).map_or(-room, |found| own.of.depth(found.p))
+        }))));
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        Some(if self.leads_inside(inside) { self.back.clone() } else { Arc::new(AffineMap::IDENTITY) })
+        if self.within(inside, self.of.reach).is_none() {
+            return Some(Arc::new(AffineMap::IDENTITY));
+        }
+        Some(match &self.back {
+            Back::Closed(m) => m.clone(),
+            Back::Newton(_) => Arc::new(Inside(self.clone())),
+        })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(self.of.clone()))
+    }
+}
+
+/// The branch of a [`LocalInverse`] that leads inside.
+struct Inside(LocalInverse);
+
+impl Map for Inside {
+    fn jet(&self, q: Point) -> Jet {
+        self.0.within(q, self.0.room()).unwrap_or(NOWHERE)
     }
 }
 
@@ -149,15 +190,6 @@ mod tests {
     impl Formula for Swell {
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
             (x, y + x * (S::from(1.0) - x) * 0.3)
-        }
-        fn inverse(&self) -> Option<Arc<dyn Map>> {
-            Some(Arc::new(Shrink))
-        }
-    }
-    struct Shrink;
-    impl Formula for Shrink {
-        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-            (x, y - x * (S::from(1.0) - x) * 0.3)
         }
     }
 

@@ -4,11 +4,13 @@
 //! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
 
 mod affine;
+pub mod anamorph;
 pub(crate) mod bernstein;
 mod birational;
 mod bspline;
 mod chain;
 mod crease;
+pub mod dilation;
 mod dual;
 mod formula;
 mod homography;
@@ -22,6 +24,7 @@ mod patch;
 mod pins;
 mod quotient;
 mod rational;
+pub mod surface;
 pub mod triangle;
 
 pub use affine::AffineMap;

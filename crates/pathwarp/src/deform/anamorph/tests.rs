@@ -1,0 +1,453 @@
+use super::*;
+use crate::check;
+use crate::map::anamorph::Camera;
+use crate::map::dilation::{Dilation, Reference};
+use crate::map::surface::{Round, Space, SpacePlane, Sphere};
+use crate::map::{Class, Homography, RationalBezier};
+use crate::outline::Seg;
+use crate::param::{Args, Frame};
+use std::f64::consts::PI;
+
+type Given = &'static [(&'static str, &'static str)];
+
+/// The entry with another demo.
+struct With(Info);
+
+impl Deformation for With {
+    fn info(&self) -> &Info {
+        &self.0
+    }
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        Anamorph.build(s)
+    }
+}
+
+#[test]
+fn is_sound() {
+    let faults = check::entry(&Anamorph);
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+#[test]
+fn is_sound_on_every_surface() {
+    const DEMOS: &[Given] = &[
+        &[("distance", "500"), ("eye-height", "400"), ("onto", "plane:floor")],
+        &[("distance", "500"), ("eye-height", "40"), ("onto", "plane:ramp=30"), ("picture-width", "70")],
+        &[("distance", "500"), ("eye", "300,50"), ("onto", "plane:left")],
+        &[("distance", "500"), ("eye", "-300,50"), ("onto", "plane:right")],
+        &[("distance", "500"), ("eye", "50,300"), ("onto", "plane:ceiling")],
+        &[("distance", "300"), ("onto", "cylinder:radius=80,level"), ("eye", "40,70")],
+        &[("distance", "60"), ("onto", "cylinder:radius=90,inside"), ("picture-width", "70")],
+        &[("distance", "300"), ("onto", "cone:top=90,bottom=70,height=100"), ("eye", "50,20")],
+        &[("distance", "300"), ("onto", "cone:top=100,bottom=140,height=80")],
+        &[("distance", "90"), ("onto", "cone:top=70,bottom=110,inside")],
+        &[("distance", "200"), ("onto", "sphere:radius=130"), ("view", "-60,10,250")],
+        &[("distance", "200"), ("onto", "sphere:radius=130,inside"), ("view", "-60,10,150")],
+        &[("distance", "120"), ("onto", "sphere:eye"), ("view", "90,80,100")],
+        &[("distance", "200"), ("onto", "cylinder:radius=130"), ("view", "-60,10,250")],
+        &[("distance", "200"), ("onto", "plane:wall=20"), ("view", "-60,10,250")],
+        &[("distance", "150"), ("degree", "2x3"), ("push", "1,1:1.4"), ("away", "2,3:30"), ("view", "-60,10,250")],
+        &[("distance", "150"), ("reference", "-50,0 150,0 50,200"), ("push", "0,1,0:1.4")],
+        &[("eye", "50,250"), ("degree", "3x2"), ("push", "1,0:1.3"), ("away", "3,2:-20"), ("at", "0,2:-10,120")],
+        &[("eye", "50,250"), ("reference", "-50,100 150,100 50,-100"), ("degree", "3"), ("push", "1,1,1:1.3")],
+        &[
+            ("eye", "50,250"),
+            ("reference", "0,100 100,100 50,0"),
+            ("degree", "4"),
+            ("point", "50,60:1.04"),
+            ("local", "true"),
+        ],
+    ];
+    for demo in DEMOS {
+        let entry = With(Info { demo, laws: &[], cases: &[], ..INFO });
+        let faults = check::entry(&entry);
+        assert!(faults.is_empty(), "{:?} {faults:#?}", entry.0.demo);
+    }
+}
+
+fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
+    Anamorph.build_from(&Args::from_pairs(pairs), &check::frame())
+}
+
+const FOOT: Point = Point::new(40.0, 30.0);
+
+fn cast(surface: Surface) -> Anamorphosis {
+    Anamorphosis { foot: FOOT, distance: 250.0, surface }
+}
+
+fn net(reference: Reference) -> Dilation {
+    let mut d = Dilation::none(reference);
+    for [i, j, k] in reference.nodes() {
+        d.set([i, j, k], 0.6 + 0.11 * i as f64 + 0.07 * (j * j) as f64 + 0.05 * (i * i * j) as f64 + 0.13 * k as f64);
+    }
+    d
+}
+
+const CORNERS: [Point; 3] = [Point::new(-20.0, 0.0), Point::new(130.0, 10.0), Point::new(40.0, 150.0)];
+
+fn surfaces() -> Vec<Surface> {
+    let middle = Point::new(50.0, 60.0);
+    let round = |radius, slope, level, inside| Surface::Round(Round { middle, radius, slope, level, inside });
+    vec![
+        Surface::Plane(SpacePlane::new([0.0, 400.0, 0.0], [0.05, 1.0, 0.3], Point::ORIGIN)),
+        Surface::Plane(SpacePlane::new([0.0, 0.0, 90.0], [0.5, 0.2, 1.0], Point::ORIGIN)),
+        round(200.0, 0.0, false, false),
+        round(300.0, 0.0, true, true),
+        round(200.0, -0.3, false, false),
+        round(200.0, 0.4, false, true),
+        Surface::Sphere(Sphere { middle, radius: 200.0, inside: false }),
+        Surface::Sphere(Sphere { middle, radius: 200.0, inside: true }),
+        Surface::Radial(Radial::stereographic(FOOT, 250.0, Rect::new(0.0, 0.0, 100.0, 100.0))),
+        Surface::Radial(Radial::net(&net(Reference::Triangle(CORNERS, 2)))),
+        Surface::Radial(Radial::net(&net(Reference::Rectangle(Rect::new(0.0, 0.0, 100.0, 120.0), [3, 2])))),
+    ]
+}
+
+fn grid() -> impl Iterator<Item = Point> {
+    (0..=10).flat_map(|i| (0..=10).map(move |j| Point::new(10.0 * f64::from(i), 10.0 * f64::from(j))))
+}
+
+/// On the stated surface, by its own equation, and on the ray; jets are difference quotients.
+#[test]
+fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
+    let away = |a: Space, b: Space| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+    for surface in surfaces() {
+        let cast = cast(surface);
+        let seen = cast.seen();
+        for p in grid() {
+            assert!(cast.defined(p) > 0.0, "{cast:?} {p:?}");
+            let q = cast.point(p);
+            assert!(seen.point(p).distance(p) < 1e-12 * 250.0, "{cast:?} {p:?}");
+            let k = 250.0 / (q[2] + 250.0);
+            assert!(k > 0.0 && (FOOT + (Point::new(q[0], q[1]) - FOOT) * k).distance(p) < 1e-12 * 250.0);
+            let off = match &cast.surface {
+                Surface::Plane(s) => (0..3).map(|i| s.normal[i] * (q[i] - s.through[i])).sum::<f64>(),
+                Surface::Round(r) => {
+                    let across = if r.level { q[1] - r.middle.y } else { q[0] - r.middle.x };
+                    let along = if r.level { q[0] - r.middle.x } else { q[1] - r.middle.y };
+                    let axis = if r.inside { -r.radius } else { r.radius };
+                    across.hypot(q[2] - axis) - (r.radius + r.slope * along)
+                }
+                Surface::Sphere(s) => away(q, s.centre()) - s.radius,
+                Surface::Radial(_) => 0.0,
+            };
+            assert!(off.abs() < 1e-10, "{cast:?} {p:?} {off:e}");
+            let (jet, h) = (cast.jet(p), 1e-4);
+            let slope = |d: kurbo::Vec2| {
+                let (a, b) = (cast.point(p + d), cast.point(p - d));
+                std::array::from_fn(|i| (a[i] - b[i]) / (2.0 * h))
+            };
+            let (dx, dy) = (slope(kurbo::Vec2::new(h, 0.0)), slope(kurbo::Vec2::new(0.0, h)));
+            assert!(away(jet.dx, dx) < 1e-5 * (1.0 + away(dx, [0.0; 3])), "{cast:?} {p:?} {jet:?} {dx:?}");
+            assert!(away(jet.dy, dy) < 1e-5 * (1.0 + away(dy, [0.0; 3])));
+        }
+    }
+}
+
+/// Laying flat changes no length: the derivatives have the same products in space and in the plane.
+#[test]
+fn what_is_unrolled_is_true_to_size() {
+    let product = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let mut flat = 0;
+    for surface in surfaces() {
+        let cast = cast(surface);
+        let Some(map) = cast.unrolled() else { continue };
+        flat += 1;
+        let back = map.inverse().unwrap();
+        for p in grid() {
+            let (s, j) = (cast.jet(p), map.jet(p));
+            for (a, b) in [
+                (product(s.dx, s.dx), j.dx.hypot2()),
+                (product(s.dx, s.dy), j.dx.dot(j.dy)),
+                (product(s.dy, s.dy), j.dy.hypot2()),
+            ] {
+                assert!((a - b).abs() < 1e-10 * (1.0 + s.dx.map(f64::abs).iter().sum::<f64>()), "{cast:?} {p:?}");
+            }
+            assert!(j.det() > 0.0, "mirrored: {cast:?}");
+            assert!(back.point(j.p).distance(p) < 1e-9, "{cast:?} {p:?} {:?}", back.point(j.p));
+        }
+    }
+    assert_eq!(flat, 6);
+}
+
+/// Gaussian elimination of the quadric's ten coefficients from its points: what is left of other points.
+fn off_quadric(points: &[Space], others: &[Space]) -> f64 {
+    let size = points.iter().flatten().fold(0.0, |m, v| f64::max(m, v.abs()));
+    let row = |q: &Space| -> Vec<f64> {
+        let [x, y, z] = q.map(|v| v / size);
+        vec![x * x, y * y, z * z, x * y, y * z, z * x, x, y, z, 1.0]
+    };
+    let mut rows: Vec<Vec<f64>> = points.iter().map(row).collect();
+    let mut pivots = Vec::new();
+    for k in 0..9 {
+        let all = (k..rows.len()).flat_map(|r| (0..10).map(move |c| (r, c)));
+        let (r, c) = all.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs())).unwrap();
+        rows.swap(k, r);
+        pivots.push(c);
+        for i in (0..rows.len()).filter(|i| *i != k) {
+            let f = rows[i][c] / rows[k][c];
+            for j in 0..10 {
+                let v = rows[k][j];
+                rows[i][j] -= f * v;
+            }
+        }
+    }
+    let free = (0..10).find(|c| !pivots.contains(c)).unwrap();
+    let mut quadric = [0.0; 10];
+    quadric[free] = 1.0;
+    for (k, c) in pivots.iter().enumerate() {
+        quadric[*c] = -rows[k][free] / rows[k][*c];
+    }
+    let most = quadric.iter().fold(0.0, |m, v| f64::max(m, v.abs()));
+    let value = |q: &Space| row(q).iter().zip(quadric).map(|(a, b)| a * b).sum::<f64>().abs() / most;
+    others.iter().map(value).fold(0.0, f64::max)
+}
+
+#[test]
+fn degree_two_lies_on_a_quadric_through_the_eye() {
+    let all: Vec<Surface> = surfaces();
+    let bilinear = net(Reference::Rectangle(Rect::new(0.0, 0.0, 100.0, 120.0), [1, 1]));
+    for (surface, is) in [
+        (all[8].clone(), true),
+        (all[9].clone(), true),
+        (Surface::Radial(Radial::net(&bilinear)), true),
+        (all[10].clone(), false),
+    ] {
+        let cast = cast(surface);
+        let points: Vec<Space> = grid().step_by(11).chain(grid().step_by(7)).map(|p| cast.point(p)).collect();
+        let mut others: Vec<Space> = grid().map(|p| cast.point(p)).collect();
+        others.push(cast.eye());
+        let off = off_quadric(&points, &others);
+        assert_eq!(off < 1e-9, is, "{off:e}");
+    }
+}
+
+#[test]
+fn the_matrix_of_degree_one_is_the_bezier_form() {
+    let d = net(Reference::Triangle(CORNERS, 1));
+    let (along, d0) = d.collineation(FOOT).unwrap();
+    let o = FOOT;
+    // [I 0; d d₀] about the eye.
+    let m = [
+        [1.0 + o.x * along.x, o.x * along.y, o.x * (d0 - along.dot(o.to_vec2())) - o.x],
+        [o.y * along.x, 1.0 + o.y * along.y, o.y * (d0 - along.dot(o.to_vec2())) - o.y],
+        [along.x, along.y, d0 - along.dot(o.to_vec2())],
+    ];
+    let (matrix, bezier) = (Homography { m }, d.about(FOOT, false));
+    assert!(matches!(Map::class(&bezier), Class::Projective(_)));
+    // A cubic stays a cubic, with weights.
+    let cubic = Seg::Cubic(kurbo::CubicBez::new((5.0, 5.0), (90.0, 5.0), (20.0, 80.0), (60.0, 60.0)));
+    let source = RationalBezier::from_seg(&cubic).unwrap();
+    let image = bezier.simplest().image_of(&source).unwrap();
+    assert_eq!(image.degree(), 3);
+    for p in grid() {
+        // Straight from the paper: Σ uᵢ (bᵢ, δᵢ) in coordinates about the eye.
+        let area = |a: Point, b: Point, c: Point| (b - a).cross(c - a);
+        let [a, b, c] = CORNERS;
+        let u = [area(p, b, c), area(a, p, c), area(a, b, p)].map(|v| v / area(a, b, c));
+        let delta = u[0] * d.of([1, 0, 0]) + u[1] * d.of([0, 1, 0]) + u[2] * d.of([0, 0, 1]);
+        let paper = FOOT + (p - FOOT) / delta;
+        let bezier = d.about(FOOT, false).simplest();
+        assert!(bezier.point(p).distance(paper) < 1e-12 * 100.0 && matrix.point(p).distance(paper) < 1e-12 * 100.0);
+        let back = bezier.inverse().unwrap();
+        assert!(back.point(paper).distance(p) < 1e-10);
+    }
+    for (q, w) in image.points.iter().zip(&source.points) {
+        let p = Point::new(w[0], w[1]);
+        assert!(
+            (q[2] - d.at(p)).abs() < 1e-12 && Point::new(q[0] / q[2], q[1] / q[2]).distance(matrix.point(p)) < 1e-11
+        );
+    }
+}
+
+const METRE: f64 = 96.0 / 0.0254;
+
+/// Similar triangles: an eye 1.6 m high and 20 m away sees the far end of a 10 m marking, 30 m away, at a height of
+/// 1.6·10/30 m above the near end; the far end is 30/20 times as wide as it looks.
+#[test]
+fn a_road_marking_ten_metres_long() {
+    let frame = Frame::new(Rect::new(100.0, 40.0, 400.0, 240.0));
+    let args = |pairs: &[(&str, &str)]| Anamorph.build_from(&Args::from_pairs(pairs), &frame).unwrap().map;
+    let road = [("eye-height", "1.6m"), ("distance", "20m"), ("onto", "plane:floor")];
+    let m = args(&[&road[..], &[("length", "10m")]].concat());
+    let (near, far) = (m.point((250.0, 240.0).into()), m.point((250.0, 40.0).into()));
+    assert!(near.distance((250.0, 240.0).into()) < 1e-9);
+    assert!((near.y - far.y - 10.0 * METRE).abs() < 1e-9 * METRE && (near.x - far.x).abs() < 1e-9);
+    // 200 units stand for 1.6/3 m, so 300 for 0.8 m: 1.2 m at the far end.
+    let width = |y: f64| m.point((400.0, y).into()).x - m.point((100.0, y).into()).x;
+    assert!((width(240.0) - 0.8 * METRE).abs() < 1e-9 * METRE);
+    assert!((width(40.0) - 1.2 * METRE).abs() < 1e-9 * METRE);
+    // The same by its width.
+    let same = args(&[&road[..], &[("picture-width", "80cm")]].concat());
+    assert!(same.point((123.0, 77.0).into()).distance(m.point((123.0, 77.0).into())) < 1e-8);
+    assert!(matches!(m.class(), Class::Projective(_)));
+    // As drawn: 200 units are 52.9 mm, which shows 20·52.9/(1600 − 52.9) m of the road.
+    let small = args(&road);
+    let h = 200.0 / METRE;
+    let far = small.point((250.0, 40.0).into());
+    assert!((240.0 - far.y - 20.0 * h / (1.6 - h) * METRE).abs() < 1e-9 * METRE);
+    // A ramp: an eye 1.6 m above its foot; the end of its 10 m is 5 m up.
+    let ramp = [("eye-height", "8m"), ("distance", "20m"), ("onto", "plane:ramp=30"), ("length", "10m")];
+    let m = args(&ramp);
+    let (near, far) = (m.point((250.0, 240.0).into()), m.point((250.0, 40.0).into()));
+    assert!((near.y - far.y - 10.0 * METRE).abs() < 1e-9 * METRE);
+}
+
+/// A level line at the eye's height on a cylinder: the ray at φ from the axis' direction ends where the sine rule says.
+#[test]
+fn labels_are_as_long_as_their_arcs() {
+    let m = build(&[("distance", "300"), ("onto", "cylinder:radius=80")]).unwrap().map;
+    for i in 0..=20 {
+        let x = 5.0 * f64::from(i);
+        let phi = ((x - 50.0) / 300.0).atan();
+        // In the triangle eye, axis, point: (D + r) sin φ = r sin(θ + φ).
+        let theta = (380.0 * phi.sin() / 80.0).asin() - phi;
+        let got = m.point((x, 50.0).into());
+        assert!(got.distance((50.0 + 80.0 * theta, 50.0).into()) < 1e-10, "{got:?}");
+    }
+    // A cone whose half angle has the sine ½: half a turn of it unrolls to a quarter.
+    let cone = Surface::Round(Round {
+        middle: Point::ORIGIN,
+        radius: 100.0,
+        slope: -(1.0 / 3.0f64.sqrt()),
+        level: false,
+        inside: true,
+    });
+    let cast = Anamorphosis { foot: Point::ORIGIN, distance: 100.0, surface: cone };
+    let m = cast.unrolled().unwrap();
+    // Seen from its axis at 45°: the point at a quarter of a half turn and height 0, 200 from the apex below.
+    let got = m.point(Point::new(100.0, 0.0));
+    let want = Point::new(200.0 * (PI / 8.0).sin(), 200.0 - 200.0 * (PI / 8.0).cos());
+    assert!(got.distance(want) < 1e-11, "{got:?} {want:?}");
+}
+
+/// Another camera, by its definition; and what is polynomial has exact images.
+#[test]
+fn views_are_central_projections_and_exact_where_they_can_be() {
+    let at = [-100.0, 20.0, -180.0];
+    for (k, surface) in surfaces().into_iter().enumerate() {
+        let cast = cast(surface);
+        let middle = Point::new(50.0, 50.0);
+        let target = cast.point(middle);
+        let camera = Camera::new(at, target, middle).unwrap();
+        let view = cast.viewed(&camera, Rect::new(0.0, 0.0, 100.0, 100.0));
+        assert!(view.point(middle).distance(middle) < 1e-10);
+        let minus = |a: Space, b: Space| -> Space { std::array::from_fn(|i| a[i] - b[i]) };
+        let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+        let axis = minus(target, at);
+        for p in grid().filter(|p| p.distance(middle) > 1.0) {
+            // The angle to the optical axis, in space and from the picture.
+            let q = minus(cast.point(p), at);
+            let cos = dot(q, axis) / (dot(q, q) * dot(axis, axis)).sqrt();
+            if cos > 0.1 {
+                let tan = view.point(p).distance(middle) / dot(axis, axis).sqrt();
+                assert!((tan - (1.0 - cos * cos).sqrt() / cos).abs() < 1e-6, "{k} {p:?}");
+            }
+        }
+        let line = RationalBezier::polynomial(&[Point::new(10.0, 20.0), Point::new(90.0, 60.0)]);
+        match (&cast.surface, view.image_of(&line)) {
+            (Surface::Plane(_), Some(image)) => assert_eq!(image.degree(), 1),
+            (Surface::Radial(_), Some(image)) => {
+                assert_eq!(image.degree(), [2, 2, 3][k - 8]);
+                for i in 0..=8 {
+                    let t = f64::from(i) / 8.0;
+                    assert!(image.eval(t).distance(view.point(line.eval(t))) < 1e-9);
+                }
+            }
+            (Surface::Plane(_) | Surface::Radial(_), None) => panic!("{k} has no exact image"),
+            (_, image) => assert!(image.is_none()),
+        }
+    }
+}
+
+/// A triangle of degree 1 in front of the eye is a plane, unrolled true to size: its corners' distances are those in space.
+#[test]
+fn three_pushed_corners_span_a_plane() {
+    let m = build(&[
+        ("distance", "200"),
+        ("eye", "30,40"),
+        ("reference", "0,0 100,0 0,100"),
+        ("push", "0,1,0:1.5"),
+        ("away", "0,0,1:50"),
+    ]);
+    let m = m.unwrap().map;
+    assert!(matches!(m.class(), Class::Projective(_)));
+    let corners = [(0.0, 0.0), (100.0, 0.0), (0.0, 100.0)];
+    let eye = [30.0, 40.0, -200.0];
+    let image = corners.map(|(x, y)| {
+        let d: Space = [x - eye[0], y - eye[1], 200.0];
+        let n = d.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let k = if x > 0.0 {
+            1.5
+        } else if y > 0.0 {
+            (n + 50.0) / n
+        } else {
+            1.0
+        };
+        [eye[0] + d[0] * k, eye[1] + d[1] * k, eye[2] + d[2] * k]
+    });
+    for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+        let apart = (0..3).map(|i| (image[a][i] - image[b][i]).powi(2)).sum::<f64>().sqrt();
+        assert!((m.point(corners[a].into()).distance(m.point(corners[b].into())) - apart).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn a_prescribed_place_gets_there_and_torn_sides_are_told() {
+    for degree in ["1", "2", "4"] {
+        let m = build(&[
+            ("eye", "50,300"),
+            ("reference", "0,100 100,100 50,0"),
+            ("degree", degree),
+            ("point", "45,60:1.1"),
+            ("local", "true"),
+        ]);
+        let m = m.unwrap();
+        let want = Point::new(50.0, 300.0) + (Point::new(45.0, 60.0) - Point::new(50.0, 300.0)) * 1.1;
+        assert!(m.map.point((45.0, 60.0).into()).distance(want) < 1e-11);
+        // The first side joins; at degree 4 all do.
+        let inside = m.map.branch((45.0, 60.0).into()).unwrap();
+        assert!(inside.point((20.0, 100.0).into()).distance((20.0, 100.0).into()) < 1e-12);
+        assert_eq!(m.warnings.is_empty(), degree == "4", "{:?}", m.warnings);
+    }
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let cases: &[(Given, &str)] = &[
+        (&[("onto", "plane:floor")], "--distance is needed"),
+        (&[("distance", "100"), ("onto", "plane:floor")], "never comes down"),
+        (&[("distance", "100"), ("eye", "50,200"), ("onto", "plane:floor")], "from behind"),
+        (&[("distance", "100"), ("onto", "plane:slope")], "does not know"),
+        (&[("distance", "100"), ("onto", "plane:")], "is not one of"),
+        (&[("distance", "100"), ("onto", "cylinder:")], "needs radius"),
+        (&[("distance", "100"), ("onto", "cylinder:radius=20")], "misses the surface"),
+        (&[("distance", "100"), ("onto", "cylinder:radius=-20")], "not positive"),
+        (&[("distance", "100"), ("onto", "cone:top=20")], "radii"),
+        (&[("distance", "100"), ("onto", "torus:radius=20")], "no surface"),
+        (&[("distance", "100"), ("onto", "sphere:radius=200")], "--view is needed"),
+        (&[("distance", "100"), ("onto", "sphere:eye"), ("push", "0,0:2")], "has the surface already"),
+        (&[("distance", "100"), ("degree", "2"), ("push", "1,1:2")], "--view is needed"),
+        (&[("distance", "100"), ("onto", "plane:wall=10"), ("view", "50,50,-9"), ("eye", "50,50")], "too near"),
+        (&[("distance", "100"), ("onto", "plane:wall=10"), ("view", "50,50")], "X,Y,Z"),
+        (&[("distance", "100"), ("onto", "plane:floor"), ("length", "10"), ("eye", "5,5")], "--eye-height is needed"),
+        (&[("distance", "100"), ("onto", "cylinder:radius=99"), ("length", "10")], "--picture-width"),
+        (&[("distance", "100"), ("eye-height", "9"), ("eye", "0,0"), ("onto", "plane:floor")], "give one"),
+        (&[("distance", "0"), ("onto", "plane:floor")], "out of range"),
+        (&[("distance", "9"), ("local", "true")], "without --distance"),
+        (&[("push", "2,0:2")], "I runs from 0 to 1"),
+        (&[("push", "1,0:0")], "through the eye"),
+        (&[("push", "1,0:-1")], "through the eye"),
+        (&[("away", "1,0:-1000")], "through the eye"),
+        (&[("reference", "0,0 9,9 99,99")], "one line"),
+        (&[("reference", "0,0 9,0")], "no area"),
+        (&[("degree", "0")], "no degree"),
+        (&[("degree", "3x")], "no degree"),
+        (&[("point", "50,50:1.2"), ("local", "true")], "held"),
+        (&[("point", "50,50")], "X,Y:FACTOR"),
+    ];
+    for (pairs, part) in cases {
+        let e = build(pairs).err().unwrap_or_else(|| panic!("{pairs:?} builds")).to_string();
+        assert!(e.contains(part), "{pairs:?}: {e}");
+    }
+}

@@ -1,0 +1,279 @@
+//! Control points that move along rays: the dilation δ of an anamorphic free-form deformation.
+//!
+//! In homogeneous coordinates with the eye O as origin, moving a point along its ray only changes the last coordinate:
+//! (p, 1) → (p, δ), p̂ = p/δ. A net of control points bᵢ over a reference triangle or rectangle, each moved to bᵢ/δᵢ with weight
+//! δᵢ, therefore deforms by
+//!
+//! > p̂ = O + (p − O)/δ(u(p)),  δ(u) = Σ δᵢ Bᵢ(u)
+//!
+//! (J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46, 2016, equations 5 and 6). With the eye in the
+//! plane of the drawing that is a map of the plane; at degree 1 of a triangle δ(p) = d·(p − O) + d₀ is linear and the map the
+//! perspective collineation with the matrix [I 0; d d₀] about O, whose axis is the line δ = 1.
+
+use super::patch;
+use super::quotient::{Plane, Quotient, source};
+use super::triangle;
+use kurbo::{Affine, BezPath, Point, Rect, Shape, Vec2};
+
+/// A regular net of control points in the plane of the drawing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reference {
+    /// Points (i·A + j·B + k·C)/n with i + j + k = n.
+    Triangle([Point; 3], usize),
+    /// Points (i, j), i from the left, j from the top, degrees along x and y.
+    Rectangle(Rect, [usize; 2]),
+}
+
+impl Reference {
+    /// The control points' numbers, in the order of [`Dilation`]'s values. A rectangle's third number is 0.
+    #[must_use]
+    pub fn nodes(&self) -> Vec<[usize; 3]> {
+        match *self {
+            Self::Triangle(_, n) => triangle::indices(n),
+            Self::Rectangle(_, [m, n]) => (0..=n).flat_map(|j| (0..=m).map(move |i| [i, j, 0])).collect(),
+        }
+    }
+
+    /// Whether there is such a control point.
+    #[must_use]
+    pub fn has(&self, node: [usize; 3]) -> bool {
+        match *self {
+            Self::Triangle(_, n) => node.iter().try_fold(0usize, |s, v| s.checked_add(*v)) == Some(n),
+            Self::Rectangle(_, [m, n]) => node[0] <= m && node[1] <= n && node[2] == 0,
+        }
+    }
+
+    fn index(&self, node: [usize; 3]) -> usize {
+        match *self {
+            Self::Triangle(..) => triangle::index(node),
+            Self::Rectangle(_, [m, _]) => node[1] * (m + 1) + node[0],
+        }
+    }
+
+    /// Where a control point lies before it is moved.
+    #[must_use]
+    pub fn point(&self, node: [usize; 3]) -> Point {
+        match *self {
+            Self::Triangle(corners, _) => triangle::regular_point(corners, node),
+            Self::Rectangle(r, [m, n]) => {
+                let at = |k: usize, n: usize| k as f64 / n.max(1) as f64;
+                Point::new(r.x0 + r.width() * at(node[0], m), r.y0 + r.height() * at(node[1], n))
+            }
+        }
+    }
+
+    /// The corners, in order round the edge.
+    #[must_use]
+    pub fn corners(&self) -> Vec<Point> {
+        match *self {
+            Self::Triangle(c, _) => c.to_vec(),
+            Self::Rectangle(r, _) => {
+                vec![r.origin(), Point::new(r.x1, r.y0), Point::new(r.x1, r.y1), Point::new(r.x0, r.y1)]
+            }
+        }
+    }
+
+    /// Whether a control point lies on side `side`, from corner `side` to the next.
+    #[must_use]
+    pub fn on_side(&self, [i, j, k]: [usize; 3], side: usize) -> bool {
+        match *self {
+            Self::Triangle(..) => [k, i, j][side % 3] == 0,
+            Self::Rectangle(_, [m, n]) => [j == 0, i == m, j == n, i == 0][side % 4],
+        }
+    }
+
+    /// The box about it.
+    #[must_use]
+    pub fn bounds(&self) -> Rect {
+        match *self {
+            Self::Triangle([a, b, c], _) => Rect::from_points(a, b).union_pt(c),
+            Self::Rectangle(r, _) => r,
+        }
+    }
+
+    /// The values of the basis functions at `p`, in the order of [`Self::nodes`].
+    #[must_use]
+    pub fn basis(&self, p: Point) -> Vec<f64> {
+        match *self {
+            Self::Triangle(corners, n) => triangle::basis(corners, n, p),
+            Self::Rectangle(r, [m, n]) => {
+                let (s, t) = ((p.x - r.x0) / r.width(), (p.y - r.y0) / r.height());
+                let (across, down) = (bernstein(m, s), bernstein(n, t));
+                down.iter().flat_map(|b| across.iter().map(move |a| a * b)).collect()
+            }
+        }
+    }
+
+    /// The coordinates in which [`Self::expanded`] gives its powers.
+    pub(super) fn coordinates(&self) -> Affine {
+        match *self {
+            Self::Triangle(corners, _) => triangle::coordinates(corners),
+            Self::Rectangle(r, _) => {
+                let (c, kx, ky) = (r.center(), 2.0 / r.width(), 2.0 / r.height());
+                Affine::new([kx, 0.0, 0.0, ky, -c.x * kx, -c.y * ky])
+            }
+        }
+    }
+
+    fn expanded(&self, values: &[f64]) -> Plane {
+        match *self {
+            Self::Triangle(_, n) => triangle::expanded(n, values),
+            Self::Rectangle(_, degree) => {
+                let powers = patch::powers(degree, values);
+                Plane::new(powers.chunks(degree[0] + 1).map(<[f64]>::to_vec).collect())
+            }
+        }
+    }
+}
+
+/// Bernstein's polynomials of degree n at t.
+fn bernstein(n: usize, t: f64) -> Vec<f64> {
+    let mut b = vec![1.0];
+    for _ in 0..n {
+        let mut next = vec![0.0; b.len() + 1];
+        for (i, v) in b.iter().enumerate() {
+            next[i] += v * (1.0 - t);
+            next[i + 1] += v * t;
+        }
+        b = next;
+    }
+    b
+}
+
+/// δ over a reference: how many times nearer to the eye each control point comes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dilation {
+    reference: Reference,
+    values: Vec<f64>,
+}
+
+impl Dilation {
+    /// δ = 1: nothing moves.
+    #[must_use]
+    pub fn none(reference: Reference) -> Self {
+        Self { reference, values: vec![1.0; reference.nodes().len()] }
+    }
+
+    /// The net.
+    #[must_use]
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// δ of a control point.
+    #[must_use]
+    pub fn of(&self, node: [usize; 3]) -> f64 {
+        self.values[self.reference.index(node)]
+    }
+
+    /// Moves a control point to 1/`delta` times its distance from the eye.
+    pub fn set(&mut self, node: [usize; 3], delta: f64) {
+        let k = self.reference.index(node);
+        self.values[k] = delta;
+    }
+
+    /// δ at a place.
+    #[must_use]
+    pub fn at(&self, p: Point) -> f64 {
+        self.reference.basis(p).iter().zip(&self.values).map(|(b, d)| b * d).sum()
+    }
+
+    /// Moves one control point so that the place `p` goes to 1/`delta` times its distance: δᵢ = δᵢ + (δ − δ(p))/Bᵢ(p); from rest,
+    /// 1 + (δ − 1)/Bᵢ. The one that counts most at `p` is taken, and none that `held` names. `None`: no such point counts there.
+    pub fn prescribe(&mut self, p: Point, delta: f64, held: impl Fn([usize; 3]) -> bool) -> Option<[usize; 3]> {
+        /// Below this a control point would have to move further than its numbers can say.
+        const LEAST: f64 = 1e-6;
+        let all = self.reference.nodes().into_iter().zip(self.reference.basis(p));
+        let free = all.filter(|(node, _)| !held(*node));
+        let (node, b) = free.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, b)| *b > LEAST)?;
+        self.set(node, self.of(node) + (delta - self.at(p)) / b);
+        Some(node)
+    }
+
+    /// Whether no control point of a side moves.
+    #[must_use]
+    pub fn side_is_fixed(&self, side: usize) -> bool {
+        let on = self.reference.nodes().into_iter().filter(|node| self.reference.on_side(*node, side));
+        on.into_iter().all(|node| (self.of(node) - 1.0).abs() <= 1e-12)
+    }
+
+    /// Whether all δ are positive: then there is no pole inside the reference.
+    #[must_use]
+    pub fn is_positive(&self) -> bool {
+        self.values.iter().all(|d| *d > 0.0)
+    }
+
+    /// The polynomial δ and the coordinates it is in.
+    pub(super) fn plane(&self) -> (Affine, Plane) {
+        (self.reference.coordinates(), self.reference.expanded(&self.values))
+    }
+
+    /// Where the inverse is looked for: the reference and half as much around it.
+    pub(super) fn domain(&self) -> Rect {
+        let r = self.reference.bounds();
+        r.inflate(0.5 * r.width(), 0.5 * r.height())
+    }
+
+    /// The map of the plane for an eye in it. `bounded`: it is used inside the reference only.
+    #[must_use]
+    pub fn about(&self, eye: Point, bounded: bool) -> Quotient {
+        let (pre, delta) = self.plane();
+        let [x, y] = source(pre).map(Plane::linear);
+        let less = |p: Plane, o: f64| p.plus(-o, &Plane::linear([1.0, 0.0, 0.0]));
+        let domain = if bounded { self.reference.bounds() } else { self.domain() };
+        let q = Quotient::rational(pre, eye, less(x, eye.x), less(y, eye.y), delta, domain);
+        if bounded && self.is_positive() { q.without_poles() } else { q }
+    }
+
+    /// (d, d₀) of the collineation δ(p) = d·(p − O) + d₀, the rows of its matrix [I 0; d d₀] about the eye: for triangles of
+    /// degree 1.
+    #[must_use]
+    pub fn collineation(&self, eye: Point) -> Option<(Vec2, f64)> {
+        let Reference::Triangle(_, 1) = self.reference else { return None };
+        let d0 = self.at(eye);
+        let along = |e: Vec2| self.at(eye + e) - d0;
+        Some((Vec2::new(along(Vec2::new(1.0, 0.0)), along(Vec2::new(0.0, 1.0))), d0))
+    }
+
+    /// The net's lines after `place` has been applied to every control point and its δ.
+    #[must_use]
+    pub fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
+        let at = |node: [usize; 3]| place(self.reference.point(node), self.of(node));
+        let mut path = BezPath::new();
+        for [i, j, k] in self.reference.nodes() {
+            match self.reference {
+                Reference::Triangle(..) if i > 0 => {
+                    path.move_to(at([i, j, k]));
+                    path.line_to(at([i - 1, j + 1, k]));
+                    path.line_to(at([i - 1, j, k + 1]));
+                    path.close_path();
+                }
+                Reference::Rectangle(_, [m, n]) if i < m && j < n => {
+                    path.move_to(at([i, j, 0]));
+                    path.line_to(at([i + 1, j, 0]));
+                    path.line_to(at([i + 1, j + 1, 0]));
+                    path.line_to(at([i, j + 1, 0]));
+                    path.close_path();
+                }
+                _ => {}
+            }
+        }
+        path
+    }
+
+    /// The reference's outline.
+    #[must_use]
+    pub fn outline(&self) -> BezPath {
+        match self.reference {
+            Reference::Rectangle(r, _) => r.to_path(0.1),
+            Reference::Triangle([a, b, c], _) => {
+                let mut path = BezPath::new();
+                path.move_to(a);
+                path.line_to(b);
+                path.line_to(c);
+                path.close_path();
+                path
+            }
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! `cargo xtask refit-report`: a picture of what refitting does along a path: pieces, nodes, handles, and the error.
+
+use crate::Fault;
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{ParamCurve, ParamCurveDeriv, PathSeg, Point, Rect, Vec2};
+use pathwarp::map::Map;
+use pathwarp::param::{Args, Frame};
+use pathwarp::refit::{self, Options};
+use pathwarp::{Outline, Seg};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// The path that is warped: a line, a whole turn, a sharp bend, an inflection.
+pub(crate) const PATH: &str = "M8,88 L88,92 C104,93 96,60 70,66 A16,16 0 1 1 70,34 C100,40 20,-10 30,40 S60,10 10,14";
+/// The cage it is warped by.
+const CAGE: &str = "M 10,92 C 45,125 60,60 98,85 C 80,60 112,40 92,10 C 60,-20 40,45 4,8 C 20,40 -8,60 10,92 Z";
+/// Samples per piece of the error curve.
+const SAMPLES: usize = 60;
+/// Side of the picture's upper part; the chart below takes a third of it.
+const SIDE: f64 = 640.0;
+const CHART: f64 = 200.0;
+const COLOURS: [&str; 2] = ["#0072b2", "#d55e00"];
+
+/// Writes the picture to `out`.
+pub(crate) fn run(path: &str, tolerance: f64, out: &Path) -> Result<String, Fault> {
+    let source = Outline::from_svg(path)?;
+    let frame = Frame::new(source.bounding_box().ok_or("the path is empty")?);
+    let registry = Registry::builtin();
+    let shaper = registry.get("shaper").ok_or("there is no shaper")?;
+    let map = shaper.build_from(&Args::from_pairs(&[("shaper", CAGE)]), &frame).map_err(|e| e.to_string())?.map;
+    let warped = refit::warp_path(&source, &map, &Options::new(tolerance)).map_err(|e| e.to_string())?;
+    let pieces: Vec<PathSeg> = warped.path.segments().collect();
+
+    let mut svg = String::new();
+    let _ = write!(
+        svg,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {SIDE} {}\" width=\"{SIDE}\" height=\"{}\">\n<title>Refitting: {} segments within {tolerance}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+        SIDE + CHART,
+        SIDE + CHART,
+        pieces.len()
+    );
+    let controls = pieces.iter().map(PathSeg::to_cubic).flat_map(|c| [c.p0, c.p1, c.p2, c.p3]);
+    let first = pieces[0].start();
+    let box_ = controls.fold(Rect::from_points(first, first), |r, p| r.union_pt(p));
+    let scale = (SIDE - 80.0) / box_.width().max(box_.height());
+    let place = |p: Point| Point::new(40.0 + (p.x - box_.x0) * scale, 40.0 + (p.y - box_.y0) * scale);
+    draw_truth(&mut svg, &source, &*map, &place);
+    for (i, p) in pieces.iter().enumerate() {
+        draw_piece(&mut svg, p, COLOURS[i % 2], &place);
+    }
+    let worst = draw_error(&mut svg, &pieces, &source, &*map, tolerance);
+    svg.push_str("</svg>\n");
+    fs::write(out, svg).map_err(|e| format!("{}: {e}", out.display()))?;
+    Ok(format!(
+        "{} segments in, {} out; largest error seen {worst:.3e} of {tolerance:e} ({:.3e} reported); wrote {}",
+        warped.report.segments_in,
+        warped.report.segments_out,
+        warped.report.max_error,
+        out.display()
+    ))
+}
+
+/// The true image, broad and pale.
+fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, place: &impl Fn(Point) -> Point) {
+    for seg in source.segs() {
+        let points: Vec<String> = (0..=400)
+            .map(|i| place(map.point(seg.eval(f64::from(i) / 400.0))))
+            .map(|p| format!("{:.2},{:.2}", p.x, p.y))
+            .collect();
+        let _ = writeln!(
+            svg,
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"#d8dce3\" stroke-width=\"9\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>",
+            points.join(" ")
+        );
+    }
+}
+
+/// One piece with its end nodes and handles.
+fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, place: &impl Fn(Point) -> Point) {
+    let c = piece.to_cubic();
+    let [a, b, d, e] = [c.p0, c.p1, c.p2, c.p3].map(place);
+    if matches!(piece, PathSeg::Cubic(_)) {
+        for (n, h) in [(a, b), (e, d)] {
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{:.2},{:.2} L{:.2},{:.2}\" stroke=\"#8a93a3\" stroke-width=\"0.8\"/><circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"2.4\" fill=\"#fff\" stroke=\"#8a93a3\"/>",
+                n.x, n.y, h.x, h.y, h.x, h.y
+            );
+        }
+    }
+    let _ = writeln!(
+        svg,
+        "<path d=\"M{:.2},{:.2} C{:.2},{:.2} {:.2},{:.2} {:.2},{:.2}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2.2\"/>",
+        a.x, a.y, b.x, b.y, d.x, d.y, e.x, e.y
+    );
+    for n in [a, e] {
+        let _ = writeln!(
+            svg,
+            "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"7\" height=\"7\" fill=\"#2b2f36\"/>",
+            n.x - 3.5,
+            n.y - 3.5
+        );
+    }
+}
+
+/// The signed distance from the output to the true image along the output, as a share of the tolerance; gives the largest.
+fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn Map, tolerance: f64) -> f64 {
+    use pathwarp::kurbo::ParamCurveArclen;
+    let lengths: Vec<f64> = pieces.iter().map(|p| p.arclen(1e-6)).collect();
+    let total: f64 = lengths.iter().sum();
+    let (left, width, middle, height) = (40.0, SIDE - 80.0, SIDE + CHART / 2.0, CHART * 0.38);
+    for (k, colour, dash) in [(-1.0, "#cc3344", "5 4"), (0.0, "#8a93a3", "none"), (1.0, "#cc3344", "5 4")] {
+        let y = middle - k * height;
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{left},{y} H{}\" stroke=\"{colour}\" stroke-dasharray=\"{dash}\"/>",
+            left + width
+        );
+    }
+    let mut from = 0.0;
+    let mut worst: f64 = 0.0;
+    for (i, (p, l)) in pieces.iter().zip(&lengths).enumerate() {
+        let mut points = Vec::with_capacity(SAMPLES + 1);
+        for k in 0..=SAMPLES {
+            let t = k as f64 / SAMPLES as f64;
+            let e = signed_error(p, t, source, map);
+            worst = worst.max(e.abs());
+            let x = left + (from + l * t) / total * width;
+            points.push(format!("{x:.2},{:.2}", middle - e / tolerance * height));
+        }
+        let _ = writeln!(
+            svg,
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>",
+            points.join(" "),
+            COLOURS[i % 2]
+        );
+        from += l;
+        let x = left + from / total * width;
+        let _ = writeln!(svg, "<path d=\"M{x:.2},{} V{}\" stroke=\"#e3e6eb\"/>", middle - height, middle + height);
+    }
+    worst
+}
+
+/// How far the output lies to the left of the true image at `t`.
+fn signed_error(piece: &PathSeg, t: f64, source: &Outline, map: &dyn Map) -> f64 {
+    let p = piece.eval(t);
+    let tangent: Vec2 = match piece {
+        PathSeg::Line(l) => l.p1 - l.p0,
+        PathSeg::Quad(q) => q.deriv().eval(t).to_vec2(),
+        PathSeg::Cubic(c) => c.deriv().eval(t).to_vec2(),
+    };
+    let foot =
+        source.segs().map(|s| nearest(s, map, p)).fold((f64::INFINITY, p), |a, b| if b.0 < a.0 { b } else { a }).1;
+    (p - foot).cross(tangent) / tangent.hypot().max(f64::MIN_POSITIVE)
+}
+
+/// The nearest point of a segment's true image: by samples, then on the chord between them, halved until it is exact.
+fn nearest(seg: &Seg, map: &dyn Map, p: Point) -> (f64, Point) {
+    const COARSE: usize = 200;
+    let at = |t: f64| map.point(seg.eval(t));
+    let coarse = (0..=COARSE).map(|i| i as f64 / COARSE as f64);
+    let best = coarse.min_by(|a, b| at(*a).distance(p).total_cmp(&at(*b).distance(p))).unwrap_or(0.0);
+    let (mut lo, mut hi) = ((best - 1.0 / COARSE as f64).max(0.0), (best + 1.0 / COARSE as f64).min(1.0));
+    for _ in 0..50 {
+        let (a, b) = (lo + 0.382 * (hi - lo), hi - 0.382 * (hi - lo));
+        if at(a).distance(p) < at(b).distance(p) { hi = b } else { lo = a }
+    }
+    let q = at(0.5 * (lo + hi));
+    (q.distance(p), q)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_in_the_picture_is_within_the_tolerance() {
+        let dir = tempfile::tempdir().unwrap();
+        let out = dir.path().join("r.svg");
+        let said = run(PATH, 0.05, &out).unwrap();
+        let worst: f64 = said.split("seen ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        assert!(worst <= 0.05 && worst > 1e-4, "{said}");
+        assert!(fs::read_to_string(out).unwrap().contains("polyline"));
+        assert!(run("M0 0", 0.05, dir.path()).is_err() && run("nonsense", 0.05, dir.path()).is_err());
+    }
+}
