@@ -197,3 +197,56 @@ fn the_schema_names_every_parameter() {
         }
     }
 }
+
+/// A square along a line of three times its width stands three times; along a circle a whole number of times.
+#[test]
+fn artwork_is_repeated_along_a_skeleton() {
+    const SQUARE: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><defs><clipPath id='k'><rect width='10' \
+                          height='10'/></clipPath></defs><rect id='s' width='10' height='10' clip-path='url(#k)' stroke='red'/></svg>";
+    let dir = tempfile::tempdir().unwrap();
+    let bend = |along: &str| {
+        let args =
+            ["bend", "--along", along, "--stretch", "repeat", "--strokes", "keep", "--baseline", "0", "-o", "o.svg"];
+        let args: Vec<&str> = args.into_iter().chain(["--report", "r.json"]).collect();
+        let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        let report: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("r.json")).unwrap()).unwrap();
+        let svg = fs::read(dir.path().join("o.svg")).unwrap();
+        let doc = pathwarp_svg::Document::read(&svg, "o.svg", &pathwarp_svg::ReadOptions::default()).unwrap();
+        (report, doc.shapes().iter().map(|s| s.outline.clone()).collect::<Vec<_>>())
+    };
+    let (report, shapes) = bend("20,50 50,50");
+    assert_eq!(report["inputs"][0]["shapes"][0]["copies"], 3, "{report}");
+    // The square and its clip path alike.
+    assert_eq!(shapes.len(), 2);
+    for outline in shapes {
+        assert_eq!(outline.subpaths.len(), 3);
+        for (i, s) in outline.subpaths.iter().enumerate() {
+            let b = pathwarp::Outline { subpaths: vec![s.clone()] }.bounding_box().unwrap();
+            let x = 20.0 + 10.0 * i as f64;
+            assert!(
+                (b.x0 - x).abs() + (b.x1 - x - 10.0).abs() + (b.y0 - 40.0).abs() + (b.y1 - 50.0).abs() < 1e-2,
+                "{b:?}"
+            );
+        }
+    }
+    let (report, shapes) = bend("M100,200 A100,100 0 1 1 300,200 A100,100 0 1 1 100,200 Z");
+    assert_eq!(report["inputs"][0]["shapes"][0]["copies"], 62, "{report}");
+    assert!(shapes.iter().all(|s| s.subpaths.len() == 62));
+
+    // Copies are made before the first map, and cannot be undone.
+    for (args, part) in [
+        (&["affine", "--rotate", "5", "+", "bend", "--along", "0,0 50,0", "--stretch", "repeat"][..], "first step"),
+        (&["bend", "--along", "0,0 50,0", "--stretch", "repeat", "--inverse"], "no inverse"),
+    ] {
+        let out = pathwarp_in(dir.path(), args, SQUARE.as_bytes());
+        assert!(text(&out.stderr).contains(part) && out.status.code() == Some(3), "{out:?}");
+    }
+    let args = ["bend", "--along", "0,0 50,0", "--stretch", "repeat", "+", "affine", "--move-x", "100%"];
+    let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    // By then the artwork is the whole row.
+    let doc = pathwarp_svg::Document::read(&out.stdout, "out", &pathwarp_svg::ReadOptions::default()).unwrap();
+    let b = doc.shapes()[0].outline.bounding_box().unwrap();
+    assert!((b.x0 - 50.0).abs() + (b.x1 - 100.0).abs() < 1e-2, "{b:?}");
+}

@@ -9,7 +9,6 @@ use crate::{Outcome, preview, recipe_file, terminal};
 use clap::ArgMatches;
 use pathwarp::deform::Registry;
 use pathwarp::fold::{self, Orientation};
-use pathwarp::map::Map;
 use pathwarp::outline::Outline;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
@@ -188,6 +187,7 @@ fn warp(
         selection,
         on_error: common.on_error,
         gradients: common.gradients,
+        copies: built.copies.clone(),
         ..WarpOptions::new(refit::Options {
             certify: common.certify,
             merge: common.merge,
@@ -226,7 +226,7 @@ fn report(
     file: &str,
     target: Option<&Path>,
 ) -> report::Input {
-    let folds = folds(doc, &built.map, &options.selection);
+    let folds = folds(doc, built, &options.selection);
     let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
     warnings.extend(warped.warnings.iter().cloned());
     let all = folds.iter().fold(Orientation::default(), |sum, (_, o)| sum.and(o));
@@ -242,6 +242,7 @@ fn report(
         }
         shapes.push(report::Shape {
             id: s.id.clone(),
+            copies: s.copies,
             segments_in: s.segments_in,
             segments_out: s.segments_out,
             max_error: s.max_error,
@@ -266,9 +267,13 @@ fn report(
 }
 
 /// Every selected shape's orientation under the map.
-fn folds<'a>(doc: &'a Document, map: &dyn Map, selection: &Selection) -> Vec<(&'a str, Orientation)> {
+fn folds<'a>(doc: &'a Document, built: &BuiltRecipe, selection: &Selection) -> Vec<(&'a str, Orientation)> {
     let shapes: Vec<_> = doc.selected(selection).collect();
-    shapes.into_par_iter().map(|s| (s.id.as_str(), fold::orientation(&s.outline, s.filled, map))).collect()
+    let one = |s: &'a pathwarp_svg::Shape| {
+        let outline = s.outline.repeated(&built.copies);
+        (s.id.as_str(), fold::orientation(&outline, s.filled, &built.map))
+    };
+    shapes.into_par_iter().map(one).collect()
 }
 
 /// Warnings and leavings, for people.

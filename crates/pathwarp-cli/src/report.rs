@@ -29,6 +29,9 @@ pub(crate) struct Input {
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Shape {
     pub(crate) id: String,
+    /// How often the shape stands in the result; left out where that is once.
+    #[serde(skip_serializing_if = "is_once")]
+    pub(crate) copies: usize,
     pub(crate) segments_in: usize,
     pub(crate) segments_out: usize,
     /// User units.
@@ -64,6 +67,11 @@ pub(crate) struct Totals {
     pub(crate) folds: usize,
     pub(crate) skipped: usize,
     pub(crate) seconds: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants it so")]
+fn is_once(copies: &usize) -> bool {
+    *copies == 1
 }
 
 pub(crate) fn assurance_word(a: Assurance) -> &'static str {

@@ -263,7 +263,7 @@ impl Writer<'_> {
             border.line_to(p.into());
         }
         border.close();
-        let border = border.finish().transformed(m.frame);
+        let border = border.finish().transformed(m.frame).repeated(&self.job.options.copies);
         let warped = refit::warp_path(&border, self.job.map, &self.job.options.refit).ok()?;
         let mut path = warped.path;
         path.apply_affine(warp::written(&self.job.document.scene, self.job.slots, m.slot, m.frame).inverse());

@@ -1,6 +1,7 @@
 //! How a document is warped.
 
 use crate::select::Selection;
+use pathwarp::kurbo::Affine;
 use pathwarp::refit;
 
 /// What becomes of strokes.
@@ -78,6 +79,9 @@ pub struct WarpOptions {
     pub on_error: OnError,
     /// What becomes of gradients.
     pub gradients: Gradients,
+    /// Where copies of every shape stand before the warp, in root user space, the original included; a shape and its copies
+    /// become one path, clip paths and masks alike. Empty: the shape alone.
+    pub copies: Vec<Affine>,
 }
 
 impl WarpOptions {
@@ -93,6 +97,7 @@ impl WarpOptions {
             selection: Selection::default(),
             on_error: OnError::default(),
             gradients: Gradients::default(),
+            copies: Vec::new(),
         }
     }
 }

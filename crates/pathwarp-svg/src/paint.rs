@@ -57,6 +57,22 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
     affine.is_finite().then_some(Fit { affine, residual: if size > 0.0 { miss / size } else { 0.0 } })
 }
 
+/// As [`fit`], over the box of all copies: what was laid over one of them is stretched over the row.
+pub(crate) fn fit_copies(area: Rect, read: Affine, write: Affine, map: &dyn Map, copies: &[Affine]) -> Option<Fit> {
+    let back = read.inverse();
+    let Some(whole) = copies.iter().map(|m| (back * *m * read).transform_rect_bbox(area)).reduce(|a, b| a.union(b))
+    else {
+        return fit(area, read, write, map);
+    };
+    // A box without width or height keeps its size there.
+    let scale = |own: f64, all: f64| if own > 0.0 { all / own } else { 1.0 };
+    let grow = Affine::translate(whole.origin().to_vec2())
+        * Affine::scale_non_uniform(scale(area.width(), whole.width()), scale(area.height(), whole.height()))
+        * Affine::translate(-area.origin().to_vec2());
+    let over = fit(whole, read, write, map)?;
+    Some(Fit { affine: over.affine * grow, ..over })
+}
+
 impl Fit {
     /// Whether it moves nothing on `area` by more than a hair of its size.
     pub(crate) fn is_identity(&self, area: Rect) -> bool {

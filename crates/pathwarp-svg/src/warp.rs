@@ -33,7 +33,9 @@ pub struct Warped {
 pub struct ShapeReport {
     /// The source's id, or a readable stand-in such as `path at 12:5`.
     pub id: String,
-    /// Segments before, closing lines included.
+    /// How often it stands in the result.
+    pub copies: usize,
+    /// Segments before, closing lines and copies included.
     pub segments_in: usize,
     /// Segments after.
     pub segments_out: usize,
@@ -129,7 +131,7 @@ impl Document {
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
         let identity = map.class() == Class::Affine(Affine::IDENTITY);
-        if identity && options.structure != Structure::Flatten {
+        if identity && options.copies.is_empty() && options.structure != Structure::Flatten {
             self.source.text.clone_into(&mut out.svg);
             return Ok(out);
         }
@@ -147,7 +149,7 @@ impl Document {
         };
         /// Below so many segments the work is done before another thread has woken up.
         const WORTH_IT: usize = 100;
-        let segments: usize = parts.iter().map(|p| p.local.segs().count()).sum();
+        let segments: usize = parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * options.copies.len().max(1);
         let results: Vec<Option<Result<Done, GeometryError>>> = if segments < WORTH_IT {
             parts.iter().zip(&meant).map(one).collect()
         } else {
@@ -161,7 +163,7 @@ impl Document {
                 None => Outcome::Kept,
                 Some(Ok(done)) => {
                     let owner = parts[i].owner.or(parts[i].source);
-                    out.report(shape.id.clone(), &done, owner.is_some() && owner == last);
+                    out.report(shape.id.clone(), &done, options.copies.len().max(1), owner.is_some() && owner == last);
                     last = owner;
                     Outcome::Warped(Box::new(done))
                 }
@@ -175,6 +177,10 @@ impl Document {
                     Outcome::Kept
                 }
             });
+        }
+        if options.copies.len() > 1 && slots.iter().any(|s| s.fit != Affine::IDENTITY) {
+            out.warnings
+                .push("images and what filters work on are not repeated; they follow the row as a whole".into());
         }
         if !self.missing_fonts.is_empty() {
             let names = self.missing_fonts.join(", ");
@@ -259,7 +265,7 @@ impl Document {
 }
 
 impl Warped {
-    fn report(&mut self, id: String, done: &Done, same_as_last: bool) {
+    fn report(&mut self, id: String, done: &Done, copies: usize, same_as_last: bool) {
         let r = &done.report;
         let error = r.max_error + done.rounding;
         match self.shapes.last_mut() {
@@ -272,6 +278,7 @@ impl Warped {
             }
             _ => self.shapes.push(ShapeReport {
                 id,
+                copies,
                 segments_in: r.segments_in,
                 segments_out: r.segments_out,
                 max_error: error,
@@ -313,7 +320,7 @@ pub(crate) fn stretch(m: Affine) -> f64 {
 }
 
 fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> Result<Done, GeometryError> {
-    let outline = p.outline();
+    let outline = p.outline().repeated(&options.copies);
     let back = write.inverse();
     let size = stretch(write);
     let tolerance = options.refit.tolerance;
@@ -337,7 +344,7 @@ fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> R
     let served = p.fill.as_ref().is_some_and(|f| painted_by_server(f.paint()))
         || p.stroke.as_ref().is_some_and(|s| painted_by_server(s.paint()));
     if served && options.gradients == Gradients::Fit {
-        done.fit = p.local.bounding_box().and_then(|b| paint::fit(b, p.frame, write, map));
+        done.fit = p.local.bounding_box().and_then(|b| paint::fit_copies(b, p.frame, write, map, &options.copies));
     }
     if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
         let width = || stroke::width(&outline, p.frame, write, map, s);
@@ -370,7 +377,7 @@ fn outline_stroke(
 ) -> Result<BezPath, GeometryError> {
     // The expansion is an approximation of its own; a quarter of the tolerance is its share.
     let outline: Outline = stroke::outline(p, s, (options.refit.tolerance / stretch(p.frame) * 0.25).max(1e-9));
-    let warped = refit::warp_path(&outline.transformed(p.frame), map, &options.refit)?;
+    let warped = refit::warp_path(&outline.transformed(p.frame).repeated(&options.copies), map, &options.refit)?;
     Ok(local(warped.path, write.inverse()))
 }
 

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
 use crate::param::{Args, Axis, Frame};
-use kurbo::{Point, Rect};
+use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
 /// A deformation with its arguments.
@@ -41,6 +41,8 @@ pub struct BuiltRecipe {
     pub map: Chain,
     /// The steps one by one.
     pub steps: Vec<Built>,
+    /// Where the artwork stands before it is mapped ([`Built::copies`] of the first step). Empty: where it is.
+    pub copies: Vec<Affine>,
 }
 
 impl Recipe {
@@ -56,6 +58,7 @@ impl Recipe {
     ) -> Result<BuiltRecipe, Error> {
         let mut map = Chain::default();
         let mut steps = Vec::with_capacity(self.steps.len());
+        let mut copies = Vec::new();
         for (i, step) in self.steps.iter().enumerate() {
             let entry = registry.get(&step.deformation).ok_or_else(|| {
                 let known: Vec<_> = registry.entries().iter().map(|e| e.info().name).collect();
@@ -65,16 +68,28 @@ impl Recipe {
                 }
             })?;
             if i > 0 {
-                frame = image_box(artwork.clone(), &map).map_or(frame, Frame::new);
+                frame = image_box(artwork.clone(), &copies, &map).map_or(frame, Frame::new);
             }
             let mut built = entry.build_from(&step.args, &frame)?;
+            if !built.copies.is_empty() {
+                let problem = match (i, step.inverse) {
+                    (_, true) => "repeats the artwork, which has no inverse",
+                    (0, false) => "",
+                    _ => "repeats the artwork, which only the first step can do; put it first, or in a run of its own",
+                };
+                if !problem.is_empty() {
+                    let place = format!("step {}, {}", i + 1, step.deformation);
+                    return Err(Error::Input { place, problem: problem.into() });
+                }
+                copies.clone_from(&built.copies);
+            }
             if step.inverse {
                 built = inverted(built, &frame);
             }
             map.push(Arc::clone(&built.map));
             steps.push(built);
         }
-        Ok(BuiltRecipe { map, steps })
+        Ok(BuiltRecipe { map, steps, copies })
     }
 }
 
@@ -110,11 +125,12 @@ impl Recipe {
 }
 
 /// The box of the artwork's image, from points along the outlines: what a percentage needs, not what a proof needs.
-fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, map: &dyn Map) -> Option<Rect> {
+fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], map: &dyn Map) -> Option<Rect> {
     const PER_SEGMENT: usize = 16;
     let mut all: Option<Rect> = None;
-    for seg in artwork.flat_map(Outline::segs) {
-        let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
+    let places = if copies.is_empty() { &[Affine::IDENTITY][..] } else { copies };
+    for (seg, place) in artwork.flat_map(Outline::segs).flat_map(|s| places.iter().map(move |m| (s, *m))) {
+        let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| place * seg.eval(i as f64 / PER_SEGMENT as f64));
         let mut image = [Point::ORIGIN; PER_SEGMENT + 1];
         map.points(&ps, &mut image);
         for p in image.into_iter().filter(|p| p.is_finite()) {

@@ -24,7 +24,7 @@ mod wave;
 use crate::error::Error;
 use crate::map::Map;
 use crate::param::{Args, Frame, Param, Settings};
-use kurbo::BezPath;
+use kurbo::{Affine, BezPath};
 use std::sync::Arc;
 
 /// The deformations of this crate, in the order `pathwarp list` shows them.
@@ -156,13 +156,24 @@ pub struct Built {
     pub warnings: Vec<String>,
     /// Files asked for by parameters of kind [`Save`](crate::param::Kind::Save): name and text.
     pub saves: Vec<(String, String)>,
+    /// The artwork as often as the map is to bend it: where each copy stands in the source plane, the original included. Empty:
+    /// the artwork alone. A map gives every point one image, so that copies are made before it; only the first step of a
+    /// recipe can ask for them.
+    pub copies: Vec<Affine>,
 }
 
 impl Built {
     /// Just a map.
     #[must_use]
     pub fn new(map: Arc<dyn Map>) -> Self {
-        Self { map, notes: Vec::new(), overlays: Vec::new(), warnings: Vec::new(), saves: Vec::new() }
+        Self {
+            map,
+            notes: Vec::new(),
+            overlays: Vec::new(),
+            warnings: Vec::new(),
+            saves: Vec::new(),
+            copies: Vec::new(),
+        }
     }
 }
 

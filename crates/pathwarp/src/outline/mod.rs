@@ -230,6 +230,15 @@ impl Outline {
         self.subpaths.is_empty()
     }
 
+    /// The outline at every one of these places, as one; as it is if there are none.
+    #[must_use]
+    pub fn repeated(&self, places: &[Affine]) -> Self {
+        if places.is_empty() {
+            return self.clone();
+        }
+        Self { subpaths: places.iter().flat_map(|m| self.transformed(*m).subpaths).collect() }
+    }
+
     /// The image under an affine map, exact.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {

@@ -35,7 +35,8 @@ static INFO: Info = Info {
     group: "Bends",
     about: "The artwork follows a path, the skeleton: what is level runs along it, what is upright stands on it. The skeleton may \
 have any number of lines, curves and arcs, open or closed. Nothing is stretched unless you ask: --stretch scale sizes the artwork \
-to the skeleton, fit stretches it lengthwise only.\n\nAn open skeleton is run left to right and a closed one clockwise, so that up \
+to the skeleton, fit stretches it lengthwise only. --stretch repeat sets copies of it side by side, as many as the skeleton has \
+room for, and spreads them evenly.\n\nAn open skeleton is run left to right and a closed one clockwise, so that up \
 is up, or outside; --as-drawn and --reverse overrule that. On a closed skeleton the artwork's middle stands on its highest point. \
 Beyond the ends of an open one everything goes straight on.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
@@ -46,8 +47,8 @@ left away). A handle says where the artwork's height goes.",
         Param::path("along", "The skeleton: one connected path.").needed(),
         Param::new(
             "stretch",
-            Kind::Choice(&["keep", "scale", "fit"]),
-            "Lengths: keep them, scale the artwork evenly to the skeleton's length, or fit its width only.",
+            Kind::Choice(&["keep", "scale", "fit", "repeat"]),
+            "Lengths: keep them, scale the artwork evenly to the skeleton's length, fit its width only, or repeat it all along.",
         )
         .default("keep"),
         Param::new(
@@ -58,6 +59,7 @@ left away). A handle says where the artwork's height goes.",
         .default("middle"),
         Param::length("offset", Axis::X, "Shift along the skeleton, user units or % of the artwork's width.")
             .default("0"),
+        Param::length("gap", Axis::X, "The least space between repeated artwork, user units or % of its width.").default("0"),
         Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton.")
             .default("50%"),
         Param::number("width", "Heights are multiplied by this.").default("100%").within(1e-6, 1e6).slider(0.1, 3.0),
@@ -80,6 +82,10 @@ left away). A handle says where the artwork's height goes.",
         Example {
             what: "On an arc of a circle, scaled to its length",
             command: "bend samples/logo.svg --along 'M60,190 A400,400 0 0 1 604,190' --stretch scale --baseline 0 -o out.svg",
+        },
+        Example {
+            what: "A border of logos round a circle",
+            command: "bend samples/logo.svg --along 'M100,400 A300,300 0 1 1 700,400 A300,300 0 1 1 100,400 Z' --stretch repeat --gap 10% --baseline 0 -o out.svg",
         },
         Example {
             what: "A grid along a winding path, by the paper's polynomial map",
@@ -184,8 +190,14 @@ impl Deformation for Bend {
         if stretch != "keep" && rect.width() <= 0.0 {
             return Err(Error::usage("stretch", stretch, "cannot stretch artwork that has no width"));
         }
-        let k = if stretch == "keep" { 1.0 } else { length / rect.width() };
+        let k = if matches!(stretch, "keep" | "repeat") { 1.0 } else { length / rect.width() };
+        let row = match stretch {
+            "repeat" => Row::new(rect.width(), s.number("gap")?, length, closed)?,
+            _ => Row::ONE,
+        };
         let (from, to) = match s.choice("align")? {
+            // A row that reaches from end to end begins where the skeleton does.
+            _ if row.count > 1 && !closed => (rect.x0, 0.0),
             "start" => (rect.x0, 0.0),
             "end" => (rect.x1, length),
             _ => (rect.center().x, middle),
@@ -197,7 +209,10 @@ impl Deformation for Bend {
             base: rect.y1 - s.number("baseline")?,
         };
         let pieces = joined.pieces.into_iter().map(Arc::new).collect();
-        let map = BendMap { pieces, length, closed, place, reach: (rect.x0 - rect.width(), rect.x1 + rect.width()) };
+        let shift = row.spacing * (row.count - 1) as f64;
+        let rect = kurbo::Rect { x1: rect.x1 + shift, ..rect };
+        let reach = (rect.x0 - rect.width(), rect.x1 + rect.width());
+        let map = BendMap { pieces, length, closed, place, reach };
 
         let mut built = Built::new(map.simplest());
         built.notes.push(format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" }));
@@ -209,6 +224,10 @@ impl Deformation for Bend {
                 c.turn.to_degrees().abs()
             ));
         }
+        if stretch == "repeat" {
+            built.notes.push(format!("artwork repeated: {} times, one every {:.6}", row.count, row.spacing));
+            built.copies = (0..row.count).map(|i| Affine::translate((row.spacing * i as f64, 0.0))).collect();
+        }
         if k * rect.width() > length * (1.0 + 1e-9) {
             let what = if closed { "runs over itself" } else { "runs straight on beyond its ends" };
             built.warnings.push(format!(
@@ -219,6 +238,45 @@ impl Deformation for Bend {
         built.warnings.extend(map.fold(rect));
         built.overlays.push(Overlay { role: Role::Cage, path: path.outline.to_bez_path(1e-4 * size) });
         Ok(built)
+    }
+}
+
+/// Copies of the artwork side by side.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    count: usize,
+    /// From one to the next.
+    spacing: f64,
+}
+
+impl Row {
+    const ONE: Self = Self { count: 1, spacing: 0.0 };
+
+    /// As many copies of `width` as `length` has room for with at least `gap` between them, spread evenly: on an open skeleton
+    /// from its start to its end, on a closed one all round.
+    fn new(width: f64, gap: f64, length: f64, closed: bool) -> Result<Self, Error> {
+        /// More than this on one skeleton is a slip of the unit.
+        const MOST: f64 = 10_000.0;
+        let period = width + gap;
+        if period <= 0.0 {
+            return Err(Error::usage(
+                "gap",
+                gap.to_string(),
+                format!("is no more than minus the artwork's width, {width:.6}"),
+            ));
+        }
+        // Rounding must not refuse what just fits.
+        let room = ((if closed { length } else { length + gap }) / period * (1.0 + 1e-9)).floor().max(1.0);
+        if room > MOST {
+            let problem = format!("would take {room} copies of artwork {width:.6} wide; {MOST} are the most");
+            return Err(Error::usage("stretch", "repeat", problem));
+        }
+        let spacing = match (closed, room > 1.0) {
+            (true, _) => length / room,
+            (false, true) => (length - width) / (room - 1.0),
+            (false, false) => 0.0,
+        };
+        Ok(Self { count: room as usize, spacing })
     }
 }
 

@@ -157,3 +157,39 @@ fn skeletons_that_cannot_be_followed_are_refused() {
     assert!(fault("M0,0 L5,0 M6,0 L9,9").contains("single connected run"));
     assert!(fault("M5,5 L5,5").contains("no length"));
 }
+
+/// A line of three times the width takes three, with gaps two; a circle a whole number, evenly.
+#[test]
+fn artwork_is_repeated_as_often_as_there_is_room() {
+    let row = |along: &str, gap: &str| {
+        let b = build(&[("along", along), ("stretch", "repeat"), ("gap", gap), ("baseline", "0")]).unwrap();
+        let places: Vec<Point> = b.copies.iter().map(|m| b.map.point(*m * Point::new(0.0, 100.0))).collect();
+        (places, b.warnings)
+    };
+    let near = |a: &[Point], b: &[(f64, f64)]| {
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.distance(Point::from(*b)) < 1e-9)
+    };
+    let (places, warnings) = row("20,50 320,50", "0");
+    assert!(
+        near(&places, &[(20.0, 50.0), (120.0, 50.0), (220.0, 50.0)]) && warnings.is_empty(),
+        "{places:?} {warnings:?}"
+    );
+    let (places, _) = row("20,50 320,50", "10%");
+    assert!(near(&places, &[(20.0, 50.0), (220.0, 50.0)]), "{places:?}");
+    let (places, warnings) = row("0,50 60,50", "0");
+    assert!(places.len() == 1 && warnings.len() == 1, "{places:?} {warnings:?}");
+
+    // A circle of radius 100 is 628.3 long: six, or five with gaps of 5 at least.
+    for (gap, count) in [("0", 6), ("5", 5), ("-10", 6)] {
+        let (places, warnings) = row("M0,0 A100,100 0 1 1 200,0 A100,100 0 1 1 0,0 Z", gap);
+        assert!(places.len() == count && warnings.is_empty(), "{places:?} {warnings:?}");
+        let chord = 200.0 * (std::f64::consts::PI / count as f64).sin();
+        for i in 0..count {
+            let d = places[i].distance(places[(i + 1) % count]);
+            assert!((d - chord).abs() < 1e-9, "{i}: {d} {chord}");
+        }
+    }
+    let fault =
+        |gap: &str| build(&[("along", "0,50 320,50"), ("stretch", "repeat"), ("gap", gap)]).err().unwrap().to_string();
+    assert!(fault("-100").contains("artwork's width") && fault("-99.999").contains("the most"));
+}
