@@ -52,3 +52,30 @@ fn stained_glass_has_no_gaps() {
         assert!(shared_after >= shared_before, "merge {merge}: {shared_before} before, {shared_after} after");
     }
 }
+
+/// Here merging would join the shared edge with what follows it on one side only. The companion shows that it does where
+/// nothing is shared.
+#[test]
+fn a_shared_edge_is_not_merged_with_what_follows_it() {
+    const WITH_REST: &str = "<path d='M0,50 C10,30 20,40 30,50 C40,60 50,70 60,50 L60,90 0,90 Z'/>";
+    const NEIGHBOUR: &str = "<path d='M30,50 C20,40 10,30 0,50 L0,0 30,0 Z'/>";
+    let warp = |shapes: &str| {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 60 90'>{shapes}</svg>");
+        let doc = Document::read(svg.as_bytes(), "t", &ReadOptions::default()).unwrap();
+        let frame = Frame::new(pathwarp::kurbo::Rect::new(0.0, 0.0, 60.0, 90.0));
+        let map = Registry::builtin()
+            .get("shaper")
+            .unwrap()
+            .build_from(&Args::from_pairs(&[("shaper", CAGE)]), &frame)
+            .unwrap()
+            .map;
+        let options = refit::Options { merge: true, ..refit::Options::new(0.2) };
+        let out = doc.warp(&map, &WarpOptions::new(options)).unwrap().svg;
+        let after = Document::read(out.as_bytes(), "out", &ReadOptions::default()).unwrap();
+        after.shapes().iter().map(|s| edges(&s.outline)).collect::<Vec<_>>()
+    };
+    let both = warp(&[WITH_REST, NEIGHBOUR].concat());
+    let common = both[0].iter().filter(|e| both[1].contains(e)).count();
+    assert!(common > 0, "the edge is the same on both sides");
+    assert!(warp(WITH_REST)[0].len() < both[0].len(), "alone, it is merged with what follows");
+}
