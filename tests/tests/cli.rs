@@ -145,6 +145,19 @@ fn forbidden_geometry_is_4_and_leaves_the_old_file_alone() {
 }
 
 #[test]
+fn artwork_as_flat_as_a_line_needs_a_base() {
+    let dir = tempfile::tempdir().unwrap();
+    let line = SQUARE.replace("M0,0H100V100H0Z", "M0,50H100");
+    for args in [&["shaper", "--shaper", CAGE][..], &["projective", "--target", "0,0 10,0 10,10 0,10"]] {
+        let out = pathwarp_in(dir.path(), args, line.as_bytes());
+        assert_eq!(out.status.code(), Some(4));
+        assert!(text(&out.stderr).contains("100 wide and 0 high"), "{}", text(&out.stderr));
+        let with = pathwarp_in(dir.path(), &[args, &["--frame", "0,0,100,100"]].concat(), line.as_bytes());
+        assert_eq!(with.status.code(), Some(0), "{}", text(&with.stderr));
+    }
+}
+
+#[test]
 fn a_shape_beyond_the_horizon_can_be_skipped() {
     let dir = tempfile::tempdir().unwrap();
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='near' d='M12,36 l4,0 0,3 z'/><path id='far' d='M0,0H100V100H0Z'/></svg>";

@@ -190,7 +190,10 @@ pub(crate) fn from_settings(s: &Settings<'_>, name: &str, as_drawn: &str) -> Res
 /// The frame's corners as anchors: what Base is by default.
 pub(crate) fn frame_corners(s: &Settings<'_>) -> Result<Anchors, Error> {
     let c = s.frame().corners();
-    general("the artwork's box (the default of --base)", &c)?;
+    if general("", &c).is_err() {
+        let (width, height) = (s.frame().rect.width(), s.frame().rect.height());
+        return Err(GeometryError::FlatFrame { width, height }.into());
+    }
     Ok(Anchors::Four(c))
 }
 

@@ -112,6 +112,16 @@ pub enum GeometryError {
         /// Whether it lies on the line itself, where no weight helps.
         on: bool,
     },
+    /// The artwork is as flat as a line, and its box was to be the Base.
+    #[error(
+        "the artwork's box is {width} wide and {height} high: too flat to be the Base; give --base, or --frame X,Y,W,H"
+    )]
+    FlatFrame {
+        /// The box's width.
+        width: f64,
+        /// The box's height.
+        height: f64,
+    },
     /// A projective map between these corners has its horizon among them.
     #[error(
         "{path}: the projective map from {} to {} hits infinity between these corners, because one of the quadrilaterals is convex and the other is not; move a corner, or mind their order",

@@ -62,9 +62,8 @@ impl Deformation for Projective {
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let base = match anchors::from_settings(s, "base", "base-as-drawn")? {
             Some(a) => four("--base", &a)?,
-            None => s.frame().corners(),
+            None => four("--base", &anchors::frame_corners(s)?)?,
         };
-        anchors::general("the Base", &base)?;
         let Some(target) = anchors::from_settings(s, "target", "target-as-drawn")? else {
             return Err(Error::Missing {
                 param: "--target".into(),
