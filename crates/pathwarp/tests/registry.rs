@@ -27,3 +27,37 @@ fn names_are_unique() {
     names.dedup();
     assert_eq!(names.len(), all);
 }
+
+/// `pathwarp list` is a menu: its headings in a sensible order, each once; lines that say what one does with it, all different.
+#[test]
+fn the_list_reads_like_a_menu() {
+    let registry = Registry::builtin();
+    let infos: Vec<_> = registry.entries().iter().map(|e| e.info()).collect();
+    let mut headings: Vec<&str> = infos.iter().map(|i| i.group).collect();
+    headings.dedup();
+    let expected = [
+        "Envelopes",
+        "Bends",
+        "Lattices and nets",
+        "Points",
+        "Perspective and anamorphosis",
+        "Classics",
+        "Formulas",
+        "Basics",
+    ];
+    assert_eq!(headings, expected);
+    let mut titles: Vec<&str> = infos.iter().map(|i| i.title).collect();
+    titles.sort_unstable();
+    titles.dedup();
+    assert_eq!(titles.len(), infos.len());
+    for i in &infos {
+        assert!(i.title.starts_with(|c: char| c.is_lowercase()) && !i.title.ends_with('.'), "{}: {}", i.name, i.title);
+        assert!(i.title.chars().count() <= 80, "{}: {}", i.name, i.title);
+        assert!(i.examples.len() >= 2, "{}", i.name);
+        let mut commands: Vec<&str> = i.examples.iter().map(|e| e.command).collect();
+        commands.sort_unstable();
+        commands.dedup();
+        assert_eq!(commands.len(), i.examples.len(), "{}", i.name);
+        assert!(i.examples.iter().all(|e| e.command.starts_with(i.name)), "{}", i.name);
+    }
+}

@@ -13,7 +13,7 @@ pub(super) struct AffineDeformation;
 
 static INFO: Info = Info {
     name: "affine",
-    title: "scale, skew, rotate, move; or any matrix",
+    title: "scale, skew, rotate and move, or apply any matrix",
     group: "Basics",
     about: "Scales, skews, rotates and moves the artwork, in this order, about a point; or applies a matrix as SVG writes it. Control \
 points are moved exactly; no node is added.",

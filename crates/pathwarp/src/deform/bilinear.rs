@@ -22,7 +22,7 @@ pub(super) struct Bilinear;
 
 static INFO: Info = Info {
     name: "bilinear",
-    title: "four corners, sides divided evenly",
+    title: "stretch artwork to four corners, its sides divided evenly",
     group: "Envelopes",
     about: "Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Uprights and levels stay straight \
 and keep their even spacing, where projective would crowd them towards the far side; slanting lines become parabolas.\n\nBoth start \

@@ -18,7 +18,7 @@ pub(super) struct BirationalDeformation;
 
 static INFO: Info = Info {
     name: "birational",
-    title: "bend between two rows of points, with verticals (or horizontals) kept straight",
+    title: "bend artwork between two rows of points, uprights (or levels) kept straight",
     group: "Envelopes",
     about: "Draw where the top and the bottom of the artwork are to run, as two rows of equally many points from left to right: \
 verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \

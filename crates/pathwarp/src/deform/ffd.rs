@@ -22,7 +22,7 @@ pub(super) struct Ffd;
 static INFO: Info = Info {
     name: "ffd",
     title: "pull artwork about by a grid of control points",
-    group: "Envelopes",
+    group: "Lattices and nets",
     about: "A grid of control points lies over the artwork. Move some of them, and what lies near follows smoothly. Points are \
 named i,j: column from the left, row from the top, both from 0. A grid of degree 3x2 has 4 by 3 of them; higher degrees bend \
 more finely.\n\nOr say which points of the artwork are to go where (--pin), and the grid follows with the smallest change.\n\n\

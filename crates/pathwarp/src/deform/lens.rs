@@ -28,7 +28,7 @@ const LENSES: &[&str] = &["rectilinear", "stereographic", "equidistant", "equiso
 
 static INFO: Info = Info {
     name: "lens",
-    title: "fisheye, and fisheye straightened",
+    title: "look through a fisheye, or straighten what was seen through one",
     group: "Classics",
     about: "Redraws the artwork as another lens would have taken it. From rectilinear to one of the fisheyes, straight lines bow \
 outwards and the middle swells; the other way a fisheye picture is straightened. --field says how wide the view is from corner to \

@@ -24,7 +24,7 @@ pub(super) struct Mls;
 
 static INFO: Info = Info {
     name: "mls",
-    title: "move points, the rest follows",
+    title: "move points of the artwork, and let the rest follow",
     group: "Points",
     about: "Say where points of the artwork are to go; everything else follows smoothly, most where it is near. --pair moves a \
 point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \

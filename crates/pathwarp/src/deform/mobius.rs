@@ -23,7 +23,7 @@ pub(super) struct Mobius;
 
 static INFO: Info = Info {
     name: "mobius",
-    title: "circles to circles: a Möbius map by its pole, three points or coefficients",
+    title: "take circles to circles, by a pole, three points or coefficients",
     group: "Classics",
     about: "Straight lines become arcs of circles, circles stay circles, and angles are kept: small squares stay small squares. The \
 simplest way in is the pole, the point that goes to infinity: artwork grows towards it and shrinks away from it. Or say where three \

@@ -33,22 +33,22 @@ pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
         Arc::new(bilinear::Bilinear),
-        Arc::new(ffd::Ffd),
         Arc::new(birational::BirationalDeformation),
-        Arc::new(triangle::Triangle),
-        Arc::new(projective::Projective),
-        Arc::new(anamorph::Anamorph),
-        Arc::new(similitude::Similitude),
-        Arc::new(affine::AffineDeformation),
         Arc::new(bend::Bend),
         Arc::new(polar::Polar),
+        Arc::new(ffd::Ffd),
+        Arc::new(triangle::Triangle),
         Arc::new(mls::Mls),
+        Arc::new(projective::Projective),
+        Arc::new(anamorph::Anamorph),
         Arc::new(wave::Wave),
         Arc::new(swirl::Swirl),
         Arc::new(bulge::Bulge),
         Arc::new(lens::Lens),
         Arc::new(mobius::Mobius),
         Arc::new(expr::Expr),
+        Arc::new(similitude::Similitude),
+        Arc::new(affine::AffineDeformation),
     ]
 }
 

@@ -23,7 +23,7 @@ pub(super) struct Polar;
 
 static INFO: Info = Info {
     name: "polar",
-    title: "bend a rectangle into an arch or a whole ring",
+    title: "bend artwork into an arch or a whole ring",
     group: "Bends",
     about: "Uprights become rays, levels become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
 --inner and --outer set the radii instead. A negative sweep bends downwards (a smile). The middle of the artwork stays where it is, \

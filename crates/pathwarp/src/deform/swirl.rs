@@ -20,7 +20,7 @@ pub(super) struct Swirl;
 
 static INFO: Info = Info {
     name: "swirl",
-    title: "turn the middle, the rim stays",
+    title: "turn the middle, and keep the rim",
     group: "Classics",
     about: "Turns artwork about a centre by an angle that falls off to nothing at the radius. Circles about the centre stay what \
 they are, no area changes, and outside the radius nothing moves (with --falloff endless, hardly anything).",

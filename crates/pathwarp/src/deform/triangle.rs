@@ -20,8 +20,8 @@ pub(super) struct Triangle;
 
 static INFO: Info = Info {
     name: "triangle",
-    title: "a triangular net of control points",
-    group: "Envelopes",
+    title: "pull artwork about by a triangular net of control points",
+    group: "Lattices and nets",
     about: "Lays a triangle over the artwork, with control points along its sides and inside it, and lets the artwork follow where \
 they are moved. Degree 1 has the three corners; degree 2 the middles of the sides too; degree 3 one more in the middle. The higher \
 the degree, the more local each point's pull. A triangle bends less stiffly than a rectangular net of the same degree, and treats \

@@ -21,7 +21,7 @@ pub(super) struct Wave;
 
 static INFO: Info = Info {
     name: "wave",
-    title: "a sine wave across the artwork, or a flag in the wind",
+    title: "wave artwork like water, or like a flag in the wind",
     group: "Classics",
     about: "Pushes the artwork up and down in a sine wave that runs from left to right, or in any direction. Lines across the wave \
 stay straight, and no area changes. With --grow the wave is nothing at the start and full at the end: a flag at its pole. \

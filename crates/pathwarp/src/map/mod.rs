@@ -7,7 +7,7 @@ mod affine;
 pub mod anamorph;
 pub(crate) mod bernstein;
 mod birational;
-mod bspline;
+pub(crate) mod bspline;
 mod chain;
 mod crease;
 pub mod dilation;

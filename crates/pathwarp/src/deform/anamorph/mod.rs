@@ -42,8 +42,8 @@ pub(super) struct Anamorph;
 
 static INFO: Info = Info {
     name: "anamorph",
-    title: "looks right from one place: road markings, mugs, domes",
-    group: "Perspective",
+    title: "draw what looks right from one place: road markings, mugs, domes",
+    group: "Perspective and anamorphosis",
     about: "Stretches the artwork so that it looks as drawn to an eye at one place.\n\n\
 On a surface: say where the eye is (--distance, --eye or --eye-height) and what the artwork is thrown onto (--onto). The result is \
 that surface laid flat, true to size, to be painted, cut or printed:\n  \

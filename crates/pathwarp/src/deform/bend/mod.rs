@@ -11,12 +11,13 @@
 //!   the leg's unit normal, as long as the artwork is high.
 //!
 //! Source: *A generalized de Casteljau approach to 3D free-form deformation* (Chang & Rockwood, SIGGRAPH 1994), here in the plane;
-//! its joint conditions (4) and (5) are checked and told. Joints of the skeleton are creases: uprights in the artwork.
+//! its joint conditions (4) and (5) are checked and told. A skeleton may be given as a B-spline ([`spline`]). Joints of the skeleton are creases: uprights in the artwork.
 
 mod arclength;
 mod casteljau;
 mod piece;
 mod skeleton;
+mod spline;
 
 use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
 use crate::error::{Error, show};
@@ -38,7 +39,8 @@ have any number of lines, curves and arcs, open or closed. Nothing is stretched 
 to the skeleton, fit stretches it lengthwise only. --stretch repeat sets copies of it side by side, as many as the skeleton has \
 room for, and spreads them evenly.\n\nAn open skeleton is run left to right and a closed one clockwise, so that up \
 is up, or outside; --as-drawn and --reverse overrule that. On a closed skeleton the artwork's middle stands on its highest point. \
-Beyond the ends of an open one everything goes straight on.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
+Beyond the ends of an open one everything goes straight on. --spline 3 makes a smooth skeleton of a \
+few points: it is drawn towards them and has no corners; an open one begins at the first and ends at the last.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
 left away). A handle says where the artwork's height goes.",
@@ -70,6 +72,12 @@ left away). A handle says where the artwork's height goes.",
         )
         .default("arclength"),
         Param::new("handles", Kind::File, "A JSON file of handles; the skeleton is then taken as drawn."),
+        Param::new(
+            "spline",
+            Kind::Count,
+            "Take the skeleton's anchors as control points of a uniform B-spline of this degree; its own curves count for nothing.",
+        )
+        .within(1.0, 3.0),
         Param::flag("as-drawn", "Take the skeleton in the direction it was drawn, a closed one from its start."),
         Param::flag("reverse", "Run the skeleton the other way."),
     ],
@@ -104,6 +112,9 @@ left away). A handle says where the artwork's height goes.",
             &[("along", "M0,60 Q50,20 100,60"), ("reverse", "true")],
             &[("along", "M100,60 Q50,20 0,60"), ("as-drawn", "true")],
         ),
+        // A B-spline with as many points as its degree asks for is a Bézier curve; points in a row make a line.
+        Law::Same(&[("along", "0,60 30,20 70,90 100,50"), ("spline", "3")], &[("along", "M0,60 C30,20 70,90 100,50")]),
+        Law::Same(&[("along", "0,60 40,20 90,90"), ("spline", "1")], &[("along", "0,60 40,20 90,90")]),
         // The upper half of a circle, wherever the circle begins and whichever way it was drawn.
         Law::Same(&[("along", ARC), ("baseline", "0")], &[("along", CIRCLE), ("baseline", "0")]),
     ],
@@ -149,7 +160,10 @@ impl Deformation for Bend {
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let missing = || Error::Missing { param: "--along".into(), hint: "the path to bend the artwork along".into() };
-        let path = s.path_if("along")?.ok_or_else(missing)?;
+        let mut path = s.path_if("along")?.ok_or_else(missing)?;
+        if let Some(degree) = s.number_if("spline")? {
+            path = spline::through(&path, degree as usize)?;
+        }
         let rect = s.frame().rect;
         let file = s.file_if("handles")?;
         let as_drawn = s.flag("as-drawn")? || file.is_some();

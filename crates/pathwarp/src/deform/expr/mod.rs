@@ -20,7 +20,7 @@ pub(super) struct Expr;
 
 static INFO: Info = Info {
     name: "expr",
-    title: "any formula for x and y",
+    title: "move every point by a formula for x and y",
     group: "Formulas",
     about: "Write where x and y go; what is not given stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \
 x y      the place, in user units, y downwards\n  \
