@@ -65,27 +65,59 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let pyramid = Pyramid::new(warp.source);
 
     let columns = width as usize;
+    let jet_at = |x: f64, y: f64| in_pixels(&warp.inverse.jet(to_plane(x, y)), to_source, step);
     out.pixels_mut().par_chunks_mut(columns * TILE).enumerate().for_each(|(band, rows)| {
         let mut places = [Point::ORIGIN; TILE];
-        let mut jets = [Jet::default(); TILE];
+        let mut jets = [[Jet::default(); TILE]; TILE];
         for (tile, first) in (0..columns).step_by(TILE).enumerate() {
             if !reach.touches(tile, band) {
                 continue;
             }
             let n = TILE.min(columns - first);
-            for (j, row) in rows.chunks_mut(columns).enumerate() {
-                let y = (band * TILE + j) as f64 + 0.5;
+            let height = rows.len() / columns;
+            let corner = ((first as f64) + 0.5, (band * TILE) as f64 + 0.5);
+            for (j, row) in jets[..height].iter_mut().enumerate() {
                 for (i, place) in places[..n].iter_mut().enumerate() {
-                    *place = to_plane((first + i) as f64 + 0.5, y);
+                    *place = to_plane(corner.0 + i as f64, corner.1 + j as f64);
                 }
-                warp.inverse.jets(&places[..n], &mut jets[..n]);
-                for (pixel, jet) in row[first..first + n].iter_mut().zip(&jets) {
-                    *pixel = sample::pixel(&pyramid, &in_pixels(jet, to_source, step));
+                warp.inverse.jets(&places[..n], &mut row[..n]);
+                for jet in &mut row[..n] {
+                    *jet = in_pixels(jet, to_source, step);
+                }
+            }
+            for (j, row) in rows.chunks_mut(columns).enumerate() {
+                for (i, pixel) in row[first..first + n].iter_mut().enumerate() {
+                    let jet = if jets[j][i].p.is_finite() {
+                        Some(jets[j][i])
+                    } else {
+                        beside(warp.source, |di, dj| {
+                            let at = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
+                            if at.0 < n && at.1 < height {
+                                return jets[at.1][at.0];
+                            }
+                            jet_at(corner.0 + i as f64 + di as f64, corner.1 + j as f64 + dj as f64)
+                        })
+                    };
+                    if let Some(jet) = jet {
+                        *pixel = sample::pixel(&pyramid, &jet);
+                    }
                 }
             }
         }
     });
     Ok(out)
+}
+
+/// For a pixel whose middle comes from nowhere, as many inverses say of all that lies off the source: the jet as a neighbour's
+/// goes on, if that is off the source. So the pixels along the edge get the share of it that they cover.
+fn beside(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Option<Jet> {
+    let (width, height) = (f64::from(source.width()), f64::from(source.height()));
+    [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().find_map(|(di, dj)| {
+        let jet = neighbour(di, dj);
+        let p = jet.p - jet.push(Vec2::new(di as f64, dj as f64));
+        let off = p.x < 0.0 || p.y < 0.0 || p.x > width || p.y > height;
+        off.then_some(Jet { p, ..jet })
+    })
 }
 
 /// The inverse's jet from pixels of the result to pixels of the source.

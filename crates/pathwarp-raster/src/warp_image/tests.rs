@@ -240,6 +240,29 @@ fn a_bent_picture_by_newton_is_as_by_brute_force() {
 }
 
 #[test]
+fn edges_are_covered_by_their_share_even_if_the_inverse_ends_there() {
+    struct Still;
+    impl Formula for Still {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y)
+        }
+    }
+    // The edge lies at 0.75 of the outer pixels, whose middles come from nowhere: a quarter of them is covered.
+    let source = grey(70, 70, |_, _| 1.0);
+    let inverse = NewtonInverse::new(Arc::new(Still), Rect::new(0.0, 0.0, 70.0, 70.0), 1e-9, [1, 1]);
+    let target = Rect::new(-0.75, -0.75, 71.25, 71.25);
+    let warp =
+        ImageWarp { source: &source, placed: Affine::IDENTITY, map: &Still, inverse: &inverse, target, size: (72, 72) };
+    let out = warp_image(&warp).unwrap();
+    let alpha = |x, y| out.pixel(x, y).unwrap().alpha();
+    for k in 1..70 {
+        assert_eq!([alpha(k, 0), alpha(0, k)], [64, 64], "{k}");
+        // The far sides end a quarter into the last pixel but one.
+        assert_eq!([alpha(k, 70), alpha(70, k)], [191, 191], "{k}");
+    }
+}
+
+#[test]
 fn what_lies_beyond_the_horizon_stays_empty() {
     // Near the horizon the picture shrinks without bound; behind it the inverse has answers that nobody asked for.
     let map = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0 / 260.0, 1.0]] };
