@@ -35,6 +35,7 @@ pub(crate) struct Common {
     pub(crate) text: pathwarp_svg::TextMode,
     pub(crate) gradients: pathwarp_svg::Gradients,
     pub(crate) structure: pathwarp_svg::Structure,
+    pub(crate) image_size: Option<(u32, Option<u32>)>,
     pub(crate) on_error: pathwarp_svg::OnError,
     pub(crate) report: Option<PathBuf>,
     pub(crate) preview: Option<PathBuf>,
@@ -58,7 +59,7 @@ pub(crate) fn args() -> Vec<Arg> {
         Arg::new("INPUT")
             .num_args(0..)
             .value_parser(value_parser!(PathBuf))
-            .help("SVG files (also .svgz); - or none reads standard input"),
+            .help("SVG files (also .svgz), PNG and JPEG pictures; - or none reads standard input"),
         Arg::new("out").short('o').long("out").value_name("OUT").value_parser(value_parser!(PathBuf)).help(
             "Where to write the result; - or none writes to standard output",
         ),
@@ -104,6 +105,10 @@ pub(crate) fn args() -> Vec<Arg> {
         choice("structure", &["auto", "keep", "flatten"]).help(
             "The document: keep its text and structure wherever possible, insist on it, or write a flat new one [default: auto]",
         ),
+        Arg::new("image-size")
+            .long("image-size")
+            .value_name("W[xH]")
+            .help("Pixels of the result when a PNG or JPEG is warped [default: as large as the warped picture is]"),
         choice("on-error", &["stop", "skip"]).help("A shape that cannot be warped: stop, or leave it as it is [default: stop]"),
         file("report").help("Write what was done, shape by shape, as JSON"),
         file("write-recipe").help("Save this command line as a recipe for `pathwarp run`"),
@@ -194,6 +199,7 @@ impl Common {
                 "flatten" => pathwarp_svg::Structure::Flatten,
                 _ => pathwarp_svg::Structure::Auto,
             },
+            image_size: m.get_one::<String>("image-size").map(|t| image_size(t)).transpose()?,
             on_error: if word("on-error") == "skip" {
                 pathwarp_svg::OnError::Skip
             } else {
@@ -224,6 +230,16 @@ impl Common {
         let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
         self.tolerance.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
     }
+}
+
+/// A size typed as W or `WxH`.
+fn image_size(text: &str) -> Result<(u32, Option<u32>), Failure> {
+    let number = |t: &str| t.trim().parse::<u32>().ok().filter(|n| *n > 0);
+    let size = match text.split_once(['x', 'X', '×']) {
+        None => number(text).map(|w| (w, None)),
+        Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| (w, Some(h))),
+    };
+    size.ok_or_else(|| Failure::usage(format!("--image-size: `{text}` is neither W nor WxH in whole pixels")))
 }
 
 fn frame(text: Option<&String>) -> Result<FrameChoice, Failure> {

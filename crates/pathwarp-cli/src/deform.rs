@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output::{self, Pending};
 use crate::reference::References;
 use crate::report::{self, Report, Totals};
-use crate::{Outcome, preview, recipe_file, terminal};
+use crate::{Outcome, picture, preview, recipe_file, terminal};
 use clap::ArgMatches;
 use pathwarp::deform::Registry;
 use pathwarp::fold::{self, Orientation};
@@ -13,6 +13,7 @@ use pathwarp::outline::Outline;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::refit;
+use pathwarp_raster::Picture;
 use pathwarp_svg::{Document, Origin, ReadOptions, Selection, WarpOptions, Warped};
 use rayon::prelude::*;
 use std::io::{IsTerminal, Read};
@@ -20,13 +21,13 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// One input, warped, nothing written yet.
-struct Job {
-    report: report::Input,
-    output: Vec<Pending>,
+pub(crate) struct Job {
+    pub(crate) report: report::Input,
+    pub(crate) output: Vec<Pending>,
     /// What goes to standard output.
-    to_stdout: Option<Vec<u8>>,
-    notes: Vec<String>,
-    partly: bool,
+    pub(crate) to_stdout: Option<Vec<u8>>,
+    pub(crate) notes: Vec<String>,
+    pub(crate) partly: bool,
 }
 
 /// `pathwarp DEFORMATION …`.
@@ -163,7 +164,11 @@ fn warp(
     input: &Path,
     target: Option<&Path>,
 ) -> Result<Job, Failure> {
-    let doc = document(input)?;
+    let bytes = read(input)?;
+    if Picture::is_one(&bytes) {
+        return picture::warp(registry, recipe, common, input, target, &bytes);
+    }
+    let doc = Document::read(&bytes, &display(input), &read_options(input))?;
     let mut references = References::new(Some(&doc));
     let mut recipe = recipe.clone();
     references.resolve(registry, &mut recipe)?;

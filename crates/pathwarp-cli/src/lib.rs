@@ -19,6 +19,7 @@ mod deform;
 mod failure;
 mod output;
 mod paths;
+mod picture;
 mod preview;
 mod query;
 mod recipe_file;

@@ -29,11 +29,11 @@ pub enum Error {
     /// The scale is not a positive number.
     #[error("a picture cannot be scaled by {0}: the scale must be a positive number")]
     BadScale(f32),
-    /// The bytes are not a PNG this crate can read.
-    #[error("not a readable PNG: {0}")]
+    /// The bytes are no picture this crate can read.
+    #[error("not a readable picture: {0}")]
     Decode(String),
-    /// The picture could not be written as PNG.
-    #[error("cannot write the PNG: {0}")]
+    /// The picture could not be written.
+    #[error("cannot write the picture: {0}")]
     Encode(String),
     /// Two pictures of different sizes were compared.
     #[error(

@@ -4,6 +4,8 @@
 //! * [`render()`] draws a resolved SVG tree at a chosen [`Size`], never larger than [`MAX_PIXELS`].
 //! * [`encode_png`] and [`decode_png`] carry pictures to and from files.
 //! * [`compare()`] measures by how much two pictures differ; [`diff_image`] shows where.
+//! * [`Picture`] reads and writes photographs, with orientation and colour profile.
+//! * [`warp_image()`] bends a bitmap by a map.
 //! * [`Preview`] sets a drawing and its warped result side by side, with cages, bases and targets drawn on top.
 //!
 //! All pictures are [`Pixmap`]s: 8 bits per channel, RGBA, sRGB, alpha premultiplied.
@@ -27,13 +29,17 @@
 
 mod compare;
 mod error;
+mod picture;
 mod png;
 mod preview;
 mod render;
+mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
 pub use error::Error;
+pub use picture::{Picture, PictureFormat};
 pub use png::{decode_png, encode_png};
 pub use preview::{Overlay, OverlayKind, Panel, Preview};
 pub use render::{MAX_PIXELS, RenderOptions, Size, render};
 pub use tiny_skia::{Color, Pixmap};
+pub use warp_image::{Extent, ImageWarp, extent, warp_image};

@@ -1,0 +1,200 @@
+//! One pixel of the result: what it covers of the source, averaged.
+
+use super::pyramid::{Level, Pyramid, add};
+use super::{Channels, color};
+use pathwarp::map::Jet;
+use tiny_skia::PremultipliedColorU8;
+
+/// How much longer than wide a footprint may be; longer ones are widened, which blurs them.
+const LONGEST: f64 = 16.0;
+/// A level of the pyramid serves from this many of its pixels for one of the result to twice as many.
+const LEAST_SHRINK: f64 = 2.0;
+/// Stretching by less is rounding.
+const SAME: f64 = 1e-9;
+
+/// The colour of a pixel of the result; `jet` goes from its pixels to the source's.
+#[inline]
+pub(super) fn pixel(pyramid: &Pyramid<'_>, jet: &Jet) -> PremultipliedColorU8 {
+    let source = pyramid.level(0);
+    let (width, height) = (source.width as f64, source.height as f64);
+    let share = covered(jet.p.x, width, jet.dx.x.hypot(jet.dy.x)) * covered(jet.p.y, height, jet.dx.y.hypot(jet.dy.y));
+    // From nowhere, the share is no number.
+    if share.is_nan() || share <= 0.0 {
+        return PremultipliedColorU8::TRANSPARENT;
+    }
+    let (x, y) = (jet.p.x.clamp(0.0, width), jet.p.y.clamp(0.0, height));
+    let mut sum = match Footprint::new(jet) {
+        None => interpolated(source, x, y),
+        Some(footprint) => footprint.average(pyramid, x, y),
+    };
+    for s in &mut sum {
+        *s *= share as f32;
+    }
+    color(sum)
+}
+
+/// How much of a pixel lies between the source's edges 0 and `size`; `rate` source pixels go to one of the result.
+#[inline]
+fn covered(at: f64, size: f64, rate: f64) -> f64 {
+    let inside = |depth: f64| (depth / rate + 0.5).clamp(0.0, 1.0);
+    inside(at) + inside(size - at) - 1.0
+}
+
+/// Catmull and Rom's cubic: E. Catmull, R. Rom, *A class of local interpolating splines*, 1974; R. G. Keys, *Cubic
+/// convolution interpolation for digital image processing*, 1981, with a = −½.
+#[inline]
+fn cubic(t: f32) -> f32 {
+    let t = t.abs();
+    if t < 1.0 {
+        (1.5 * t - 2.5) * t * t + 1.0
+    } else if t < 2.0 {
+        ((2.5 - 0.5 * t) * t - 4.0) * t + 2.0
+    } else {
+        0.0
+    }
+}
+
+/// The cubic's weights of the four pixels around a place that lies `t` behind the second.
+#[inline]
+fn weights(t: f32) -> [f32; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [-0.5 * t3 + t2 - 0.5 * t, 1.5 * t3 - 2.5 * t2 + 1.0, -1.5 * t3 + 2.0 * t2 + 0.5 * t, 0.5 * t3 - 0.5 * t2]
+}
+
+/// The source between its pixels; beyond the outermost ones their colours go on.
+#[inline]
+fn interpolated(source: &Level<'_>, x: f64, y: f64) -> Channels {
+    let (x, y) = (x - 0.5, y - 0.5);
+    let (left, top) = (x.floor(), y.floor());
+    let (wx, wy) = (weights((x - left) as f32), weights((y - top) as f32));
+    let (left, top) = (left as isize - 1, top as isize - 1);
+    let mut sum = [0.0; 4];
+    if left >= 0 && top >= 0 && left as usize + 4 <= source.width && top as usize + 4 <= source.height {
+        let (left, top) = (left as usize, top as usize);
+        for (j, weight) in wy.into_iter().enumerate() {
+            let row = &source.pixels[(top + j) * source.width + left..][..4];
+            let mut part = [0.0; 4];
+            for (pixel, w) in row.iter().zip(wx) {
+                add(&mut part, super::channels(*pixel), w);
+            }
+            add(&mut sum, part, weight);
+        }
+        return sum;
+    }
+    let clamped = |v: isize, size: usize| (v.max(0) as usize).min(size - 1);
+    for (row, weight) in (top..).zip(wy) {
+        for (column, w) in (left..).zip(wx) {
+            add(&mut sum, source.at(clamped(column, source.width), clamped(row, source.height)), weight * w);
+        }
+    }
+    sum
+}
+
+/// What a pixel covers of the source where that is more than a source pixel: the symmetric matrix S that stretches a unit
+/// square as the Jacobian J does, S² = J·Jᵀ, and in no direction by less than one.
+struct Footprint {
+    /// The direction of the longest axis.
+    axis: [f64; 2],
+    longest: f64,
+    shortest: f64,
+}
+
+impl Footprint {
+    /// `None` where no direction shrinks.
+    #[inline]
+    fn new(jet: &Jet) -> Option<Self> {
+        let (a, c) = (jet.dx.x * jet.dx.x + jet.dy.x * jet.dy.x, jet.dx.y * jet.dx.y + jet.dy.y * jet.dy.y);
+        let b = jet.dx.x * jet.dx.y + jet.dy.x * jet.dy.y;
+        let (mean, apart) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
+        if mean + apart <= 1.0 + SAME {
+            return None;
+        }
+        let longest = (mean + apart).sqrt();
+        let shortest = (mean - apart).max(0.0).sqrt().max(1.0).max(longest / LONGEST);
+        // The eigenvector, from whichever row of the matrix is not lost in rounding.
+        let axis = if a > c { [0.5 * (a - c) + apart, b] } else { [b, 0.5 * (c - a) + apart] };
+        let length = axis[0].hypot(axis[1]);
+        let axis = if length > 0.0 { axis.map(|v| v / length) } else { [1.0, 0.0] };
+        Some(Self { axis, longest, shortest })
+    }
+
+    /// ax·axᵀ·p + (1 − ax·axᵀ)·q
+    fn matrix(&self, p: f64, q: f64) -> [f64; 3] {
+        let [x, y] = self.axis;
+        [q + (p - q) * x * x, (p - q) * x * y, q + (p - q) * y * y]
+    }
+
+    /// The weighted average around a place.
+    fn average(&self, pyramid: &Pyramid<'_>, x: f64, y: f64) -> Channels {
+        let steps = (self.shortest / LEAST_SHRINK).log2().floor().max(0.0) as usize;
+        let steps = steps.min(pyramid.deepest());
+        let level = pyramid.level(steps);
+        let scale = 0.5_f64.powi(steps as i32);
+        let (p, q) = (self.longest * scale, self.shortest * scale);
+        let ([sx, s, sy], [ix, i, iy]) = (self.matrix(p, q), self.matrix(1.0 / p, 1.0 / q));
+        // Places count from the pixels' middles.
+        let (x, y) = (x * scale - 0.5, y * scale - 0.5);
+        let (wide, high) = (2.0 * (sx.abs() + s.abs()), 2.0 * (s.abs() + sy.abs()));
+        let range = |from: f64, to: f64, size: usize| {
+            (from.ceil().max(0.0) as usize, ((to.floor() + 1.0).max(0.0) as usize).min(size))
+        };
+        let (mut sum, mut total) = ([0.0; 4], 0.0);
+        let (top, bottom) = range(y - high, y + high, level.height);
+        if i.abs() * (wide + high) < 1e-3 {
+            // The axes are the picture's own: the columns' weights are the same in every row.
+            let (left, right) = range(x - wide, x + wide, level.width);
+            let mut columns = [0.0; COLUMNS];
+            let n = right.saturating_sub(left).min(COLUMNS);
+            for (k, w) in columns[..n].iter_mut().enumerate() {
+                *w = cubic(((left + k) as f64 - x) as f32 * ix as f32);
+                total += *w;
+            }
+            let mut all = 0.0;
+            for row in top..bottom {
+                let weight = cubic((row as f64 - y) as f32 * iy as f32);
+                all += weight;
+                let mut part = [0.0; 4];
+                for (pixel, w) in level.pixels[row * level.width + left..][..n].iter().zip(&columns) {
+                    add(&mut part, super::channels(*pixel), *w);
+                }
+                add(&mut sum, part, weight);
+            }
+            total *= all;
+        } else {
+            for row in top..bottom {
+                let dy = row as f64 - y;
+                // Where |S⁻¹·d| < 2 in both coordinates.
+                let ([a0, a1], [b0, b1]) = (strip(ix, i * dy), strip(i, iy * dy));
+                let (left, right) = range(x + a0.max(b0), x + a1.min(b1), level.width);
+                if left >= right {
+                    continue;
+                }
+                let (mut u, mut v) = ((left as f64 - x) * ix + i * dy, (left as f64 - x) * i + iy * dy);
+                for pixel in &level.pixels[row * level.width..][left..right] {
+                    let weight = cubic(u as f32) * cubic(v as f32);
+                    add(&mut sum, super::channels(*pixel), weight);
+                    total += weight;
+                    (u, v) = (u + ix, v + i);
+                }
+            }
+        }
+        // The place lies on the picture, so that at least about a quarter of the weights does.
+        if total <= 0.1 * (p * q) as f32 {
+            return interpolated(level, x + 0.5, y + 0.5);
+        }
+        sum.map(|s| s / total)
+    }
+}
+
+/// The widest an upright footprint can be: twice the cubic's reach of two, times the largest stretch of a level.
+const COLUMNS: usize = (4.0 * 2.0 * LEAST_SHRINK * LONGEST) as usize + 2;
+
+/// Where |slope·d + rest| < 2.
+#[inline]
+fn strip(slope: f64, rest: f64) -> [f64; 2] {
+    if slope.abs() < 1e-12 {
+        return if rest.abs() < 2.0 { [f64::NEG_INFINITY, f64::INFINITY] } else { [1.0, -1.0] };
+    }
+    let (a, b) = ((-2.0 - rest) / slope, (2.0 - rest) / slope);
+    [a.min(b), a.max(b)]
+}
