@@ -1,0 +1,79 @@
+//! Outlines to polygons whose images in space are close enough to the true curves.
+
+use crate::{Error, IntoSpace, Shape, Space};
+use pathwarp::Seg;
+use pathwarp::kurbo::Point;
+
+/// Halvings of a segment at most.
+const MOST_HALVINGS: u32 = 14;
+/// Points of one shape at most.
+const MOST_POINTS: usize = 1 << 20;
+
+/// One run of points in the drawing's plane.
+pub(crate) struct Polygon {
+    pub(crate) points: Vec<Point>,
+    pub(crate) closed: bool,
+}
+
+/// All runs of a shape.
+pub(crate) fn polygons(shape: &Shape<'_>, space: &IntoSpace<'_>, tolerance: f64) -> Result<Vec<Polygon>, Error> {
+    let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: shape.name.to_owned(), at: p });
+    let mut total = 0;
+    let mut out = Vec::new();
+    for sub in &shape.outline.subpaths {
+        let mut points = vec![sub.start];
+        for seg in &sub.segs {
+            flatten(seg, &place, tolerance, &mut points)?;
+            if total + points.len() > MOST_POINTS {
+                return Err(Error::TooMany { shape: shape.name.to_owned(), most: MOST_POINTS });
+            }
+        }
+        if sub.closed && points.len() > 1 && points.first() == points.last() {
+            points.pop();
+        }
+        total += points.len();
+        out.push(Polygon { points, closed: sub.closed });
+    }
+    Ok(out)
+}
+
+/// Appends the segment's points after its first.
+fn flatten(
+    seg: &Seg,
+    place: &impl Fn(Point) -> Result<Space, Error>,
+    tolerance: f64,
+    out: &mut Vec<Point>,
+) -> Result<(), Error> {
+    // Quarters to begin with, so that a symmetric bend is not missed.
+    let mut stack: Vec<(f64, f64, u32)> =
+        (0..4).rev().map(|i| (0.25 * f64::from(i), 0.25 * f64::from(i + 1), 2)).collect();
+    if let Seg::Line(_) = seg {
+        stack = vec![(0.0, 1.0, 0)];
+    }
+    while let Some((a, b, depth)) = stack.pop() {
+        let (from, to) = (place(seg.eval(a))?, place(seg.eval(b))?);
+        let mut off: f64 = 0.0;
+        for k in [0.25, 0.5, 0.75] {
+            off = off.max(chord_distance(from, to, place(seg.eval(a + k * (b - a)))?));
+        }
+        if off <= tolerance || depth >= MOST_HALVINGS {
+            out.push(seg.eval(b));
+        } else {
+            let m = 0.5 * (a + b);
+            stack.push((m, b, depth + 1));
+            stack.push((a, m, depth + 1));
+        }
+    }
+    Ok(())
+}
+
+/// The distance of `q` from the chord between two points.
+pub(crate) fn chord_distance(a: Space, b: Space, q: Space) -> f64 {
+    let minus = |p: Space, o: Space| [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
+    let dot = |p: Space, o: Space| p[0] * o[0] + p[1] * o[1] + p[2] * o[2];
+    let (c, v) = (minus(b, a), minus(q, a));
+    let n = dot(c, c);
+    let t = if n > 0.0 { (dot(v, c) / n).clamp(0.0, 1.0) } else { 0.0 };
+    let r = [v[0] - t * c[0], v[1] - t * c[1], v[2] - t * c[2]];
+    dot(r, r).sqrt()
+}
