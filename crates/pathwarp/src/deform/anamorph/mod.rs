@@ -115,6 +115,10 @@ a held side: the first side of a triangle, the edge of a box if --local.",
     demo: &[("distance", "300"), ("onto", "cylinder:radius=80")],
     examples: &[
         Example {
+            what: "A word on the floor that seems to stand upright",
+            command: "anamorph samples/lettering.svg --eye-height 350 --distance 400 --onto plane:floor -o out.svg",
+        },
+        Example {
             what: "A road marking 10 m long, for a driver whose eye is 1.2 m high and 20 m away",
             command: "anamorph samples/lettering.svg --eye-height 1.2m --distance 20m --length 10m --onto plane:floor -o out.svg",
         },
