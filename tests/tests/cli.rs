@@ -347,6 +347,47 @@ fn render_and_preview_write_pictures() {
     assert!(pathwarp_raster::decode_png(&fs::read(preview).unwrap()).unwrap().width() > 600);
 }
 
+/// A mesh of a disc on a cylinder: its vertices lie on the cylinder, and its area is the disc's, rolled back.
+#[test]
+fn artwork_on_a_mug_is_written_as_a_mesh() {
+    let dir = tempfile::tempdir().unwrap();
+    let disc = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><circle id='disc' cx='50' cy='50' r='30'/></svg>";
+    let args = [
+        "anamorph",
+        "--distance",
+        "400",
+        "--onto",
+        "cylinder:radius=40",
+        "--tolerance",
+        "0.01",
+        "--mesh",
+        "m.obj",
+        "--curves",
+        "c.obj",
+        "-o",
+        "o.svg",
+    ];
+    let out = pathwarp_in(dir.path(), &args, disc.as_bytes());
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    let obj = fs::read_to_string(dir.path().join("m.obj")).unwrap();
+    assert!(obj.contains("o disc") && obj.lines().filter(|l| l.starts_with("f ")).count() > 100);
+    let vertices: Vec<Vec<f64>> = obj
+        .lines()
+        .filter_map(|l| l.strip_prefix("v "))
+        .map(|l| l.split(' ').map(|w| w.parse().unwrap()).collect())
+        .collect();
+    for v in &vertices {
+        // The axis is upright through x = 50, a radius behind the drawing (z points to the viewer).
+        assert!(((v[0] - 50.0).hypot(v[2] + 40.0) - 40.0).abs() < 1e-3, "{v:?}");
+        // The eye at (50, 50, 400 in front) sees the vertex inside the drawn disc.
+        let k = 400.0 / (400.0 - v[2]);
+        assert!(((v[0] - 50.0) * k).hypot((v[1] + 50.0) * k) < 30.0 + 0.02, "{v:?}");
+    }
+    assert!(fs::read_to_string(dir.path().join("c.obj")).unwrap().lines().any(|l| l.starts_with("l ")));
+    let plane = pathwarp_in(dir.path(), &["anamorph", "--mesh", "m.obj"], disc.as_bytes());
+    assert_eq!(plane.status.code(), Some(2), "{}", text(&plane.stderr));
+}
+
 #[test]
 fn a_crate_of_one_file_adds_its_deformation() {
     let program = support::program("pathwarp-ripple", "pathwarp-ripple");

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output::{self, Pending};
 use crate::reference::References;
 use crate::report::{self, Report, Totals};
-use crate::{Outcome, picture, preview, recipe_file, terminal};
+use crate::{Outcome, picture, preview, recipe_file, space, terminal};
 use clap::ArgMatches;
 use pathwarp::deform::Registry;
 use pathwarp::fold::{self, Orientation};
@@ -211,6 +211,9 @@ fn warp(
     match target {
         Some(t) => output.push(Pending::new(t, warped.svg.as_bytes())?),
         None => to_stdout = Some(warped.svg.clone().into_bytes()),
+    }
+    for (file, text) in space::files(&doc, &recipe, &built, &options)? {
+        output.push(Pending::new(&file, text.as_bytes())?);
     }
     for (file, text) in built.steps.iter().flat_map(|s| &s.saves) {
         output.push(Pending::new(Path::new(file), text.as_bytes())?);

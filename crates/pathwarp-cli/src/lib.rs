@@ -27,6 +27,7 @@ mod reference;
 mod render;
 mod report;
 mod schema;
+mod space;
 mod terminal;
 mod unwarp;
 

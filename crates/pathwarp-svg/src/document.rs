@@ -41,6 +41,8 @@ pub struct Shape {
     pub painted: bool,
     /// Whether its inside is painted, clips or masks.
     pub filled: bool,
+    /// Whether the even-odd rule says what its inside is (else the nonzero rule).
+    pub even_odd: bool,
 }
 
 /// A path that has a name, or could have one.
@@ -261,6 +263,7 @@ fn shapes(scene: &Scene, source: &Source) -> Vec<Shape> {
             at: e.map_or((1, 1), |e| source.line_column(source.elements[e].range.start)),
             painted: p.painted() && p.role == Role::Paint,
             filled: p.fill.is_some() || p.role != Role::Paint,
+            even_odd: p.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd),
         }
     };
     scene.parts.iter().map(shape).collect()

@@ -24,7 +24,7 @@ mod wave;
 use crate::error::Error;
 use crate::map::Map;
 use crate::param::{Args, Frame, Param, Settings};
-use kurbo::{Affine, BezPath};
+use kurbo::{Affine, BezPath, Point};
 use std::sync::Arc;
 
 /// The deformations of this crate, in the order `pathwarp list` shows them.
@@ -160,7 +160,13 @@ pub struct Built {
     /// the artwork alone. A map gives every point one image, so that copies are made before it; only the first step of a
     /// recipe can ask for them.
     pub copies: Vec<Affine>,
+    /// Where the source's points lie in space (x right, y down, z away, user units), for deformations onto surfaces: for the
+    /// files that `--mesh` and `--curves` ask for. `None` where the surface is not met.
+    pub space: Option<IntoSpace>,
 }
+
+/// Takes points of the source into space.
+pub type IntoSpace = Arc<dyn Fn(Point) -> Option<[f64; 3]> + Send + Sync>;
 
 impl Built {
     /// Just a map.
@@ -173,6 +179,7 @@ impl Built {
             warnings: Vec::new(),
             saves: Vec::new(),
             copies: Vec::new(),
+            space: None,
         }
     }
 }

@@ -110,6 +110,8 @@ flat for a triangle of degree 1, else to be looked at with --view.",
 a held side: the first side of a triangle, the edge of a box if --local.",
         )
         .repeated(),
+        Param::new("mesh", Kind::Save, "Write the filled artwork on the surface as a mesh in 3D (OBJ), for printing and CAD; needs --distance."),
+        Param::new("curves", Kind::Save, "Write the artwork's outlines on the surface as polylines in 3D (OBJ); needs --distance."),
         Param::flag("local", "Move only what lies inside the reference."),
     ],
     demo: &[("distance", "300"), ("onto", "cylinder:radius=80")],
@@ -125,6 +127,10 @@ a held side: the first side of a triangle, the edge of a box if --local.",
         Example {
             what: "A label for a mug, seen from half a metre",
             command: "anamorph samples/badge.svg --distance 50cm --onto cylinder:radius=42mm -o out.svg",
+        },
+        Example {
+            what: "The same as a mesh for a 3D printer, and its outlines for CAD",
+            command: "anamorph samples/badge.svg --distance 50cm --onto cylinder:radius=42mm --mesh out.obj --curves out-curves.obj -o out.svg",
         },
         Example {
             what: "A paper cup",
@@ -217,7 +223,9 @@ impl Deformation for Anamorph {
 
 /// The eye in the plane of the drawing.
 fn in_plane(s: &Settings<'_>) -> Result<Built, Error> {
-    if let Some(name) = ["onto", "view", "seen", "eye-height", "picture-width", "length"].iter().find(|n| s.given(n)) {
+    if let Some(name) =
+        ["onto", "view", "seen", "eye-height", "picture-width", "length", "mesh", "curves"].iter().find(|n| s.given(n))
+    {
         let hint = format!("how far in front of the drawing the eye is; --{name} wants it");
         return Err(Error::Missing { param: "--distance".into(), hint });
     }
@@ -279,6 +287,11 @@ fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
     };
     let mut built =
         Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
+    let (scale, solid) = (scene.scale, cast.clone());
+    built.space = Some(Arc::new(move |p| {
+        let p = scale * p;
+        (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
+    }));
     built.notes.push(scene.size(&*map));
     built.overlays.push(Overlay { role: Role::Base, path: s.frame().rect.to_path(0.1) });
     if let Some(path) = scene.outline(&*map) {
