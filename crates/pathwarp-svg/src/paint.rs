@@ -57,20 +57,35 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
     affine.is_finite().then_some(Fit { affine, residual: if size > 0.0 { miss / size } else { 0.0 } })
 }
 
-/// As [`fit`], over the box of all copies: what was laid over one of them is stretched over the row.
-pub(crate) fn fit_copies(area: Rect, read: Affine, write: Affine, map: &dyn Map, copies: &[Affine]) -> Option<Fit> {
+/// As [`fit`], over the box of all copies: what was laid over one of them is stretched over the row. Where no affine map
+/// comes near the row's image, as round a ring, it is stretched over that image's box, `result`.
+pub(crate) fn fit_copies(
+    area: Rect,
+    read: Affine,
+    write: Affine,
+    map: &dyn Map,
+    copies: &[Affine],
+    result: Rect,
+) -> Option<Fit> {
+    /// Beyond this share of the fitted size an affine fit says nothing.
+    const LOST: f64 = 0.25;
     let back = read.inverse();
     let Some(whole) = copies.iter().map(|m| (back * *m * read).transform_rect_bbox(area)).reduce(|a, b| a.union(b))
     else {
         return fit(area, read, write, map);
     };
     // A box without width or height keeps its size there.
-    let scale = |own: f64, all: f64| if own > 0.0 { all / own } else { 1.0 };
-    let grow = Affine::translate(whole.origin().to_vec2())
-        * Affine::scale_non_uniform(scale(area.width(), whole.width()), scale(area.height(), whole.height()))
-        * Affine::translate(-area.origin().to_vec2());
-    let over = fit(whole, read, write, map)?;
-    Some(Fit { affine: over.affine * grow, ..over })
+    let scale = |own: f64, all: f64| if own > 0.0 && all > 0.0 { all / own } else { 1.0 };
+    let onto = |all: Rect| {
+        Affine::translate(all.origin().to_vec2())
+            * Affine::scale_non_uniform(scale(area.width(), all.width()), scale(area.height(), all.height()))
+            * Affine::translate(-area.origin().to_vec2())
+    };
+    let over = fit(whole, read, write, map).filter(|f| f.residual <= LOST);
+    Some(match over {
+        Some(over) => Fit { affine: over.affine * onto(whole), ..over },
+        None => Fit { affine: onto(result), residual: 1.0 },
+    })
 }
 
 impl Fit {

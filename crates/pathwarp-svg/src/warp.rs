@@ -7,7 +7,7 @@ use crate::paint::{self, Fit};
 use crate::scene::{Part, Role, Scene};
 use crate::select::Selection;
 use crate::{keep, read, stroke, write};
-use pathwarp::kurbo::{Affine, BezPath, Point};
+use pathwarp::kurbo::{Affine, BezPath, Point, Shape as _};
 use pathwarp::map::{Class, Map};
 use pathwarp::refit::{self, Assurance};
 use pathwarp::{Error, GeometryError, Outline};
@@ -178,6 +178,9 @@ impl Document {
                 }
             });
         }
+        if options.copies.len() > 1 && outcomes.iter().any(|o| o.done().is_some_and(|d| d.fit.is_some())) {
+            out.warnings.push("gradients and patterns run over the whole row of copies, not over each".into());
+        }
         if options.copies.len() > 1 && slots.iter().any(|s| s.fit != Affine::IDENTITY) {
             out.warnings
                 .push("images and what filters work on are not repeated; they follow the row as a whole".into());
@@ -344,7 +347,9 @@ fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> R
     let served = p.fill.as_ref().is_some_and(|f| painted_by_server(f.paint()))
         || p.stroke.as_ref().is_some_and(|s| painted_by_server(s.paint()));
     if served && options.gradients == Gradients::Fit {
-        done.fit = p.local.bounding_box().and_then(|b| paint::fit_copies(b, p.frame, write, map, &options.copies));
+        let result = done.path.bounding_box();
+        let fit = |b| paint::fit_copies(b, p.frame, write, map, &options.copies, result);
+        done.fit = p.local.bounding_box().and_then(fit);
     }
     if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
         let width = || stroke::width(&outline, p.frame, write, map, s);
