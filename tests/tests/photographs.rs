@@ -95,3 +95,63 @@ fn sizes_formats_and_exit_codes() {
     let svg = sample("logo.svg");
     assert!(pathwarp(&["swirl", svg.to_str().unwrap()]).status.success());
 }
+
+/// A picture in a drawing looks, once bent, as the drawing does that it was taken from.
+#[test]
+fn a_picture_in_a_drawing_bends_with_it() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("shot.png"), png(photograph(DRAWING, 800))).unwrap();
+    fs::write(dir.path().join("in.svg"), DRAWING).unwrap();
+    let frame = ["--frame", "0,0,200,120"];
+    let image = |attributes: &str| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
+             viewBox='0 0 200 120' width='200' height='120'>{attributes}</svg>"
+        )
+    };
+    let pictures = [
+        ("plain", image("<image id='i' width='200' height='120' xlink:href='shot.png'/>")),
+        (
+            "placed",
+            image(
+                "<g transform='translate(-30 10)'><image id='i' transform='scale(2 1)' x='15' y='-10' width='100' height='120' preserveAspectRatio='none' href='shot.png'/></g>",
+            ),
+        ),
+        (
+            "copied",
+            image(
+                "<defs><image id='i' width='100' height='60' href='shot.png'/></defs><use href='#i' transform='scale(2)'/>",
+            ),
+        ),
+    ];
+    let cage = "M 5,115 C 70,130 120,90 195,118 C 180,80 210,40 190,10 C 140,-10 80,30 10,5 C 25,40 -5,80 5,115 Z";
+    let run = |input: &str, out: &str, more: &[&str]| {
+        let mut args = vec!["shaper", input, "-o", out, "--shaper", cage];
+        args.extend(frame);
+        args.extend(more);
+        let output = pathwarp_in(dir.path(), &args, b"");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code().unwrap(), said)
+    };
+    assert_eq!(run("in.svg", "out.svg", &[]).0, 0);
+    let shot = |name: &str| photograph(&fs::read_to_string(dir.path().join(name)).unwrap(), 400);
+    let expected = shot("out.svg");
+    for (name, svg) in pictures {
+        fs::write(dir.path().join("picture.svg"), svg).unwrap();
+        for structure in ["auto", "flatten"] {
+            let (code, said) = run("picture.svg", "bent.svg", &["--structure", structure]);
+            assert_eq!(code, 0, "{name}, {structure}: {said}");
+            let difference = compare(&shot("bent.svg"), &expected).unwrap();
+            println!("{name}, {structure}: mean {:.2}, over 64: {:.4}", difference.mean_abs, difference.share_over(64));
+            assert!(difference.mean_abs < 1.5, "{name}, {structure}: {}", difference.mean_abs);
+            assert!(difference.share_over(64) < 0.005, "{name}, {structure}: {}", difference.share_over(64));
+        }
+        assert!(fs::read_to_string(dir.path().join("bent.svg")).unwrap().contains("data:image/png"));
+        // Kept pixels can only be placed: seen, and said.
+        let (code, said) = run("picture.svg", "kept.svg", &["--images", "keep"]);
+        assert!(code == 1 && said.contains("affine fit"), "{name}: {code} {said}");
+        let fine = fs::metadata(dir.path().join("bent.svg")).unwrap().len();
+        assert_eq!(run("picture.svg", "coarse.svg", &["--image-dpi", "24"]).0, 0);
+        assert!(fs::metadata(dir.path().join("coarse.svg")).unwrap().len() < fine / 4, "{name}");
+    }
+}

@@ -1,5 +1,6 @@
 //! How a document is warped.
 
+use crate::image::Images;
 use crate::select::Selection;
 use pathwarp::refit;
 
@@ -78,6 +79,8 @@ pub struct WarpOptions {
     pub on_error: OnError,
     /// What becomes of gradients.
     pub gradients: Gradients,
+    /// What becomes of bitmaps.
+    pub images: Images,
 }
 
 impl WarpOptions {
@@ -93,6 +96,7 @@ impl WarpOptions {
             selection: Selection::default(),
             on_error: OnError::default(),
             gradients: Gradients::default(),
+            images: Images::default(),
         }
     }
 }
