@@ -21,10 +21,17 @@ fn every_example_in_help_runs() {
     let dir = tempfile::tempdir().unwrap();
     for e in registry.entries() {
         for example in e.info().examples {
-            let args: Vec<String> = words(example.command)
-                .into_iter()
-                .map(|w| if w.starts_with("out.") { dir.path().join(w).display().to_string() } else { w })
-                .collect();
+            let args: Vec<String> =
+                words(example.command)
+                    .into_iter()
+                    .map(|w| {
+                        if w.starts_with("out") && w.contains('.') {
+                            dir.path().join(w).display().to_string()
+                        } else {
+                            w
+                        }
+                    })
+                    .collect();
             expect_code(0, &args);
             let svg = fs::read_to_string(dir.path().join("out.svg")).unwrap();
             assert!(svg.contains("<svg"), "{}", example.command);

@@ -35,6 +35,9 @@ pub(crate) struct Common {
     pub(crate) text: pathwarp_svg::TextMode,
     pub(crate) gradients: pathwarp_svg::Gradients,
     pub(crate) structure: pathwarp_svg::Structure,
+    /// Whether bitmaps in drawings are bent.
+    pub(crate) images: bool,
+    pub(crate) image_dpi: Option<f64>,
     pub(crate) image_size: Option<(u32, Option<u32>)>,
     pub(crate) on_error: pathwarp_svg::OnError,
     pub(crate) report: Option<PathBuf>,
@@ -104,6 +107,12 @@ pub(crate) fn args() -> Vec<Arg> {
         choice("gradients", &["fit", "keep"]).help("Gradients: follow the artwork as an affine map can, or stay [default: fit]"),
         choice("structure", &["auto", "keep", "flatten"]).help(
             "The document: keep its text and structure wherever possible, insist on it, or write a flat new one [default: auto]",
+        ),
+        choice("images", &["warp", "keep"]).help(
+            "Bitmaps in a drawing: warp their pixels, or place them as an affine map can [default: warp]",
+        ),
+        Arg::new("image-dpi").long("image-dpi").value_name("N").help(
+            "Resolution of the warped bitmaps in a drawing, in pixels per inch of it; default: as fine as keeps every detail",
         ),
         Arg::new("image-size")
             .long("image-size")
@@ -199,6 +208,8 @@ impl Common {
                 "flatten" => pathwarp_svg::Structure::Flatten,
                 _ => pathwarp_svg::Structure::Auto,
             },
+            images: word("images") != "keep",
+            image_dpi: positive("image-dpi")?,
             image_size: m.get_one::<String>("image-size").map(|t| image_size(t)).transpose()?,
             on_error: if word("on-error") == "skip" {
                 pathwarp_svg::OnError::Skip

@@ -3,6 +3,7 @@
 use crate::common::{Common, FrameChoice};
 use crate::failure::Failure;
 use crate::output::{self, Pending};
+use crate::picture::Bender;
 use crate::reference::References;
 use crate::report::{self, Report, Totals};
 use crate::{Outcome, picture, preview, recipe_file, space, terminal};
@@ -14,10 +15,11 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::refit;
 use pathwarp_raster::Picture;
-use pathwarp_svg::{Document, Origin, ReadOptions, Selection, WarpOptions, Warped};
+use pathwarp_svg::{Document, Images, Origin, ReadOptions, Selection, WarpOptions, Warped};
 use rayon::prelude::*;
 use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// One input, warped, nothing written yet.
@@ -193,6 +195,11 @@ fn warp(
         on_error: common.on_error,
         gradients: common.gradients,
         copies: built.copies.clone(),
+        images: if common.images {
+            Images::Warp(Arc::new(Bender::new(&built.map, common.image_dpi)))
+        } else {
+            Images::Keep
+        },
         ..WarpOptions::new(refit::Options {
             certify: common.certify,
             merge: common.merge,

@@ -8,12 +8,12 @@ use crate::reference::References;
 use crate::report;
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::{Affine, Point, Rect};
-use pathwarp::map::{Map, NewtonInverse};
+use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp::map::{Chain, Map, NewtonInverse};
 use pathwarp::param::Frame;
 use pathwarp::recipe::Recipe;
-use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, warp_image};
-use pathwarp_svg::OnError;
+use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, shown, warp_image};
+use pathwarp_svg::{BentImage, ImageRequest, ImageWarper, OnError};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -51,26 +51,29 @@ pub(crate) fn warp(
     let corners = [(0.0, 0.0), (area.x1, 0.0), (area.x1, area.y1), (0.0, area.y1)].map(Point::from);
     let artwork = Outline::from_points(&corners, true);
     let built = recipe.build(registry, Frame::new(frame), &[&artwork].into_iter())?;
+    if !built.copies.is_empty() {
+        return Err(Failure::usage("a photograph cannot be repeated; --stretch repeat is for drawings"));
+    }
     let map: Arc<dyn Map> = Arc::new(built.map.clone());
 
     let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
     let nowhere = |p: Point| format!("the map is not defined on all of the picture, such as at {:.4},{:.4}", p.x, p.y);
-    let Extent { bounds, undefined, .. } =
-        extent(area, &*map).ok_or_else(|| Failure::Geometry(nowhere(area.center())))?;
+    let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &*map, Affine::IDENTITY)
+        .ok_or_else(|| Failure::Geometry(nowhere(area.center())))?;
     if let Some(p) = undefined {
         if common.on_error == OnError::Stop {
             return Err(Failure::Geometry(format!("{}; --on-error skip leaves that part out", nowhere(p))));
         }
         warnings.push(nowhere(p));
     }
-    let (shown, size) = size(bounds, common.image_size)?;
+    let (visible, size) = size(bounds, common.image_size)?;
     let inverse = inverse(&map, area);
     let warp = ImageWarp {
         source: &picture.pixmap,
         placed: Affine::IDENTITY,
         map: &*map,
         inverse: &*inverse,
-        target: shown,
+        shown: shown(visible, size),
         size,
     };
     let pixmap = warp_image(&warp)?;
@@ -135,12 +138,76 @@ fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>) -> Result<(Rect, (u32,
     Ok((shown, (width as u32, height as u32)))
 }
 
-/// The map's own inverse, or Newton's method over the picture.
+/// Bends the bitmaps in drawings.
+pub(crate) struct Bender {
+    map: Arc<dyn Map>,
+    /// Pixels per inch; `None`: as many as keep every detail.
+    dpi: Option<f64>,
+}
+
+impl Bender {
+    pub(crate) fn new(map: &Chain, dpi: Option<f64>) -> Self {
+        Self { map: Arc::new(map.clone()), dpi }
+    }
+}
+
+impl ImageWarper for Bender {
+    fn warp(&self, r: &ImageRequest<'_>) -> Result<BentImage, String> {
+        /// Where the map squeezes, more pixels are needed everywhere to keep what is there; at most so many times as many.
+        const GROWTH: f64 = 4.0;
+        /// And never more than this: the file holds them as text.
+        const MOST: f64 = 16e6;
+        let picture = Picture::read_stored(r.data).map_err(|e| e.to_string())?;
+        let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
+        let nowhere = "the map is not defined on all of it";
+        let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
+        let (width, height) = (e.bounds.width(), e.bounds.height());
+        if !(width > 0.0 && height > 0.0) {
+            return Err("nothing is left of its area".to_owned());
+        }
+        /// Pixels per inch of a drawing at 100 %.
+        const PX_PER_INCH: f64 = 96.0;
+        let most = (GROWTH * area.area()).clamp(1.0, MOST);
+        let finest = (most / (width * height)).sqrt();
+        let wanted = match self.dpi {
+            Some(dpi) => {
+                let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+                (dpi / PX_PER_INCH * unit).min((MOST / (width * height)).sqrt())
+            }
+            None => (1.0 / e.squeeze).min(finest),
+        };
+        let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
+        let size = (pixels(width), pixels(height));
+        let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area));
+        let warp = ImageWarp {
+            source: &picture.pixmap,
+            placed: r.placed,
+            map: r.map,
+            inverse: &*inverse,
+            shown: r.after.inverse() * shown(e.bounds, (size.0 as u32, size.1 as u32)),
+            size: (size.0 as u32, size.1 as u32),
+        };
+        let pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
+        let png = Picture { pixmap, profile: picture.profile }.write(PictureFormat::Png).map_err(|e| e.to_string())?;
+        Ok(BentImage { png, area: e.bounds })
+    }
+}
+
+/// The map's own inverse if it knows all of `area`, or Newton's method over it.
 fn inverse(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
     /// Beyond the picture by this share of its diagonal: what the pixels along its edge cover.
     const REACH: f64 = 0.02;
     /// Enough starts for a map that bends a few times across the picture.
     const PIECES: [usize; 2] = [6, 6];
-    let reach = REACH * area.width().hypot(area.height());
-    map.inverse().unwrap_or_else(|| Arc::new(NewtonInverse::new(Arc::clone(map), area, reach, PIECES)))
+    /// Places along a side where the inverse is tried.
+    const TRIED: usize = 9;
+    let diagonal = area.width().hypot(area.height());
+    let returns = |inverse: &Arc<dyn Map>| {
+        let at = |i: usize| (i as f64 + 0.5) / TRIED as f64;
+        let places = (0..TRIED * TRIED).map(|k| (at(k % TRIED), at(k / TRIED)));
+        let places = places.map(|(u, v)| area.origin() + Vec2::new(u * area.width(), v * area.height()));
+        places.filter(|p| map.point(*p).is_finite()).all(|p| inverse.point(map.point(p)).distance(p) < 1e-3 * diagonal)
+    };
+    let own = map.inverse().filter(returns);
+    own.unwrap_or_else(|| Arc::new(NewtonInverse::new(Arc::clone(map), area, REACH * diagonal, PIECES)))
 }

@@ -42,4 +42,4 @@ pub use png::{decode_png, encode_png};
 pub use preview::{Overlay, OverlayKind, Panel, Preview};
 pub use render::{MAX_PIXELS, RenderOptions, Size, render};
 pub use tiny_skia::{Color, Pixmap};
-pub use warp_image::{Extent, ImageWarp, extent, warp_image};
+pub use warp_image::{Extent, ImageWarp, extent, shown, warp_image};

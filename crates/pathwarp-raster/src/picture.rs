@@ -3,7 +3,7 @@
 use crate::{Error, MAX_PIXELS, render::new_pixmap};
 use image::codecs::{jpeg, png};
 use image::metadata::Orientation;
-use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat};
+use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageReader};
 use std::io::Cursor;
 use tiny_skia::{ColorU8, Pixmap};
 
@@ -39,23 +39,30 @@ impl Picture {
     /// # Errors
     /// [`Error::Decode`] for other files and damaged ones, [`Error::TooLarge`].
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
-        let wrong = |e: image::ImageError| Error::Decode(e.to_string());
-        match image::guess_format(bytes) {
-            Ok(ImageFormat::Png) => Self::decode(png::PngDecoder::new(Cursor::new(bytes)).map_err(wrong)?),
-            Ok(ImageFormat::Jpeg) => Self::decode(jpeg::JpegDecoder::new(Cursor::new(bytes)).map_err(wrong)?),
-            _ => Err(Error::Decode("it is neither a PNG nor a JPEG".to_owned())),
-        }
+        if Self::is_one(bytes) { Self::decode(bytes, true) } else { Err(unknown("it is neither a PNG nor a JPEG")) }
     }
 
-    fn decode(mut decoder: impl ImageDecoder) -> Result<Self, Error> {
-        let wrong = |e: image::ImageError| Error::Decode(e.to_string());
+    /// Reads an image that is part of a drawing (PNG, JPEG, GIF or WebP), its pixels as they are stored, as SVG renderers
+    /// take them; of an animation, the first.
+    ///
+    /// # Errors
+    /// As [`Picture::read`].
+    pub fn read_stored(bytes: &[u8]) -> Result<Self, Error> {
+        Self::decode(bytes, false)
+    }
+
+    fn decode(bytes: &[u8], upright: bool) -> Result<Self, Error> {
+        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(unknown)?;
+        // The number of pixels is what is limited, below.
+        reader.no_limits();
+        let mut decoder = reader.into_decoder().map_err(unknown)?;
         let (width, height) = decoder.dimensions();
         if u64::from(width) * u64::from(height) > u64::from(MAX_PIXELS) {
             return Err(Error::TooLarge { width: f64::from(width), height: f64::from(height) });
         }
         let profile = decoder.icc_profile().ok().flatten();
-        let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-        let mut image = DynamicImage::from_decoder(decoder).map_err(wrong)?;
+        let orientation = decoder.orientation().ok().filter(|_| upright).unwrap_or(Orientation::NoTransforms);
+        let mut image = DynamicImage::from_decoder(decoder).map_err(unknown)?;
         image.apply_orientation(orientation);
         let image = image.into_rgba8();
         let mut pixmap = new_pixmap(f64::from(image.width()), f64::from(image.height()))?;
@@ -109,6 +116,11 @@ impl Picture {
         }
         encoder.write_image(pixels, self.pixmap.width(), self.pixmap.height(), kind).map_err(wrong)
     }
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
+fn unknown(why: impl ToString) -> Error {
+    Error::Decode(why.to_string())
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! Patches the source text in place: whatever can stay an element stays that element, with all its owner gave it.
 
 use crate::edit::Edits;
+use crate::image::Picture;
 use crate::number::{escape, matrix, short};
 use crate::scene::{Group, Node, Referrer};
 use crate::source::{ElementId, Source, is_shape};
 use crate::warp::{Notes, Skipped, StrokeDone};
-use crate::write::{Job, Writer, dashes, part_data, stroke_scale};
+use crate::write::{Job, Writer, bent_attributes, dashes, data_uri, part_data, stroke_scale};
 use pathwarp::kurbo::Affine;
 use std::collections::{BTreeMap, BTreeSet};
 use usvg::Paint;
@@ -235,7 +236,7 @@ impl<'a> Keeper<'a, '_> {
                 },
                 Node::Text { element: Some(e), content } => self.text(*e, content),
                 Node::Text { element: None, .. } => {}
-                Node::Image(_) => self.image(g),
+                Node::Image(i) => self.image(g, *i),
                 Node::Part(i) => match (scene.parts[*i].owner, scene.parts[*i].source) {
                     (Some(e), _) if is_shape(self.tag(e)) => marked.entry(e).or_default().push(n),
                     (None, Some(e)) if self.done(*i) => self.shape(e, *i),
@@ -259,15 +260,34 @@ impl<'a> Keeper<'a, '_> {
             Node::Part(i) => self.done(*i),
             Node::Group(g) => g.children.iter().any(|n| self.changed(n)),
             Node::Text { content, .. } => content.children.iter().any(|n| self.changed(n)),
-            Node::Image(_) => false,
+            Node::Image(i) => {
+                let slot = self.job.document.scene.bitmaps[*i].slot;
+                let moved = slot.is_some_and(|s| self.job.slots[s].fit != Affine::IDENTITY);
+                moved || matches!(self.job.pictures[*i], Picture::Bent(_))
+            }
         }
     }
 
-    fn image(&mut self, g: &Group) {
-        let id = g.source.map_or_else(|| "an image".to_owned(), |e| self.source.display_name(e));
-        self.writer
-            .skipped
-            .push(Skipped { id, why: "images are not bent yet; it is placed by the best affine fit".into() });
+    fn image(&mut self, g: &Group, i: usize) {
+        let bitmap = &self.job.document.scene.bitmaps[i];
+        let e = g.source.or(bitmap.owner).filter(|&e| self.tag(e) == "image");
+        match (&self.job.pictures[i], e) {
+            (Picture::Placed, _) => {}
+            (Picture::Bent(bent), Some(e)) => {
+                for (name, value) in bent_attributes(bent, Affine::IDENTITY) {
+                    self.edits.set_attr(e, name, value);
+                }
+                self.edits.set_attr(e, "href", data_uri(bent));
+            }
+            (picture, _) => {
+                let id = e.map_or_else(|| "an image".to_owned(), |e| self.source.display_name(e));
+                let why = match picture {
+                    Picture::Nearly(why) => why.clone(),
+                    _ => "its element was not found; it is placed by the best affine fit".to_owned(),
+                };
+                self.writer.skipped.push(Skipped { id, why });
+            }
+        }
     }
 
     /// A shape element stays; only where its stroke has become an outline it turns into a group of two paths.

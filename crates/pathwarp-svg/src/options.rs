@@ -1,5 +1,6 @@
 //! How a document is warped.
 
+use crate::image::Images;
 use crate::select::Selection;
 use pathwarp::kurbo::Affine;
 use pathwarp::refit;
@@ -82,6 +83,8 @@ pub struct WarpOptions {
     /// Where copies of every shape stand before the warp, in root user space, the original included; a shape and its copies
     /// become one path, clip paths and masks alike. Empty: the shape alone.
     pub copies: Vec<Affine>,
+    /// What becomes of bitmaps.
+    pub images: Images,
 }
 
 impl WarpOptions {
@@ -98,6 +101,7 @@ impl WarpOptions {
             on_error: OnError::default(),
             gradients: Gradients::default(),
             copies: Vec::new(),
+            images: Images::default(),
         }
     }
 }

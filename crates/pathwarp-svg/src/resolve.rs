@@ -1,7 +1,7 @@
 //! Builds the scene: walks usvg's tree, finds the source element, the true outline and the exact transform of everything in it.
 
 use crate::geometry::{self, Reader};
-use crate::scene::{Clip, Group, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
+use crate::scene::{Bitmap, Clip, Group, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point, Rect, Size};
@@ -27,6 +27,7 @@ struct Builder<'a> {
     unkeepable: Option<String>,
     taken: HashSet<ElementId>,
     slots: Vec<Slot>,
+    bitmaps: Vec<Bitmap>,
     /// Whether the source speaks of a page background.
     backed: bool,
     /// The group that holds root user space; its own transform leads out of it.
@@ -63,20 +64,21 @@ pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Ve
         unkeepable: source.unpatchable.clone(),
         taken: HashSet::new(),
         slots: Vec::new(),
+        bitmaps: Vec::new(),
         backed: source.text.contains("background-color"),
         top: None,
     };
     let (top, to_px) = b.root_group(tree, page);
     b.top = Some(std::ptr::from_ref(top));
     let root = b.group(top, Affine::IDENTITY, Context { owner: None, role: Role::Paint, slot: None });
-    let Builder { parts, clips, masks, tiles, pictures, slots, unkeepable, .. } = b;
+    let Builder { parts, clips, masks, tiles, pictures, slots, bitmaps, unkeepable, .. } = b;
     let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
     for (i, p) in parts.iter().enumerate() {
         if let Some(e) = p.source {
             by_source.entry(e).or_default().push(i);
         }
     }
-    Scene { root, parts, clips, masks, tiles, pictures, slots, by_source, to_px, unkeepable }
+    Scene { root, parts, clips, masks, tiles, pictures, slots, bitmaps, by_source, to_px, unkeepable }
 }
 
 fn bits(m: Affine) -> [u64; 6] {
@@ -203,7 +205,21 @@ impl Builder<'_> {
             children.push(match c {
                 usvg::Node::Group(c) => Node::Group(Box::new(self.group(c, frame, context))),
                 usvg::Node::Path(p) => Node::Part(self.part(p, frame, context)),
-                usvg::Node::Image(image) => Node::Image(image.clone()),
+                usvg::Node::Image(image) => {
+                    let own = source.or(element).filter(|&e| self.tag(e) == "image");
+                    let aspect = own.or(context.owner).and_then(|e| self.reader.source.attr(e, "preserveAspectRatio"));
+                    self.bitmaps.push(Bitmap {
+                        image: image.clone(),
+                        frame,
+                        placing: transform,
+                        slot: context.slot,
+                        owner: context.owner.or(own),
+                        bends: context.role != Role::Pattern,
+                        // Without an element to ask, an image that is cut cannot be told.
+                        sliced: own.is_none() && context.owner.is_none() || aspect.is_some_and(|a| a.contains("slice")),
+                    });
+                    Node::Image(self.bitmaps.len() - 1)
+                }
                 usvg::Node::Text(t) => self.text(t, frame, context),
             });
         }
@@ -237,7 +253,9 @@ impl Builder<'_> {
     ) -> Option<usize> {
         let image = element.filter(|&e| self.tag(e) == "image");
         let raster = g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
-        if g.filters().is_empty() && image.is_none() && !raster
+        // The root has no transform of its own to take a slot up; an only image in it has.
+        let top = self.top.is_some_and(|t| std::ptr::eq(t, g));
+        if g.filters().is_empty() && (top || image.is_none() && !raster)
             || matches!(context.role, Role::Clip | Role::Pattern)
             || context.slot.is_some_and(|s| image.is_some() && self.slots[s].element == element)
         {

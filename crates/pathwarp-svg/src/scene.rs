@@ -47,8 +47,12 @@ pub(crate) struct Part {
 pub(crate) enum Node {
     Group(Box<Group>),
     Part(usize),
-    Image(Box<usvg::Image>),
-    Text { element: Option<ElementId>, content: Box<Group> },
+    /// A bitmap, by number.
+    Image(usize),
+    Text {
+        element: Option<ElementId>,
+        content: Box<Group>,
+    },
 }
 
 #[derive(Debug)]
@@ -84,6 +88,23 @@ pub(crate) struct Slot {
     pub(crate) owner: Option<ElementId>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
+}
+
+/// A bitmap.
+#[derive(Debug)]
+pub(crate) struct Bitmap {
+    pub(crate) image: Box<usvg::Image>,
+    /// From its pixels to root user space.
+    pub(crate) frame: Affine,
+    /// From its pixels to the user space of its element: what usvg made of x, y, width and height.
+    pub(crate) placing: Affine,
+    pub(crate) slot: Option<usize>,
+    /// The element that selects it.
+    pub(crate) owner: Option<ElementId>,
+    /// Whether it is part of the picture; tiles and filters' pictures never bend.
+    pub(crate) bends: bool,
+    /// Whether it is larger than its place and cut.
+    pub(crate) sliced: bool,
 }
 
 /// A clip path as one frame sees it.
@@ -141,6 +162,7 @@ pub(crate) struct Scene {
     pub(crate) tiles: Vec<Tile>,
     /// What filters show by `feImage`, by the address of usvg's group (which the document keeps alive).
     pub(crate) pictures: HashMap<usize, Group>,
+    pub(crate) bitmaps: Vec<Bitmap>,
     pub(crate) slots: Vec<Slot>,
     /// The parts written as each element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,

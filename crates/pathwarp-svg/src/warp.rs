@@ -1,10 +1,11 @@
 //! A document under a map: every part's image, in parallel, and what to say about it.
 
 use crate::document::Document;
+use crate::image::{self, Picture};
 use crate::number::MOST_DECIMALS;
 use crate::options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
 use crate::paint::{self, Fit};
-use crate::scene::{Part, Role, Scene};
+use crate::scene::{Bitmap, Part, Role, Scene};
 use crate::select::Selection;
 use crate::{keep, read, stroke, write};
 use pathwarp::kurbo::{Affine, BezPath, Point, Shape as _};
@@ -190,7 +191,11 @@ impl Document {
             out.warnings
                 .push(format!("text is set in another font, for want of {names}; install it or outline the text"));
         }
-        let job = write::Job { document: self, outcomes: &outcomes, slots: &slots, map, options };
+        let elements = options.selection.resolve(&self.source);
+        let chosen = |b: &Bitmap| b.owner.map_or(options.selection.is_everything(), |e| elements[e]);
+        let bend = |b: &Bitmap| image::bend(b, &self.scene, &slots, chosen(b), map, &options.images);
+        let pictures: Vec<Picture> = self.scene.bitmaps.iter().map(bend).collect();
+        let job = write::Job { document: self, outcomes: &outcomes, pictures: &pictures, slots: &slots, map, options };
         // The walk over the drawing's groups wants a stack as deep as they are. Nothing in there waits for other threads: a
         // caller that runs on a thread pool, as does the work above, would wait for itself.
         if self.shallow {
@@ -310,7 +315,7 @@ pub(crate) fn written(scene: &Scene, placed: &[Placed], slot: Option<usize>, fra
 }
 
 /// Whether there is a way back from root user space.
-fn usable(frame: Affine) -> bool {
+pub(crate) fn usable(frame: Affine) -> bool {
     frame.is_finite() && frame.determinant() != 0.0 && frame.inverse().is_finite()
 }
 

@@ -4,6 +4,7 @@
 //! servers see the frame they were made for.
 
 use crate::document::Document;
+use crate::image::{BentImage, Picture};
 use crate::number::{escape, matrix, path_data, short};
 use crate::options::WarpOptions;
 use crate::scene::{Group, Node, Part};
@@ -21,6 +22,7 @@ use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRende
 pub(crate) struct Job<'a> {
     pub(crate) document: &'a Document,
     pub(crate) outcomes: &'a [Outcome],
+    pub(crate) pictures: &'a [Picture],
     pub(crate) slots: &'a [Placed],
     pub(crate) map: &'a dyn Map,
     pub(crate) options: &'a WarpOptions,
@@ -125,7 +127,7 @@ impl<'a> Writer<'a> {
         match n {
             Node::Group(g) => self.group(g, ""),
             Node::Part(i) => self.part(*i),
-            Node::Image(image) => self.image(image),
+            Node::Image(i) => self.image(*i),
             Node::Text { element, content } => {
                 let id = element.filter(|_| !self.in_source).map_or(String::new(), |e| self.id_attribute(e));
                 let inner = self.group(content, "");
@@ -343,10 +345,25 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn image(&mut self, image: &usvg::Image) -> String {
-        self.notes.add("images in copies follow the warp as a whole, they are not bent", "");
+    fn image(&mut self, i: usize) -> String {
+        let bitmap = &self.job.document.scene.bitmaps[i];
+        let image = &bitmap.image;
         if !image.is_visible() {
             return String::new();
+        }
+        match &self.job.pictures[i] {
+            Picture::Placed => {}
+            Picture::Nearly(why) => {
+                let id = bitmap.owner.map_or_else(|| "an image".into(), |e| self.job.document.source.display_name(e));
+                self.skipped.push(Skipped { id, why: why.clone() });
+            }
+            Picture::Bent(bent) => {
+                // Back into the group's own coordinates, the bitmap's pixels: the placing has no turn in it.
+                let mut all = bent_attributes(bent, bitmap.placing.inverse()).to_vec();
+                all.push((self.link(), data_uri(bent)));
+                let all: String = all.iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
+                return format!("<{}{all}/>", self.tag("image"));
+            }
         }
         let (kind, data) = match image.kind() {
             usvg::ImageKind::JPEG(d) => ("image/jpeg", d.clone()),
@@ -377,6 +394,23 @@ impl<'a> Writer<'a> {
             base64(&data)
         )
     }
+}
+
+/// Where a bent bitmap goes, as attributes of its element.
+pub(crate) fn bent_attributes(bent: &BentImage, to: Affine) -> [(&'static str, String); 5] {
+    let r = to.transform_rect_bbox(bent.area);
+    [
+        ("x", short(r.x0)),
+        ("y", short(r.y0)),
+        ("width", short(r.width())),
+        ("height", short(r.height())),
+        ("preserveAspectRatio", "none".into()),
+    ]
+}
+
+/// A bent bitmap as a link.
+pub(crate) fn data_uri(bent: &BentImage) -> String {
+    format!("data:image/png;base64,{}", base64(&bent.png))
 }
 
 /// A part's path in its own user space.

@@ -43,8 +43,8 @@ pub struct ImageWarp<'a> {
     pub map: &'a dyn Map,
     /// The map's inverse; values that are not finite mean "from nowhere".
     pub inverse: &'a dyn Map,
-    /// The part of the plane that the result shows.
-    pub target: Rect,
+    /// What the result shows: from its pixels (its box is 0, 0, width, height) to the plane.
+    pub shown: Affine,
     /// The result's pixels.
     pub size: (u32, u32),
 }
@@ -56,16 +56,13 @@ pub struct ImageWarp<'a> {
 pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let (width, height) = warp.size;
     let mut out = new_pixmap(f64::from(width), f64::from(height))?;
-    let step = Vec2::new(warp.target.width() / f64::from(width), warp.target.height() / f64::from(height));
-    let to_plane = |x: f64, y: f64| warp.target.origin() + Vec2::new(x * step.x, y * step.y);
-    let to_target =
-        Affine::scale_non_uniform(1.0 / step.x, 1.0 / step.y) * Affine::translate(-warp.target.origin().to_vec2());
+    let to_plane = |x: f64, y: f64| warp.shown * Point::new(x, y);
     let to_source = warp.placed.inverse();
-    let reach = Reach::new(warp, to_target, TILE);
+    let reach = Reach::new(warp, warp.shown.inverse(), TILE);
     let pyramid = Pyramid::new(warp.source);
 
     let columns = width as usize;
-    let jet_at = |x: f64, y: f64| in_pixels(&warp.inverse.jet(to_plane(x, y)), to_source, step);
+    let jet_at = |x: f64, y: f64| in_pixels(&warp.inverse.jet(to_plane(x, y)), to_source, warp.shown);
     out.pixels_mut().par_chunks_mut(columns * TILE).enumerate().for_each(|(band, rows)| {
         let mut places = [Point::ORIGIN; TILE];
         let mut jets = [[Jet::default(); TILE]; TILE];
@@ -82,7 +79,7 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
                 }
                 warp.inverse.jets(&places[..n], &mut row[..n]);
                 for jet in &mut row[..n] {
-                    *jet = in_pixels(jet, to_source, step);
+                    *jet = in_pixels(jet, to_source, warp.shown);
                 }
             }
             for (j, row) in rows.chunks_mut(columns).enumerate() {
@@ -122,10 +119,18 @@ fn beside(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Option<Je
 
 /// The inverse's jet from pixels of the result to pixels of the source.
 #[inline]
-fn in_pixels(jet: &Jet, to_source: Affine, step: Vec2) -> Jet {
+fn in_pixels(jet: &Jet, to_source: Affine, shown: Affine) -> Jet {
     let [a, b, c, d, ..] = to_source.as_coeffs();
     let along = |v: Vec2| Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y);
-    Jet { p: to_source * jet.p, dx: along(jet.dx * step.x), dy: along(jet.dy * step.y) }
+    let [p, q, r, s, ..] = shown.as_coeffs();
+    Jet { p: to_source * jet.p, dx: along(jet.push(Vec2::new(p, q))), dy: along(jet.push(Vec2::new(r, s))) }
+}
+
+/// From the pixels of a result of `size` pixels to the box `target` that it shows.
+#[must_use]
+pub fn shown(target: Rect, size: (u32, u32)) -> Affine {
+    Affine::translate(target.origin().to_vec2())
+        * Affine::scale_non_uniform(target.width() / f64::from(size.0), target.height() / f64::from(size.1))
 }
 
 /// Four channels, premultiplied, 0 to 255.

@@ -1,6 +1,6 @@
 //! Where a picture goes: its image's box, and the tiles of the result that it touches.
 
-use super::ImageWarp;
+use super::{ImageWarp, in_pixels};
 use kurbo::{Affine, Point, Rect};
 use pathwarp::map::{Creases, Map};
 use tiny_skia::Pixmap;
@@ -13,16 +13,18 @@ const CELLS: usize = 192;
 pub struct Extent {
     /// The box of its image.
     pub bounds: Rect,
-    /// The largest stretch: how many units of length of the image one unit of the picture's plane becomes.
+    /// The largest stretch: how many units of length of the image one of the picture's pixels becomes.
     pub stretch: f64,
+    /// The smallest.
+    pub squeeze: f64,
     /// A place on the picture where the map is not defined.
     pub undefined: Option<Point>,
 }
 
-/// How far the box `area` reaches under `map`, from samples inside and many along the edge. `None` if the map is defined
-/// nowhere on it.
+/// How far the box `area` reaches, placed by `placed`, bent by `map` and carried on by `after`: from samples inside and many
+/// along the edge. `None` if the map is defined nowhere on it.
 #[must_use]
-pub fn extent(area: Rect, map: &dyn Map) -> Option<Extent> {
+pub fn extent(area: Rect, placed: Affine, map: &dyn Map, after: Affine) -> Option<Extent> {
     const ALONG: usize = 2048;
     let mut creases = Creases::default();
     map.creases(&mut creases);
@@ -33,8 +35,8 @@ pub fn extent(area: Rect, map: &dyn Map) -> Option<Extent> {
     let mut out: Option<Extent> = None;
     let mut undefined = None;
     for (u, v) in inside.chain(edge) {
-        let p = at(u, v);
-        let jet = map.jet(p);
+        let p = placed * at(u, v);
+        let jet = in_pixels(&map.jet(p), after, placed);
         if !jet.p.is_finite() || !creases.defined_at(p) {
             undefined = undefined.or(Some(p));
             continue;
@@ -42,11 +44,17 @@ pub fn extent(area: Rect, map: &dyn Map) -> Option<Extent> {
         let frobenius = jet.dx.hypot2() + jet.dy.hypot2();
         let apart = (frobenius * frobenius - 4.0 * jet.det() * jet.det()).max(0.0).sqrt();
         let stretch = (0.5 * (frobenius + apart)).sqrt();
-        let e =
-            out.get_or_insert(Extent { bounds: Rect::from_origin_size(jet.p, (0.0, 0.0)), stretch: 0.0, undefined });
+        let squeeze = jet.det().abs() / stretch;
+        let e = out.get_or_insert(Extent {
+            bounds: Rect::from_origin_size(jet.p, (0.0, 0.0)),
+            stretch: 0.0,
+            squeeze: f64::INFINITY,
+            undefined,
+        });
         e.bounds = e.bounds.union_pt(jet.p);
         if stretch.is_finite() {
             e.stretch = e.stretch.max(stretch);
+            e.squeeze = e.squeeze.min(squeeze);
         }
     }
     out.map(|e| Extent { undefined, ..e })

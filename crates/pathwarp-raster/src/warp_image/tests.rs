@@ -35,7 +35,15 @@ fn level(p: &Pixmap, x: u32, y: u32) -> f64 {
 
 fn warped(source: &Pixmap, map: &dyn Map, target: Rect, size: (u32, u32)) -> Pixmap {
     let inverse = map.inverse().unwrap();
-    warp_image(&ImageWarp { source, placed: Affine::IDENTITY, map, inverse: &*inverse, target, size }).unwrap()
+    warp_image(&ImageWarp {
+        source,
+        placed: Affine::IDENTITY,
+        map,
+        inverse: &*inverse,
+        shown: shown(target, size),
+        size,
+    })
+    .unwrap()
 }
 
 fn affine(source: &Pixmap, a: Affine, size: (u32, u32)) -> Pixmap {
@@ -78,7 +86,14 @@ fn the_identity_changes_nothing() {
     let area = Rect::new(10.0, 20.0, 85.0, 68.5);
     let inverse = NewtonInverse::new(Arc::new(Still), area, 5.0, [1, 1]);
     let placed = Affine::translate((10.0, 20.0)) * Affine::scale(0.5);
-    let warp = ImageWarp { source: &source, placed, map: &Still, inverse: &inverse, target: area, size: (150, 97) };
+    let warp = ImageWarp {
+        source: &source,
+        placed,
+        map: &Still,
+        inverse: &inverse,
+        shown: shown(area, (150, 97)),
+        size: (150, 97),
+    };
     assert!(compare(&source, &warp_image(&warp).unwrap()).unwrap().is_same());
 }
 
@@ -229,10 +244,17 @@ fn a_bent_picture_by_newton_is_as_by_brute_force() {
     let source = checkers();
     let area = Rect::new(0.0, 0.0, 256.0, 256.0);
     let inverse = NewtonInverse::new(Arc::new(Bend), area, 10.0, [6, 6]);
-    let target = extent(area, &Bend).unwrap().bounds.expand();
+    let target = extent(area, Affine::IDENTITY, &Bend, Affine::IDENTITY).unwrap().bounds.expand();
     let size = (0.4 * target.width(), 0.4 * target.height());
     let size = (size.0 as u32, size.1 as u32);
-    let warp = ImageWarp { source: &source, placed: Affine::IDENTITY, map: &Bend, inverse: &inverse, target, size };
+    let warp = ImageWarp {
+        source: &source,
+        placed: Affine::IDENTITY,
+        map: &Bend,
+        inverse: &inverse,
+        shown: shown(target, size),
+        size,
+    };
     let ours = warp_image(&warp).unwrap();
     let difference = compare(&ours, &truth(&source, &inverse, target, size)).unwrap();
     println!("mean {:.3}/255", difference.mean_abs);
@@ -251,8 +273,14 @@ fn edges_are_covered_by_their_share_even_if_the_inverse_ends_there() {
     let source = grey(70, 70, |_, _| 1.0);
     let inverse = NewtonInverse::new(Arc::new(Still), Rect::new(0.0, 0.0, 70.0, 70.0), 1e-9, [1, 1]);
     let target = Rect::new(-0.75, -0.75, 71.25, 71.25);
-    let warp =
-        ImageWarp { source: &source, placed: Affine::IDENTITY, map: &Still, inverse: &inverse, target, size: (72, 72) };
+    let warp = ImageWarp {
+        source: &source,
+        placed: Affine::IDENTITY,
+        map: &Still,
+        inverse: &inverse,
+        shown: shown(target, (72, 72)),
+        size: (72, 72),
+    };
     let out = warp_image(&warp).unwrap();
     let alpha = |x, y| out.pixel(x, y).unwrap().alpha();
     for k in 1..70 {
@@ -286,13 +314,19 @@ fn any_number_of_threads_gives_the_same_pixels() {
 #[test]
 fn an_extent_is_the_images_box() {
     let area = Rect::new(0.0, 0.0, 256.0, 256.0);
-    let e = extent(area, &tilt()).unwrap();
+    let e = extent(area, Affine::IDENTITY, &tilt(), Affine::IDENTITY).unwrap();
     let off = |a: Rect, b: Rect| (a.origin() - b.origin()).hypot() + (a.size().to_vec2() - b.size().to_vec2()).hypot();
     assert!(off(e.bounds, Rect::new(5.0, 20.0, 250.0, 240.0)) < 1e-9, "{:?}", e.bounds);
     assert!(e.undefined.is_none() && e.stretch > 1.0 && e.stretch < 2.0, "{}", e.stretch);
-    let e = extent(area, &AffineMap(Affine::rotate(0.3) * Affine::scale_non_uniform(3.0, 0.5))).unwrap();
+    let e = extent(
+        area,
+        Affine::IDENTITY,
+        &AffineMap(Affine::rotate(0.3) * Affine::scale_non_uniform(3.0, 0.5)),
+        Affine::IDENTITY,
+    )
+    .unwrap();
     assert!((e.stretch - 3.0).abs() < 1e-12);
     let cut = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -0.01, 1.0]] };
-    assert!(extent(area, &cut).unwrap().undefined.is_some_and(|p| p.y >= 100.0));
-    assert_eq!(extent(area, &Chain::default()).unwrap().bounds, area);
+    assert!(extent(area, Affine::IDENTITY, &cut, Affine::IDENTITY).unwrap().undefined.is_some_and(|p| p.y >= 100.0));
+    assert_eq!(extent(area, Affine::IDENTITY, &Chain::default(), Affine::IDENTITY).unwrap().bounds, area);
 }

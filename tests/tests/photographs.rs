@@ -1,0 +1,157 @@
+//! PNG and JPEG files through the program: the same maps as for drawings.
+
+mod support;
+
+use pathwarp_raster::{Picture, PictureFormat, Pixmap, Size, compare, decode_png, render};
+use std::fs;
+use support::{pathwarp, pathwarp_in, sample};
+
+/// A drawing as a photograph of it.
+fn photograph(svg: &str, width: u32) -> Pixmap {
+    let tree = pathwarp_svg::parse_tree(svg.as_bytes(), "drawing", &pathwarp_svg::ReadOptions::default()).unwrap();
+    render(&tree, Size::Width(width)).unwrap()
+}
+
+fn png(pixmap: Pixmap) -> Vec<u8> {
+    Picture { pixmap, profile: None }.write(PictureFormat::Png).unwrap()
+}
+
+const DRAWING: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 120' width='200' height='120'>\
+    <path fill='#eee' d='M0,0H200V120H0Z'/><circle cx='70' cy='60' r='45' fill='#b03'/>\
+    <path fill='#05a' d='M110,20 L180,30 L150,100 Z'/></svg>";
+
+/// The warped photograph of a drawing is the photograph of the warped drawing.
+#[test]
+fn photographing_and_warping_may_be_swapped() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("in.svg"), DRAWING).unwrap();
+    fs::write(dir.path().join("in.png"), png(photograph(DRAWING, 200))).unwrap();
+    let cage = "M 5,115 C 70,130 120,90 195,118 C 180,80 210,40 190,10 C 140,-10 80,30 10,5 C 25,40 -5,80 5,115 Z";
+    for (deformation, more) in [
+        ("shaper", vec!["--shaper", cage]),
+        ("swirl", vec!["--angle", "40"]),
+        ("projective", vec!["--target", "0,120 200,110 160,20 30,5"]),
+        ("mls", vec!["--pin", "10,110", "--pin", "190,110", "--pair", "100,20:120,10"]),
+    ] {
+        for (input, out) in [("in.svg", "out.svg"), ("in.png", "out.png")] {
+            let mut args = vec![deformation, input, "-o", out];
+            args.extend(&more);
+            let output = pathwarp_in(dir.path(), &args, b"");
+            assert!(output.status.success(), "{deformation}: {}", String::from_utf8_lossy(&output.stderr));
+        }
+        let ours = decode_png(&fs::read(dir.path().join("out.png")).unwrap()).unwrap();
+        // The picture shows the warped drawing's own box, in whole pixels.
+        let svg = fs::read_to_string(dir.path().join("out.svg")).unwrap();
+        let document = pathwarp_svg::Document::read(svg.as_bytes(), "out", &Default::default()).unwrap();
+        let b = document.artwork_box(&Default::default()).unwrap();
+        let (x, y) = ((b.x0 + 1e-3).floor(), (b.y0 + 1e-3).floor());
+        let (w, h) = ((b.x1 - 1e-3).ceil() - x, (b.y1 - 1e-3).ceil() - y);
+        assert_eq!((f64::from(ours.width()), f64::from(ours.height())), (w, h), "{deformation}");
+        let page = svg.replace("viewBox='0 0 200 120'", &format!("viewBox='{x} {y} {w} {h}'"));
+        let page = page.replace("width='200' height='120'", &format!("width='{w}' height='{h}'"));
+        let difference = compare(&ours, &photograph(&page, ours.width())).unwrap();
+        println!("{deformation}: mean {:.2}, over 64: {:.4}", difference.mean_abs, difference.share_over(64));
+        assert!(difference.mean_abs < 2.0, "{deformation}: {}", difference.mean_abs);
+        assert!(difference.share_over(64) < 0.01, "{deformation}: {}", difference.share_over(64));
+        // The comparison can fail: the photograph as it was is far off.
+        if (ours.width(), ours.height()) == (200, 120) {
+            let still = compare(&ours, &photograph(DRAWING, 200)).unwrap();
+            assert!(still.mean_abs > 4.0 * difference.mean_abs, "{deformation}: {}", still.mean_abs);
+        }
+    }
+}
+
+#[test]
+fn sizes_formats_and_exit_codes() {
+    let dir = tempfile::tempdir().unwrap();
+    let picture = Picture { pixmap: photograph(DRAWING, 200), profile: Some(b"a profile".to_vec()) };
+    fs::write(dir.path().join("in.jpg"), picture.write(PictureFormat::Jpeg).unwrap()).unwrap();
+    let run = |more: &[&str]| {
+        let mut args = vec!["affine", "in.jpg", "--rotate", "90"];
+        args.extend(more);
+        pathwarp_in(dir.path(), &args, b"")
+    };
+    let code = |more: &[&str]| run(more).status.code().unwrap();
+    let read = |name: &str| Picture::read(&fs::read(dir.path().join(name)).unwrap()).unwrap();
+    let size = |p: &Picture| (p.pixmap.width(), p.pixmap.height());
+
+    assert_eq!(code(&["-o", "turned.jpg"]), 0);
+    assert_eq!((size(&read("turned.jpg")), read("turned.jpg").profile), ((120, 200), picture.profile.clone()));
+    assert_eq!(code(&["-o", "small.png", "--image-size", "60"]), 0);
+    assert_eq!((size(&read("small.png")), read("small.png").profile), ((60, 100), picture.profile.clone()));
+    assert_eq!(code(&["-o", "wide.png", "--image-size", "60x20"]), 0);
+    assert_eq!(size(&read("wide.png")), (60, 20));
+    assert_eq!(size(&Picture::read(&run(&[]).stdout).unwrap()), (120, 200));
+
+    let before = fs::read_dir(dir.path()).unwrap().count();
+    assert_eq!(code(&["-o", "out.svg"]), 2);
+    assert_eq!(code(&["-o", "out.png", "--select", "path"]), 2);
+    assert_eq!(code(&["-o", "out.png", "--image-size", "0x4"]), 2);
+    assert_eq!(code(&["-o", "out.png", "--image-size", "60000x60000"]), 4);
+    fs::write(dir.path().join("in.jpg"), b"\xff\xd8\xff\xe0 no more").unwrap();
+    assert_eq!(code(&["-o", "out.png"]), 3);
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), before);
+    // An SVG file may still be called anything.
+    let svg = sample("logo.svg");
+    assert!(pathwarp(&["swirl", svg.to_str().unwrap()]).status.success());
+}
+
+/// A picture in a drawing looks, once bent, as the drawing does that it was taken from.
+#[test]
+fn a_picture_in_a_drawing_bends_with_it() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("shot.png"), png(photograph(DRAWING, 800))).unwrap();
+    fs::write(dir.path().join("in.svg"), DRAWING).unwrap();
+    let frame = ["--frame", "0,0,200,120"];
+    let image = |attributes: &str| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
+             viewBox='0 0 200 120' width='200' height='120'>{attributes}</svg>"
+        )
+    };
+    let pictures = [
+        ("plain", image("<image id='i' width='200' height='120' xlink:href='shot.png'/>")),
+        (
+            "placed",
+            image(
+                "<g transform='translate(-30 10)'><image id='i' transform='scale(2 1)' x='15' y='-10' width='100' height='120' preserveAspectRatio='none' href='shot.png'/></g>",
+            ),
+        ),
+        (
+            "copied",
+            image(
+                "<defs><image id='i' width='100' height='60' href='shot.png'/></defs><use href='#i' transform='scale(2)'/>",
+            ),
+        ),
+    ];
+    let cage = "M 5,115 C 70,130 120,90 195,118 C 180,80 210,40 190,10 C 140,-10 80,30 10,5 C 25,40 -5,80 5,115 Z";
+    let run = |input: &str, out: &str, more: &[&str]| {
+        let mut args = vec!["shaper", input, "-o", out, "--shaper", cage];
+        args.extend(frame);
+        args.extend(more);
+        let output = pathwarp_in(dir.path(), &args, b"");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code().unwrap(), said)
+    };
+    assert_eq!(run("in.svg", "out.svg", &[]).0, 0);
+    let shot = |name: &str| photograph(&fs::read_to_string(dir.path().join(name)).unwrap(), 400);
+    let expected = shot("out.svg");
+    for (name, svg) in pictures {
+        fs::write(dir.path().join("picture.svg"), svg).unwrap();
+        for structure in ["auto", "flatten"] {
+            let (code, said) = run("picture.svg", "bent.svg", &["--structure", structure]);
+            assert_eq!(code, 0, "{name}, {structure}: {said}");
+            let difference = compare(&shot("bent.svg"), &expected).unwrap();
+            println!("{name}, {structure}: mean {:.2}, over 64: {:.4}", difference.mean_abs, difference.share_over(64));
+            assert!(difference.mean_abs < 1.5, "{name}, {structure}: {}", difference.mean_abs);
+            assert!(difference.share_over(64) < 0.005, "{name}, {structure}: {}", difference.share_over(64));
+        }
+        assert!(fs::read_to_string(dir.path().join("bent.svg")).unwrap().contains("data:image/png"));
+        // Kept pixels can only be placed: seen, and said.
+        let (code, said) = run("picture.svg", "kept.svg", &["--images", "keep"]);
+        assert!(code == 1 && said.contains("affine fit"), "{name}: {code} {said}");
+        let fine = fs::metadata(dir.path().join("bent.svg")).unwrap().len();
+        assert_eq!(run("picture.svg", "coarse.svg", &["--image-dpi", "24"]).0, 0);
+        assert!(fs::metadata(dir.path().join("coarse.svg")).unwrap().len() < fine / 4, "{name}");
+    }
+}
