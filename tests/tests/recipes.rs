@@ -250,3 +250,83 @@ fn artwork_is_repeated_along_a_skeleton() {
     let b = doc.shapes()[0].outline.bounding_box().unwrap();
     assert!((b.x0 - 50.0).abs() + (b.x1 - 100.0).abs() < 1e-2, "{b:?}");
 }
+
+/// On the samples: X and then X --inverse gives every path back within (1 + s) times the tolerance, s being the largest stretch
+/// of the inverse along the artwork (the reciprocal of the map's smaller singular value there).
+#[test]
+fn inverses_give_the_samples_back() {
+    const TOLERANCE: f64 = 0.01;
+    let bent = "M 0,30 C 10,38 20,22 33,30 C 37,20 28,10 33,0 C 20,-6 10,8 0,0 C 4,10 -3,20 0,30 Z";
+    let deformations: [(&str, &[(&str, &str)]); 6] = [
+        ("shaper", &[("shaper", bent), ("target", "5%,90% 95%,90%")]),
+        ("birational", &[("top", "0%,10% 50%,-15% 100%,5%"), ("bottom", "0%,100% 40%,110% 100%,95%")]),
+        ("swirl", &[]),
+        ("bulge", &[]),
+        ("wave", &[]),
+        ("projective", &[("target", "0%,100% 100%,90% 75%,20% 15%,5%")]),
+    ];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["icon.svg", "lettering.svg", "monogram.svg", "tiles.svg", "lineart.svg"] {
+        let source = fs::read(sample(name)).unwrap();
+        let doc = pathwarp_svg::Document::read(&source, name, &pathwarp_svg::ReadOptions::default()).unwrap();
+        let page = doc.view_box();
+        let frame = format!("{},{},{},{}", page.x0, page.y0, page.width(), page.height());
+        for (deformation, pairs) in deformations {
+            let mut line = vec![
+                deformation,
+                "--frame",
+                &frame,
+                "--strokes",
+                "keep",
+                "--tolerance",
+                "0.01",
+                "--precision",
+                "8",
+                "-q",
+            ];
+            let named: Vec<String> = pairs.iter().map(|(k, _)| format!("--{k}")).collect();
+            for (k, (_, v)) in named.iter().zip(pairs) {
+                line.extend([k.as_str(), *v]);
+            }
+            let there = pathwarp_in(dir.path(), &line, &source);
+            assert_eq!(there.status.code(), Some(0), "{name} {deformation}: {}", text(&there.stderr));
+            line.push("--inverse");
+            let back = pathwarp_in(dir.path(), &line, &there.stdout);
+            assert_eq!(back.status.code(), Some(0), "{name} {deformation}: {}", text(&back.stderr));
+
+            let args = pathwarp::param::Args::from_pairs(pairs);
+            let registry = pathwarp::deform::Registry::builtin();
+            let map =
+                registry.get(deformation).unwrap().build_from(&args, &pathwarp::param::Frame::new(page)).unwrap().map;
+            let stretch = doc
+                .shapes()
+                .iter()
+                .flat_map(|s| s.outline.segs())
+                .flat_map(|g| (0..=20).map(|i| map.jet(g.eval(f64::from(i) / 20.0))))
+                .map(|j| {
+                    let (a, b, c, d) = (j.dx.x, j.dy.x, j.dx.y, j.dy.y);
+                    let (p, q) = ((a + d).hypot(c - b), (a - d).hypot(c + b));
+                    2.0 / (p - q).abs()
+                })
+                .fold(0.0, f64::max);
+            fs::write(dir.path().join("a.svg"), &source).unwrap();
+            fs::write(dir.path().join("b.svg"), &back.stdout).unwrap();
+            let compared = pathwarp_in(dir.path(), &["compare", "--json", "--width", "50", "a.svg", "b.svg"], b"");
+            let c: Value = serde_json::from_slice(&compared.stdout).unwrap();
+            let ids = |c: &Value| {
+                c["paths"]
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .filter(|p| !p["id"].as_str().unwrap().contains(' '))
+                    .cloned()
+                    .collect::<Vec<_>>()
+            };
+            for p in ids(&c) {
+                let d = p["distance"].as_f64().unwrap_or(0.0);
+                assert!(d <= (1.0 + stretch) * TOLERANCE, "{name} {deformation} {}: {d}, stretch {stretch}", p["id"]);
+            }
+            assert!(!ids(&c).is_empty());
+        }
+    }
+}
