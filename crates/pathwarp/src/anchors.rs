@@ -3,6 +3,7 @@
 //! A user seldom knows which way a path runs or where a closed one starts. The shaper paper's rule: the side that lies lowest
 //! on the screen is the bottom, and it runs left to right.
 
+use crate::deform::{Overlay, Role};
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Homography, Map};
 use crate::outline::{Outline, Seg, Subpath};
@@ -195,6 +196,40 @@ pub(crate) fn frame_corners(s: &Settings<'_>) -> Result<Anchors, Error> {
         return Err(GeometryError::FlatFrame { width, height }.into());
     }
     Ok(Anchors::Four(c))
+}
+
+/// Base and Target of four anchors each.
+pub(crate) struct FourToFour {
+    pub(crate) from: [Point; 4],
+    pub(crate) to: [Point; 4],
+    /// What a preview draws of them.
+    pub(crate) overlays: Vec<Overlay>,
+}
+
+/// Reads `--base` and `--target` with four anchors each; the Base is the frame's corners by default.
+pub(crate) fn four_to_four(s: &Settings<'_>) -> Result<FourToFour, Error> {
+    let base = match from_settings(s, "base", "base-as-drawn")? {
+        Some(b) => b,
+        None => frame_corners(s)?,
+    };
+    let missing = || Error::Missing { param: "--target".into(), hint: "four anchors where the Base is to land".into() };
+    let target = from_settings(s, "target", "target-as-drawn")?.ok_or_else(missing)?;
+    let (from, to) = (four("--base", &base)?, four("--target", &target)?);
+    let overlay = |role, q| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
+    Ok(FourToFour { from, to, overlays: vec![overlay(Role::Base, from), overlay(Role::Target, to)] })
+}
+
+fn four(name: &str, a: &Anchors) -> Result<[Point; 4], Error> {
+    match a {
+        Anchors::Four(q) => Ok(*q),
+        Anchors::Two(p) => Err(GeometryError::AnchorCount {
+            path: name.into(),
+            found: 2,
+            anchors: p.to_vec(),
+            expected: "four (for two, use similitude)",
+        }
+        .into()),
+    }
 }
 
 /// The map to the standard position: two anchors to (0,0), (1,0) by a direct similitude, four to the unit square's corners by

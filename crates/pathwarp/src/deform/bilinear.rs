@@ -8,9 +8,9 @@
 //! twice the leading coefficient times u plus the middle one is −det F', so the root is chosen by the side of the fold that the
 //! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::{Built, Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors};
-use crate::error::{Error, GeometryError};
+use crate::error::Error;
 use crate::map::{
     AffineMap, Chain, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real, bernstein::Scaled,
 };
@@ -69,14 +69,7 @@ impl Deformation for Bilinear {
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let base = match anchors::from_settings(s, "base", "base-as-drawn")? {
-            Some(b) => b,
-            None => anchors::frame_corners(s)?,
-        };
-        let missing =
-            || Error::Missing { param: "--target".into(), hint: "four anchors where the Base is to land".into() };
-        let target = anchors::from_settings(s, "target", "target-as-drawn")?.ok_or_else(missing)?;
-        let (from, to) = (four("--base", &base)?, four("--target", &target)?);
+        let anchors::FourToFour { from, to, overlays } = anchors::four_to_four(s)?;
         let before = anchors::to_standard("--base", &Anchors::Four(from))?;
         let map = BilinearMap::new(to);
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
@@ -84,22 +77,8 @@ impl Deformation for Bilinear {
         if corners.iter().any(|d| *d > 0.0) && corners.iter().any(|d| *d < 0.0) {
             built.warnings.push("bilinear: the Target is not convex: the artwork folds over itself".into());
         }
-        let overlay = |role, q: [Point; 4]| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
-        built.overlays = vec![overlay(Role::Base, from), overlay(Role::Target, to)];
+        built.overlays = overlays;
         Ok(built)
-    }
-}
-
-fn four(name: &str, a: &Anchors) -> Result<[Point; 4], Error> {
-    match a {
-        Anchors::Four(q) => Ok(*q),
-        Anchors::Two(p) => Err(GeometryError::AnchorCount {
-            path: name.into(),
-            found: 2,
-            anchors: p.to_vec(),
-            expected: "four (for two, use similitude)",
-        }
-        .into()),
     }
 }
 

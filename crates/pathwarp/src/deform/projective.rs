@@ -3,9 +3,9 @@
 //! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
 //! Image Warping*, 1989, §2.2). Straight lines stay straight.
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
-use crate::anchors::{self, Anchors};
-use crate::error::{Error, GeometryError};
+use super::{Built, Case, Deformation, Example, Info, Law};
+use crate::anchors;
+use crate::error::Error;
 use crate::map::{AffineMap, Class, Map};
 use crate::param::{Param, Settings};
 use std::sync::Arc;
@@ -60,37 +60,12 @@ impl Deformation for Projective {
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let base = match anchors::from_settings(s, "base", "base-as-drawn")? {
-            Some(a) => four("--base", &a)?,
-            None => four("--base", &anchors::frame_corners(s)?)?,
-        };
-        let Some(target) = anchors::from_settings(s, "target", "target-as-drawn")? else {
-            return Err(Error::Missing {
-                param: "--target".into(),
-                hint: "four anchors where the Base is to land".into(),
-            });
-        };
-        let target = four("--target", &target)?;
-        let overlay = |role, q: [kurbo::Point; 4]| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
-        let map = anchors::projective("--target", base, target)?;
+        let anchors::FourToFour { from, to, overlays } = anchors::four_to_four(s)?;
+        let map = anchors::projective("--target", from, to)?;
         let map: Arc<dyn Map> = match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
             _ => Arc::new(map),
         };
-        let overlays = vec![overlay(Role::Base, base), overlay(Role::Target, target)];
         Ok(Built { overlays, ..Built::new(map) })
-    }
-}
-
-fn four(name: &str, a: &Anchors) -> Result<[kurbo::Point; 4], Error> {
-    match a {
-        Anchors::Four(q) => Ok(*q),
-        Anchors::Two(p) => Err(GeometryError::AnchorCount {
-            path: name.into(),
-            found: 2,
-            anchors: p.to_vec(),
-            expected: "four (for two, use similitude)",
-        }
-        .into()),
     }
 }
