@@ -77,7 +77,7 @@ pub enum Error {
 /// The filled shapes as a mesh, within `tolerance` (user units) of the surface along every edge's middle.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`enum@Error`].
 pub fn filled(shapes: &[Shape<'_>], space: &IntoSpace<'_>, tolerance: f64) -> Result<String, Error> {
     let mut out = obj::Writer::new();
     for s in shapes {
@@ -92,7 +92,7 @@ pub fn filled(shapes: &[Shape<'_>], space: &IntoSpace<'_>, tolerance: f64) -> Re
 /// The shapes' outlines as polylines within `tolerance` (user units) of their images in space.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`enum@Error`].
 pub fn outlines(shapes: &[Shape<'_>], space: &IntoSpace<'_>, tolerance: f64) -> Result<String, Error> {
     let mut out = obj::Writer::new();
     for s in shapes {
