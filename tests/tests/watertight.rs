@@ -3,12 +3,14 @@
 mod support;
 
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::{CubicBez, Point};
+use pathwarp::kurbo::{CubicBez, Point, Rect};
+use pathwarp::map::Map;
 use pathwarp::param::{Args, Frame};
 use pathwarp::{Outline, Seg, refit};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions};
 use std::collections::HashMap;
 use std::fs;
+use std::sync::Arc;
 use support::sample;
 
 const CAGE: &str = "M 10,90 C 60,130 60,60 95,85 C 75,60 115,40 90,15 C 60,-25 40,45 5,10 C 25,40 -10,60 10,90 Z";
@@ -23,16 +25,16 @@ fn edges(o: &Outline) -> Vec<[(u64, u64); 4]> {
     o.segs().filter(|s| !matches!(s, Seg::Line(_))).map(|s| canonical(s.to_cubic())).collect()
 }
 
+/// The map of the cage over `frame`.
+fn shaper(frame: Rect) -> Arc<dyn Map> {
+    let entry = Registry::builtin().get("shaper").unwrap().clone();
+    entry.build_from(&Args::from_pairs(&[("shaper", CAGE)]), &Frame::new(frame)).unwrap().map
+}
+
 #[test]
 fn stained_glass_has_no_gaps() {
     let doc = Document::read(&fs::read(sample("tiles.svg")).unwrap(), "tiles", &ReadOptions::default()).unwrap();
-    let frame = Frame::new(doc.artwork_box(&Selection::default()).unwrap());
-    let map = Registry::builtin()
-        .get("shaper")
-        .unwrap()
-        .build_from(&Args::from_pairs(&[("shaper", CAGE)]), &frame)
-        .unwrap()
-        .map;
+    let map = shaper(doc.artwork_box(&Selection::default()).unwrap());
     let count = |o: &mut dyn Iterator<Item = &Outline>| {
         let mut seen: HashMap<[(u64, u64); 4], usize> = HashMap::new();
         o.flat_map(edges).for_each(|e| *seen.entry(e).or_default() += 1);
@@ -40,14 +42,13 @@ fn stained_glass_has_no_gaps() {
     };
     let shared_before = count(&mut doc.shapes().iter().map(|s| &s.outline));
     assert!(shared_before > 20, "the sample has shared edges: {shared_before}");
+    let shared = refit::SharedEdges::among(doc.shapes().iter().map(|s| &s.outline));
+    assert_ne!(shared, refit::SharedEdges::default());
     for merge in [false, true] {
         let options = refit::Options { merge, ..refit::Options::new(1e-3) };
         let warped = doc.warp(&map, &WarpOptions::new(options)).unwrap();
         let after = Document::read(warped.svg.as_bytes(), "out", &ReadOptions::default()).unwrap();
         // Every shared source edge gives one or more pieces, each found on both sides.
-        let sources: Vec<Outline> = doc.shapes().iter().map(|s| s.outline.clone()).collect();
-        let shared = refit::SharedEdges::among(&sources);
-        assert_ne!(shared, refit::SharedEdges::default());
         let shared_after = count(&mut after.shapes().iter().map(|s| &s.outline));
         assert!(shared_after >= shared_before, "merge {merge}: {shared_before} before, {shared_after} after");
     }
@@ -62,13 +63,7 @@ fn a_shared_edge_is_not_merged_with_what_follows_it() {
     let warp = |shapes: &str| {
         let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 60 90'>{shapes}</svg>");
         let doc = Document::read(svg.as_bytes(), "t", &ReadOptions::default()).unwrap();
-        let frame = Frame::new(pathwarp::kurbo::Rect::new(0.0, 0.0, 60.0, 90.0));
-        let map = Registry::builtin()
-            .get("shaper")
-            .unwrap()
-            .build_from(&Args::from_pairs(&[("shaper", CAGE)]), &frame)
-            .unwrap()
-            .map;
+        let map = shaper(Rect::new(0.0, 0.0, 60.0, 90.0));
         let options = refit::Options { merge: true, ..refit::Options::new(0.2) };
         let out = doc.warp(&map, &WarpOptions::new(options)).unwrap().svg;
         let after = Document::read(out.as_bytes(), "out", &ReadOptions::default()).unwrap();

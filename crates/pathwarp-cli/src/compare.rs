@@ -5,8 +5,10 @@ use crate::{Outcome, deform, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::distance;
 use pathwarp_raster::{Color, RenderOptions, Size};
+use pathwarp_svg::NamedPath;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -71,9 +73,14 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
     let file = |name: &str| m.get_one::<PathBuf>(name).cloned().ok_or_else(|| Failure::usage("two files are needed"));
     let (a, b) = (deform::document(&file("A")?)?, deform::document(&file("B")?)?);
     let (paths_a, paths_b) = (a.paths(), b.paths());
+    // The first of an id counts, as for every reader of SVG.
+    let by_id = |paths: &[NamedPath]| -> HashMap<String, usize> {
+        paths.iter().enumerate().rev().map(|(i, p)| (p.id.clone(), i)).collect()
+    };
+    let (index_a, index_b) = (by_id(&paths_a), by_id(&paths_b));
     let pairs: Vec<PathPair> = paths_a
         .par_iter()
-        .filter_map(|p| paths_b.iter().find(|q| q.id == p.id).map(|q| (p, q)))
+        .filter_map(|p| index_b.get(&p.id).map(|i| (p, &paths_b[*i])))
         .map(|(p, q)| PathPair {
             id: p.id.clone(),
             segments_a: p.outline.segs().count(),
@@ -81,16 +88,16 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
             distance: distance::symmetric(&p.outline, &q.outline),
         })
         .collect();
-    let missing = |from: &[pathwarp_svg::NamedPath], to: &[pathwarp_svg::NamedPath]| -> Vec<String> {
-        from.iter().filter(|p| !to.iter().any(|q| q.id == p.id)).map(|p| p.id.clone()).collect()
+    let missing = |from: &[NamedPath], to: &HashMap<String, usize>| -> Vec<String> {
+        from.iter().filter(|p| !to.contains_key(&p.id)).map(|p| p.id.clone()).collect()
     };
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
     let render = |d: &pathwarp_svg::Document| RenderOptions { size, background: Some(Color::WHITE) }.render(d.tree());
     let difference = pathwarp_raster::compare(&render(&a)?, &render(&b)?)?;
     let result = Comparison {
         max_distance: pairs.iter().filter_map(|p| p.distance).fold(0.0, f64::max),
-        only_in_a: missing(&paths_a, &paths_b),
-        only_in_b: missing(&paths_b, &paths_a),
+        only_in_a: missing(&paths_a, &index_b),
+        only_in_b: missing(&paths_b, &index_a),
         paths: pairs,
         pixels: Pixels {
             width: difference.width,

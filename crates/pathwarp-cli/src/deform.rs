@@ -17,6 +17,7 @@ use pathwarp::refit;
 use pathwarp_raster::Picture;
 use pathwarp_svg::{Document, Images, Origin, ReadOptions, Selection, WarpOptions, Warped};
 use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
 use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -214,10 +215,8 @@ fn warp(
     let report = report(&doc, &built, &options, &warped, &display(input), target);
 
     let mut output = Vec::new();
-    let mut to_stdout = None;
-    match target {
-        Some(t) => output.push(Pending::new(t, warped.svg.as_bytes())?),
-        None => to_stdout = Some(warped.svg.clone().into_bytes()),
+    if let Some(t) = target {
+        output.push(Pending::new(t, warped.svg.as_bytes())?);
     }
     for (file, text) in space::files(&doc, &recipe, &built, &options)? {
         output.push(Pending::new(&file, text.as_bytes())?);
@@ -230,6 +229,7 @@ fn warp(
     }
     let notes = if common.explain { built.steps.iter().flat_map(|s| s.notes.clone()).collect() } else { Vec::new() };
     let partly = !report.skipped.is_empty() || report.shapes.iter().any(|s| !s.over_budget.is_empty());
+    let to_stdout = target.is_none().then(|| warped.svg.into_bytes());
     Ok(Job { report, output, to_stdout, notes, partly })
 }
 
@@ -244,16 +244,24 @@ fn report(
     let folds = folds(doc, built, &options.selection);
     let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
     warnings.extend(warped.warnings.iter().cloned());
-    let all = folds.iter().fold(Orientation::default(), |sum, (_, o)| sum.and(o));
+    // Parts of one text or `use` share an id, and are one shape in the report.
+    let mut by_id: HashMap<&str, Orientation> = HashMap::new();
+    let mut all = Orientation::default();
+    for (id, o) in &folds {
+        all = all.and(o);
+        let sum = by_id.entry(id).or_default();
+        *sum = sum.and(o);
+    }
+    let mut told = HashSet::new();
     let mut shapes = Vec::with_capacity(warped.shapes.len());
-    let mut folded = Vec::new();
     for s in &warped.shapes {
-        let o = folds.iter().filter(|(id, _)| *id == s.id).fold(Orientation::default(), |sum, (_, o)| sum.and(o));
+        let o = by_id.get(s.id.as_str()).copied().unwrap_or_default();
         let at = o.folded_against(&all);
         if let Some(at) = at
-            && !folded.iter().any(|(id, _)| *id == &s.id)
+            && told.insert(&s.id)
         {
-            folded.push((&s.id, at));
+            let id = &s.id;
+            warnings.push(format!("{id} folds over near {:.4},{:.4}: the map turns the plane over there", at.x, at.y));
         }
         shapes.push(report::Shape {
             id: s.id.clone(),
@@ -267,9 +275,6 @@ fn report(
             folded_at: at.map(|p| [p.x, p.y]),
             over_budget: s.over_budget.iter().map(|p| [p.x, p.y]).collect(),
         });
-    }
-    for (id, at) in folded {
-        warnings.push(format!("{id} folds over near {:.4},{:.4}: the map turns the plane over there", at.x, at.y));
     }
     report::Input {
         file: file.to_owned(),

@@ -197,8 +197,6 @@ impl ImageWarper for Bender {
 fn inverse(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
     /// Beyond the picture by this share of its diagonal: what the pixels along its edge cover.
     const REACH: f64 = 0.02;
-    /// Enough starts for a map that bends a few times across the picture.
-    const PIECES: [usize; 2] = [6, 6];
     /// Places along a side where the inverse is tried.
     const TRIED: usize = 9;
     let diagonal = area.width().hypot(area.height());
@@ -209,5 +207,5 @@ fn inverse(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
         places.filter(|p| map.point(*p).is_finite()).all(|p| inverse.point(map.point(p)).distance(p) < 1e-3 * diagonal)
     };
     let own = map.inverse().filter(returns);
-    own.unwrap_or_else(|| Arc::new(NewtonInverse::new(Arc::clone(map), area, REACH * diagonal, PIECES)))
+    own.unwrap_or_else(|| Arc::new(NewtonInverse::over(Arc::clone(map), area, REACH)))
 }

@@ -4,7 +4,7 @@ use crate::deform::{Built, Overlay, Registry, Role};
 use crate::error::Error;
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
-use crate::param::{Args, Axis, Frame};
+use crate::param::{Args, Frame};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
@@ -97,12 +97,8 @@ impl Recipe {
 fn inverted(built: Built, frame: &Frame) -> Built {
     /// How far beyond the frame an answer may lie, as a share of its diagonal: strokes and handles reach over it.
     const REACH: f64 = 0.25;
-    /// Enough starts for a map that bends a few times across the frame.
-    const PIECES: [usize; 2] = [6, 6];
-    let map = built.map.inverse().unwrap_or_else(|| {
-        let reach = REACH * frame.extent(Axis::Diagonal);
-        Arc::new(NewtonInverse::new(Arc::clone(&built.map), frame.rect, reach, PIECES))
-    });
+    let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
+    let map = built.map.inverse().unwrap_or_else(newton);
     // What was the source is now the result.
     let overlays = built.overlays.into_iter().map(|o| {
         let role = match o.role {

@@ -57,6 +57,14 @@ struct Start {
 }
 
 impl NewtonInverse {
+    /// The inverse of `map` over `area`, with starts enough for a map that bends a few times across it; answers beyond it
+    /// count up to the share `reach` of its diagonal.
+    #[must_use]
+    pub fn over(map: Arc<dyn Map>, area: Rect, reach: f64) -> Self {
+        const PIECES: [usize; 2] = [6, 6];
+        Self::new(map, area, reach * area.width().hypot(area.height()), PIECES)
+    }
+
     /// The inverse of `map` over `domain`; answers up to `reach` beyond it count. `pieces` along x and y: how finely the map
     /// is divided (1, 1 for one polynomial piece).
     #[must_use]
