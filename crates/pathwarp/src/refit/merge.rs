@@ -275,17 +275,16 @@ impl<'a> Chain<'a> {
 }
 
 impl Curve for Chain<'_> {
-    fn images(&self, t: &Lane) -> Result<Lanes, Point> {
-        let mut out = Lanes::default();
+    fn images_into(&self, t: &Lane, out: &mut Lanes) -> Result<(), Point> {
         for i in 0..8 {
             let p = self.at(t[i]);
             (out.x[i], out.y[i]) = (p.x, p.y);
         }
-        let Some(first) = self.parts.first() else { return Ok(out) };
+        let Some(first) = self.parts.first() else { return Ok(()) };
         first.source.map.lanes(&mut out.x, &mut out.y);
         match (0..8).find(|&i| !(out.x[i] + out.y[i]).is_finite()) {
             Some(i) => Err(self.at(t[i])),
-            None => Ok(out),
+            None => Ok(()),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The sixteen samples of a piece: which they are, and what they tell at a glance.
 
 use super::Piece;
-use super::fit::{self, Frame, State};
+use super::fit::{self, Frame, State, at, fma, square};
 use super::source::{End, Lane, Lanes};
 use kurbo::{Line, Point, Vec2};
 
@@ -54,7 +54,7 @@ impl Job<'_> {
     /// infinite where the samples are not [`Job::sound`].
     #[inline(always)]
     pub(super) fn glance(&self, z: &State) -> (f64, f64) {
-        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+        let power = self.frame.power(z.a, z.b);
         let (g, c) = (self.g, self.check);
         let mut worst = [0.0; 8];
         let mut drift = [0.0; 8];
@@ -63,22 +63,20 @@ impl Job<'_> {
         let mut slowness = [0.0; 8];
         for i in 0..8 {
             let residual = |s: f64, x: f64, y: f64| {
-                let rx = ((c3.x * s + c2.x) * s + c1.x) * s - x;
-                let ry = ((c3.y * s + c2.y) * s + c1.y) * s - y;
-                let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
-                let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
-                let d2 = dx * dx + dy * dy + f64::MIN_POSITIVE;
-                let n = rx * dy - ry * dx;
-                (n * n / d2, ((rx * dx + ry * dy) / d2).abs(), dx, dy, d2)
+                let (rx, ry, dx, dy) = at(&power, s, x, y);
+                let d2 = square(dx, dy);
+                let k = 1.0 / d2;
+                let n = fma(rx, dy, -(ry * dx));
+                (n * n * k, (fma(rx, dx, ry * dy) * k).abs(), dx, dy, d2)
             };
             let (n0, s0, dx, dy, d2) = residual(FITTED[i] * UNIT, g.x[i], g.y[i]);
             let (n1, s1, ..) = residual(CHECKED[i] * UNIT, c.x[i], c.y[i]);
             worst[i] = if n0 > n1 { n0 } else { n1 };
             drift[i] = if s0 > s1 { s0 } else { s1 };
             let (x, y) = (c.x[i] - g.x[i], c.y[i] - g.y[i]);
-            let l2 = x * x + y * y;
-            let along = (dx * x + dy * y) * SIDE[i];
-            let straight = 2.0 * along * along - d2 * l2;
+            let l2 = fma(x, x, y * y);
+            let along = fma(dx, x, dy * y) * SIDE[i];
+            let straight = fma(2.0 * along, along, -(d2 * l2));
             margin[i] = -(if along < straight { along } else { straight });
             pace[i] = l2;
             slowness[i] = -l2;

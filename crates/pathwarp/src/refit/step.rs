@@ -5,7 +5,7 @@
 //! pieces are needed; the breaks then go to the quantiles of the difficulty measured so far, until every piece fits.
 
 use super::certify::{self, Algebra};
-use super::fit::{self, Fit, Frame, State};
+use super::fit::{self, Fit, Frame, State, fma};
 use super::samples::{CHECKED, FITTED, Job, Shape, UNIT, between, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
@@ -56,8 +56,20 @@ impl Outcome {
         /// Eight pieces; also where nothing is known.
         const MOST: f64 = 2.6e5;
         let (Self::Fits { error, .. } | Self::Misses { error, .. }) = self;
-        (error / tolerance).clamp(1e-3, MOST).powf(1.0 / 6.0)
+        sixth_root((error / tolerance).clamp(1e-3, MOST))
     }
+}
+
+/// x^(1/6) to some 1e-4: the exponent's sixth as a start, two Newton steps.
+fn sixth_root(x: f64) -> f64 {
+    /// Five sixths of the bits of 1.0, which hold the exponent's bias.
+    const BIAS: u64 = 0x3FF0_0000_0000_0000 / 6 * 5;
+    let mut y = f64::from_bits(x.to_bits() / 6 + BIAS);
+    for _ in 0..2 {
+        let y2 = y * y;
+        y = (5.0 * y + x / (y2 * y2 * y)) * (1.0 / 6.0);
+    }
+    y
 }
 
 /// Fits one smooth part of a segment.
@@ -74,19 +86,34 @@ pub(super) struct Stepper<'a, C> {
 
 impl<C: Curve> Stepper<'_, C> {
     /// Appends pieces for the stretch between two break points. `Err`: a source place where the map is not finite.
+    #[inline(always)]
     pub(super) fn cover(
         &mut self,
-        from: End,
-        to: End,
+        from: &End,
+        to: &End,
         out: &mut Vec<Piece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
-        let first = self.attempt(&from, &to)?;
+        // Inlined here, where most segments end.
+        let first = self.try_stretch(from, to)?;
         if let Outcome::Fits { piece, error } = first {
             self.accept(piece, error, out, report);
             return Ok(());
         }
-        let mut stack = vec![(from, to, Some(first))];
+        self.divide(from, to, first, out, report)
+    }
+
+    /// Covers a stretch that one piece does not.
+    #[inline(never)]
+    fn divide(
+        &mut self,
+        from: &End,
+        to: &End,
+        first: Outcome,
+        out: &mut Vec<Piece>,
+        report: &mut PathReport,
+    ) -> Result<(), Point> {
+        let mut stack = vec![(*from, *to, Some(first))];
         while let Some((from, to, known)) = stack.pop() {
             let outcome = match known {
                 Some(o) => o,
@@ -119,6 +146,7 @@ impl<C: Curve> Stepper<'_, C> {
         Ok(())
     }
 
+    #[inline(always)]
     fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut PathReport) {
         if self.algebra.is_some() {
             report.max_error = report.max_error.max(error);
@@ -200,11 +228,19 @@ impl<C: Curve> Stepper<'_, C> {
         Ok(())
     }
 
+    /// Fits one piece to a stretch.
+    #[inline(never)]
     pub(super) fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
+        self.try_stretch(from, to)
+    }
+
+    #[inline(always)]
+    fn try_stretch(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
         let tol = self.tolerance;
-        let g = self.samples(from, h, &FITTED)?;
+        let (mut g, mut check) = (Lanes::default(), Lanes::default());
+        self.samples(from, h, &FITTED, &mut g)?;
         let q = to.p - from.p;
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
         let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
@@ -223,7 +259,7 @@ impl<C: Curve> Stepper<'_, C> {
             z.s[i] = FITTED[i] * UNIT;
         }
         let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
-        let check = self.samples(from, h, &CHECKED)?;
+        self.samples(from, h, &CHECKED, &mut check)?;
         let job = Job { from, to, frame, g: &g, check: &check, careful };
         // Most pieces end here: the Hermite cubic does.
         let (first, drift) = job.glance(&z);
@@ -290,17 +326,17 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// Images at the given samples of the stretch, relative to its first point.
     #[inline(always)]
-    fn samples(&self, from: &End, h: f64, set: &Lane) -> Result<Lanes, Point> {
+    fn samples(&self, from: &End, h: f64, set: &Lane, g: &mut Lanes) -> Result<(), Point> {
         let mut t = [0.0; 8];
         for i in 0..8 {
-            t[i] = from.t + h * (set[i] * UNIT);
+            t[i] = fma(h, set[i] * UNIT, from.t);
         }
-        let mut g = self.source.images(&t)?;
+        self.source.images_into(&t, g)?;
         for i in 0..8 {
             g.x[i] -= from.p.x;
             g.y[i] -= from.p.y;
         }
-        Ok(g)
+        Ok(())
     }
 
     /// What else can be done where the first fit does not do.
