@@ -79,12 +79,12 @@ impl Frame {
 
     /// One Newton step for the feet.
     #[inline(always)]
-    fn settle(&self, g: &Lanes, z: &mut State) {
-        let c = self.power(z.a, z.b);
-        for i in 0..8 {
-            let s = z.s[i];
-            let (rx, ry, dx, dy) = at(&c, s, g.x[i], g.y[i]);
-            z.s[i] = unit(s - fma(rx, dx, ry * dy) / square(dx, dy));
+    pub(super) fn settle(&self, g: &Lanes, a: f64, b: f64, s: &mut Lane) {
+        let c = self.power(a, b);
+        for foot in 0..8 {
+            let t = s[foot];
+            let (rx, ry, dx, dy) = at(&c, t, g.x[foot], g.y[foot]);
+            s[foot] = unit(t - fma(rx, dx, ry * dy) / square(dx, dy));
         }
     }
 
@@ -223,7 +223,7 @@ pub(super) fn unit(s: f64) -> f64 {
 }
 
 #[inline(always)]
-fn sum(v: &Lane) -> f64 {
+pub(super) fn sum(v: &Lane) -> f64 {
     ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
 }
 
@@ -271,7 +271,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
     const ROUGH: f64 = 0.1;
     let ones = [1.0; 8];
     let (enough, far) = (enough * enough, (FAR * wanted).powi(2));
-    frame.settle(g, &mut z);
+    frame.settle(g, z.a, z.b, &mut z.s);
     // Errors are squared in here.
     let mut best = Fit { z, error: f64::INFINITY, ds: [0.0; 8] };
     let (mut sums, mut squares) = ([0.0; 5], f64::INFINITY);

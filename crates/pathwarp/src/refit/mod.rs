@@ -10,6 +10,8 @@
 #[allow(clippy::needless_range_loop)]
 mod certify;
 #[allow(clippy::needless_range_loop)]
+mod chebyshev;
+#[allow(clippy::needless_range_loop)]
 mod fit;
 #[allow(clippy::needless_range_loop)]
 mod merge;
@@ -372,7 +374,7 @@ impl Job<'_> {
         if self.creases.items().is_empty() {
             let from = whole.end_with(0.0, jets[0].p, jets[0]);
             let to = whole.end_with(1.0, jets[1].p, jets[1]);
-            return self.cover(&whole, &slow, &from, &to, pieces, report);
+            return self.cover(&whole, self.algebra, &slow, &from, &to, pieces, report);
         }
         self.warp_parts(seg, jets, &whole, &slow, pieces, report)
     }
@@ -382,13 +384,14 @@ impl Job<'_> {
     fn cover(
         &self,
         source: &Source<'_>,
+        known: Option<crate::map::Algebra>,
         slow: &split::Slow,
         from: &End,
         to: &End,
         pieces: &mut Vec<Piece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
-        let algebra = if self.options.certify { Algebra::of(source) } else { None };
+        let algebra = if self.options.certify { Algebra::of(source, known) } else { None };
         let tolerance = self.options.tolerance;
         step::Stepper { source, slow, tolerance, algebra, careful: false, attempts: 0 }.cover(from, to, pieces, report)
     }
@@ -445,7 +448,7 @@ impl Job<'_> {
             if torn0 {
                 pieces.push(Piece::Line(Line::new(from.1, e0.p)));
             }
-            self.cover(source, slow, &e0, &e1, pieces, report)?;
+            self.cover(source, source.map.algebra(), slow, &e0, &e1, pieces, report)?;
             if torn1 {
                 pieces.push(Piece::Line(Line::new(e1.p, to.1)));
             }

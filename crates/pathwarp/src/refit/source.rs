@@ -1,6 +1,6 @@
 //! One smooth source piece and its image: sampled eight parameters at a time, with one-sided tangents at its break points.
 
-use super::fit::fma;
+use super::fit::{self, fma};
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
@@ -298,7 +298,7 @@ impl Curve for Source<'_> {
         for i in 0..8 {
             sum[i] = g.x[i] + g.y[i];
         }
-        if sum.iter().sum::<f64>().is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
+        if fit::sum(&sum).is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
     }
 
     fn image(&self, t: f64) -> (Point, Vec2) {
