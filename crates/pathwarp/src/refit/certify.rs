@@ -100,7 +100,7 @@ pub(super) fn quick(source: &Source<'_>, algebra: &Algebra, c: &Candidate, feet:
     match algebra.total(4, QUICK_V) {
         _ if algebra.below == 0 && algebra.total(5, QUICK_V) < 24 => with::<24, 5, QUICK_V>(source, algebra, c, feet),
         ..24 => with::<24, 4, QUICK_V>(source, algebra, c, feet),
-        ..32 => with::<32, 4, QUICK_V>(source, algebra, c, feet),
+        _ if algebra.total(5, QUICK_V) < 40 => with::<40, 5, QUICK_V>(source, algebra, c, feet),
         _ => Ok(f64::INFINITY),
     }
 }
@@ -118,13 +118,14 @@ where
 {
     let tables = Tables::<N, P>::shared();
     // p by least squares from the feet.
-    let mut p = [0.0; P];
-    for (i, (row, f)) in tables.feet.iter().zip(feet).enumerate() {
-        let lead = f - sample(i);
-        for k in 0..P {
-            p[k] += row[k] * lead;
+    let mut parts = [[0.0; 8]; 2];
+    for i in 0..FEET {
+        let lead = feet[i] - sample(i);
+        for k in 0..8 {
+            parts[i % 2][k] = fma(tables.feet[i][k], lead, parts[i % 2][k]);
         }
     }
+    let p: [f64; P] = std::array::from_fn(|k| parts[0][k] + parts[1][k]);
     if !inside(tables, &p) {
         return Ok(f64::INFINITY);
     }
@@ -202,8 +203,24 @@ fn inside_by_bound<const N: usize, const P: usize>(tables: &Tables<N, P>, p: &[f
 
 /// As [`bound`] where the candidate is a straight line: the part of D across the line, if the image runs along it one way.
 /// Then the point of the image with the same part along is each point's partner.
-#[cold]
-pub(super) fn line(source: &Source<'_>, algebra: &Algebra, c: &Candidate) -> Result<f64, Point> {
+pub(super) fn line(source: &Source<'_>, algebra: &Algebra, c: &Candidate, tolerance: f64) -> Result<f64, Point> {
+    if algebra.degree + algebra.below < 24 && algebra.total(4, QUICK_V) < 24 {
+        let quick = line_with::<24, 4, QUICK_V>(source, algebra, c)?;
+        if quick <= tolerance {
+            return Ok(quick);
+        }
+    }
+    line_with::<N, P, V>(source, algebra, c)
+}
+
+fn line_with<const N: usize, const P: usize, const V: usize>(
+    source: &Source<'_>,
+    algebra: &Algebra,
+    c: &Candidate,
+) -> Result<f64, Point>
+where
+    Tables<N, P>: Shared,
+{
     let tables = Tables::<N, P>::shared();
     let unit = c.frame.t0;
     let (mut across, mut pace, mut w) = ([0.0; N], [0.0; N], [1.0; N]);

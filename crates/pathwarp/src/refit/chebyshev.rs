@@ -1,10 +1,14 @@
 //! Polynomials on [0, 1] by their values at N Chebyshev nodes: tables, and bounds between the nodes.
 
+use super::fit::fma;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 /// Samples of the feet, at j/17.
 pub(super) const FEET: usize = 16;
+
+/// Coefficients come in fours, even and odd ones apart: at most so many quarters of those of one kind.
+const MOST_QUARTERS: usize = 6;
 
 /// What every proof with N nodes and P coefficients of p uses; see [`super::certify`].
 pub(super) struct Tables<const N: usize, const P: usize> {
@@ -12,13 +16,13 @@ pub(super) struct Tables<const N: usize, const P: usize> {
     pub(super) tau: [f64; N],
     /// The Chebyshev polynomials of degree less than P at the nodes.
     pub(super) t: [[f64; N]; P],
-    /// Row k: what the value at node k, or its sum (even d) or difference (odd d) with that of its mirror image, contributes to
-    /// coefficient d.
-    dct: [[f64; N]; N],
+    /// Row k: what the value at node k contributes to the coefficients 0, 2, 4…, and to 1, 3, 5…
+    even: [[f64; N]; N],
+    odd: [[f64; N]; N],
     /// 1 / cos(πd/2N).
     stretch: [f64; N],
-    /// Row i: what the foot of sample i contributes to the coefficients of p, by least squares.
-    pub(super) feet: [[f64; P]; FEET],
+    /// Row i: what the foot of sample i contributes to the coefficients of p (P of the eight), by least squares.
+    pub(super) feet: [[f64; 8]; FEET],
 }
 
 /// The tables in use.
@@ -41,33 +45,30 @@ macro_rules! shared {
 shared! {
     24, 5;
     24, 4;
-    32, 4;
+    40, 5;
     48, 8;
 }
 
 impl<const N: usize, const P: usize> Tables<N, P> {
     fn new() -> Self {
         let angle = |k: usize| PI * (k as f64 + 0.5) / N as f64;
+        let part = |k: usize, d: usize| (if d == 0 { 1.0 } else { 2.0 }) / N as f64 * (d as f64 * angle(k)).cos();
         Self {
             tau: std::array::from_fn(|k| 0.5 + 0.5 * angle(k).cos()),
             t: std::array::from_fn(|j| std::array::from_fn(|k| (j as f64 * angle(k)).cos())),
-            dct: std::array::from_fn(|k| {
-                std::array::from_fn(|d| {
-                    let scale = if d == 0 { 1.0 } else { 2.0 } / N as f64;
-                    scale * (d as f64 * angle(k)).cos()
-                })
-            }),
+            even: std::array::from_fn(|k| std::array::from_fn(|i| part(k, 2 * i))),
+            odd: std::array::from_fn(|k| std::array::from_fn(|i| part(k, 2 * i + 1))),
             stretch: std::array::from_fn(|d| 1.0 / (PI * d as f64 / (2 * N) as f64).cos()),
-            feet: least_squares(),
+            feet: least_squares::<P>().map(|row| std::array::from_fn(|k| if k < P { row[k] } else { 0.0 })),
         }
     }
 
     /// The first V Chebyshev coefficients of the function with these values.
     pub(super) fn first<const V: usize>(&self, f: &[f64; N]) -> [f64; V] {
         let mut out = [0.0; V];
-        for (row, v) in self.dct.iter().zip(f) {
-            for (o, c) in out.iter_mut().zip(row) {
-                *o += c * v;
+        for k in 0..N {
+            for d in 0..V {
+                out[d] += (if d % 2 == 0 { self.even[k][d / 2] } else { self.odd[k][d / 2] }) * f[k];
             }
         }
         out
@@ -81,21 +82,35 @@ impl<const N: usize, const P: usize> Tables<N, P> {
     /// A bound for the length of the vector polynomial with these values at the nodes, `most` being the longest: the smallest,
     /// over d, of what the theorem gives for the part up to degree d and the sum of the coefficients beyond.
     pub(super) fn supremum(&self, x: &[f64; N], y: &[f64; N], most: f64, degree: usize) -> f64 {
-        // All coefficients side by side; even nodes mirror odd ones, so that half the rows do.
-        let (mut cx, mut cy) = ([0.0; N], [0.0; N]);
+        // The coefficients of even degree side by side, and the odd ones, of x and y. The value at a node and at its mirror image
+        // contribute the same to the even ones, the opposite to the odd ones.
+        let mut c = [[[0.0; 4]; 4]; MOST_QUARTERS];
+        let quarters = N / 8;
         for k in 0..N / 2 {
             let m = N - 1 - k;
-            let fx = [x[k] + x[m], x[k] - x[m]];
-            let fy = [y[k] + y[m], y[k] - y[m]];
-            let row = &self.dct[k];
-            for d in 0..N {
-                cx[d] += row[d] * fx[d % 2];
-                cy[d] += row[d] * fy[d % 2];
+            let f = [x[k] + x[m], y[k] + y[m], x[k] - x[m], y[k] - y[m]];
+            let (even, odd) = (&self.even[k], &self.odd[k]);
+            for q in 0..quarters {
+                for i in 0..4 {
+                    let (e, o) = (even[4 * q + i], odd[4 * q + i]);
+                    c[q][0][i] = fma(e, f[0], c[q][0][i]);
+                    c[q][1][i] = fma(e, f[1], c[q][1][i]);
+                    c[q][2][i] = fma(o, f[2], c[q][2][i]);
+                    c[q][3][i] = fma(o, f[3], c[q][3][i]);
+                }
             }
         }
         let mut size = [0.0; N];
-        for d in 0..N {
-            size[d] = (cx[d] * cx[d] + cy[d] * cy[d]).sqrt();
+        for q in 0..quarters {
+            let (mut even, mut odd) = ([0.0; 4], [0.0; 4]);
+            for i in 0..4 {
+                even[i] = fma(c[q][0][i], c[q][0][i], c[q][1][i] * c[q][1][i]).sqrt();
+                odd[i] = fma(c[q][2][i], c[q][2][i], c[q][3][i] * c[q][3][i]).sqrt();
+            }
+            for i in 0..4 {
+                size[8 * q + 2 * i] = even[i];
+                size[8 * q + 2 * i + 1] = odd[i];
+            }
         }
         let mut tail = 0.0;
         let mut best = f64::INFINITY;
@@ -184,7 +199,7 @@ mod tests {
     #[test]
     fn the_bound_holds_and_is_not_far_off() {
         the_bound_holds_with::<48, 8>(1.06);
-        the_bound_holds_with::<32, 4>(1.1);
+        the_bound_holds_with::<40, 5>(1.1);
         the_bound_holds_with::<24, 5>(1.13);
         the_bound_holds_with::<24, 4>(1.13);
     }

@@ -291,7 +291,7 @@ impl<C: Curve> Stepper<'_, C> {
             (None, _) | (_, None) => 0.0,
             (Some(algebra), Some(source)) => {
                 let c = Candidate { t0: from.t, t1: to.t, p0: from.p, frame, a: length / 3.0, b: length / 3.0 };
-                certify::line(source, algebra, &c)?
+                certify::line(source, algebra, &c, self.tolerance)?
             }
         };
         if error <= self.tolerance {
