@@ -264,11 +264,9 @@ pub(super) struct Fit {
 /// rough fit will do: it only tells how many pieces are needed.
 pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64; 2]) -> Fit {
     /// Far above.
-    const FAR: f64 = 3.0;
+    const FAR: f64 = 6.0;
     /// A step that promises less than this share of the sum of squares is not taken.
-    const GAIN: f64 = 0.01;
-    /// The same far above what is wanted.
-    const ROUGH: f64 = 0.1;
+    const GAIN: f64 = 0.1;
     let ones = [1.0; 8];
     let (enough, far) = (enough * enough, (FAR * wanted).powi(2));
     frame.settle(g, z.a, z.b, &mut z.s);
@@ -298,8 +296,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
             break;
         }
         let Some((step, gain)) = Frame::gauss_newton(&sums) else { break };
-        let worth = if best.error > far { ROUGH } else { GAIN };
-        if k > 1 && gain < worth * squares {
+        if k > 1 && gain < GAIN * squares {
             break;
         }
         let (da, db);

@@ -258,7 +258,7 @@ fn warp_subpath(
         if projective && matches!(seg, Seg::Line(_)) {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
         } else {
-        job.warp_seg(seg, [first, last], &mut pieces, &mut out.report).map_err(infinity)?;
+            job.warp_seg(seg, [first, last], &mut pieces, &mut out.report).map_err(infinity)?;
         }
         if options.merge {
             bounds.push(pieces.len());

@@ -22,13 +22,13 @@ const MOST_PLANNED: usize = 8;
 /// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
 /// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
 const PLAIN: f64 = 0.9;
-/// The same for the dense check, whose samples are four times as many: enough also for the sharp spots it is made for.
-const DENSE: f64 = 0.98;
+/// The same for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
+const DENSE: f64 = 0.995;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
 /// is let pass (κ about the inverse of the piece's size, δ a share of that size).
 const FLAT: f64 = 0.02;
 /// A fit this good is not improved further.
-const ENOUGH: f64 = 0.77;
+const ENOUGH: f64 = 0.85;
 
 /// A handle longer or shorter than Hermite's by the piece's size counts like a residual of this share of the tolerance.
 const PULL: f64 = 0.05;
@@ -146,6 +146,63 @@ impl<C: Curve> Stepper<'_, C> {
         Ok(())
     }
 
+    /// Moves break points between a piece that misses and one beside it that fits, until both fit: near its limit a piece's
+    /// error is no smooth function of its length, and no quantile finds the place. `true`: now all pieces fit.
+    fn repair(&mut self, ends: &mut [End], got: &mut [Option<Outcome>]) -> Result<bool, Point> {
+        let fits = |o: &Option<Outcome>| matches!(o, Some(Outcome::Fits { .. }));
+        for i in 0..got.len() {
+            for k in i.saturating_sub(1)..=i {
+                if !fits(&got[i]) && k + 1 < got.len() && fits(&got[k]) != fits(&got[k + 1]) {
+                    self.balance(&mut ends[k..k + 3], &mut got[k..k + 2])?;
+                }
+            }
+            if !fits(&got[i]) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Moves the break point between two pieces, one of which fits, until both do or it is clear that they cannot.
+    fn balance(&mut self, ends: &mut [End], got: &mut [Option<Outcome>]) -> Result<(), Point> {
+        /// Places tried.
+        const BISECTIONS: usize = 5;
+        let tol = self.tolerance;
+        let [from, mid, to] = *ends else { return Ok(()) };
+        let [Some(a), Some(b)] = *got else { return Ok(()) };
+        let (mut lo, mut hi, mut t) = (from.t, to.t, mid.t);
+        let mut now = [a, b];
+        for _ in 0..BISECTIONS {
+            // What fits may grow.
+            if matches!(now[0], Outcome::Fits { .. }) {
+                lo = t
+            } else {
+                hi = t
+            }
+            let [da, db] = [now[0].difficulty(tol), now[1].difficulty(tol)];
+            let half = 0.5 * (da + db);
+            t = if half < da { from.t + (t - from.t) * half / da } else { to.t - (to.t - t) * half / db };
+            /// Nearer to a place already tried than this share of what is left there is nothing to learn.
+            const NEAR: f64 = 0.1;
+            let room = NEAR * (hi - lo);
+            if !(t > lo + room && t < hi - room) {
+                t = 0.5 * (lo + hi);
+            }
+            let mid = self.source.end(t)?;
+            now = [self.attempt(&from, &mid)?, self.attempt(&mid, &to)?];
+            match now.map(|o| matches!(o, Outcome::Fits { .. })) {
+                [false, false] => return Ok(()),
+                [true, true] => {
+                    ends[1] = mid;
+                    (got[0], got[1]) = (Some(now[0]), Some(now[1]));
+                    return Ok(());
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     #[inline(always)]
     fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut PathReport) {
         if self.algebra.is_some() {
@@ -170,9 +227,16 @@ impl<C: Curve> Stepper<'_, C> {
     ) -> Result<(), Point> {
         /// Placements tried with one number of pieces.
         const ROUNDS: usize = 3;
+        /// Where the difficulties add up to more than this share of the pieces, other placements do not help.
+        const FULL: f64 = 0.995;
+        /// But the break points may be mended one by one up to this share: the sixth order is that of the leading term, which
+        /// vanishes somewhere on many curves.
+        const REPAIRED: f64 = 1.3;
+        /// For the same reason so much of what the difficulty of long pieces says is believed.
+        const HOPE: f64 = 0.8;
         let tol = self.tolerance;
         let d = whole.difficulty(tol);
-        let mut n = (d.ceil() as usize).clamp(2, MOST_PLANNED);
+        let mut n = ((d * HOPE).ceil() as usize).clamp(2, MOST_PLANNED);
         let mut ends = [from; MOST_PLANNED + 1];
         let mut got: [Option<Outcome>; MOST_PLANNED] = [None; MOST_PLANNED];
         ends[n] = to;
@@ -200,8 +264,11 @@ impl<C: Curve> Stepper<'_, C> {
                 break;
             }
             let mut next = n;
-            if total > n as f64 * 0.995 || round >= ROUNDS {
-                next = (n + 1).max(total.ceil() as usize);
+            if total > n as f64 * FULL || round >= ROUNDS {
+                if total <= n as f64 * REPAIRED && self.repair(&mut ends[..=n], &mut got[..n])? {
+                    break;
+                }
+                next = (n + 1).max((total * HOPE).ceil() as usize);
                 round = 0;
             }
             if next > MOST_PLANNED {
