@@ -27,11 +27,11 @@
 //! Rounding of the samples (some 1e-13 of the coordinates) is added to the bound.
 
 use super::chebyshev::{FEET, Shared, Tables, sample};
-use super::fit::{fma, largest, sum};
+use super::fit::{Frame, fma, largest, sum};
 use super::source::{Curve, Lane, Source};
 use super::verify::Candidate;
 use crate::map::RationalBezier;
-use kurbo::Point;
+use kurbo::{CubicBez, Point, Vec2};
 
 /// Chebyshev nodes of the second proof: more than the degree of D for a bicubic map of a cubic (max(18, 3·9)) and for a rational
 /// map of degree 4 (12 + 27 + 5), enough for the bound to lose little.
@@ -103,6 +103,36 @@ pub(super) fn quick(source: &Source<'_>, algebra: &Algebra, c: &Candidate, feet:
         _ if algebra.total(5, QUICK_V) < 40 => with::<40, 5, QUICK_V>(source, algebra, c, feet),
         _ => Ok(f64::INFINITY),
     }
+}
+
+/// As [`bound`], for any cubic over the stretch `t` of the source; the ends need not coincide.
+pub(super) fn stretch(
+    source: &Source<'_>,
+    algebra: &Algebra,
+    t: [f64; 2],
+    cubic: &CubicBez,
+    tolerance: f64,
+) -> Result<f64, Point> {
+    let unit = |v: Vec2| if v == Vec2::ZERO { (v, 0.0) } else { (v / v.hypot(), v.hypot()) };
+    let q = cubic.p3 - cubic.p0;
+    let ((t0, a), (t1, b)) = (unit(cubic.p1 - cubic.p0), unit(cubic.p3 - cubic.p2));
+    let frame = Frame { q, t0, t1, floor: [0.0; 2], size: q.hypot() + a + b, home: [a, b], pull: 0.0 };
+    let c = Candidate { t0: t[0], t1: t[1], p0: cubic.p0, frame, a, b };
+    let mut feet = [0.0; FEET];
+    for half in feet.chunks_exact_mut(8).enumerate() {
+        let (first, out) = (8 * half.0, half.1);
+        let tau: Lane = std::array::from_fn(|i| sample(first + i));
+        let mut g = source.images(&tau.map(|tau| t[0] + (t[1] - t[0]) * tau))?;
+        for i in 0..8 {
+            g.x[i] -= cubic.p0.x;
+            g.y[i] -= cubic.p0.y;
+        }
+        let mut s = tau;
+        frame.distances(&g, a, b, &mut s, 4);
+        out.copy_from_slice(&s);
+    }
+    let first = quick(source, algebra, &c, &feet)?;
+    if first <= tolerance { Ok(first) } else { bound(source, algebra, &c, &feet) }
 }
 
 /// The bound with N nodes, P coefficients in p, V in V.

@@ -265,8 +265,8 @@ fn warp_subpath(
         }
     }
     let smooth = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
-    if options.merge && !options.certify && smooth && bounds.len() == sub.segs.len() + 1 {
-        let merger = merge::Merger { map, tolerance: options.tolerance, shared: &options.shared };
+    if options.merge && smooth && bounds.len() == sub.segs.len() + 1 {
+        let merger = merge::Merger { map, algebra: job.algebra, options };
         pieces = merger.merged(&sub.segs, &pieces, &bounds, &mut out.report).map_err(infinity)?;
     }
     out.subpath(start, &pieces, sub.closed);
