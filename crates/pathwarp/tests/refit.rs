@@ -294,6 +294,37 @@ fn iso_lines_of_a_bicubic_come_out_as_their_control_points() {
     }
 }
 
+/// A ripple of the given height.
+struct Ripple(f64);
+impl Formula for Ripple {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y + (x / 150.0).sin() * self.0)
+    }
+}
+
+#[test]
+fn what_is_straight_to_rounding_comes_out_as_a_line() {
+    // A line, and a cubic along it, between curves that leave and enter it smoothly.
+    let outline =
+        Outline::from_svg("M0 400C50 350 90 300 150 300H500C600 300 700 300 900 300C950 300 980 320 1000 400");
+    let outline = outline.unwrap();
+    for (height, lines) in [(0.0, 2), (1e-10, 2), (1e-7, 2), (1e-4, 0)] {
+        for certify in [false, true] {
+            let o = Options { certify, ..Options::new(0.1) };
+            let w = warp_path(&outline, &Ripple(height), &o).unwrap();
+            let straight = w.path.elements().iter().filter(|e| matches!(e, kurbo::PathEl::LineTo(_))).count();
+            assert_eq!(straight, lines, "{height}");
+            assert!(support::largest_turn(&support::cubics(&w.path)) < 1e-3, "{height}");
+        }
+    }
+    // Not where that would take a large share of the tolerance, nor where it would make a corner.
+    let w = warp_path(&outline, &Ripple(1e-7), &Options::new(1e-6)).unwrap();
+    assert!(!w.path.elements().iter().any(|e| matches!(e, kurbo::PathEl::LineTo(_))));
+    let hook = cubic([(100.0, 100.0), (100.0, 100.0 + 1e-6), (600.0, 100.0), (900.0, 100.0)]);
+    let w = warp_path(&single(hook), &Ripple(1e-12), &Options::new(0.1)).unwrap();
+    assert!(!w.path.elements().iter().any(|e| matches!(e, kurbo::PathEl::LineTo(_))));
+}
+
 #[test]
 fn shared_edges_are_the_same_curves_mirrored() {
     let outline = Outline::from_svg(

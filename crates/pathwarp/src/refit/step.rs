@@ -11,7 +11,7 @@ use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate};
 use super::{Assurance, PathReport, Piece};
-use kurbo::{Point, Vec2};
+use kurbo::{Line, Point, Vec2};
 
 /// Attempts on one smooth part at most.
 const MOST_ATTEMPTS: usize = 2000;
@@ -311,7 +311,7 @@ impl<C: Curve> Stepper<'_, C> {
         let q = to.p - from.p;
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
         let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
-        if let Some(line) = straight(&g, q, from.p, to.p, size) {
+        if let Some(line) = straight(&g, from, to, size, tol) {
             return self.line(from, to, line, size);
         }
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
@@ -346,9 +346,10 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// A stretch whose image is straight to rounding.
     #[cold]
-    fn line(&self, from: &End, to: &End, line: Piece, size: f64) -> Result<Outcome, Point> {
+    fn line(&self, from: &End, to: &End, (line, off): (Line, f64), size: f64) -> Result<Outcome, Point> {
+        let line = Piece::Line(line);
         if self.algebra.is_none() || size == 0.0 {
-            return Ok(Outcome::Fits { piece: line, error: 0.0 });
+            return Ok(Outcome::Fits { piece: line, error: off });
         }
         let q = to.p - from.p;
         let length = q.hypot();
