@@ -231,7 +231,7 @@ impl<C: Curve> Stepper<'_, C> {
         const FULL: f64 = 0.995;
         /// But the break points may be mended one by one up to this share: the sixth order is that of the leading term, which
         /// vanishes somewhere on many curves.
-        const REPAIRED: f64 = 1.3;
+        const REPAIRED: f64 = 1.15;
         /// For the same reason so much of what the difficulty of long pieces says is believed.
         const HOPE: f64 = 0.8;
         let tol = self.tolerance;
