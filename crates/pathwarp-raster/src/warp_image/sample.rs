@@ -92,17 +92,17 @@ fn interpolated(source: &Level<'_>, x: f64, y: f64) -> Channels {
 
 /// What a pixel covers of the source where that is more than a source pixel: the symmetric matrix S that stretches a unit
 /// square as the Jacobian J does, S² = J·Jᵀ, and in no direction by less than one.
-struct Footprint {
+pub(super) struct Footprint {
     /// The direction of the longest axis.
     axis: [f64; 2],
-    longest: f64,
+    pub(super) longest: f64,
     shortest: f64,
 }
 
 impl Footprint {
     /// `None` where no direction shrinks.
     #[inline]
-    fn new(jet: &Jet) -> Option<Self> {
+    pub(super) fn new(jet: &Jet) -> Option<Self> {
         let (a, c) = (jet.dx.x * jet.dx.x + jet.dy.x * jet.dy.x, jet.dx.y * jet.dx.y + jet.dy.y * jet.dy.y);
         let b = jet.dx.x * jet.dx.y + jet.dy.x * jet.dy.y;
         let (mean, apart) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
@@ -116,6 +116,11 @@ impl Footprint {
         let length = axis[0].hypot(axis[1]);
         let axis = if length > 0.0 { axis.map(|v| v / length) } else { [1.0, 0.0] };
         Some(Self { axis, longest, shortest })
+    }
+
+    /// The size of the off-diagonal entry of S.
+    pub(super) fn skew(&self) -> f64 {
+        self.matrix(self.longest, self.shortest)[1].abs()
     }
 
     /// ax·axᵀ·p + (1 − ax·axᵀ)·q
