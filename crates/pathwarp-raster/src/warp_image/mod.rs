@@ -18,6 +18,7 @@
 //! The work is done in tiles, in parallel. Memory is the source, a third of it again for the pyramid where there is
 //! shrinking, and the result.
 
+mod block;
 mod pyramid;
 mod reach;
 mod rows;
@@ -25,12 +26,13 @@ mod sample;
 mod trace;
 
 use crate::{Error, render::new_pixmap};
+use block::{BYTES, Block, Bytes};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Jet, Map};
 use pyramid::Pyramid;
 use rayon::prelude::*;
 use reach::Reach;
-use rows::{BYTES, Bytes, Way};
+use rows::Way;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 use trace::{ASKED, Basis, Trace};
 
@@ -80,7 +82,7 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     };
     let columns = width as usize;
     out.data_mut().par_chunks_mut(columns * BYTES * TILE).enumerate().for_each(|(band, rows)| {
-        let mut band = Band { top: band * TILE, stride: columns * BYTES, rows };
+        let mut band = Band { top: band * TILE, stride: columns * BYTES, rows, block: Block::default() };
         let height = band.rows.len() / band.stride;
         for left in (0..columns).step_by(TILE) {
             if reach.touches(left / TILE, band.top / TILE) {
@@ -123,6 +125,8 @@ struct Band<'a> {
     top: usize,
     stride: usize,
     rows: &'a mut [u8],
+    /// What a tile reads, kept for the next one's use.
+    block: Block,
 }
 
 impl Band<'_> {
@@ -146,10 +150,7 @@ struct Painter<'a> {
 impl Painter<'_> {
     fn tile(&self, band: &mut Band<'_>, area: Area) {
         match self.trace(area) {
-            Some(trace) => self.arch.dispatch(
-                #[inline(always)]
-                || self.traced(band, area, &trace),
-            ),
+            Some(trace) => self.arch.dispatch(Traced { painter: self, band, area, trace }),
             None if area.width.max(area.height) > SMALLEST => {
                 area.quarters().for_each(|quarter| self.tile(band, quarter));
             }
@@ -172,27 +173,6 @@ impl Painter<'_> {
             *answer = self.to_source * *answer;
         }
         self.basis.trace(&answers, size)
-    }
-
-    /// Pixels whose places are a polynomial.
-    #[inline(always)]
-    fn traced(&self, band: &mut Band<'_>, area: Area, trace: &Trace) {
-        let way = Way::of(trace);
-        let near = trace.at(0.5, 0.5).p;
-        for j in 0..area.height {
-            let row = trace.pixels(j);
-            let out = band.row(area, j);
-            let other = |i: usize| bytes(sample::pixel(&self.pyramid, &trace.pixel(i, j)));
-            match way {
-                Way::Between => rows::between(self.bytes, &row, near, out, other),
-                Way::Stretched => rows::stretched(self.bytes, &row, near, out, other),
-                Way::Each => {
-                    for (i, pixel) in out.as_chunks_mut().0.iter_mut().enumerate() {
-                        *pixel = other(i);
-                    }
-                }
-            }
-        }
     }
 
     /// Pixels that ask the inverse, each by itself.
@@ -229,6 +209,48 @@ impl Painter<'_> {
                 }
             }
         }
+    }
+}
+
+/// A tile whose pixels' places are a polynomial. A type of its own and no closure: all of it is to be compiled for the vector
+/// unit that there is, which goes by inlining.
+struct Traced<'a, 'b> {
+    painter: &'a Painter<'a>,
+    band: &'a mut Band<'b>,
+    area: Area,
+    trace: Trace,
+}
+
+impl pulp::WithSimd for Traced<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { painter, band, area, trace } = self;
+        let mut way = Way::of(&trace);
+        let mut block = std::mem::take(&mut band.block);
+        if !matches!(way, Way::Each) && !block.read(painter.bytes, &trace, way.margin()) {
+            way = Way::Each;
+        }
+        for j in 0..area.height {
+            let row = trace.pixels(j);
+            let out = band.row(area, j);
+            let other = |i: usize| bytes(sample::pixel(&painter.pyramid, &trace.pixel(i, j)));
+            match way {
+                Way::Between => rows::between(&block, &row, out, other),
+                Way::Stretched => rows::stretched(&block, &row, out, other),
+                Way::Skewed(shapes) => {
+                    let size = [(area.width - 1).max(1) as f32, (area.height - 1).max(1) as f32];
+                    rows::skewed(&block, &row, shapes.row(j as f32, size), out, other);
+                }
+                Way::Each => {
+                    for (i, pixel) in out.as_chunks_mut().0.iter_mut().enumerate() {
+                        *pixel = other(i);
+                    }
+                }
+            }
+        }
+        band.block = block;
     }
 }
 

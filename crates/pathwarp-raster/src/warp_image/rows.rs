@@ -2,61 +2,92 @@
 //! nothing in the results: every pixel's sums are taken in the same order.
 
 use super::TILE;
+use super::block::{BYTES, Block, Firsts, OUTSIDE};
 use super::sample::Footprint;
 use super::trace::{Row, Trace};
-use kurbo::Point;
 
-/// Up to this stretch, and with no more than [`MOST_SKEW`], eight pixels a side hold the kernel.
-const MOST_STRETCH: f64 = 1.75;
-/// The off-diagonal entry of the footprint's matrix that does without: the kernel is then stretched along the picture's own
-/// axes.
+/// Eight pixels a side hold a kernel that reaches two pixels, stretched by less than this.
+const MOST_STRETCH: f64 = 1.99;
+/// The off-diagonal entry of the footprint's matrix that counts as none: the kernel is then stretched along the picture's
+/// own axes.
 const MOST_SKEW: f64 = 0.1;
 /// Places along a side of a tile where the stretch is looked at.
 const LOOKS: usize = 5;
-/// Bytes of a pixel.
-pub(super) const BYTES: usize = 4;
-
-/// A bitmap's bytes.
-#[derive(Clone, Copy)]
-pub(super) struct Bytes<'a> {
-    pub(super) data: &'a [u8],
-    pub(super) width: usize,
-    pub(super) height: usize,
-}
-
 /// How a tile's pixels are made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Way {
     /// Nothing shrinks: four pixels a side.
     Between,
-    /// A little shrinks: up to eight.
+    /// A little shrinks, along the picture's own axes: up to eight.
     Stretched,
+    /// A little shrinks, along other axes.
+    Skewed(Shapes),
     /// Each pixel by itself.
     Each,
 }
 
-impl Way {
-    pub(super) fn of(trace: &Trace) -> Self {
-        let share = |k: usize| k as f64 / (LOOKS - 1) as f64;
-        let mut way = Self::Between;
-        for k in 0..LOOKS * LOOKS {
-            let jet = trace.at(share(k % LOOKS), share(k / LOOKS));
-            let Some(footprint) = Footprint::new(&jet) else { continue };
-            if footprint.longest > MOST_STRETCH || footprint.skew() > MOST_SKEW {
-                return Self::Each;
-            }
-            way = Self::Stretched;
-        }
-        way
+/// The inverse of the footprint's matrix in a tile's corners, left to right, top to bottom: it changes little in between.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shapes([[[f32; 3]; 2]; 2]);
+
+impl Shapes {
+    fn of(trace: &Trace) -> Self {
+        Self([0.0, 1.0].map(|v| [0.0, 1.0].map(|u| Footprint::inverse_matrix(&trace.at(u, v)).map(|m| m as f32))))
+    }
+
+    /// In row `j`, in its first column and from column to column.
+    #[inline(always)]
+    pub(super) fn row(&self, j: f32, area: [f32; 2]) -> [[f32; 3]; 2] {
+        let between = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        let [top, bottom] = self.0;
+        let [left, right]: [[f32; 3]; 2] =
+            std::array::from_fn(|side| std::array::from_fn(|k| between(top[side][k], bottom[side][k], j / area[1])));
+        [left, std::array::from_fn(|k| (right[k] - left[k]) / area[0])]
     }
 }
 
-/// The places of a row's pixels, from a pixel of the source near them.
+impl Way {
+    /// How many pixels around a tile's places its kernels reach.
+    #[inline(always)]
+    pub(super) fn margin(&self) -> f64 {
+        match self {
+            Self::Between => 3.0,
+            _ => 6.0,
+        }
+    }
+
+    pub(super) fn of(trace: &Trace) -> Self {
+        let share = |k: usize| k as f64 / (LOOKS - 1) as f64;
+        let (mut shrinks, mut skew) = (false, 0.0_f64);
+        for k in 0..LOOKS * LOOKS {
+            let jet = trace.at(share(k % LOOKS), share(k / LOOKS));
+            let Some(footprint) = Footprint::new(&jet) else { continue };
+            let [sx, s, sy] = footprint.stretch();
+            if sx.max(sy) + s.abs() > MOST_STRETCH {
+                return Self::Each;
+            }
+            (shrinks, skew) = (true, skew.max(s.abs()));
+        }
+        match shrinks {
+            false => Self::Between,
+            true if skew <= MOST_SKEW => Self::Stretched,
+            true => Self::Skewed(Shapes::of(trace)),
+        }
+    }
+}
+
+/// The places of a row's pixels, counted from the middle of a block's first pixel.
 struct Places {
-    /// That pixel's column and row.
-    base: [f64; 2],
     x: [f32; TILE],
     y: [f32; TILE],
+}
+
+impl Places {
+    #[inline(always)]
+    fn new(row: &Row, block: &Block) -> Self {
+        let [x, y] = block.corner.map(|c| c as f64 + 0.5);
+        Self { x: cubic(row.place(0, x)), y: cubic(row.place(1, y)) }
+    }
 }
 
 #[inline(always)]
@@ -69,77 +100,165 @@ fn cubic(c: [f32; 4]) -> [f32; TILE] {
     out
 }
 
-impl Places {
-    /// `near`: some place of the tile.
-    #[inline(always)]
-    fn new(row: &Row, near: Point) -> Self {
-        let base = [near.x.floor(), near.y.floor()];
-        // Pixels count from their middles.
-        Self { base, x: cubic(row.place(0, base[0] + 0.5)), y: cubic(row.place(1, base[1] + 0.5)) }
-    }
-
-    /// Which byte of the source the block of `side` × `side` pixels begins with whose first one is `left`, `top` from the
-    /// base; none if it is not all in the source.
-    #[inline(always)]
-    fn block(&self, source: Bytes<'_>, left: f32, top: f32, side: usize) -> Option<usize> {
-        let (x, y) = (f64::from(left) + self.base[0], f64::from(top) + self.base[1]);
-        let inside =
-            x >= 0.0 && y >= 0.0 && x <= source.width as f64 - side as f64 && y <= source.height as f64 - side as f64;
-        inside.then(|| (y as usize * source.width + x as usize) * BYTES)
-    }
+/// A row's pixels: where the `SIDE` × `SIDE` pixels of the block begin that each reads, and their weights.
+struct Taps<const SIDE: usize> {
+    first: Firsts,
+    x: [[f32; TILE]; SIDE],
+    y: [[f32; TILE]; SIDE],
 }
 
-/// Makes the row's pixels that can be made fast; calls `other` for the others.
+/// Makes the row's pixels whose part of the source is in the block; calls `other` for the others.
 #[inline(always)]
-pub(super) fn between(
-    source: Bytes<'_>,
-    row: &Row,
-    near: Point,
-    out: &mut [u8],
-    mut other: impl FnMut(usize) -> [u8; BYTES],
-) {
+pub(super) fn between(block: &Block, row: &Row, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
     const SIDE: usize = 4;
-    let places = Places::new(row, near);
-    for (i, pixel) in out.as_chunks_mut::<BYTES>().0.iter_mut().enumerate().take(TILE) {
-        let (x, y) = (places.x[i], places.y[i]);
-        let (left, top) = (x.floor(), y.floor());
-        let block = places.block(source, left - 1.0, top - 1.0, SIDE);
-        *pixel = match block {
-            Some(at) => {
-                let sums = columns::<{ SIDE * BYTES }>(source, at, &weights(y - top));
-                color(across(&sums, &weights(x - left)))
-            }
-            None => other(i),
-        };
+    let Places { x, y } = Places::new(row, block);
+    let (mut left, mut top) = ([0.0; TILE], [0.0; TILE]);
+    let mut taps = Taps { first: [0; TILE], x: [[0.0; TILE]; SIDE], y: [[0.0; TILE]; SIDE] };
+    for i in 0..TILE {
+        let (a, b) = (x[i].floor(), y[i].floor());
+        (left[i], top[i]) = (a - 1.0, b - 1.0);
+        let (u, v) = (weights(x[i] - a), weights(y[i] - b));
+        for k in 0..SIDE {
+            taps.x[k][i] = u[k];
+            taps.y[k][i] = v[k];
+        }
     }
+    taps.first = block.firsts(&left, &top, SIDE);
+    paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
 }
 
 /// The same with the kernel stretched.
 #[inline(always)]
-pub(super) fn stretched(
-    source: Bytes<'_>,
-    row: &Row,
-    near: Point,
+pub(super) fn stretched(block: &Block, row: &Row, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
+    const SIDE: usize = 8;
+    let Places { x, y } = Places::new(row, block);
+    let (left, wx) = kernels(&x, &stretches(row, 0));
+    let (top, wy) = kernels(&y, &stretches(row, 1));
+    let taps = Taps { first: block.firsts(&left, &top, SIDE), x: wx, y: wy };
+    paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
+}
+
+#[inline(always)]
+fn paint<const SIDE: usize, const N: usize>(
+    block: &Block,
+    taps: &Taps<SIDE>,
     out: &mut [u8],
-    mut other: impl FnMut(usize) -> [u8; BYTES],
+    other: impl FnMut(usize) -> [u8; BYTES],
+) {
+    let mut colors = [[0.0; BYTES]; TILE];
+    let n = out.len() / BYTES;
+    for (i, color) in colors.iter_mut().enumerate().take(n) {
+        let Some((mut values, stride)) = block.from(taps.first[i], SIDE) else { continue };
+        let mut sums = [0.0; N];
+        for j in 0..SIDE {
+            let Some(pixels) = values.first_chunk::<N>() else { break };
+            for k in 0..N {
+                sums[k] += taps.y[j][i] * pixels[k];
+            }
+            values = values.get(stride..).unwrap_or_default();
+        }
+        for j in 0..SIDE {
+            for c in 0..BYTES {
+                color[c] += taps.x[j][i] * sums[BYTES * j + c];
+            }
+        }
+    }
+    finish(&colors, &taps.first, out, other);
+}
+
+/// Writes a row's colours, the nearest there are as [`super::color`], and those of the pixels that were left out.
+#[inline(always)]
+fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut other: impl FnMut(usize) -> [u8; BYTES]) {
+    // The unit of a number's last bit at this size is 1: adding it rounds, and leaves a whole number in the low bits.
+    const WHOLE: f32 = (1_u32 << 23) as f32;
+    let mut bytes = [[0; BYTES]; TILE];
+    for (bytes, color) in bytes.iter_mut().zip(colors) {
+        let alpha = least(most(color[3], 0.0), 255.0);
+        for c in 0..BYTES {
+            bytes[c] = (least(most(color[c], 0.0), alpha) + WHOLE).to_bits() as u8;
+        }
+    }
+    for ((i, pixel), bytes) in out.as_chunks_mut::<BYTES>().0.iter_mut().enumerate().zip(bytes) {
+        *pixel = if first[i] == OUTSIDE { other(i) } else { bytes };
+    }
+}
+
+/// The same with the kernel stretched along any axes. `shape`: of the row, as [`Shapes::row`] has it.
+#[inline(always)]
+pub(super) fn skewed(
+    block: &Block,
+    row: &Row,
+    shape: [[f32; 3]; 2],
+    out: &mut [u8],
+    other: impl FnMut(usize) -> [u8; BYTES],
 ) {
     const SIDE: usize = 8;
-    let places = Places::new(row, near);
-    let stretch = [stretches(row, 0), stretches(row, 1)];
-    for (i, pixel) in out.as_chunks_mut::<BYTES>().0.iter_mut().enumerate().take(TILE) {
-        let (x, y) = (places.x[i], places.y[i]);
-        let (left, top) = ((x - 2.0 * stretch[0][i]).ceil(), (y - 2.0 * stretch[1][i]).ceil());
-        *pixel = match places.block(source, left, top, SIDE) {
-            Some(at) => {
-                let (wx, wy) = (kernel(left - x, stretch[0][i]), kernel(top - y, stretch[1][i]));
-                let used = ((y + 2.0 * stretch[1][i] - top) as usize + 1).min(SIDE);
-                let sums = columns::<{ SIDE * BYTES }>(source, at, &wy[..used]);
-                let scale = 1.0 / (wx.iter().sum::<f32>() * wy.iter().sum::<f32>());
-                color(across(&sums, &wx).map(|v| v * scale))
-            }
-            None => other(i),
-        };
+    const MOST: f32 = MOST_STRETCH as f32;
+    let Places { x, y } = Places::new(row, block);
+    let mut shapes = [[0.0; TILE]; 3];
+    for (k, values) in shapes.iter_mut().enumerate() {
+        for (i, v) in values.iter_mut().enumerate() {
+            *v = shape[0][k] + shape[1][k] * i as f32;
+        }
     }
+    let (mut left, mut top, mut bottom) = ([0.0; TILE], [0.0; TILE], [0.0; TILE]);
+    for i in 0..TILE {
+        let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
+        let det = ix * iy - k * k;
+        let (wide, high) = (2.0 * least((iy + k.abs()) / det, MOST), 2.0 * least((ix + k.abs()) / det, MOST));
+        (left[i], top[i], bottom[i]) = ((x[i] - wide).ceil(), (y[i] - high).ceil(), y[i] + high);
+    }
+    let first = block.firsts(&left, &top, SIDE);
+    let mut colors = [[0.0; BYTES]; TILE];
+    let n = out.len() / BYTES;
+    for (i, color) in colors.iter_mut().enumerate().take(n) {
+        let Some((mut values, stride)) = block.from(first[i], SIDE) else { continue };
+        let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
+        let (mut sums, mut totals) = ([[0.0; SIDE]; BYTES], [0.0; SIDE]);
+        let mut at = top[i];
+        while at <= bottom[i] {
+            let dy = at - y[i];
+            let (mut u, mut v) = ([0.0; SIDE], [0.0; SIDE]);
+            for n in 0..SIDE {
+                let dx = left[i] - x[i] + n as f32;
+                u[n] = ix * dx + k * dy;
+                v[n] = k * dx + iy * dy;
+            }
+            let Some(pixels) = values.first_chunk::<{ SIDE * BYTES }>() else { break };
+            for n in 0..SIDE {
+                let w = catmull_rom(u[n]) * catmull_rom(v[n]);
+                totals[n] += w;
+                for c in 0..BYTES {
+                    sums[c][n] += w * pixels[BYTES * n + c];
+                }
+            }
+            values = values.get(stride..).unwrap_or_default();
+            at += 1.0;
+        }
+        let scale = 1.0 / sum(&totals);
+        for (a, s) in color.iter_mut().zip(&sums) {
+            *a = sum(s) * scale;
+        }
+    }
+    finish(&colors, &first, out, other);
+}
+
+/// The smaller one: one instruction, as no number is NaN here.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger one.
+#[inline(always)]
+fn most(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The sum, in an order that suits vectors.
+#[inline(always)]
+fn sum(v: &[f32; 8]) -> f32 {
+    ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]))
 }
 
 /// How many pixels of the source a pixel of the row covers along one coordinate, at least one.
@@ -150,7 +269,7 @@ fn stretches(row: &Row, coordinate: usize) -> [f32; TILE] {
     let mut out = [0.0; TILE];
     for (o, (a, b)) in out.iter_mut().zip(along.iter().zip(&down)) {
         // Tiles with more are not made this way.
-        *o = (a * a + b * b).sqrt().clamp(1.0, MOST_STRETCH as f32);
+        *o = least(most((a * a + b * b).sqrt(), 1.0), MOST_STRETCH as f32);
     }
     out
 }
@@ -169,64 +288,34 @@ fn weights(t: f32) -> [f32; 4] {
     out
 }
 
-/// Their stretched weights of the eight pixels from `first` on.
+/// For every place, the first of the eight pixels that its stretched kernel reaches, and their weights, whose sum is one.
 #[inline(always)]
-fn kernel(first: f32, stretch: f32) -> [f32; 8] {
-    let per = 1.0 / stretch;
-    let mut out = [0.0; 8];
-    for (k, w) in out.iter_mut().enumerate() {
-        let t = ((first + k as f32) * per).abs();
-        let inner = (1.5 * t - 2.5) * t * t + 1.0;
-        let outer = ((2.5 - 0.5 * t) * t - 4.0) * t + 2.0;
-        *w = if t < 1.0 {
-            inner
-        } else if t < 2.0 {
-            outer
-        } else {
-            0.0
-        };
+fn kernels(places: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; TILE]; 8]) {
+    let (mut first, mut weights, mut total) = ([0.0; TILE], [[0.0; TILE]; 8], [0.0; TILE]);
+    for i in 0..TILE {
+        first[i] = (places[i] - 2.0 * stretch[i]).ceil();
     }
-    out
-}
-
-/// Sums of rows of `N` bytes, from byte `at` on.
-#[inline(always)]
-fn columns<const N: usize>(source: Bytes<'_>, at: usize, weights: &[f32]) -> [f32; N] {
-    let mut sums = [0.0; N];
-    for (row, weight) in weights.iter().enumerate() {
-        // Always there: the block is in the source.
-        let Some(bytes) = source.data.get(at + row * source.width * BYTES..).and_then(<[u8]>::first_chunk::<N>) else {
-            break;
-        };
-        for (sum, byte) in sums.iter_mut().zip(bytes) {
-            *sum += weight * f32::from(*byte);
+    for (k, weights) in weights.iter_mut().enumerate() {
+        for i in 0..TILE {
+            weights[i] = catmull_rom((first[i] + k as f32 - places[i]) / stretch[i]);
+            total[i] += weights[i];
         }
     }
-    sums
-}
-
-/// The sum over the columns.
-#[inline(always)]
-fn across(sums: &[f32], weights: &[f32]) -> [f32; BYTES] {
-    let mut out = [0.0; BYTES];
-    for (pixel, weight) in sums.as_chunks::<BYTES>().0.iter().zip(weights) {
-        for (o, s) in out.iter_mut().zip(pixel) {
-            *o += weight * s;
+    for weights in &mut weights {
+        for i in 0..TILE {
+            weights[i] /= total[i];
         }
     }
-    out
+    (first, weights)
 }
 
-/// The nearest colour there is, as [`super::color`].
+/// Catmull and Rom's cubic without branches: its outer piece, which is zero at 2, and what the inner one has more,
+/// (1 − t)²(2t − 1).
 #[inline(always)]
-fn color(c: [f32; BYTES]) -> [u8; BYTES] {
-    let alpha = (c[3] + 0.5).clamp(0.0, 255.0).floor();
-    let mut out = [0; BYTES];
-    for (o, v) in out.iter_mut().zip(c) {
-        *o = (v + 0.5).clamp(0.0, alpha) as u8;
-    }
-    out[3] = alpha as u8;
-    out
+fn catmull_rom(place: f32) -> f32 {
+    let t = least(place.abs(), 2.0);
+    let m = most(1.0 - t, 0.0);
+    ((2.5 - 0.5 * t) * t - 4.0) * t + 2.0 + m * m * (1.0 - 2.0 * m)
 }
 
 #[cfg(test)]
@@ -235,15 +324,26 @@ mod tests {
 
     #[test]
     fn unstretched_the_kernel_is_the_weights() {
-        for t in [0.0, 0.25, 0.5, 0.875] {
-            // The block begins two pixels before the place.
-            let first = (-2.0_f32).ceil() - t + if t > 0.0 { 1.0 } else { 0.0 };
-            let (w, k) = (weights(t), kernel(first, 1.0));
-            let skipped = if t > 0.0 { 0 } else { 1 };
-            for (a, b) in w.iter().zip(&k[skipped..]) {
-                assert!((a - b).abs() < 1e-6, "{t}: {w:?} {k:?}");
+        let mut places = [0.0; TILE];
+        for (i, p) in places.iter_mut().enumerate() {
+            *p = 7.0 + i as f32 / TILE as f32;
+        }
+        let (first, kernels) = kernels(&places, &[1.0; TILE]);
+        for (i, p) in places.into_iter().enumerate() {
+            // On a whole place the first of five pixels has no weight.
+            let skipped = if p == 7.0 { 1 } else { 0 };
+            assert_eq!(first[i] + skipped as f32, 6.0);
+            for (k, w) in weights(p - 7.0).into_iter().enumerate() {
+                assert!((w - kernels[k + skipped][i]).abs() < 1e-6, "{p}");
             }
-            assert!((k.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn without_branches_the_cubic_is_the_same() {
+        for k in -300..300 {
+            let t = 0.01 * k as f32;
+            assert!((catmull_rom(t) - super::super::sample::cubic(t)).abs() < 2e-6, "{t}");
         }
     }
 }

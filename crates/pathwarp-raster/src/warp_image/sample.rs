@@ -43,7 +43,7 @@ fn covered(at: f64, size: f64, rate: f64) -> f64 {
 /// Catmull and Rom's cubic: E. Catmull, R. Rom, *A class of local interpolating splines*, 1974; R. G. Keys, *Cubic
 /// convolution interpolation for digital image processing*, 1981, with a = −½.
 #[inline]
-fn cubic(t: f32) -> f32 {
+pub(super) fn cubic(t: f32) -> f32 {
     let t = t.abs();
     if t < 1.0 {
         (1.5 * t - 2.5) * t * t + 1.0
@@ -118,9 +118,14 @@ impl Footprint {
         Some(Self { axis, longest, shortest })
     }
 
-    /// The size of the off-diagonal entry of S.
-    pub(super) fn skew(&self) -> f64 {
-        self.matrix(self.longest, self.shortest)[1].abs()
+    /// The matrix S: its upper left, off-diagonal and lower right entry.
+    pub(super) fn stretch(&self) -> [f64; 3] {
+        self.matrix(self.longest, self.shortest)
+    }
+
+    /// The same of S⁻¹ at a jet.
+    pub(super) fn inverse_matrix(jet: &Jet) -> [f64; 3] {
+        Self::new(jet).map_or([1.0, 0.0, 1.0], |f| f.matrix(1.0 / f.longest, 1.0 / f.shortest))
     }
 
     /// ax·axᵀ·p + (1 − ax·axᵀ)·q
