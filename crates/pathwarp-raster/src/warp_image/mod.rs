@@ -229,7 +229,7 @@ impl pulp::WithSimd for Traced<'_, '_> {
         let Self { painter, band, area, trace } = self;
         let mut way = Way::of(&trace);
         let mut block = std::mem::take(&mut band.block);
-        if !matches!(way, Way::Each) && !block.read(painter.bytes, &trace, way.margin()) {
+        if !matches!(way, Way::Each) && !block.read(painter.bytes, &trace, way.margin(), way.layout()) {
             way = Way::Each;
         }
         for j in 0..area.height {

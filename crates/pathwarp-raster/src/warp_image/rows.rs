@@ -2,7 +2,7 @@
 //! nothing in the results: every pixel's sums are taken in the same order.
 
 use super::TILE;
-use super::block::{BYTES, Block, Firsts, OUTSIDE};
+use super::block::{BYTES, Block, Firsts, Layout, OUTSIDE};
 use super::sample::Footprint;
 use super::trace::{Row, Trace};
 
@@ -54,6 +54,12 @@ impl Way {
             Self::Between => 3.0,
             _ => 6.0,
         }
+    }
+
+    /// How they read a block.
+    #[inline(always)]
+    pub(super) fn layout(&self) -> Layout {
+        if matches!(self, Self::Skewed(_)) { Layout::Channels } else { Layout::Pixels }
     }
 
     pub(super) fn of(trace: &Trace) -> Self {
@@ -123,7 +129,7 @@ pub(super) fn between(block: &Block, row: &Row, out: &mut [u8], other: impl FnMu
             taps.y[k][i] = v[k];
         }
     }
-    taps.first = block.firsts(&left, &top, SIDE);
+    taps.first = block.firsts(&left, &top, SIDE, Layout::Pixels);
     paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
 }
 
@@ -134,7 +140,7 @@ pub(super) fn stretched(block: &Block, row: &Row, out: &mut [u8], other: impl Fn
     let Places { x, y } = Places::new(row, block);
     let (left, wx) = kernels(&x, &stretches(row, 0));
     let (top, wy) = kernels(&y, &stretches(row, 1));
-    let taps = Taps { first: block.firsts(&left, &top, SIDE), x: wx, y: wy };
+    let taps = Taps { first: block.firsts(&left, &top, SIDE, Layout::Pixels), x: wx, y: wy };
     paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
 }
 
@@ -148,7 +154,7 @@ fn paint<const SIDE: usize, const N: usize>(
     let mut colors = [[0.0; BYTES]; TILE];
     let n = out.len() / BYTES;
     for (i, color) in colors.iter_mut().enumerate().take(n) {
-        let Some((mut values, stride)) = block.from(taps.first[i], SIDE) else { continue };
+        let Some((mut values, stride)) = block.from(taps.first[i]) else { continue };
         let mut sums = [0.0; N];
         for j in 0..SIDE {
             let Some(pixels) = values.first_chunk::<N>() else { break };
@@ -208,11 +214,11 @@ pub(super) fn skewed(
         let (wide, high) = (2.0 * least((iy + k.abs()) / det, MOST), 2.0 * least((ix + k.abs()) / det, MOST));
         (left[i], top[i], bottom[i]) = ((x[i] - wide).ceil(), (y[i] - high).ceil(), y[i] + high);
     }
-    let first = block.firsts(&left, &top, SIDE);
+    let first = block.firsts(&left, &top, SIDE, Layout::Channels);
     let mut colors = [[0.0; BYTES]; TILE];
     let n = out.len() / BYTES;
     for (i, color) in colors.iter_mut().enumerate().take(n) {
-        let Some((mut values, stride)) = block.from(first[i], SIDE) else { continue };
+        let Some((mut values, stride)) = block.from(first[i]) else { continue };
         let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
         let (mut sums, mut totals) = ([[0.0; SIDE]; BYTES], [0.0; SIDE]);
         let mut at = top[i];
@@ -224,12 +230,17 @@ pub(super) fn skewed(
                 u[n] = ix * dx + k * dy;
                 v[n] = k * dx + iy * dy;
             }
-            let Some(pixels) = values.first_chunk::<{ SIDE * BYTES }>() else { break };
+            let mut weights = [0.0; SIDE];
             for n in 0..SIDE {
-                let w = catmull_rom(u[n]) * catmull_rom(v[n]);
-                totals[n] += w;
-                for c in 0..BYTES {
-                    sums[c][n] += w * pixels[BYTES * n + c];
+                weights[n] = catmull_rom(u[n]) * catmull_rom(v[n]);
+                totals[n] += weights[n];
+            }
+            for (c, sums) in sums.iter_mut().enumerate() {
+                let Some(channel) = values.get(c * stride / BYTES..).and_then(<[f32]>::first_chunk::<SIDE>) else {
+                    break;
+                };
+                for n in 0..SIDE {
+                    sums[n] += weights[n] * channel[n];
                 }
             }
             values = values.get(stride..).unwrap_or_default();
