@@ -2,10 +2,11 @@
 //!
 //! One entry, [`warp_path`]. Affine maps move control points; elsewhere each source segment is taken in its canonical direction,
 //! split where the map is not smooth (`split`), sampled eight places at a time (`source`), fitted by cubics with the right end
-//! tangents and the best handle lengths (`fit`), over as few stretches as the tolerance allows (`step`), each looked at
+//! tangents and the best handle lengths (`fit`, `step`), over as few stretches as the tolerance allows (`breaks`), each looked at
 //! closely where its samples may not tell all (`verify`), and proven where map and segment are quotients of polynomials
 //! (`certify`). Pieces may be merged across smooth joints (`merge`).
 
+mod breaks;
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
 #[allow(clippy::needless_range_loop)]
 mod certify;
@@ -374,7 +375,7 @@ impl Job<'_> {
         if self.creases.items().is_empty() {
             let from = whole.end_with(0.0, jets[0].p, jets[0]);
             let to = whole.end_with(1.0, jets[1].p, jets[1]);
-            return self.cover(&whole, self.algebra, &slow, &from, &to, pieces, report);
+            return self.cover(&whole, self.algebra, &slow, [&from, &to], pieces, report);
         }
         self.warp_parts(seg, jets, &whole, &slow, pieces, report)
     }
@@ -386,8 +387,7 @@ impl Job<'_> {
         source: &Source<'_>,
         known: Option<crate::map::Algebra>,
         slow: &split::Slow,
-        from: &End,
-        to: &End,
+        [from, to]: [&End; 2],
         pieces: &mut Vec<Piece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
@@ -448,7 +448,7 @@ impl Job<'_> {
             if torn0 {
                 pieces.push(Piece::Line(Line::new(from.1, e0.p)));
             }
-            self.cover(source, source.map.algebra(), slow, &e0, &e1, pieces, report)?;
+            self.cover(source, source.map.algebra(), slow, [&e0, &e1], pieces, report)?;
             if torn1 {
                 pieces.push(Piece::Line(Line::new(e1.p, to.1)));
             }
