@@ -379,7 +379,7 @@ impl Curve for Chain<'_> {
     /// Short segments between long ones would fall between even samples.
     fn places(&self, t0: f64, t1: f64) -> Vec<f64> {
         /// In each segment.
-        const PLACES: usize = 24;
+        const PLACES: usize = 64;
         let mut out = Vec::new();
         for (part, start) in self.parts.iter().zip(&self.starts) {
             let spread = (0..PLACES).map(|i| start + part.length() * i as f64 / PLACES as f64);

@@ -14,6 +14,8 @@ use kurbo::{Line, Point, Vec2};
 const PLAIN: f64 = 0.9;
 /// The same for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
+/// What errors of pieces over several segments grow by between the samples.
+const CORNERS: f64 = 1.015;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
 /// is let pass (κ about the inverse of the piece's size, δ a share of that size).
 const FLAT: f64 = 0.02;
@@ -279,7 +281,11 @@ impl<C: Curve> Stepper<'_, C> {
             feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
             feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
         }
-        let e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
+        let mut e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
+        if self.source.single().is_none() && self.careful {
+            // Joints have corners in their curvature, which no parabola follows.
+            e = (e * CORNERS).max(verify::thorough(self.source, &c, self.slow, self.tolerance)?);
+        }
         Ok(if e > DENSE * self.tolerance { e / DENSE } else { e })
     }
 
