@@ -196,7 +196,7 @@ impl Piece {
             Pace::Width | Pace::Height => {
                 let along = |v: Vec2| if self.pace == Pace::Width { v.x } else { v.y };
                 let (from, extent) = (self.seg.start(), along(self.seg.end() - self.seg.start()));
-                let u = self.share(
+                let u = Self::share(
                     inside,
                     |u| along(self.seg.eval(u) - from) / extent,
                     |u| along(self.seg.deriv(u)) / extent,
@@ -209,25 +209,23 @@ impl Piece {
     }
 
     /// The u in [0, 1] where the increasing `f` is `t`: Newton's method in a shrinking bracket.
-    fn share(&self, t: f64, f: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
+    fn share(t: f64, f: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
         if t <= 0.0 || t >= 1.0 {
             return t;
         }
         let (mut lo, mut hi, mut u) = (0.0, 1.0, t);
         for _ in 0..60 {
             let off = f(u) - t;
+            let step = off / slope(u);
+            if step.abs() <= f64::EPSILON * u {
+                break;
+            }
             if off > 0.0 {
                 hi = u;
             } else {
                 lo = u;
             }
-            let next = u - off / slope(u);
-            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-            let still = (next - u).abs() <= f64::EPSILON * u;
-            u = next;
-            if still || off == 0.0 {
-                break;
-            }
+            u = if u - step > lo && u - step < hi { u - step } else { 0.5 * (lo + hi) };
         }
         u
     }

@@ -110,17 +110,17 @@ fn solve(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, whole: f64, share: f64) -> 
     let mut u = a + (b - a) * share;
     for _ in 0..60 {
         let off = integral(speed, a, u) - wanted;
+        let step = off / speed(u);
+        // There: before the bracket, which rounding would have halved for nothing.
+        if step.abs() <= 2.0 * f64::EPSILON * (b - a) {
+            break;
+        }
         if off > 0.0 {
             hi = u;
         } else {
             lo = u;
         }
-        let next = u - off / speed(u);
-        let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-        if (next - u).abs() <= 1e-16 * (b - a) || off == 0.0 {
-            break;
-        }
-        u = next;
+        u = if u - step > lo && u - step < hi { u - step } else { 0.5 * (lo + hi) };
     }
     u
 }

@@ -94,10 +94,15 @@ fn lowest(sides: &[Vec<Seg>; 4]) -> usize {
         sum / length
     };
     let to_the_right = |side: &[Seg]| side.first().zip(side.last()).is_some_and(|(a, b)| b.end().x > a.start().x);
-    let key = |i: usize| if to_the_right(&sides[i]) { height(&sides[i]) } else { f64::NEG_INFINITY };
     // Of equals the first; a hair's difference is rounding.
-    let clearly = |a: f64, b: f64| a > b + 1e-9 * (a.abs() + b.abs());
-    (1..4).fold(0, |best, i| if clearly(key(i), key(best)) { i } else { best })
+    let mut best: Option<(usize, f64)> = None;
+    for (i, side) in sides.iter().enumerate().filter(|(_, s)| to_the_right(s)) {
+        let here = height(side);
+        if best.is_none_or(|(_, b)| here > b + 1e-9 * (here.abs() + b.abs())) {
+            best = Some((i, here));
+        }
+    }
+    best.map_or(0, |b| b.0)
 }
 
 /// Twice the area between a piece and the origin.
@@ -156,7 +161,7 @@ fn given(sub: &Subpath, text: &str, s: &Settings<'_>, bounds: Rect) -> Result<[P
         }
         _ => {
             let points = s.points_in("corners", text)?;
-            points.iter().map(|p| nearest(sub, |q| (q - *p).hypot2(), bounds)).collect()
+            points.iter().map(|p| nearest(sub, *p, Vec2::new(1.0, 1.0), bounds)).collect()
         }
     };
     let Ok(mut places) = <[Place; 4]>::try_from(places) else {
@@ -169,18 +174,38 @@ fn given(sub: &Subpath, text: &str, s: &Settings<'_>, bounds: Rect) -> Result<[P
     Ok(places)
 }
 
-/// Corners by angle if there are four; else the places nearest to the corners of the path's box.
+/// Four nodes that are all corners by angle; else the places nearest to the corners of the path's box, unless there are four
+/// corners by angle that span at least as much.
 fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Place; 4], &'static str), Error> {
     let n = sub.segs.len();
     let sharp: Vec<usize> = (0..n).filter(|&i| turn(&sub.segs[(i + n - 1) % n], &sub.segs[i]) >= CORNER).collect();
-    if let [a, b, c, d] = sharp[..] {
-        return Ok(([a, b, c, d].map(|i| (i, 0.0)), "found by angle"));
+    let four = <[usize; 4]>::try_from(sharp.clone()).ok().map(|c| c.map(|i| (i, 0.0)));
+    let boxed = by_box(sub, bounds, &sharp);
+    let span = |places: &[Place; 4]| {
+        let p = places.map(|(i, t)| sub.segs[i].eval(t));
+        (p[2] - p[0]).cross(p[3] - p[1]).abs()
+    };
+    match (four, boxed) {
+        (Some(four), None) => Ok((four, "found by angle")),
+        (Some(four), Some(boxed)) if n == 4 || span(&four) >= span(&boxed) => Ok((four, "found by angle")),
+        (_, Some(boxed)) => Ok((boxed, "the places nearest to the corners of its box")),
+        (None, None) => {
+            let problem = format!(
+                "has {} corners by angle, and none can be told from its box: say where they are with --corners (four node numbers, or four points)",
+                sharp.len()
+            );
+            Err(Error::usage("envelope", name, problem))
+        }
     }
+}
+
+/// The places nearest to the corners of the path's box, or corners by angle near them; `None` if they are not four in turn.
+fn by_box(sub: &Subpath, bounds: Rect, sharp: &[usize]) -> Option<[Place; 4]> {
     // In shares of the box, so that an ellipse is treated as the circle it comes from.
     let share = |v: Vec2| Vec2::new(v.x / bounds.width(), v.y / bounds.height());
     let box_corners = [(bounds.x0, bounds.y1), (bounds.x1, bounds.y1), (bounds.x1, bounds.y0), (bounds.x0, bounds.y0)];
     let places = box_corners.map(Point::from).map(|c| {
-        let place = nearest(sub, |q| share(q - c).hypot2(), bounds);
+        let place = nearest(sub, c, Vec2::new(1.0 / bounds.width(), 1.0 / bounds.height()), bounds);
         let here = sub.segs[place.0].eval(place.1);
         let off = |i: &usize| share(sub.segs[*i].start() - here).hypot();
         let corner = sharp.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|i| off(i) <= SNAP);
@@ -190,19 +215,12 @@ fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Place; 4], &'stati
     sorted.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     // The box's corners in turn must be the path's in turn, one way or the other.
     let at = |p: &Place| sorted.iter().position(|q| q == p).unwrap_or(0);
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| at(&places[i]));
+    let [a, b, c, d] = places.each_ref().map(at);
     let apart =
         |p: &[Place]| sub.segs[p[0].0].eval(p[0].1).distance(sub.segs[p[1].0].eval(p[1].1)) > 1e-9 * bounds.width();
     let in_turn = [(a, b), (b, c), (c, d), (d, a)];
     let round = |step: usize| in_turn.iter().all(|(x, y)| (x + step) % 4 == *y);
-    if !(sorted.windows(2).all(apart) && (round(1) || round(3))) {
-        let problem = format!(
-            "has {} corners by angle, and none can be told from its box: say where they are with --corners (four node numbers, or four points)",
-            sharp.len()
-        );
-        return Err(Error::usage("envelope", name, problem));
-    }
-    Ok((sorted, "the places nearest to the corners of its box"))
+    (sorted.windows(2).all(apart) && (round(1) || round(3))).then_some(sorted)
 }
 
 /// How far the path turns from one piece to the next, degrees.
@@ -218,14 +236,16 @@ fn turn(a: &Seg, b: &Seg) -> f64 {
     v.cross(w).atan2(v.dot(w)).to_degrees().abs()
 }
 
-/// The place where `off` is least: the best sample, refined by thirds; ends of pieces are nodes.
-fn nearest(sub: &Subpath, off: impl Fn(Point) -> f64, bounds: Rect) -> Place {
+/// The place nearest to `c`, both axes scaled: the best sample, refined where the distance's slope vanishes; ends of pieces are
+/// nodes.
+fn nearest(sub: &Subpath, c: Point, scale: Vec2, bounds: Rect) -> Place {
+    let scaled = |v: Vec2| Vec2::new(v.x * scale.x, v.y * scale.y);
+    let off = |s: &Seg, t: f64| scaled(s.eval(t) - c);
     let mut best = (f64::INFINITY, (0, 0.0));
     for (i, s) in sub.segs.iter().enumerate() {
-        let at = |t: f64| off(s.eval(t));
         for k in 0..=SAMPLES {
             let t = f64::from(k) / f64::from(SAMPLES);
-            let here = at(t);
+            let here = off(s, t).hypot2();
             if here < best.0 {
                 best = (here, (i, t));
             }
@@ -235,13 +255,14 @@ fn nearest(sub: &Subpath, off: impl Fn(Point) -> f64, bounds: Rect) -> Place {
     let s = &sub.segs[i];
     let step = 1.0 / f64::from(SAMPLES);
     let (mut lo, mut hi) = ((t - step).max(0.0), (t + step).min(1.0));
-    // (2/3)⁸⁰ of a step is beyond what doubles tell.
-    for _ in 0..80 {
-        let (a, b) = (lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0);
-        if off(s.eval(a)) <= off(s.eval(b)) {
-            hi = b;
+    let slope = |t: f64| off(s, t).dot(scaled(s.deriv(t)));
+    // Halving 60 times leaves nothing of a unit interval.
+    for _ in 0..60 {
+        let middle = 0.5 * (lo + hi);
+        if slope(middle) > 0.0 {
+            hi = middle;
         } else {
-            lo = a;
+            lo = middle;
         }
     }
     let t = 0.5 * (lo + hi);

@@ -58,6 +58,10 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
 fn crossing(a: &Line, b: &Line) -> Option<Point> {
     let (v, w, d) = (a.p1 - a.p0, b.p1 - b.p0, b.p0 - a.p0);
     let det = v.cross(w);
+    // Parallel chords, those of a straight stretch, meet nowhere or everywhere.
+    if det.abs() <= 1e-9 * v.hypot() * w.hypot() {
+        return None;
+    }
     let (t, u) = (d.cross(w) / det, d.cross(v) / det);
     let inside = |t: f64| t > 0.0 && t < 1.0;
     (inside(t) && inside(u)).then(|| a.p0 + v * t)

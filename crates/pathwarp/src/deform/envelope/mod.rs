@@ -28,8 +28,9 @@ static INFO: Info = Info {
     about: "The artwork's box is laid onto a shape with four sides, which may have any number of pieces, and what is inside \
 follows. Name a closed path (--envelope, for instance an object of the drawing itself), or draw the sides one by one: --bottom and \
 --top, with --left and --right if they are to be curves as well, or --bottom alone with a --height.\n\nA closed path's corners are its \
-four joints that turn by 20° or more. Has it more of them, or fewer, like a circle or a heart, its corners are the places nearest to \
-the corners of its box, measured in shares of the box, or the corner by angle within 15 % of such a place. --corners overrules that. \
+four nodes, if it has just four and each turns by 20° or more. Otherwise they are the places nearest to the corners of its box, \
+measured in shares of the box, or the node with such an angle within 15 % of such a place; but four nodes with an angle that span \
+a larger quadrilateral go first. So circles, hearts, shields and rounded boxes have corners too. --corners overrules that. \
 The bottom is the lowest side on the screen among those that can be read from left to right with the inside above them, so that \
 lettering is never mirrored; --bottom-side and --reverse overrule that. --explain tells what was chosen.\n\nAlong a side the artwork is spread \
 evenly by length. --by parameter follows the curve's own pace instead (pieces share a side by their lengths); \
@@ -107,7 +108,7 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
         Case { args: ARCH, at: (75.0, 50.0), to: (50.0 + 50.0 * R2, 80.0 - 50.0 * R2), tolerance: 1e-10 },
         // The shaper's own case: the middle of a Coons patch.
         Case { args: CAGE, at: (50.0, 50.0), to: (46.875, 55.625), tolerance: 1e-12 },
-        // y = 4·x·(100−x)/250 below 100, upright: at x = 20 the curve is 25.6 higher.
+        // y = 100 − 1.6·x·(100−x)/100, upright: at x = 20 the curve is 25.6 higher.
         Case { args: UPRIGHT, at: (20.0, 100.0), to: (20.0, 74.4), tolerance: 1e-10 },
         Case { args: UPRIGHT, at: (20.0, 0.0), to: (20.0, 24.4), tolerance: 1e-10 },
     ],
@@ -116,7 +117,7 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
 const CIRCLE: &str = "M100,50 A50,50 0 1 1 0,50 A50,50 0 1 1 100,50 Z";
 const ARCH: super::Pairs = &[("bottom", "M0,100 A50,50 0 0 1 100,100"), ("height", "40")];
 const CAGE: super::Pairs = &[("envelope", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("by", "parameter")];
-const UPRIGHT: super::Pairs = &[("bottom", "M0,100 C30,52 70,52 100,100"), ("height", "50"), ("keep", "verticals")];
+const UPRIGHT: super::Pairs = &[("bottom", "M0,100 Q50,20 100,100"), ("height", "50"), ("keep", "verticals")];
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Off the straight line by no more than this share of its length, a side is straight.

@@ -324,9 +324,10 @@ fn crossings_and_folds_are_named() {
         &[("bottom", "0,100 100,20"), ("top", "0,50 100,60")],
         &["the bottom and the top side cross near 55.5", "folds over"],
     );
-    // A tall tooth from the right reaches beyond the left: the Coons patch folds, no side crosses.
-    let tooth = "M0,0 L100,0 L100,40 L-60,50 L100,60 L100,100 L-0,100 L-80,50 Z";
-    warned(&[("envelope", tooth), ("corners", "1,2,6,7")], &["folds over near"]);
+    // The bottom doubles back without crossing anything.
+    let hook = [("bottom", "0,100 80,90 20,60 100,40"), ("top", "0,0 100,0")];
+    warned(&hook, &["folds over near", "nearest to the bottom side"]);
+    assert_eq!(built(&hook).unwrap().warnings.len(), 1);
     assert!(built(INFO.demo).unwrap().warnings.is_empty(), "{:?}", built(INFO.demo).unwrap().warnings);
 }
 
