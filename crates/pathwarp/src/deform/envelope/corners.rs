@@ -174,8 +174,8 @@ fn given(sub: &Subpath, text: &str, s: &Settings<'_>, bounds: Rect) -> Result<[P
     Ok(places)
 }
 
-/// Four nodes that are all corners by angle; else the places nearest to the corners of the path's box, unless there are four
-/// corners by angle that span at least as much.
+/// A path's only four nodes, or four corners by angle, if each lies in another quarter of the path's box or they span at least as much as the next choice:
+/// the places nearest to the box's corners.
 fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Place; 4], &'static str), Error> {
     let n = sub.segs.len();
     let sharp: Vec<usize> = (0..n).filter(|&i| turn(&sub.segs[(i + n - 1) % n], &sub.segs[i]) >= CORNER).collect();
@@ -185,9 +185,20 @@ fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Place; 4], &'stati
         let p = places.map(|(i, t)| sub.segs[i].eval(t));
         (p[2] - p[0]).cross(p[3] - p[1]).abs()
     };
+    let quartered = |places: &[Place; 4]| {
+        let mut seen: Vec<_> = places.iter().filter_map(|p| quarter(sub.segs[p.0].eval(p.1), bounds)).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        seen.len() == 4
+    };
+    // Somebody who draws four nodes means them, unless they are those of a circle.
+    let nodes = [0, 1, 2, 3].map(|i| (i, 0.0));
+    if n == 4 && quartered(&nodes) {
+        return Ok((nodes, "its four nodes"));
+    }
     match (four, boxed) {
         (Some(four), None) => Ok((four, "found by angle")),
-        (Some(four), Some(boxed)) if n == 4 || span(&four) >= span(&boxed) => Ok((four, "found by angle")),
+        (Some(four), Some(boxed)) if quartered(&four) || span(&four) >= span(&boxed) => Ok((four, "found by angle")),
         (_, Some(boxed)) => Ok((boxed, "the places nearest to the corners of its box")),
         (None, None) => {
             let problem = format!(
@@ -197,6 +208,14 @@ fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Place; 4], &'stati
             Err(Error::usage("envelope", name, problem))
         }
     }
+}
+
+/// Which quarter of the box a place lies in; `None` if it is too near to the box's middle lines to tell.
+fn quarter(p: Point, bounds: Rect) -> Option<(bool, bool)> {
+    /// Share of the box.
+    const MIDDLE: f64 = 0.05;
+    let (x, y) = ((p.x - bounds.x0) / bounds.width() - 0.5, (p.y - bounds.y0) / bounds.height() - 0.5);
+    (x.abs() > MIDDLE && y.abs() > MIDDLE).then_some((x > 0.0, y > 0.0))
 }
 
 /// The places nearest to the corners of the path's box, or corners by angle near them; `None` if they are not four in turn.

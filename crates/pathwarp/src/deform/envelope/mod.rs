@@ -28,10 +28,10 @@ static INFO: Info = Info {
     about: "The artwork's box is laid onto a shape with four sides, which may have any number of pieces, and what is inside \
 follows. Name a closed path (--envelope, for instance an object of the drawing itself), or draw the sides one by one: --bottom and \
 --top, with --left and --right if they are to be curves as well, or --bottom alone with a --height.\n\nA closed path's corners are its \
-four nodes, if it has just four and each turns by 20° or more. Otherwise they are the places nearest to the corners of its box, \
-measured in shares of the box, or the node with such an angle within 15 % of such a place; but four nodes with an angle that span \
-a larger quadrilateral go first. So circles, hearts, shields and rounded boxes have corners too. --corners overrules that. \
-The bottom is the lowest side on the screen among those that can be read from left to right with the inside above them, so that \
+nodes, if it has just four and one lies in each quarter of its box; or its nodes that turn by 20° or more, if that is so of them. \
+Otherwise they are the places nearest to the corners of the box, measured in shares of it, or the node with such an angle within \
+15 % of such a place; of four angles and four such places those that span more. So circles, hearts, shields and rounded boxes have \
+corners too. --corners overrules that. The bottom is the lowest side on the screen among those that can be read from left to right with the inside above them, so that \
 lettering is never mirrored; --bottom-side and --reverse overrule that. --explain tells what was chosen.\n\nAlong a side the artwork is spread \
 evenly by length. --by parameter follows the curve's own pace instead (pieces share a side by their lengths); \
 with one cubic for every side that is the shaper's map. --by extent goes by even steps across the screen.\n\n--keep verticals makes \
@@ -61,8 +61,8 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
     demo: &[("envelope", "M8,78 Q30,96 50,84 T95,85 C85,60 105,40 90,15 L70,6 C50,-5 30,30 5,10 C15,40 0,60 8,78 Z"), ("corners", "1,3,4,6")],
     examples: &[
         Example {
-            what: "A logo in a shield: the shape's corners and its bottom are found",
-            command: "envelope samples/logo.svg --envelope samples/envelopes.svg#shield --explain -o out.svg",
+            what: "A logo in a swallow-tailed pennant: the shape's corners and its bottom are found",
+            command: "envelope samples/logo.svg --envelope samples/envelopes.svg#pennant --explain -o out.svg",
         },
         Example {
             what: "A word between two curves of several pieces, its uprights kept upright",

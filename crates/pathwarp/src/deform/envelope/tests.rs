@@ -208,10 +208,15 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 let ring = corners::ring(&path, &s).unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
                 let sides = paced(&ring, &s, "nothing", &mut Vec::new(), &mut Vec::new()).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
-                let middle = m.jet(Point::new(50.0, 50.0));
-                assert!(middle.det() > 0.0, "{shape} from {start}, reversed {reversed}: mirrored");
-                // Right is right, and up is up.
-                assert!(middle.dx.x > 0.0 && middle.dy.y > 0.0, "{shape} from {start}: turned");
+                // On both sides of the middle, where a heart has its notch.
+                let [l, r] = [40.0, 60.0].map(|x| m.jet(Point::new(x, 50.0)));
+                assert!(l.det() > 0.0 && r.det() > 0.0, "{shape} from {start}, reversed {reversed}: mirrored");
+                // Right is right, and up is up: wrong corners turn it by 45° or more, a wavy shape by less.
+                let (dx, dy) = (l.dx + r.dx, l.dy + r.dy);
+                assert!(
+                    dx.y.abs() < 0.5 * dx.x && dy.x.abs() < 0.5 * dy.y,
+                    "{shape} from {start}: turned, {dx:?} {dy:?}"
+                );
             }
         }
     }
@@ -232,6 +237,15 @@ fn corners_by_the_stated_rule() {
     // Four by angle, among smooth joints.
     let n = note(&[("envelope", "M0,0 L50,0 L100,0 L100,50 L100,100 L0,100 Z")]);
     assert!(n.contains("found by angle") && n.contains("0,100 100,100 100,0 0,0"), "{n}");
+    // A square on its tip has its corners where they are, though none is in a quarter of its box.
+    let n = note(&[("envelope", "M50,0 L100,50 L50,100 L0,50 Z")]);
+    assert!(n.contains("found by angle"), "{n}");
+    // A fish's tail is narrow, yet drawn with four corners.
+    let n = note(&[(
+        "envelope",
+        "M8,266 C34,212 44,288 94,234 C97,229 97,223 94,218 C44,164 34,240 8,186 C18,210 18,242 8,266 Z",
+    )]);
+    assert!(n.contains("8,266 94,234 94,218 8,186"), "{n}");
     // A triangle has none at its tip.
     let n = note(&[("envelope", "M50,0 L100,100 L0,100 Z")]);
     assert!(n.contains("0,100 100,100 60,20 40,20"), "{n}");
