@@ -27,8 +27,8 @@ const JOBS: &[Job] = &[
         name: "badge",
         title: "Lettering round a badge",
         text: "The word stands on an arc, scaled to its length. `--baseline` says which height of the artwork lies on the arc: the \
-letters stand at 34 %, above the tail of the g.",
-        command: "bend samples/lettering.svg --along 'M40,250 A230,230 0 0 1 496,250' --stretch scale --baseline 34% -o out.svg",
+letters stand at 25 %, above the tail of the g.",
+        command: "bend samples/lettering.svg --along 'M10,250 A330,330 0 0 1 526,250' --stretch scale --baseline 25% -o out.svg",
     },
     Job {
         name: "flag",
@@ -46,8 +46,9 @@ taken for a corner. `--explain` tells what was chosen.",
     Job {
         name: "t-shirt",
         title: "Arched lettering for a T-shirt",
-        text: "Flat below, arched above. With `--keep verticals` uprights stay upright and letters keep their even widths.",
-        command: "envelope samples/lettering.svg --bottom 'M20,180 H516' --top 'M20,110 Q268,-80 516,110' --keep verticals -o out.svg",
+        text: "Flat below, arched above. `--frame` is the box from baseline to ascenders, so that the baseline becomes the flat side and \
+the g hangs below it. With `--keep verticals` uprights stay upright and letters keep their even widths.",
+        command: "envelope samples/lettering.svg --frame 20,20,496,112.5 --bottom 'M20,180 H516' --top 'M20,110 Q268,-80 516,110' --keep verticals -o out.svg",
     },
     Job {
         name: "wine-label",
@@ -56,10 +57,11 @@ taken for a corner. `--explain` tells what was chosen.",
         command: "envelope samples/logo.svg --bottom 'M60,170 A310,60 0 0 0 604,170' --height 150 --keep verticals -o out.svg",
     },
     Job {
-        name: "tapered-cup",
-        title: "Artwork for a tapered cup",
-        text: "Laid flat, a band of a paper cup is part of a ring. The eye is 40 cm in front of the cup, and the result is true to size.",
-        command: "anamorph samples/logo.svg --distance 40cm --picture-width 50mm --onto cone:top=45mm,bottom=30mm,height=100mm -o out.svg",
+        name: "bucket",
+        title: "Artwork for a tapered bucket",
+        text: "Laid flat, a band round a bucket or a paper cup is part of a ring. The eye is a metre in front of it, and the result is \
+true to size.",
+        command: "anamorph samples/logo.svg --distance 1m --onto cone:top=120mm,bottom=85mm,height=160mm -o out.svg",
     },
     Job {
         name: "mug",
@@ -70,8 +72,9 @@ taken for a corner. `--explain` tells what was chosen.",
     Job {
         name: "road-marking",
         title: "A word painted on the road",
-        text: "Drivers see it from a height of 1.2 m. Thrown onto the floor, the letters grow long; the result is what to paint, true to size.",
-        command: "anamorph samples/lettering.svg --eye-height 1.2m --distance 20m --length 10m --onto plane:floor -o out.svg",
+        text: "Thrown onto the floor, letters grow long towards the top; from the eye's place they look as drawn. The result is what to \
+paint, true to size. Lengths may have units: `--eye-height 1.2m --distance 20m --length 10m` is a driver's view.",
+        command: "anamorph samples/lettering.svg --eye-height 300 --distance 500 --onto plane:floor -o out.svg",
     },
     Job {
         name: "sign",
@@ -87,10 +90,10 @@ laser cutters and engravers want them. A rounded box has no corners by angle: th
         command: "envelope samples/lineart.svg --envelope 'M34,40 H326 A34,34 0 0 1 360,74 V204 A34,34 0 0 1 326,238 H34 A34,34 0 0 1 0,204 V74 A34,34 0 0 1 34,40 Z' --strokes keep -o out.svg",
     },
     Job {
-        name: "coin",
-        title: "A monogram on a coin",
-        text: "A circle is a shape like any other: its corners are on its diagonals.",
-        command: "envelope samples/monogram.svg --envelope 'M230,120 A110,110 0 1 1 10,120 A110,110 0 1 1 230,120 Z' -o out.svg",
+        name: "oval",
+        title: "A word in an oval",
+        text: "An ellipse has no corners: they are taken where it comes nearest to the corners of its box, on the diagonals.",
+        command: "envelope samples/lettering.svg --envelope 'M526,95 A258,130 0 1 1 10,95 A258,130 0 1 1 526,95 Z' -o out.svg",
     },
     Job {
         name: "valentine",
@@ -108,13 +111,13 @@ laser cutters and engravers want them. A rounded box has no corners by angle: th
         name: "wreath",
         title: "A wreath of badges",
         text: "Copies of the artwork all round a circle, as many as it has room for, spread evenly.",
-        command: "bend samples/badge.svg --along 'M-470,130 A600,600 0 1 1 730,130 A600,600 0 1 1 -470,130 Z' --stretch repeat --gap 8% -o out.svg",
+        command: "bend samples/badge.svg --along 'M-230,130 A360,360 0 1 1 490,130 A360,360 0 1 1 -230,130 Z' --stretch repeat --gap 8% -o out.svg",
     },
     Job {
         name: "ball",
         title: "A badge on a ball",
         text: "A bulge blows up the middle and leaves what is around it.",
-        command: "bulge samples/grid.svg --amount 0.8 -o out.svg",
+        command: "bulge samples/badge.svg --amount 0.8 -o out.svg",
     },
 ];
 
