@@ -5,6 +5,7 @@
 
 mod affine;
 pub mod anamorph;
+pub(crate) mod arclength;
 pub(crate) mod bernstein;
 mod birational;
 pub(crate) mod bspline;

@@ -3,7 +3,8 @@
 //! The pace is by arc length, by the pieces' own parameters, or by even steps along an axis. Beyond 0 and 1 a Bézier curve at its
 //! own pace runs on as the polynomial it is; everything else runs straight on along its last direction.
 
-use crate::outline::{ArcLength, Seg};
+use super::arclength::ArcLength;
+use crate::outline::Seg;
 use kurbo::{CubicBez, Line, Point, Vec2};
 
 /// What equal steps of a side's parameter are.

@@ -5,11 +5,9 @@
 //! shape that was drawn.
 
 mod arc;
-mod arclength;
 mod svg;
 
 pub use arc::EllipticArc;
-pub(crate) use arclength::ArcLength;
 
 use kurbo::{Affine, BezPath, CubicBez, Line, ParamCurve, ParamCurveDeriv, PathEl, Point, QuadBez, Rect, Shape, Vec2};
 

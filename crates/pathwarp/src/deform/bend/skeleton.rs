@@ -4,7 +4,7 @@ use super::casteljau::Ribbon;
 use super::piece::{Moving, Piece, Shape, moving, normal};
 use crate::anchors;
 use crate::error::{Error, show};
-use crate::outline::ArcLength;
+use crate::map::arclength::ArcLength;
 use crate::outline::{Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{Point, Vec2};

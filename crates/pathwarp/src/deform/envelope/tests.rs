@@ -363,3 +363,17 @@ fn every_fault_is_named() {
     let many = (0..2100).map(|i| format!("{},{}", i, (i % 7) * (i % 5))).collect::<Vec<_>>().join(" ");
     assert!(fault(&[("envelope", &many)]).contains("2000 are the most"));
 }
+
+/// The shared Newton inverse finds its way back, over joints too, at every pace.
+#[test]
+fn it_can_be_undone() {
+    let path = "M0,100 C20,120 40,80 50,100 Q70,130 110,95 L100,50 Q120,20 100,-10 C70,-30 30,10 -5,5 Q20,60 0,100 Z";
+    for by in ["length", "parameter", "extent"] {
+        let m = map(&[("envelope", path), ("corners", "1,3,5,6"), ("by", by)]);
+        let back = crate::map::NewtonInverse::over(Arc::clone(&m), SQUARE, 0.25);
+        for p in grid(23, -1.0) {
+            let q = back.point(m.point(p));
+            assert!(q.distance(p) < 1e-9, "{by} {p:?} {q:?}");
+        }
+    }
+}
