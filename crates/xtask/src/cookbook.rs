@@ -109,9 +109,9 @@ laser cutters and engravers want them. A rounded box has no corners by angle: th
     },
     Job {
         name: "wreath",
-        title: "A wreath of badges",
+        title: "A wreath of monograms",
         text: "Copies of the artwork all round a circle, as many as it has room for, spread evenly.",
-        command: "bend samples/badge.svg --along 'M-230,130 A360,360 0 1 1 490,130 A360,360 0 1 1 -230,130 Z' --stretch repeat --gap 8% -o out.svg",
+        command: "bend samples/monogram.svg --along 'M-230,130 A360,360 0 1 1 490,130 A360,360 0 1 1 -230,130 Z' --stretch repeat --gap 12% -o out.svg",
     },
     Job {
         name: "ball",
