@@ -5,6 +5,7 @@
 
 mod affine;
 pub mod anamorph;
+pub(crate) mod arclength;
 pub(crate) mod bernstein;
 mod birational;
 pub(crate) mod bspline;
@@ -24,7 +25,9 @@ mod patch;
 mod pins;
 mod quotient;
 mod rational;
+pub mod ruled;
 pub mod surface;
+mod tiled;
 pub mod triangle;
 
 pub use affine::AffineMap;
@@ -44,6 +47,8 @@ pub use patch::Patch;
 pub use pins::{MOST_PINS, pull};
 pub use quotient::Quotient;
 pub use rational::RationalBezier;
+pub use ruled::{Along, Guide};
+pub use tiled::{Row, Tiled};
 pub use triangle::TriangleNet;
 
 use kurbo::{Affine, Point};

@@ -20,7 +20,7 @@ const MOST_SPANS: usize = 2000;
 
 /// The inverse of a curve's arc length.
 #[derive(Debug, Clone)]
-pub(super) struct ArcLength {
+pub(crate) struct ArcLength {
     spans: Vec<Span>,
 }
 
@@ -35,7 +35,7 @@ struct Span {
 
 impl ArcLength {
     /// For a curve over [0, 1] with this speed.
-    pub(super) fn new(speed: &dyn Fn(f64) -> f64) -> Self {
+    pub(crate) fn new(speed: &dyn Fn(f64) -> f64) -> Self {
         let rough: f64 = (0..16).map(|i| integral(speed, f64::from(i) / 16.0, f64::from(i + 1) / 16.0)).sum();
         let mut spans = Vec::new();
         let mut todo = vec![(0.0, 1.0, 0)];
@@ -61,12 +61,12 @@ impl ArcLength {
     }
 
     /// The whole length.
-    pub(super) fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.spans.last().map_or(0.0, |s| s.s1)
     }
 
     /// The parameter at distance `s`, in [0, 1].
-    pub(super) fn parameter(&self, s: f64) -> f64 {
+    pub(crate) fn parameter(&self, s: f64) -> f64 {
         let i = self.spans.partition_point(|span| span.s1 < s).min(self.spans.len() - 1);
         let span = &self.spans[i];
         let size = span.s1 - span.s0;
