@@ -11,6 +11,7 @@ mod bulge;
 mod expr;
 mod ffd;
 mod lens;
+mod mesh;
 mod mls;
 mod mobius;
 mod polar;
@@ -19,7 +20,9 @@ mod shaper;
 mod similitude;
 mod swirl;
 mod triangle;
+mod warp;
 mod wave;
+mod wordart;
 
 use crate::error::Error;
 use crate::map::Map;
@@ -32,6 +35,9 @@ use std::sync::Arc;
 pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
+        Arc::new(warp::Warp),
+        Arc::new(wordart::WordArt),
+        Arc::new(mesh::Mesh),
         Arc::new(bilinear::Bilinear),
         Arc::new(birational::BirationalDeformation),
         Arc::new(bend::Bend),

@@ -122,6 +122,12 @@ impl Piece {
 /// The ruled map that takes `frame`'s upper side to `top` and its lower side to `bottom`. `None`: the frame has no area.
 #[must_use]
 pub fn ruled(frame: Rect, top: &Guide, bottom: &Guide) -> Option<Arc<dyn Map>> {
+    Tiled::new(frame, Vec::new(), vec![row(frame, top, bottom)?])
+}
+
+/// The same as a row of tiles, to stand above and below others.
+#[must_use]
+pub fn row(frame: Rect, top: &Guide, bottom: &Guide) -> Option<Row> {
     /// Joints nearer than this are one: guides of like proportions meet there up to rounding.
     const APART: f64 = 1e-12;
     if !(frame.width() > 0.0 && frame.height() > 0.0) {
@@ -133,7 +139,7 @@ pub fn ruled(frame: Rect, top: &Guide, bottom: &Guide) -> Option<Arc<dyn Map>> {
     let ends: Vec<f64> = [0.0].into_iter().chain(cuts.iter().copied()).chain([1.0]).collect();
     let maps = ends.windows(2).map(|w| strip(frame, top, bottom, w[0], w[1])).collect();
     let cuts = cuts.iter().map(|u| frame.x0 + u * frame.width()).collect();
-    Tiled::new(frame, Vec::new(), vec![Row { cuts, maps }])
+    Some(Row { cuts, maps })
 }
 
 /// (u, v) from the source.
