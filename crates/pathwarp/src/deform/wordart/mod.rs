@@ -18,22 +18,66 @@ use std::sync::Arc;
 
 pub(super) struct WordArt;
 
+/// The names, in the standard's families.
+const NAMES: &[&str] = &[
+    "plain",
+    "stop",
+    "triangle",
+    "triangle-inverted",
+    "chevron",
+    "chevron-inverted",
+    "ring-inside",
+    "ring-outside",
+    "arch-up",
+    "arch-down",
+    "circle",
+    "button",
+    "arch-up-pour",
+    "arch-down-pour",
+    "circle-pour",
+    "button-pour",
+    "curve-up",
+    "curve-down",
+    "can-up",
+    "can-down",
+    "wave1",
+    "wave2",
+    "double-wave1",
+    "wave4",
+    "inflate",
+    "deflate",
+    "inflate-bottom",
+    "deflate-bottom",
+    "inflate-top",
+    "deflate-top",
+    "deflate-inflate",
+    "deflate-inflate-deflate",
+    "fade-right",
+    "fade-left",
+    "fade-up",
+    "fade-down",
+    "slant-up",
+    "slant-down",
+    "cascade-up",
+    "cascade-down",
+];
+
 static INFO: Info = Info {
     name: "wordart",
     title: "put artwork into one of the forty text shapes of office programs",
     group: "Envelopes",
     about: "The text effects that word processors and presentations offer under Transform, from their published formulas: \
-plain, stop, triangle, triangle-inverted, chevron, chevron-inverted, ring-inside, ring-outside, arch-up, arch-down, circle, \
-button, arch-up-pour, arch-down-pour, circle-pour, button-pour, curve-up, curve-down, can-up, can-down, wave1, wave2, \
-double-wave1, wave4, inflate, deflate, inflate-bottom, deflate-bottom, inflate-top, deflate-top, deflate-inflate, \
-deflate-inflate-deflate, fade-right, fade-left, fade-up, fade-down, slant-up, slant-down, cascade-up, cascade-down. The names of \
+plain, triangle, chevron, arch-up, ring-inside, wave1, inflate, slant-up, cascade-up and the others below; \
+`pathwarp gallery --set wordart` draws them all. The names of \
 the menus are known too (\"Chevron Up\"), and those in files (textChevron).\n\nThe artwork's box is spanned between the guides; in \
 arch-up, arch-down, circle and button it stands on them instead, scaled to their length. deflate-inflate has two bands, \
 deflate-inflate-deflate, button and button-pour have three: made for as many lines of text. --split says where the artwork is \
-divided; otherwise it is divided evenly.",
+divided; otherwise it is divided evenly.\n\nA shape of your own is a TOML or JSON file of adjust values, formulas over w and h (the \
+box) and guides written like path data:\n\n  name = \"hill\"\n  adj = [{ name = \"adj\", default = 40000, least = 0, most = 80000 }]\n  \
+let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\"]]",
     source: "ECMA-376, Office Open XML File Formats, Part 1, presetTextWarpDefinitions (DrawingML prstTxWarp, 20.1.9.19)",
     params: &[
-        Param::new("preset", Kind::Text("NAME"), "The shape.").needed(),
+        Param::new("preset", Kind::NameOrFile(NAMES), "The shape: a name, or a file of your own.").needed(),
         Param::new(
             "adj",
             Kind::Text("[NAME=]VALUE"),
@@ -104,10 +148,13 @@ impl Deformation for WordArt {
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let name = s.texts("preset").last().copied().unwrap_or_default();
-        let preset = preset::all().into_iter().find(|p| p.is_called(name)).ok_or_else(|| {
-            let known: Vec<String> = preset::all().into_iter().map(|p| p.name).collect();
-            Error::usage("preset", name, format!("is no text shape; there are {}", known.join(", ")))
-        })?;
+        let preset = match s.file_if("preset")? {
+            Some(file) => serde_json::from_str(&file.text)
+                .map_err(|e| Error::input(&file.name, format!("is no text shape: {e}")))?,
+            None => preset::all().into_iter().find(|p| p.is_called(name)).ok_or_else(|| {
+                Error::usage("preset", name, format!("is no text shape; there are {}, and files", NAMES.join(", ")))
+            })?,
+        };
         let rect = s.frame().rect;
         if !(rect.width() > 0.0 && rect.height() > 0.0) {
             return Err(GeometryError::FlatFrame { width: rect.width(), height: rect.height() }.into());

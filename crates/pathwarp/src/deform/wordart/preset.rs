@@ -16,8 +16,10 @@ use serde::Deserialize;
 pub(super) struct Preset {
     /// Its name.
     pub(super) name: String,
+    #[serde(default)]
     also: Vec<String>,
     /// What can be adjusted.
+    #[serde(default)]
     pub(super) adj: Vec<Adjust>,
     #[serde(default, rename = "let")]
     names: Vec<String>,

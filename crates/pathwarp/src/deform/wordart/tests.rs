@@ -288,13 +288,36 @@ fn names_and_limits() {
         let found = |n: &str| preset::all().into_iter().find(|p| p.is_called(n)).map(|p| p.name);
         assert!(found(a).is_some() && found(a) == found(b), "{a} {b}");
     }
-    let mut spellings: Vec<String> = preset::all().into_iter().map(|p| p.name).collect();
-    spellings.dedup();
-    assert_eq!(spellings.len(), 40);
+    assert_eq!(preset::all().iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), NAMES);
+    assert!(NAMES.len() == 40 && NAMES.iter().enumerate().all(|(i, n)| !NAMES[..i].contains(n)));
     let fault = |pairs: &[(&str, &str)]| build(pairs).map(|_| ()).unwrap_err().to_string();
     assert!(fault(&[("preset", "bubble")]).contains("cascade-down"));
     assert!(fault(&[("preset", "inflate"), ("adj", "20001")]).contains("0 to 20000"));
     assert!(fault(&[("preset", "inflate"), ("adj", "adj2=1")]).contains("adj"));
     assert!(fault(&[("preset", "inflate"), ("split", "50%")]).contains("split"));
     assert!(fault(&[("preset", "button"), ("split", "50%,40%")]).contains("rising"));
+}
+
+/// A shape from a file: the triangle, told anew; without bands or paths, and with broken guides, it is refused.
+#[test]
+fn files_of_ones_own() {
+    let with = |text: &str| {
+        let mut args = Args::from_pairs(&[("preset", "my.json"), ("adj", "30%")]);
+        args.resolve_files(WordArt.info().params, |_| Ok(text.to_owned())).unwrap();
+        WordArt.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
+    };
+    let head = r#"{ "name": "roof", "adj": [{ "name": "a", "default": 0, "least": 0, "most": 50000 }], "#;
+    let own =
+        with(&format!(r#"{head} "bands": [["M 0,a*h/100000 L w/2,0 w,a*h/100000", "M 0,h L w,h"]] }}"#)).unwrap().map;
+    let ours = build(&[("preset", "triangle"), ("adj", "30%")]).unwrap().map;
+    assert!(own.point((80.0, 70.0).into()).distance(ours.point((80.0, 70.0).into())) < 1e-12);
+    for rest in [
+        r#""bands": [] }"#,
+        r#""bands": [["", "M 0,h L w,h"]] }"#,
+        r#""bands": [["M 0 L w,0", "M 0,h L w,h"]] }"#,
+        r#""paths": ["M 0,0"] }"#,
+        r#""x": 1 }"#,
+    ] {
+        assert!(with(&format!("{head}{rest}")).is_err(), "{rest}");
+    }
 }
