@@ -84,7 +84,7 @@ pub(crate) fn command() -> Command {
                 .help("Pixels per px of a PNG sheet"),
         )
         .after_help(
-            "Everything on a sheet has one scale. Labels are outlines: they look the same everywhere.\n\nExamples:\n  \
+            "What is on a sheet has one scale; only what is much larger is made to fit. Labels are outlines: they look the same everywhere.\n\nExamples:\n  \
              pathwarp gallery samples/logo.svg -o sheet.svg\n  \
              pathwarp gallery samples/lettering.svg --set wordart --columns 5 -o sheet.png\n  \
              pathwarp gallery samples/badge.svg --bend -30% --axis vertical -o sheet.svg",

@@ -1,7 +1,7 @@
 //! A sheet of drawings side by side, labelled: one SVG that shows the same everywhere.
 //!
 //! Every drawing is written out as usvg resolves it, its ids made its own, so that none reaches into another. Labels are outlines
-//! of the bundled font. All drawings have one scale, the largest at which the largest fits its cell.
+//! of the bundled font. Drawings have one scale, at which three quarters of them fit; larger ones are made to fit.
 
 use crate::{ReadOptions, parse_tree};
 use pathwarp::Error;
@@ -62,9 +62,10 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
         drawn.push((seen, inside(&tree.to_string(&own)).to_owned()));
     }
     let room = ((w - 2.0 * INSET).max(1.0), (h - 2.0 * INSET - LABEL).max(1.0));
-    let fits = drawn.iter().map(|(b, _)| (room.0 / b.width().max(1e-9)).min(room.1 / b.height().max(1e-9)));
-    let scale = fits.fold(f64::INFINITY, f64::min);
-    let scale = if scale.is_finite() { scale } else { 1.0 };
+    let fit = |b: &Rect| (room.0 / b.width().max(1e-9)).min(room.1 / b.height().max(1e-9));
+    let mut fits: Vec<f64> = drawn.iter().map(|(b, _)| fit(b)).collect();
+    fits.sort_by(f64::total_cmp);
+    let common = fits.get(fits.len() / 4).copied().unwrap_or(1.0);
 
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
@@ -79,7 +80,7 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     for (k, (seen, content)) in drawn.iter().enumerate() {
         let (x, y) = place(k);
         let (cx, cy) = (x + 0.5 * w, y + INSET + 0.5 * room.1);
-        let c = seen.center();
+        let (c, scale) = (seen.center(), common.min(fit(seen)));
         let _ = write!(
             out,
             "<g id=\"cell-{k}\">\n<title>{}</title>\n<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"6\" fill=\"#f5f5f2\"/>\n\
@@ -122,7 +123,7 @@ mod tests {
         <stop stop-color=\"red\"/><stop offset=\"1\" stop-color=\"blue\"/></linearGradient></defs>\
         <rect width=\"100\" height=\"50\" fill=\"url(#g)\"/></svg>";
 
-    /// Ids are each drawing's own, labels are no text, and drawings lie within their cells at one scale.
+    /// Ids are each drawing's own, labels are no text, and drawings lie within their cells.
     #[test]
     fn drawings_lie_in_their_cells_and_keep_to_themselves() {
         let half = ONE.replace("<rect width=\"100\"", "<rect width=\"50\"").replace("red", "lime");

@@ -41,7 +41,7 @@ static INFO: Info = Info {
     name: "warp",
     title: "bend artwork in one of fifteen styles: arc, flag, fisheye, …",
     group: "Envelopes",
-    about: "The warp styles that drawing programs share, with the same results: arc, arc-lower, arc-upper, arch, bulge, \
+    about: "The warp styles that drawing programs share, by the nets measured on the best known of them: arc, arc-lower, arc-upper, arch, bulge, \
 shell-lower, shell-upper, flag, wave, fish, rise, fisheye, inflate, squeeze, twist. --bend says how much and which way; \
 `pathwarp gallery` draws them all. Names as Photoshop writes them (warpArc) are known too.\n\nBends beyond 100% go on by the same \
 formula; those made of circles' arcs end at 190%. --horizontal and --vertical distort the result in addition, as if it leant away \
@@ -72,7 +72,7 @@ transformation from 16 control points, equation (7)",
         Example { what: "A word on an arc", command: "warp samples/lettering.svg --style arc --bend 50% -o out.svg" },
         Example { what: "A logo on a flag", command: "warp samples/logo.svg --style flag --bend -30% -o out.svg" },
         Example {
-            what: "A badge seen through a fisheye, upright and leaning away to the right",
+            what: "A badge seen through a fisheye, leaning away to the right",
             command: "warp samples/badge.svg --style fisheye --bend 60% --horizontal -25% -o out.svg",
         },
         Example {
