@@ -151,6 +151,35 @@ fn forbidden_geometry_is_4_and_leaves_the_old_file_alone() {
     }
 }
 
+/// Renaming a finished file over `/dev/null` would put a file in its place.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_written_to_and_stays_what_it_is() {
+    use std::os::unix::fs::FileTypeExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (pipe, link, file) =
+        (folder.path().join("pipe"), folder.path().join("link.svg"), folder.path().join("file.svg"));
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || fs::read(pipe).unwrap()
+    });
+    let warp = |to: &Path| {
+        let (input, to) = (sample("icon.svg"), to.to_str().unwrap());
+        let out = pathwarp_in(folder.path(), &["swirl", input.to_str().unwrap(), "-o", to], b"");
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    };
+    warp(&pipe);
+    let piped = reader.join().unwrap();
+    assert!(piped.starts_with(b"<"));
+    assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+    fs::write(&file, "old").unwrap();
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    warp(&link);
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read(&file).unwrap(), piped);
+}
+
 #[test]
 fn artwork_as_flat_as_a_line_needs_a_base() {
     let dir = tempfile::tempdir().unwrap();

@@ -6,13 +6,25 @@ use std::path::{Path, PathBuf};
 
 /// A file that is ready to be written: nothing is visible under its name before [`Pending::commit_all`].
 pub(crate) struct Pending {
-    file: tempfile::NamedTempFile,
+    content: Content,
     to: PathBuf,
+}
+
+enum Content {
+    /// To be renamed.
+    File(tempfile::NamedTempFile),
+    /// For what is no file (`/dev/null`, `/dev/stdout`, a pipe): renaming would put a file in its place.
+    Bytes(Vec<u8>),
 }
 
 impl Pending {
     /// Writes `bytes` to a temporary file beside `to`.
     pub(crate) fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
+        if to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir()) {
+            return Ok(Self { content: Content::Bytes(bytes.to_vec()), to: to.to_owned() });
+        }
+        // A link stays one: what it leads to is replaced.
+        let to = &to.canonicalize().unwrap_or_else(|_| to.to_owned());
         let folder = match to.parent() {
             Some(p) if !p.as_os_str().is_empty() => p,
             _ => Path::new("."),
@@ -34,7 +46,7 @@ impl Pending {
             }
             let mut file = builder.tempfile_in(folder)?;
             file.write_all(bytes)?;
-            Ok(Self { file, to: to.to_owned() })
+            Ok(Self { content: Content::File(file), to: to.to_owned() })
         };
         write().map_err(|e| Failure::file(to, format!("cannot be written: {e}")))
     }
@@ -42,7 +54,13 @@ impl Pending {
     /// Renames all of them to their names.
     pub(crate) fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
         for p in all {
-            p.file.persist(&p.to).map_err(|e| Failure::file(&p.to, format!("cannot be written: {}", e.error)))?;
+            let written = match p.content {
+                Content::File(file) => file.persist(&p.to).map(drop).map_err(|e| e.error),
+                Content::Bytes(bytes) => {
+                    std::fs::OpenOptions::new().write(true).open(&p.to).and_then(|mut to| to.write_all(&bytes))
+                }
+            };
+            written.map_err(|e| Failure::file(&p.to, format!("cannot be written: {e}")))?;
         }
         Ok(())
     }
