@@ -37,6 +37,10 @@ const INSET: f64 = 12.0;
 const TITLE: f64 = 34.0;
 /// A label's line.
 const LABEL: f64 = 22.0;
+/// The size of labels that fit; longer ones are smaller.
+const LABEL_SIZE: f64 = 13.0;
+/// What a letter takes of its size, on average.
+const LETTER: f64 = 0.57;
 
 /// The sheet as SVG text.
 ///
@@ -89,10 +93,12 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
             cx - scale * c.x,
             cy - scale * c.y
         );
+        let letters = cells[k].label.chars().count().max(1) as f64;
         let _ = writeln!(
             labels,
-            "<text x=\"{cx}\" y=\"{}\" font-size=\"13\" fill=\"#555\" text-anchor=\"middle\">{}</text>",
+            "<text x=\"{cx}\" y=\"{}\" font-size=\"{}\" fill=\"#555\" text-anchor=\"middle\">{}</text>",
             y + h - INSET + 2.0,
+            LABEL_SIZE.min(w / (letters * LETTER)),
             escaped(&cells[k].label)
         );
     }

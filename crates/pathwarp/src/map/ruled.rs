@@ -122,7 +122,7 @@ impl Piece {
 /// The ruled map that takes `frame`'s upper side to `top` and its lower side to `bottom`. `None`: the frame has no area.
 #[must_use]
 pub fn ruled(frame: Rect, top: &Guide, bottom: &Guide) -> Option<Arc<dyn Map>> {
-    Tiled::new(frame, Vec::new(), vec![row(frame, top, bottom)?])
+    Tiled::over(frame, Vec::new(), vec![row(frame, top, bottom)?])
 }
 
 /// The same as a row of tiles, to stand above and below others.

@@ -37,7 +37,7 @@ impl Tiled {
     ///
     /// `None`: no rows, or their cuts do not fit their number.
     #[must_use]
-    pub fn new(region: Rect, cuts: Vec<f64>, rows: Vec<Row>) -> Option<Arc<dyn Map>> {
+    pub fn over(region: Rect, cuts: Vec<f64>, rows: Vec<Row>) -> Option<Arc<dyn Map>> {
         let fits = |cuts: &[f64], n: usize| cuts.len() + 1 == n && cuts.windows(2).all(|w| w[0] <= w[1]);
         if !fits(&cuts, rows.len()) || !rows.iter().all(|r| fits(&r.cuts, r.maps.len())) {
             return None;

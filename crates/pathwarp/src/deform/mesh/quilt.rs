@@ -209,7 +209,7 @@ impl Quilt {
         };
         let inner = |cuts: &[f64]| cuts[1..cuts.len() - 1].to_vec();
         let row = |j: usize| Row { cuts: inner(&across), maps: (0..columns).map(|i| patch(i, j)).collect() };
-        Tiled::new(r, inner(&down), (0..rows).map(row).collect())
+        Tiled::over(r, inner(&down), (0..rows).map(row).collect())
     }
 
     /// The sides of the patches.

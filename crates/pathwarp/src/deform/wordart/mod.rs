@@ -198,7 +198,7 @@ impl Deformation for WordArt {
                 Some(rows)
             }
         };
-        let map = rows.and_then(|rows| Tiled::new(rect, cuts.clone(), rows));
+        let map = rows.and_then(|rows| Tiled::over(rect, cuts.clone(), rows));
         let map = map.ok_or_else(|| wrong("has a guide without length in this box: adjust it less far".into()))?;
         built.map = match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, s.frame()))),

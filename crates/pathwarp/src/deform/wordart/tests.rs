@@ -23,7 +23,10 @@ fn default_guides(name: &str) -> Guides {
     preset.guides(W, H, &values).unwrap()
 }
 
-fn ends(segs: &[Seg]) -> [(f64, f64); 2] {
+/// First and last point.
+type Ends = [(f64, f64); 2];
+
+fn ends(segs: &[Seg]) -> Ends {
     let (a, b) = (segs.first().unwrap().start(), segs.last().unwrap().end());
     [(a.x, a.y), (b.x, b.y)]
 }
@@ -32,7 +35,7 @@ fn ends(segs: &[Seg]) -> [(f64, f64); 2] {
 #[test]
 fn the_guides_ends_are_the_formulas() {
     // A circle that lacks 1/60000 of a degree, by its own parametrisation; shapes are given as shares of w and h.
-    let pairs: &[(&str, &[[(f64, f64); 2]])] = &[
+    let pairs: &[(&str, &[Ends])] = &[
         ("plain", &[[(0.0, 0.0), (1.0, 0.0)], [(0.0, 1.0), (1.0, 1.0)]]),
         ("stop", &[[(0.0, 0.25), (1.0, 0.25)], [(0.0, 0.75), (1.0, 0.75)]]),
         ("triangle", &[[(0.0, 0.5), (1.0, 0.5)], [(0.0, 1.0), (1.0, 1.0)]]),
