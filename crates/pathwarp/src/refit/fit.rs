@@ -55,18 +55,29 @@ pub(super) struct State {
     pub(super) s: Lane,
 }
 
-/// Residuals of a state, and their derivatives.
+/// What one evaluation of a state tells. Kept in memory and written by a function of its own: lane after lane is then the only
+/// order the compiler finds, and it stays with vectors.
 #[derive(Debug, Clone, Copy)]
 struct Residuals {
-    /// Normal part ρ×C′, its derivatives, and what makes squares of them lengths: 1/|C′|².
-    n: Lane,
-    na: Lane,
-    nb: Lane,
-    k: Lane,
+    /// Weighted normal equations (`JᵀJ` and `Jᵀn`) and the weighted sum of squares, each in four parts.
+    parts: [[f64; 4]; 6],
+    /// Squares of the normal residuals.
+    squares: Lane,
     /// Movement of the feet: −ρ·C′/|C′|², and its derivatives.
     ds: Lane,
     sa: Lane,
     sb: Lane,
+}
+
+impl Residuals {
+    const NONE: Self = Self { parts: [[0.0; 4]; 6], squares: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
+
+    /// The normal equations, the sum of squares, and the square of the largest residual.
+    #[inline(always)]
+    fn sums(&self) -> ([f64; 5], f64, f64) {
+        let s = self.parts.map(|v| (v[0] + v[2]) + (v[1] + v[3]));
+        ([s[0], s[1], s[2], s[3], s[4]], s[5], largest(&self.squares))
+    }
 }
 
 impl Frame {
@@ -99,12 +110,13 @@ impl Frame {
         (sums, squares + self.pull * (da * da + db * db), error)
     }
 
-    #[inline(always)]
-    fn residuals(&self, g: &Lanes, z: &State) -> Residuals {
+    /// The normal part of the residuals is ρ×C′/|C′|; 1/|C′|² makes squares of the products lengths.
+    #[inline(never)]
+    fn residuals(&self, g: &Lanes, z: &State, w: &Lane, out: &mut Residuals) {
         let c = self.power(z.a, z.b);
         let (t0, t1) = (self.t0, self.t1);
         let o = [0.0; 8];
-        let mut r = Residuals { n: o, na: o, nb: o, k: o, ds: o, sa: o, sb: o };
+        let (mut n, mut na, mut nb, mut kn, mut ka, mut kb) = (o, o, o, o, o, o);
         for i in 0..8 {
             let s = z.s[i];
             let u = 1.0 - s;
@@ -112,15 +124,25 @@ impl Frame {
             let k = 1.0 / square(dx, dy);
             let su = 3.0 * s * u;
             let (b1, b2) = (su * u, su * s);
-            r.n[i] = fma(rx, dy, -(ry * dx));
-            r.na[i] = fma(t0.x, dy, -(t0.y * dx)) * b1;
-            r.nb[i] = fma(t1.y, dx, -(t1.x * dy)) * b2;
-            r.k[i] = k;
-            r.ds[i] = -fma(rx, dx, ry * dy) * k;
-            r.sa[i] = -fma(t0.x, dx, t0.y * dy) * (b1 * k);
-            r.sb[i] = fma(t1.x, dx, t1.y * dy) * (b2 * k);
+            n[i] = fma(rx, dy, -(ry * dx));
+            na[i] = fma(t0.x, dy, -(t0.y * dx)) * b1;
+            nb[i] = fma(t1.y, dx, -(t1.x * dy)) * b2;
+            let kw = k * w[i];
+            (kn[i], ka[i], kb[i]) = (n[i] * kw, na[i] * kw, nb[i] * kw);
+            out.squares[i] = n[i] * n[i] * k;
+            out.ds[i] = -fma(rx, dx, ry * dy) * k;
+            out.sa[i] = -fma(t0.x, dx, t0.y * dy) * (b1 * k);
+            out.sb[i] = fma(t1.x, dx, t1.y * dy) * (b2 * k);
         }
-        r
+        for i in 0..4 {
+            let j = i + 4;
+            out.parts[0][i] = fma(ka[i], na[i], ka[j] * na[j]);
+            out.parts[1][i] = fma(ka[i], nb[i], ka[j] * nb[j]);
+            out.parts[2][i] = fma(kb[i], nb[i], kb[j] * nb[j]);
+            out.parts[3][i] = fma(ka[i], n[i], ka[j] * n[j]);
+            out.parts[4][i] = fma(kb[i], n[i], kb[j] * n[j]);
+            out.parts[5][i] = fma(kn[i], n[i], kn[j] * n[j]);
+        }
     }
 
     /// Squared distances of the samples from the cubic, after `steps` Newton steps for the feet. A step that leads away (near
@@ -233,24 +255,6 @@ pub(super) fn largest(v: &Lane) -> f64 {
     m(m(m(v[0], v[4]), m(v[2], v[6])), m(m(v[1], v[5]), m(v[3], v[7])))
 }
 
-/// The normal equations (`JᵀJ` and `Jᵀn`) of one batch, weighted, the sum of squares, and the square of the largest residual.
-#[inline(always)]
-fn normal_equations(r: &Residuals, w: &Lane) -> ([f64; 5], f64, f64) {
-    let mut v = [[0.0; 8]; 7];
-    for i in 0..8 {
-        let k = r.k[i] * w[i];
-        let (n, na, nb) = (r.n[i], r.na[i] * k, r.nb[i] * k);
-        v[0][i] = na * r.na[i];
-        v[1][i] = na * r.nb[i];
-        v[2][i] = nb * r.nb[i];
-        v[3][i] = na * n;
-        v[4][i] = nb * n;
-        v[5][i] = n * n * k;
-        v[6][i] = n * n * r.k[i];
-    }
-    ([sum(&v[0]), sum(&v[1]), sum(&v[2]), sum(&v[3]), sum(&v[4])], sum(&v[5]), largest(&v[6]))
-}
-
 /// A fit: the state with the smallest sum of squares, and the largest normal residual there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit {
@@ -275,9 +279,10 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
     let (mut sums, mut squares) = ([0.0; 5], f64::INFINITY);
     let (mut next, mut length) = (z, 0.0);
     let mut trust = 0.5 * TRUST * frame.size;
+    let mut r = Residuals::NONE;
     for k in 1.. {
-        let mut r = frame.residuals(g, &next);
-        let (sn, sq, en) = frame.pulled(normal_equations(&r, &ones), &next);
+        frame.residuals(g, &next, &ones, &mut r);
+        let (sn, sq, en) = frame.pulled(r.sums(), &next);
         // The first steps also settle the feet, which may raise the sum a little.
         if sq <= squares {
             (z, sums, squares) = (next, sn, sq);
@@ -290,7 +295,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
             break;
         } else {
             trust = 0.25 * length;
-            r = frame.residuals(g, &z);
+            frame.residuals(g, &z, &ones, &mut r);
         }
         if k == MOST_EVALUATIONS || best.error <= enough || (k > 4 && best.error > far) {
             break;
@@ -316,11 +321,14 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
     let mut w = [[1.0; 8]; 2];
     let mut z = start;
     let mut best = (start, f64::INFINITY);
+    let mut r = [Residuals::NONE; 2];
     for k in 0..=steps {
-        let r = [frame.residuals(g[0], &z[0]), frame.residuals(g[1], &z[1])];
+        for h in 0..2 {
+            frame.residuals(g[h], &z[h], &w[h], &mut r[h]);
+        }
         let ([mut sums, more], error) = {
-            let (s0, _, e0) = frame.pulled(normal_equations(&r[0], &w[0]), &z[0]);
-            let (s1, _, e1) = normal_equations(&r[1], &w[1]);
+            let (s0, _, e0) = frame.pulled(r[0].sums(), &z[0]);
+            let (s1, _, e1) = r[1].sums();
             ([s0, s1], e0.max(e1).sqrt())
         };
         if error < best.1 {
@@ -339,7 +347,7 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
             z[h].b += db;
             for i in 0..8 {
                 z[h].s[i] = unit(z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]);
-                w[h][i] *= r[h].n[i].abs() * r[h].k[i].sqrt() / error + 1e-3;
+                w[h][i] *= r[h].squares[i].sqrt() / error + 1e-3;
             }
         }
         let total = sum(&w[0]) + sum(&w[1]);
