@@ -26,7 +26,7 @@
 //!
 //! Rounding of the samples (some 1e-13 of the coordinates) is added to the bound.
 
-use super::chebyshev::{FEET, Shared, Tables, sample};
+use super::chebyshev::{FEET, SAMPLES, Shared, Tables};
 use super::fit::{Frame, fma, largest, sum};
 use super::source::{Curve, Lane, Source};
 use super::verify::Candidate;
@@ -121,7 +121,7 @@ pub(super) fn stretch(
     let mut feet = [0.0; FEET];
     for half in feet.chunks_exact_mut(8).enumerate() {
         let (first, out) = (8 * half.0, half.1);
-        let tau: Lane = std::array::from_fn(|i| sample(first + i));
+        let tau: Lane = std::array::from_fn(|i| SAMPLES[first + i]);
         let mut g = source.images(&tau.map(|tau| t[0] + (t[1] - t[0]) * tau))?;
         for i in 0..8 {
             g.x[i] -= cubic.p0.x;
@@ -150,7 +150,7 @@ where
     // p by least squares from the feet.
     let mut parts = [[0.0; 8]; 2];
     for i in 0..FEET {
-        let lead = feet[i] - sample(i);
+        let lead = feet[i] - SAMPLES[i];
         for k in 0..8 {
             parts[i % 2][k] = fma(tables.feet[i][k], lead, parts[i % 2][k]);
         }
@@ -162,7 +162,6 @@ where
     let mut x = [0.0; N];
     let mut y = [0.0; N];
     let mut w = [1.0; N];
-    let [c1, c2, c3] = c.frame.power(c.a, c.b);
     let h = c.t1 - c.t0;
     for b in (0..N).step_by(8) {
         let mut t: Lane = [0.0; 8];
@@ -171,22 +170,16 @@ where
         }
         let mut g = source.points(&t);
         source.map.lanes(&mut g.x, &mut g.y);
-        let mut lead = [0.0; 8];
-        for (j, base) in tables.t.iter().enumerate() {
-            for i in 0..8 {
-                lead[i] = fma(base[b + i], p[j], lead[i]);
-            }
-        }
-        for i in 0..8 {
-            let tau = tables.tau[b + i];
-            let f = fma(tau * (1.0 - tau), lead[i], tau);
-            x[b + i] = g.x[i] - c.p0.x - fma(fma(c3.x, f, c2.x), f, c1.x) * f;
-            y[b + i] = g.y[i] - c.p0.y - fma(fma(c3.y, f, c2.y), f, c1.y) * f;
-        }
+        x[b..b + 8].copy_from_slice(&g.x);
+        y[b..b + 8].copy_from_slice(&g.y);
         if algebra.below > 0 {
             w[b..b + 8].copy_from_slice(&algebra.denominators(source, &t));
         }
     }
+    let f = phi(tables, &p);
+    let [c1, c2, c3] = c.frame.power(c.a, c.b);
+    subtract(&mut x, &f, [c.p0.x, c1.x, c2.x, c3.x]);
+    subtract(&mut y, &f, [c.p0.y, c1.y, c2.y, c3.y]);
     let mut share = 1.0;
     if algebra.below > 0 {
         let Some(e) = cleared::<N, P, V>(tables, &mut w, algebra.below + V - 1) else { return Ok(f64::INFINITY) };
@@ -212,6 +205,30 @@ where
         return k.map_or(Ok(f64::INFINITY), |k| Err(source.at(t[k])));
     }
     Ok(tables.supremum(&x, &y, largest(&most).sqrt(), algebra.total(P, V)) / share + noise(c))
+}
+
+/// φ at the nodes. Apart from its caller, like [`subtract`], so that the compiler sees nothing but the loop.
+#[inline(never)]
+fn phi<const N: usize, const P: usize>(tables: &Tables<N, P>, p: &[f64; P]) -> [f64; N] {
+    let mut out = [0.0; N];
+    for (base, p) in tables.t.iter().zip(p) {
+        for k in 0..N {
+            out[k] = fma(base[k], *p, out[k]);
+        }
+    }
+    for k in 0..N {
+        let tau = tables.tau[k];
+        out[k] = fma(tau * (1.0 - tau), out[k], tau);
+    }
+    out
+}
+
+/// Takes one coordinate of the cubic, c₀ + (c₁ + (c₂ + c₃f)f)f, from that of the image.
+#[inline(never)]
+fn subtract<const N: usize>(g: &mut [f64; N], f: &[f64; N], [c0, c1, c2, c3]: [f64; 4]) {
+    for k in 0..N {
+        g[k] = g[k] - c0 - fma(fma(c3, f[k], c2), f[k], c1) * f[k];
+    }
 }
 
 /// Whether φ stays in [0, 1].

@@ -142,7 +142,7 @@ impl<const N: usize, const P: usize> Tables<N, P> {
 /// Gauss–Jordan elimination, well conditioned for sixteen samples and degree seven.
 fn least_squares<const P: usize>() -> [[f64; P]; FEET] {
     let a: [[f64; P]; FEET] = std::array::from_fn(|i| {
-        let tau = sample(i);
+        let tau = SAMPLES[i];
         let u: f64 = 2.0 * tau - 1.0;
         std::array::from_fn(|j| tau * (1.0 - tau) * (j as f64 * u.acos()).cos())
     });
@@ -168,10 +168,16 @@ fn least_squares<const P: usize>() -> [[f64; P]; FEET] {
     std::array::from_fn(|i| std::array::from_fn(|k| m[k][P + i]))
 }
 
-/// Where sample i is.
-pub(super) fn sample(i: usize) -> f64 {
-    (i as f64 + 1.0) / (FEET as f64 + 1.0)
-}
+/// Where the samples of the feet are.
+pub(super) const SAMPLES: [f64; FEET] = {
+    let mut out = [0.0; FEET];
+    let mut i = 0;
+    while i < FEET {
+        out[i] = (i as f64 + 1.0) / (FEET as f64 + 1.0);
+        i += 1;
+    }
+    out
+};
 
 #[cfg(test)]
 mod tests {
@@ -210,7 +216,7 @@ mod tests {
         let want = [0.1, -0.05, 0.02, 0.0, 0.003, 0.0, 0.0, -0.001];
         let lead: Vec<f64> = (0..FEET)
             .map(|i| {
-                let tau = sample(i);
+                let tau = SAMPLES[i];
                 let u: f64 = 2.0 * tau - 1.0;
                 tau * (1.0 - tau) * (0..8).map(|j| want[j] * (j as f64 * u.acos()).cos()).sum::<f64>()
             })

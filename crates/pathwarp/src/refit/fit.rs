@@ -24,8 +24,8 @@
 use super::source::{Lane, Lanes};
 use kurbo::{CubicBez, Point, Vec2};
 
-/// Evaluations of one fit at most; twelve gain less than a third of a percent of segments.
-const MOST_EVALUATIONS: usize = 7;
+/// Evaluations of one fit at most; more gain nothing.
+const MOST_EVALUATIONS: usize = 6;
 /// Damping relative to the diagonal: just enough to keep the two by two system from being singular.
 const DAMPING: f64 = 1e-11;
 /// A step longer than this share of the samples' length is not trusted.
@@ -88,8 +88,8 @@ impl Frame {
         [u, self.q * 3.0 - u * 2.0 - v, self.q * -2.0 + u + v]
     }
 
-    /// One Newton step for the feet.
-    #[inline(always)]
+    /// One Newton step for the feet. A function of its own for the same reason as [`Frame::residuals`].
+    #[inline(never)]
     pub(super) fn settle(&self, g: &Lanes, a: f64, b: f64, s: &mut Lane) {
         let c = self.power(a, b);
         for foot in 0..8 {
@@ -196,8 +196,8 @@ impl Frame {
     fn bent(&self, [mut da, mut db]: [f64; 2], z: &State, most: f64) -> (f64, f64, f64) {
         let longest = da.abs().max(db.abs());
         if longest > most {
-            da *= most / longest;
-            db *= most / longest;
+            // Seldom; the division would hold all the rest up.
+            [da, db] = shortened([da, db], most / longest);
         }
         let k2 = 0.5 * self.t1.cross(self.t0);
         let (ga, gb) = (self.q.cross(self.t0) - k2 * z.b, self.t1.cross(self.q) - k2 * z.a);
@@ -211,6 +211,12 @@ impl Frame {
         }
         ((z.a + da).max(self.floor[0]) - z.a, (z.b + db).max(self.floor[1]) - z.b, longest.min(most))
     }
+}
+
+#[cold]
+#[inline(never)]
+fn shortened([da, db]: [f64; 2], by: f64) -> [f64; 2] {
+    [da * by, db * by]
 }
 
 /// a·b + c: one instruction where the target has one; elsewhere `mul_add` would be a call.

@@ -205,7 +205,7 @@ impl<C: Curve> Stepper<'_, C> {
         // does, two others are tried.
         const NEARLY: f64 = 5.0;
         if error > tol && error < NEARLY * tol {
-            for k in [1.6, 0.625] {
+            for k in [1.45, 0.69] {
                 let a = f.z.a * k;
                 let b = frame.slide(&f.z, a);
                 if !(b > frame.floor[1] && b < frame.size) {
