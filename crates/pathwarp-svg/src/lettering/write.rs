@@ -13,8 +13,8 @@ pub struct LetteringOptions {
     pub fill: Option<String>,
 }
 
-/// Significant digits of coordinates, counted from the page's largest: beyond them is only the rounding of f64.
-const DIGITS: i32 = 14;
+/// Significant digits of coordinates, counted from the page's largest: a hair's breadth on a continent.
+const DIGITS: i32 = 10;
 
 /// A drawing of `lettering`, as large as its ink and its lines.
 ///
