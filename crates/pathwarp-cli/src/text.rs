@@ -68,6 +68,7 @@ pub(crate) fn command() -> Command {
         .arg(Arg::new("italic").long("italic").action(ArgAction::SetTrue).help("The family's italic"))
         .arg(value("variation", "AXIS=N,…", "Places on the axes of a variable font, such as wght=600,wdth=80").action(ArgAction::Append))
         .arg(value("fill", "COLOUR", "The colour, as in CSS [default: black]"))
+        .arg(value("margin", "LENGTH", "Room on the page around the text; % is of the size [default: 0]"))
         .arg(value("letter-spacing", "LENGTH", "Room added between letters; % is of the size [default: 0]").help_heading(heading))
         .arg(value("word-spacing", "LENGTH", "Room added to every space; % is of the size [default: 0]").help_heading(heading))
         .arg(value("line-height", "LENGTH", "From baseline to baseline; % is of the size [default: as the font says]").help_heading(heading))
@@ -80,14 +81,14 @@ pub(crate) fn command() -> Command {
         .arg(value("script", "CODE", "The script of all text, such as Latn, Arab or Deva [default: of every letter]").help_heading(shaping))
         .arg(Arg::new("quiet").short('q').long("quiet").action(ArgAction::SetTrue).help("No warnings"))
         .after_help(
-            "The outlines are the font's own curves. The page is as large as the ink and the lines together; the first baseline lies \
-             one ascent below the top. Every line is a group with data-baseline, every letter a path with data-glyph: place and \
+            "The outlines are the font's own curves. The page is as large as the ink and the lines together; \
+             --margin makes room for where a deformation moves them. Every line is a group with data-baseline, every letter a path with data-glyph: place and \
              advance width. What no font has is drawn as the font draws what is missing, a warning names it, and the exit code is 1.\n\n\
              Examples:\n  pathwarp text Welcome -o word.svg\n  \
              pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg\n  \
              pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg\n  \
-             pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01,liga=0 -o word.svg\n  \
-             pathwarp text Welcome | pathwarp bend - --along 'M0,100 Q150,20 300,100' -o arc.svg",
+             pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg\n  \
+             pathwarp text Welcome --margin 60% | pathwarp bend - --along 'M0,70 Q150,0 300,70' -o arc.svg",
         )
 }
 
@@ -111,7 +112,8 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
 
     let set = layout(&text, &fonts, &style).map_err(failure)?;
     let fill = Some(word("fill")).filter(|f| !f.is_empty()).map(str::to_owned);
-    let svg = write_lettering(&set, &LetteringOptions { fill })?;
+    let margin = length(m, "margin", style.size)?.unwrap_or(0.0);
+    let svg = write_lettering(&set, &LetteringOptions { fill, margin })?;
     if !set.missing.is_empty() && !m.get_flag("quiet") {
         terminal::warning(&missing(&set.missing, &names));
     }

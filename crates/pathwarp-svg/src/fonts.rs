@@ -74,20 +74,24 @@ pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, 
     })
 }
 
-/// Families whose name shares a word's beginning with `family`.
+/// Families whose names look like `family`: each of its words is nearly a word of theirs.
 fn similar(family: &str, db: &Database) -> String {
-    /// Letters that must be the same.
-    const ALIKE: usize = 4;
+    /// A likeness (Jaro and Winkler's, 1 is the same) of words with a letter or two wrong; unrelated ones hardly reach it.
+    const ALIKE: f64 = 0.85;
     /// Names that help; more are noise.
     const SHOWN: usize = 6;
-    let start = |w: &str| w.chars().take(ALIKE).flat_map(char::to_lowercase).collect::<String>();
-    let wanted: Vec<String> = family.split_whitespace().map(start).collect();
-    let near = |name: &str| name.split_whitespace().filter(|w| wanted.contains(&start(w))).count();
-    let mut names: Vec<(usize, &str)> =
-        db.faces().flat_map(|f| &f.families).map(|(n, _)| (near(n), n.as_str())).collect();
-    names.retain(|(n, _)| *n > 0);
-    names.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
+    let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
+    let likeness = |name: &str| {
+        let name = name.to_lowercase();
+        let best = |w: &String| name.split_whitespace().map(|n| strsim::jaro_winkler(w, n)).fold(0.0, f64::max);
+        wanted.iter().map(best).sum::<f64>() / wanted.len().max(1) as f64
+    };
+    let mut names: Vec<&str> = db.faces().flat_map(|f| &f.families).map(|(n, _)| n.as_str()).collect();
+    names.sort_unstable();
     names.dedup();
+    let mut names: Vec<(f64, &str)> =
+        names.into_iter().map(|n| (likeness(n), n)).filter(|(l, _)| *l >= ALIKE).collect();
+    names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
     if names.is_empty() {
         return "the bundled one is Noto Sans".into();
     }

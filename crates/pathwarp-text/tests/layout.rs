@@ -1,4 +1,5 @@
 //! Lines, spacing, alignment, fonts that follow, and what is refused. Figures are Noto Sans's own, at a thousand units to the em.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 

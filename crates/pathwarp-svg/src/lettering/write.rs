@@ -7,16 +7,18 @@ use std::fmt::Write as _;
 use std::str::FromStr as _;
 
 /// How lettering is written.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct LetteringOptions {
     /// A CSS colour; without it, the renderer's black.
     pub fill: Option<String>,
+    /// Room on the page around ink and lines, in user units: at least 0.
+    pub margin: f64,
 }
 
 /// Significant digits of coordinates, counted from the page's largest: a hair's breadth on a continent.
 const DIGITS: i32 = 10;
 
-/// A drawing of `lettering`, as large as its ink and its lines.
+/// A drawing of `lettering`, as large as its ink, its lines and the margin around them.
 ///
 /// The text is a group with its `aria-label`, and the font's heights in user units: `data-ascent` and `data-descent` (both
 /// counted from the baseline, both positive), `data-cap-height`, `data-x-height`. In it is a group for every line, whose
@@ -29,13 +31,14 @@ const DIGITS: i32 = 10;
 ///
 /// let font = Font::new(bundled_font(), 0)?;
 /// let text = layout("Hi", &[font], &Style { size: 100.0, ..Style::default() })?;
-/// let svg = write_lettering(&text, &LetteringOptions { fill: Some("#c00".into()) })?;
+/// let svg = write_lettering(&text, &LetteringOptions { fill: Some("#c00".into()), margin: 10.0 })?;
+/// assert!(svg.contains(r#"viewBox="-10 -10 119.9 156.2""#));
 /// assert!(svg.contains(r#"data-cap-height="71.4""#) && svg.contains(r#"<path aria-label="H" data-glyph="0 106.9 74.1" d="M"#));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Usage`] if the fill is no colour.
+/// [`Error::Usage`] if the fill is no colour, or the margin is negative or not finite.
 pub fn write_lettering(lettering: &Lettering, options: &LetteringOptions) -> Result<String, Error> {
     let fill = match &options.fill {
         Some(fill) if svgtypes::Color::from_str(fill).is_ok() || fill == "none" || fill == "currentColor" => {
@@ -46,7 +49,10 @@ pub fn write_lettering(lettering: &Lettering, options: &LetteringOptions) -> Res
         }
         None => String::new(),
     };
-    let page = lettering.page();
+    if !(options.margin >= 0.0 && options.margin.is_finite()) {
+        return Err(Error::usage("margin", &options.margin.to_string(), "is not possible; a margin is at least 0"));
+    }
+    let page = lettering.page().inflate(options.margin, options.margin);
     let largest = [page.x0, page.y0, page.x1, page.y1].into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));
     let decimals = (DIGITS - largest.log10().ceil() as i32).clamp(0, DIGITS) as u8;
     let number = |v: f64| {
