@@ -50,7 +50,7 @@ pub fn write_lettering(lettering: &Lettering, options: &LetteringOptions) -> Res
         None => String::new(),
     };
     if !(options.margin >= 0.0 && options.margin.is_finite()) {
-        return Err(Error::usage("margin", &options.margin.to_string(), "is not possible; a margin is at least 0"));
+        return Err(Error::usage("margin", options.margin.to_string(), "is not possible; a margin is at least 0"));
     }
     let page = lettering.page().inflate(options.margin, options.margin);
     let largest = [page.x0, page.y0, page.x1, page.y1].into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));
