@@ -5,6 +5,7 @@ use crate::shape::{self, Glyph, MOST_GLYPHS, ShapedCluster, Shaper};
 use crate::{Error, Feature, Font, Metrics};
 use kurbo::{Affine, BezPath, Point, Rect};
 use skrifa::GlyphId;
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use unicode_script::Script;
@@ -231,7 +232,7 @@ fn check(style: &Style) -> Result<(Option<Script>, Option<harfrust::Language>), 
     if !(style.size > 0.0 && style.size <= LARGEST) {
         return wrong("a size", style.size, "it is above 0 and at most 1000000");
     }
-    let far = |v: f64| !(v.abs() <= FURTHEST * style.size);
+    let far = |v: f64| v.is_nan() || v.abs() > FURTHEST * style.size;
     if far(style.letter_spacing) {
         return wrong("a letter spacing", style.letter_spacing, "it is at most a thousand sizes");
     }
@@ -359,10 +360,10 @@ impl Painter<'_, '_> {
     fn draw(&mut self, g: &Glyph, origin: Point, out: &mut BezPath) -> Result<(), Error> {
         let Some(font) = self.fonts.get(g.font) else { return Ok(()) };
         let key = (g.font, g.id);
-        if !self.drawn.contains_key(&key) {
-            self.drawn.insert(key, font.outlines.draw(GlyphId::new(g.id), font.location())?);
-        }
-        let Some(glyph) = self.drawn.get(&key) else { return Ok(()) };
+        let glyph = match self.drawn.entry(key) {
+            Entry::Occupied(e) => e.into_mut(),
+            Entry::Vacant(e) => e.insert(font.outlines.draw(GlyphId::new(g.id), font.location())?),
+        };
         self.budget = self
             .budget
             .checked_sub(glyph.elements().len())
