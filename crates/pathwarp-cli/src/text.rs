@@ -110,7 +110,7 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
     fonts.push(bundled);
     let fonts = at_place(fonts, &places(m)?, weight)?;
 
-    let set = layout(&text, &fonts, &style).map_err(failure)?;
+    let set = layout(&text, &fonts, &style).map_err(|e| failure(&e))?;
     let fill = Some(word("fill")).filter(|f| !f.is_empty()).map(str::to_owned);
     let margin = length(m, "margin", style.size)?.unwrap_or(0.0);
     let svg = write_lettering(&set, &LetteringOptions { fill, margin })?;
@@ -270,7 +270,7 @@ fn find(name: &str, weight: u16, italic: bool) -> Result<FontFile, Failure> {
 }
 
 /// What is wrong with the options is wrong usage; the rest is a font's or a text's fault.
-fn failure(e: pathwarp_text::Error) -> Failure {
+fn failure(e: &pathwarp_text::Error) -> Failure {
     use pathwarp_text::Error as E;
     match e {
         E::Style { .. } | E::Empty => Failure::usage(e.to_string()),
