@@ -1,7 +1,7 @@
 //! The command line itself, made from the registry.
 
 use crate::failure::Failure;
-use crate::{Outcome, common, compare, output, paths, query, recipe_file, render, unwarp};
+use crate::{Outcome, common, compare, convert, install, output, paths, query, recipe_file, render, unwarp};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Args, Kind, Param};
@@ -17,7 +17,7 @@ const ABOUT: &str = "Bends, warps and deforms SVG artwork, and gives clean Bézi
 const INVERSE: &str = "inverse";
 
 const AFTER: &str = "Path references (PATHREF), wherever an option takes a path:
-  FILE#NAME       the path of that id, label or title in an SVG file
+  FILE#NAME       the path of that id, label or title in an SVG file, or of that name in GIMP's (XCF, point lists)
   FILE            the only path in the file; a JSON file of points [[x,y],…]
   #NAME           in the input document; it is then a guide: left out of the artwork, kept in the file
   'M 0,0 C …'     SVG path data in place
@@ -47,8 +47,10 @@ pub(crate) fn build(registry: &Registry) -> Command {
         .subcommand(unwarp::command())
         .subcommand(Command::new("schema").about("Print the JSON schema of recipe files"))
         .subcommand(paths::command())
+        .subcommand(convert::command())
         .subcommand(render::command())
         .subcommand(compare::command())
+        .subcommand(install::command())
         .subcommand(
             Command::new("completions")
                 .about("Print completions for a shell")

@@ -15,8 +15,11 @@
 mod command;
 mod common;
 mod compare;
+mod convert;
 mod deform;
 mod failure;
+mod gimp;
+mod install;
 mod output;
 mod paths;
 mod picture;
@@ -88,6 +91,8 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         "completions" => command::completions(registry, sub),
         "man" => command::man(registry),
         "paths" => paths::run(sub),
+        "convert" => convert::run(sub),
+        "install" => install::run(sub),
         "render" => render::run(sub),
         "schema" => schema::run(registry),
         "unwarp" => unwarp::run(sub),

@@ -1,6 +1,7 @@
 //! Output files, written whole or not at all.
 
 use crate::failure::Failure;
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -13,6 +14,11 @@ pub(crate) struct Pending {
 impl Pending {
     /// Writes `bytes` to a temporary file beside `to`.
     pub(crate) fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
+        Self::written(to, |file| file.write_all(bytes).map_err(|e| format!("cannot be written: {e}")))
+    }
+
+    /// Has `write` write a temporary file beside `to`.
+    pub(crate) fn written(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
         let folder = match to.parent() {
             Some(p) if !p.as_os_str().is_empty() => p,
             _ => Path::new("."),
@@ -23,7 +29,7 @@ impl Pending {
         if !folder.is_dir() {
             return Err(Failure::file(folder, "there is no such folder to write to"));
         }
-        let write = || -> std::io::Result<Self> {
+        let make = || -> std::io::Result<tempfile::NamedTempFile> {
             let mut builder = tempfile::Builder::new();
             builder.prefix(".pathwarp-");
             #[cfg(unix)]
@@ -32,11 +38,11 @@ impl Pending {
                 use std::os::unix::fs::PermissionsExt;
                 builder.permissions(std::fs::Permissions::from_mode(0o666));
             }
-            let mut file = builder.tempfile_in(folder)?;
-            file.write_all(bytes)?;
-            Ok(Self { file, to: to.to_owned() })
+            builder.tempfile_in(folder)
         };
-        write().map_err(|e| Failure::file(to, format!("cannot be written: {e}")))
+        let mut file = make().map_err(|e| Failure::file(to, format!("cannot be written: {e}")))?;
+        write(file.as_file_mut()).map_err(|e| Failure::file(to, e))?;
+        Ok(Self { file, to: to.to_owned() })
     }
 
     /// Renames all of them to their names.

@@ -55,7 +55,8 @@ impl<'a> Input<'a> {
     /// Fills `buffer` or says that the file ends inside `what`.
     pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
         if self.left() < buffer.len() as u64 {
-            return Err(Error::at(self.at, format!("the file ends {} bytes on, inside {what}", self.left())));
+            let (needed, left) = (buffer.len(), self.left());
+            return Err(Error::at(self.at, format!("{what} needs {needed} bytes here, but only {left} are left")));
         }
         let read = match &mut self.source {
             Source::File(f) => f.read_exact(buffer),

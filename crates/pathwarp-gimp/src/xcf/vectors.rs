@@ -48,10 +48,9 @@ fn paths(input: &mut Input<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     for _ in 0..count(input, LEAST_PATH, "paths")? {
         let start = input.at();
         let name = string(input, "a path's name")?;
-        let [_tattoo, visible, _linked] = [(); 3].map(|()| input.u32("a path"));
-        let visible = visible? != 0;
-        _tattoo?;
-        _linked?;
+        input.skip(4, "a path's tattoo")?;
+        let visible = input.u32("a path")? != 0;
+        input.skip(4, "a path's link")?;
         let parasites = count(input, LEAST_PARASITE, "parasites of a path")?;
         let count_at = input.at();
         let n = count(input, LEAST_STROKE, "strokes of a path")?;
