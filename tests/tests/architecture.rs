@@ -1,4 +1,4 @@
-//! Dependencies run one way: cli → {svg, raster} → pathwarp → kurbo.
+//! Dependencies run one way: cli → {svg, raster, gimp, mesh} → pathwarp → kurbo.
 
 mod support;
 
@@ -27,9 +27,10 @@ fn dependencies_run_one_way() {
     };
     allowed("pathwarp-svg", &["pathwarp"]);
     allowed("pathwarp-raster", &["pathwarp"]);
+    allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
-    allowed("pathwarp-cli", &["pathwarp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"]);
-    for name in ["pathwarp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"] {
+    allowed("pathwarp-cli", &["pathwarp", "pathwarp-gimp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"]);
+    for name in ["pathwarp", "pathwarp-gimp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"] {
         assert!(
             !of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")),
             "{name} prints"

@@ -14,9 +14,7 @@ const PLUG_IN: &str = include_str!("../../../integrations/gimp/pathwarp-gimp.py"
 const NAME: &str = "pathwarp-gimp";
 
 pub(crate) fn command() -> Command {
-    let flag = |name: &'static str, help: &'static str| {
-        Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
-    };
+    let flag = |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
     Command::new("install")
         .about("Put the plug-in for another program in its place")
         .arg(Arg::new("WHAT").required(true).value_parser(["gimp"]).help("gimp: the plug-in for GIMP 3"))

@@ -89,8 +89,7 @@ fn of_gimp(p: &pathwarp_gimp::GimpPath) -> Path {
 }
 
 fn of_drawing(doc: &pathwarp_svg::Document) -> Vec<Path> {
-    doc
-        .paths()
+    doc.paths()
         .into_iter()
         .map(|p| Path {
             name: p.id,

@@ -95,7 +95,10 @@ impl<'a> Input<'a> {
         };
         read.map_err(|e| unreadable(self.at, &e))?;
         if out.len() as u64 > MOST_TEXT {
-            return Err(Error::at(MOST_TEXT, format!("more than {MOST_TEXT} bytes of text; that is more than is read")));
+            return Err(Error::at(
+                MOST_TEXT,
+                format!("more than {MOST_TEXT} bytes of text; that is more than is read"),
+            ));
         }
         self.at += out.len() as u64;
         String::from_utf8(out).map_err(|e| {

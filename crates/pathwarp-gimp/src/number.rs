@@ -26,6 +26,9 @@ mod tests {
             assert_eq!(back as f32, v as f32);
             assert!(back == v || f64::from(v as f32) == v, "{v}");
         }
-        assert_eq!((shortest(f64::from(12.55f32)), rounded(2.50, 2), rounded(-0.001, 2)), ("12.55".into(), "2.5".into(), "0".into()));
+        assert_eq!(
+            (shortest(f64::from(12.55f32)), rounded(2.50, 2), rounded(-0.001, 2)),
+            ("12.55".into(), "2.5".into(), "0".into())
+        );
     }
 }

@@ -84,9 +84,7 @@ fn unpacked<'a>(file: &'a mut dyn ReadSeek, packing: Packing) -> Result<Input<'a
         Packing::None => Input::file(file)?,
         Packing::Gzip => Input::stream(flate2::read::MultiGzDecoder::new(file), MOST_UNPACKED),
         Packing::Bzip2 => Input::stream(bzip2::read::MultiBzDecoder::new(file), MOST_UNPACKED),
-        Packing::Xz => {
-            Input::stream(lzma_rust2::XzReader::new_mem_limit(file, true, XZ_MEMORY_KIB), MOST_UNPACKED)
-        }
+        Packing::Xz => Input::stream(lzma_rust2::XzReader::new_mem_limit(file, true, XZ_MEMORY_KIB), MOST_UNPACKED),
     })
 }
 

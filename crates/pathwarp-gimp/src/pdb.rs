@@ -70,7 +70,11 @@ fn path(p: Path) -> Result<GimpPath, String> {
             return Err(format!("{}: num_points does not count its {} numbers", place(), 2 * points.len()));
         }
         if !points.len().is_multiple_of(3) {
-            return Err(format!("{}: {} points; every anchor has three, itself and two handles", place(), points.len()));
+            return Err(format!(
+                "{}: {} points; every anchor has three, itself and two handles",
+                place(),
+                points.len()
+            ));
         }
         if points.as_flattened().iter().any(|v| !v.is_finite()) {
             return Err(format!("{}: a coordinate is too large to be a number", place()));

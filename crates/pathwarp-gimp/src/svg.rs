@@ -64,7 +64,7 @@ pub(crate) fn read(text: &str) -> Result<File, Error> {
         text.split([' ', ',']).filter(|w| !w.is_empty()).filter_map(|w| w.parse().ok()).collect()
     };
     let size = match root.attribute("viewBox").map(numbers).as_deref() {
-        Some([_, _, w, h]) => Some([*w, *h]),
+        Some([_, _, w, h]) if [w, h].iter().all(|v| v.is_finite() && **v > 0.0) => Some([*w, *h]),
         _ => None,
     };
     let mut paths = Vec::new();
@@ -75,7 +75,8 @@ pub(crate) fn read(text: &str) -> Result<File, Error> {
         if outline.segs().any(|s| !s.is_finite()) {
             return Err(at("a coordinate is too large to be a number".to_owned()));
         }
-        let strokes = outline.subpaths.iter().map(|s| lone_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
+        let strokes =
+            outline.subpaths.iter().map(|s| lone_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
         let name = p.attribute("id").unwrap_or_default().to_owned();
         // What is not said is invisible: so GIMP imports it.
         paths.push(GimpPath { name, visible: false, strokes });
@@ -85,7 +86,8 @@ pub(crate) fn read(text: &str) -> Result<File, Error> {
 
 /// A closed stroke of a single anchor: GIMP writes its four points without the C, so that they read as three lines.
 fn lone_loop(s: &Subpath) -> Option<Stroke> {
-    let lines: Option<Vec<Point>> = s.segs.iter().map(|g| if let Seg::Line(l) = g { Some(l.p1) } else { None }).collect();
+    let lines: Option<Vec<Point>> =
+        s.segs.iter().map(|g| if let Seg::Line(l) = g { Some(l.p1) } else { None }).collect();
     match lines?.as_slice() {
         [outgoing, incoming, end] if !s.closed && *end == s.start => {
             let points = [*incoming, s.start, *outgoing].map(|p| [p.x, p.y]).to_vec();

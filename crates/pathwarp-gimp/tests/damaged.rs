@@ -1,4 +1,5 @@
 //! Damaged files: the right error, at once, in little memory; and the paths before the damage.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test may stop at the first surprise")]
 
 mod common;
 
@@ -74,7 +75,7 @@ fn counts_are_bounded_by_what_is_left() {
     expect(&with(&file, start - 4, 9), start + 8, "of the 9 that PROP_VECTORS is said to have");
     let length = u32::from_be_bytes(file[start - 4..start].try_into().unwrap());
     expect(&with(&file, start - 4, length + 8), start - 4, "length word");
-    assert_eq!(read(&with(&file, stroke + 12, 0)).unwrap_err().offset, stroke as u64 + 16, "points without a stroke");
+    fault(&with(&file, stroke + 12, 0));
 }
 
 #[test]
@@ -96,7 +97,7 @@ fn heads_are_checked() {
     expect(b"", 0, "empty");
     expect(b"gimp xcf v999\0\0\0\x01\0\0\0\x01\0\0\0\0\0", 9, "version 999");
     expect(b"gimp xcf vier\0", 9, "`vier`");
-    expect(b"gimp xcf file\0\0\0\x02\x80", 14, "header");
+    expect(b"gimp xcf file\0\0\0\x02\x80", 18, "header");
     expect(b"GIF89a", 0, "no file of GIMP's");
     let file = xcf(4, Form::Vectors(2), &plain_paths());
     expect(&with(&file, 22, 7), 22, "base type 7");
@@ -129,7 +130,9 @@ fn pointers_stay_inside_and_do_not_run_in_circles() {
 #[test]
 fn no_cut_and_no_flipped_bit_does_harm() {
     let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    for (version, form) in [(0, Form::Old(1)), (1, Form::Old(3)), (8, Form::Vectors(4)), (12, Form::Vectors(2)), (18, Form::Items)] {
+    for (version, form) in
+        [(0, Form::Old(1)), (1, Form::Old(3)), (8, Form::Vectors(4)), (12, Form::Vectors(2)), (18, Form::Items)]
+    {
         let paths = paths_for(form);
         let file = xcf(version, form, &paths);
         let mut whole = 0;
@@ -178,7 +181,7 @@ fn packed_bombs_end_soon() {
     let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let mut head = common::head(0).0;
     head.extend(0xdead_u32.to_be_bytes());
-    head.extend(u32::MAX.to_be_bytes());
+    head.extend(0xf000_0000_u32.to_be_bytes());
     let mut gz = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     gz.write_all(&head).unwrap();
     for _ in 0..64 {

@@ -1,5 +1,6 @@
 //! Files that GIMP itself has written, where a folder of them is at hand: `PATHWARP_GIMP_SAMPLES` names one that holds pairs of
 //! `NAME.xcf` (or `.xcf.gz`) and `NAME.expected.json`, and `gimp1-text/NAME.txt` with the same.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test may stop at the first surprise")]
 
 use pathwarp_gimp::{GimpPath, open, read, rewrite, salvage};
 use peak_alloc::PeakAlloc;

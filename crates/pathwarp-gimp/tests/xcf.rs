@@ -1,4 +1,5 @@
 //! Files of every version and form, read bit for bit, packed and plain; written back with every other byte kept.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test may stop at the first surprise")]
 
 mod common;
 

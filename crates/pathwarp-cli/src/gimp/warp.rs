@@ -49,7 +49,9 @@ pub(crate) fn warp(
     if built.steps.iter().any(|s| s.space.is_some())
         && recipe.steps.iter().any(|s| ["mesh", "curves"].iter().any(|n| !s.args.get(n).is_empty()))
     {
-        return Err(Failure::usage("--mesh and --curves are for SVG files; give the paths as SVG (`pathwarp convert`)"));
+        return Err(Failure::usage(
+            "--mesh and --curves are for SVG files; give the paths as SVG (`pathwarp convert`)",
+        ));
     }
 
     let tolerance = common.tolerance_for(artwork);
@@ -106,7 +108,8 @@ pub(crate) fn warp(
     // What has not been moved needs no rounding.
     let exact = built.map.class() == Class::Affine(Affine::IDENTITY) && built.copies.is_empty();
     let decimals = common.precision.or((!exact).then(|| decimals(tolerance)));
-    let with = |(i, strokes): &(usize, Vec<Stroke>)| GimpPath { strokes: strokes.clone(), ..input.file.paths[*i].clone() };
+    let with =
+        |(i, strokes): &(usize, Vec<Stroke>)| GimpPath { strokes: strokes.clone(), ..input.file.paths[*i].clone() };
     let result: Vec<GimpPath> = strokes.iter().map(with).collect();
     let text = match form {
         Form::Json => to_json(Some([width, height]), &result),
@@ -144,11 +147,14 @@ enum Form {
 
 fn form(common: &Common, input: &Input, target: Option<&Path>) -> Result<Form, Failure> {
     if common.embed_recipe {
-        return Err(Failure::usage("--embed-recipe is for SVG files; --write-recipe saves the recipe beside the result"));
+        return Err(Failure::usage(
+            "--embed-recipe is for SVG files; --write-recipe saves the recipe beside the result",
+        ));
     }
     if let Some(copy) = &common.into {
         if !matches!(input.file.kind, Kind::Xcf(_)) {
-            let what = if let Kind::PackedXcf(_) = input.file.kind { "it is packed; unpack it first" } else { "it is none" };
+            let what =
+                if let Kind::PackedXcf(_) = input.file.kind { "it is packed; unpack it first" } else { "it is none" };
             let file = display(&input.path);
             return Err(Failure::usage(format!("--into puts paths back into a plain XCF, and as for {file}, {what}")));
         }
@@ -166,7 +172,9 @@ fn form(common: &Common, input: &Input, target: Option<&Path>) -> Result<Form, F
     match extension.to_string_lossy().to_ascii_lowercase().as_str() {
         "svg" => Ok(Form::Svg),
         "json" => Ok(Form::Json),
-        "xcf" => Err(Failure::usage("an XCF holds more than paths: --into COPY.xcf writes the input with its paths warped")),
+        "xcf" => {
+            Err(Failure::usage("an XCF holds more than paths: --into COPY.xcf writes the input with its paths warped"))
+        }
         other => Err(Failure::usage(format!("GIMP's paths are written as .svg or .json, not as .{other}"))),
     }
 }
@@ -212,12 +220,7 @@ impl Done {
     }
 }
 
-fn warped(
-    path: &GimpPath,
-    places: &[Affine],
-    map: &dyn Map,
-    options: &refit::Options,
-) -> Result<Done, GeometryError> {
+fn warped(path: &GimpPath, places: &[Affine], map: &dyn Map, options: &refit::Options) -> Result<Done, GeometryError> {
     let mut done = Done {
         strokes: Vec::new(),
         segments_in: 0,

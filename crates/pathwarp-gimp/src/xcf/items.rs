@@ -30,7 +30,10 @@ pub(super) fn read(input: &mut Input<'_>, xcf: &mut Xcf) -> Result<(), Error> {
             let what = if to < tables_end { "the file's head" } else { "another path" };
             Err(Error::at(pointer_at, format!("a path pointer leads to byte {to}, into {what}")))
         } else {
-            input.go(to, "a path pointer").map_err(|e| Error { offset: pointer_at, ..e }).and_then(|()| item(input, pointer_at))
+            input
+                .go(to, "a path pointer")
+                .map_err(|e| Error { offset: pointer_at, ..e })
+                .and_then(|()| item(input, pointer_at))
         };
         match one {
             Ok(record) => {

@@ -168,7 +168,10 @@ pub(super) fn count(input: &mut Input<'_>, least: u64, what: &str) -> Result<u32
     let n = input.u32(what)?;
     if u64::from(n) * least > input.left() {
         let left = input.left();
-        return Err(Error::at(at, format!("{n} {what} need {} bytes or more, but only {left} are left", u64::from(n) * least)));
+        return Err(Error::at(
+            at,
+            format!("{n} {what} need {} bytes or more, but only {left} are left", u64::from(n) * least),
+        ));
     }
     Ok(n)
 }
@@ -176,7 +179,11 @@ pub(super) fn count(input: &mut Input<'_>, least: u64, what: &str) -> Result<u32
 /// A coordinate: neither NaN nor infinite.
 pub(super) fn coordinate(bytes: [u8; 4], at: u64) -> Result<f64, Error> {
     let v = f32::from_be_bytes(bytes);
-    if v.is_finite() { Ok(f64::from(v)) } else { Err(Error::at(at, format!("a coordinate is {v}, which is no number"))) }
+    if v.is_finite() {
+        Ok(f64::from(v))
+    } else {
+        Err(Error::at(at, format!("a coordinate is {v}, which is no number")))
+    }
 }
 
 /// The first four bytes at `i`, which the caller knows to be there.

@@ -102,7 +102,8 @@ impl Walk<'_, '_> {
         if target < self.first {
             return Err(Error::at(at, format!("a pointer leads to byte {target}, into the file's head")));
         }
-        self.left = self.left.checked_sub(1).ok_or_else(|| Error::at(at, "the tables of pointers overlap, or have no end"))?;
+        self.left =
+            self.left.checked_sub(1).ok_or_else(|| Error::at(at, "the tables of pointers overlap, or have no end"))?;
         self.found.insert(at, target);
         self.open.extend(to.map(|to| (target, to)));
         Ok(true)

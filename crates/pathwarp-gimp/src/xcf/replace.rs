@@ -19,11 +19,7 @@ struct Edit {
 /// # Errors
 /// The file is damaged, packed or not an XCF; the new strokes do not fit the form in which the file keeps its paths; or reading
 /// or writing fails.
-pub fn rewrite<R: Read + Seek>(
-    mut from: R,
-    to: &mut dyn Write,
-    strokes: &[(usize, Vec<Stroke>)],
-) -> Result<(), Error> {
+pub fn rewrite<R: Read + Seek>(mut from: R, to: &mut dyn Write, strokes: &[(usize, Vec<Stroke>)]) -> Result<(), Error> {
     let (edits, end) = {
         let from: &mut dyn ReadSeek = &mut from;
         let mut input = Input::file(from)?;
@@ -47,7 +43,8 @@ fn edits(input: &mut Input<'_>, xcf: &Xcf, strokes: &[(usize, Vec<Stroke>)]) -> 
         match record.layout {
             Layout::Old { state_at, tattoo } => {
                 if !old_paths::holds(new) {
-                    let problem = "the old form of paths in this file can hold an open stroke only as the last of a path";
+                    let problem =
+                        "the old form of paths in this file can hold an open stroke only as the last of a path";
                     return Err(Error::at(record.span.start, problem));
                 }
                 edits.push(Edit { span: state_at..record.span.end, bytes: old_paths::encode(new, tattoo) });
@@ -125,7 +122,8 @@ fn moved(input: &mut Input<'_>, xcf: &Xcf, mut edits: Vec<Edit>) -> Result<Vec<E
         return Ok(edits);
     }
     if xcf.version >= PATH_ITEMS {
-        let problem = format!("a file of version {} keeps paths as items; this old block in it cannot be resized", xcf.version);
+        let problem =
+            format!("a file of version {} keeps paths as items; this old block in it cannot be resized", xcf.version);
         return Err(Error::at(0, problem));
     }
     // All that pointers lead to lies behind the property list, and moves by the same.

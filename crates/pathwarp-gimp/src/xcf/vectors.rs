@@ -93,7 +93,10 @@ pub(super) fn strokes(input: &mut Input<'_>, n: u32) -> Result<Vec<Stroke>, Erro
         let at = input.at();
         let kind = input.u32("a stroke")?;
         if kind != BEZIER {
-            return Err(Error::at(at, format!("a stroke of kind {kind} is unknown; Bézier strokes are of kind {BEZIER}")));
+            return Err(Error::at(
+                at,
+                format!("a stroke of kind {kind} is unknown; Bézier strokes are of kind {BEZIER}"),
+            ));
         }
         let closed = input.u32("a stroke")? != 0;
         let at = input.at();

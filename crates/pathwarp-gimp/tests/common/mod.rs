@@ -85,7 +85,16 @@ pub(crate) fn old_paths(paths: &[GimpPath], format: u32) -> Vec<u8> {
                 own.push(first);
             }
             for (i, at) in own.into_iter().enumerate() {
-                points.push((if i % 3 != 0 { 2 } else if i == 0 && k > 0 { 3 } else { 1 }, at));
+                points.push((
+                    if i % 3 != 0 {
+                        2
+                    } else if i == 0 && k > 0 {
+                        3
+                    } else {
+                        1
+                    },
+                    at,
+                ));
             }
         }
         let closed = p.strokes.last().is_none_or(|s| s.closed);
@@ -228,7 +237,8 @@ pub(crate) fn rest(head: Vec<u8>, version: u32, items: &[GimpPath]) -> Vec<u8> {
 
 /// The three tiles of a file that [`xcf`] made, found by following its pointers: layer, mask, channel.
 pub(crate) fn tiles(file: &[u8]) -> [Vec<u8>; 3] {
-    let version: u32 = if &file[9..13] == b"file" { 0 } else { std::str::from_utf8(&file[10..13]).unwrap().parse().unwrap() };
+    let version: u32 =
+        if &file[9..13] == b"file" { 0 } else { std::str::from_utf8(&file[10..13]).unwrap().parse().unwrap() };
     let word = |at: usize| u32::from_be_bytes(file[at..at + 4].try_into().unwrap()) as usize;
     let size = if version >= 11 { 8 } else { 4 };
     let pointer = |at: usize| if size == 8 { word(at) << 32 | word(at + 4) } else { word(at) };
@@ -264,7 +274,8 @@ pub(crate) fn stroke_of(closed: bool, points: &[[f64; 2]]) -> Stroke {
 pub(crate) fn plain_paths() -> Vec<GimpPath> {
     let square: Vec<[f64; 2]> =
         [[10., 10.], [90., 10.], [90., 90.], [10., 90.]].iter().flat_map(|p| [*p, *p, *p]).collect();
-    let hill = [[5., 60.], [5., 60.], [30., 0.], [60., 0.], [95., 60.], [120., 100.], [120., 5.], [200., -8.], [210., -9.]];
+    let hill =
+        [[5., 60.], [5., 60.], [30., 0.], [60., 0.], [95., 60.], [120., 100.], [120., 5.], [200., -8.], [210., -9.]];
     let ring = [[0., 40.], [20., 40.], [20., 51.], [40., 60.], [50., 40.], [60., 20.]];
     let path = |name: &str, strokes: Vec<Stroke>| GimpPath { name: name.to_owned(), visible: false, strokes };
     vec![
