@@ -10,6 +10,9 @@ impl<T: Read + Seek> ReadSeek for T {}
 /// Path data that is taken into memory at a time.
 const CHUNK: usize = 1 << 16;
 
+/// The most that is read (not passed over) of packed data: over a million points. A few kilobytes can unpack to any amount.
+const MOST_PACKED: u64 = 1 << 24;
+
 /// As much text (SVG, JSON, GIMP 1) as is read: a hundred times the path data of any real drawing.
 const MOST_TEXT: u64 = 1 << 28;
 
@@ -24,6 +27,8 @@ pub(crate) struct Input<'a> {
     at: u64,
     /// Where the data ends at the latest.
     pub(crate) end: u64,
+    /// How many bytes may still be read.
+    allowance: u64,
 }
 
 impl<'a> Input<'a> {
@@ -36,12 +41,13 @@ impl<'a> Input<'a> {
         };
         let end = length(file).map_err(|e: std::io::Error| unreadable(0, &e))?;
         // A small buffer: most reads are a word, then a leap.
-        Ok(Self { source: Source::File(BufReader::with_capacity(1 << 12, file)), at: 0, end })
+        Ok(Self { source: Source::File(BufReader::with_capacity(1 << 12, file)), at: 0, end, allowance: u64::MAX })
     }
 
     /// What a decoder gives, at most `most` bytes.
     pub(crate) fn stream(decoder: impl Read + 'a, most: u64) -> Self {
-        Self { source: Source::Stream(BufReader::with_capacity(CHUNK, Box::new(decoder))), at: 0, end: most }
+        let source = Source::Stream(BufReader::with_capacity(CHUNK, Box::new(decoder)));
+        Self { source, at: 0, end: most, allowance: MOST_PACKED }
     }
 
     pub(crate) fn at(&self) -> u64 {
@@ -58,6 +64,12 @@ impl<'a> Input<'a> {
             let (needed, left) = (buffer.len(), self.left());
             return Err(Error::at(self.at, format!("{what} needs {needed} bytes here, but only {left} are left")));
         }
+        self.allowance = self.allowance.checked_sub(buffer.len() as u64).ok_or_else(|| {
+            let problem = format!(
+                "more than {MOST_PACKED} bytes of paths in packed data; that is more than is read: unpack it first"
+            );
+            Error::at(self.at, problem)
+        })?;
         let read = match &mut self.source {
             Source::File(f) => f.read_exact(buffer),
             Source::Stream(s) => s.read_exact(buffer),

@@ -189,6 +189,25 @@ fn packed_bombs_end_soon() {
     }
     let e = fault_within(&gz.finish().unwrap(), 2.0);
     assert!(e.problem.contains("ends"), "{e}");
+    // More points than are read of packed data.
+    let mut head = common::head(0).0;
+    for w in [25, u32::MAX, 1, 0, 1, 2, 0x4100_0000, 1, 0, 0, 0, 1, 1, 0, 2, 300_000_000] {
+        head.extend(u32::to_be_bytes(w));
+        if w == 0x4100_0000 {
+            head.truncate(head.len() - 2);
+        }
+    }
+    let mut gz = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    gz.write_all(&head).unwrap();
+    let mut points = Vec::new();
+    for kind in [1, 0, 1] {
+        points.extend([u32::to_be_bytes(kind), [0; 4], [0; 4]].concat());
+    }
+    for _ in 0..64 {
+        gz.write_all(&points.repeat(20_000)).unwrap();
+    }
+    let e = fault_within(&gz.finish().unwrap(), 5.0);
+    assert!(e.problem.contains("unpack it first"), "{e}");
     // A string of a gigabyte that is there, in packed form.
     let mut head = common::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 1 << 30] {
@@ -199,7 +218,8 @@ fn packed_bombs_end_soon() {
     for _ in 0..200 {
         gz.write_all(&vec![b'a'; 1 << 20]).unwrap();
     }
-    fault_within(&gz.finish().unwrap(), 5.0);
+    let e = fault_within(&gz.finish().unwrap(), 5.0);
+    assert!(e.problem.contains("longer than any name"), "{e}");
 }
 
 #[track_caller]

@@ -11,6 +11,10 @@ use std::process::Command;
 /// Where the pages lie.
 const PAGES: &str = "docs/deformations";
 
+/// What docs/gimp.md and the README show, and the command that draws it.
+const GIMP_PICTURE: &str = "docs/images/gimp-paper.png";
+const GIMP_EXAMPLE: &str = "shaper samples/paper.xcf --base '#Base' --target '#Target' --shaper '#Shaper'";
+
 /// Writes all pages and pictures.
 pub(crate) fn run(root: &Path) -> Result<String, Fault> {
     let folder = root.join(PAGES);
@@ -24,6 +28,7 @@ pub(crate) fn run(root: &Path) -> Result<String, Fault> {
     for e in Registry::builtin().entries() {
         picture(root, &program, e.info())?;
     }
+    draw(root, &program, words(GIMP_EXAMPLE), &root.join(GIMP_PICTURE))?;
     Ok(format!("wrote {} pages to {}; look at every picture before you commit it", pages.len(), folder.display()))
 }
 
@@ -47,11 +52,15 @@ fn picture(root: &Path, program: &Path, info: &Info) -> Result<(), Fault> {
             words.drain(i..(i + 2).min(words.len()));
         }
     }
-    let png = root.join(PAGES).join(format!("{}.png", info.name));
+    draw(root, program, words, &root.join(PAGES).join(format!("{}.png", info.name)))
+}
+
+/// The preview of a command, as a picture.
+fn draw(root: &Path, program: &Path, words: Vec<String>, png: &Path) -> Result<(), Fault> {
     let out = Command::new(program)
-        .args(&words)
+        .args(words)
         .args(["--quiet", "-o", "-", "--preview"])
-        .arg(&png)
+        .arg(png)
         .current_dir(root)
         .output()
         .map_err(|e| format!("{}: {e}", program.display()))?;

@@ -30,6 +30,8 @@ const WITH_PRECISION: u32 = 4;
 const WIDE_POINTERS: u32 = 11;
 /// Since when paths are items.
 const PATH_ITEMS: u32 = 18;
+/// A megabyte is no name.
+const LONGEST_NAME: u64 = 1 << 20;
 /// GIMP writes a few dozen properties.
 const MOST_PROPERTIES: u32 = 100_000;
 
@@ -151,6 +153,9 @@ pub(super) fn string(input: &mut Input<'_>, what: &str) -> Result<String, Error>
     if length > input.left() {
         let left = input.left();
         return Err(Error::at(at, format!("{what} is said to have {length} bytes, but only {left} are left")));
+    }
+    if length > LONGEST_NAME {
+        return Err(Error::at(at, format!("{what} of {length} bytes is longer than any name")));
     }
     let mut bytes = input.vec(length, what)?;
     if let Some(last) = bytes.pop()

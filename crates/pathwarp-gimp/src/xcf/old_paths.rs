@@ -1,6 +1,6 @@
 //! `PROP_PATHS`, GIMP 1's paths: every stroke but the last is closed, and open ones lack their first handle.
 
-use super::{Layout, Record, Xcf, coordinate, count, string, word};
+use super::{Layout, Record, Xcf, coordinate, count, string};
 use crate::error::Error;
 use crate::input::Input;
 use crate::path::{GimpPath, Stroke};
@@ -45,16 +45,7 @@ pub(super) fn read(input: &mut Input<'_>, xcf: &mut Xcf) -> Result<(), Error> {
             let left = input.left();
             return Err(Error::at(count_at, format!("{n} points of a path need more than the {left} bytes left")));
         }
-        let bytes = input.vec(u64::from(n) * POINT, "a path's points")?;
-        let mut points = Vec::with_capacity(bytes.len() / 12);
-        for (i, p) in bytes.chunks_exact(12).enumerate() {
-            let at = points_at + i as u64 * POINT;
-            let read = |k: usize| {
-                let w = word(p, k);
-                if format == 1 { Ok(f64::from(i32::from_be_bytes(w))) } else { coordinate(w, at + k as u64) }
-            };
-            points.push((u32::from_be_bytes(word(p, 0)), [read(4)?, read(8)?]));
-        }
+        let points = points(input, n, format == 1)?;
         // GIMP gives up at a path without points; the ones behind it are as good as any.
         if !points.is_empty() {
             let strokes = strokes(&points, closed, &|i| points_at + i as u64 * POINT)?;
@@ -66,6 +57,27 @@ pub(super) fn read(input: &mut Input<'_>, xcf: &mut Xcf) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// The points of a path, as listed.
+fn points(input: &mut Input<'_>, n: u32, whole: bool) -> Result<Vec<(u32, [f64; 2])>, Error> {
+    let mut out = Vec::new();
+    for _ in 0..n {
+        let at = input.at();
+        let kind = input.u32("a path's points")?;
+        if !(ANCHOR..=NEW_STROKE).contains(&kind) {
+            return Err(Error::at(
+                at,
+                format!("a point of kind {kind}; there are 1 (anchor), 2 (handle) and 3 (new stroke)"),
+            ));
+        }
+        let mut read = |at: u64| {
+            let w = input.u32("a path's points")?.to_be_bytes();
+            if whole { Ok(f64::from(i32::from_be_bytes(w))) } else { coordinate(w, at) }
+        };
+        out.push((kind, [read(at + 4)?, read(at + 8)?]));
+    }
+    Ok(out)
 }
 
 /// Points as GIMP 1 lists them (type and place, the anchor before its handles), as strokes. `at` tells where a point stands.
