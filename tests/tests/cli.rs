@@ -21,23 +21,34 @@ fn every_example_in_help_runs() {
     let dir = tempfile::tempdir().unwrap();
     for e in registry.entries() {
         for example in e.info().examples {
-            let args: Vec<String> =
-                words(example.command)
-                    .into_iter()
-                    .map(|w| {
-                        if w.starts_with("out") && w.contains('.') {
-                            dir.path().join(w).display().to_string()
-                        } else {
-                            w
-                        }
-                    })
-                    .collect();
-            expect_code(0, &args);
-            let svg = fs::read_to_string(dir.path().join("out.svg")).unwrap();
-            assert!(svg.contains("<svg"), "{}", example.command);
-            fs::remove_file(dir.path().join("out.svg")).unwrap();
+            run_into(dir.path(), example.command);
         }
     }
+}
+
+#[test]
+fn every_job_of_the_cookbook_runs() {
+    let page = fs::read_to_string(root().join("docs/cookbook.md")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("pathwarp ")).collect();
+    assert!(commands.len() >= 15, "{commands:?}");
+    for command in commands {
+        let messages = run_into(dir.path(), command);
+        assert!(messages.is_empty(), "{command}: {messages}");
+    }
+}
+
+/// Runs a command line of the documentation, what it writes going to `dir`; gives its messages.
+fn run_into(dir: &Path, command: &str) -> String {
+    let inside = |w: String| {
+        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w }
+    };
+    let args: Vec<String> = words(command).into_iter().map(inside).collect();
+    let (_, messages) = expect_code(0, &args);
+    let svg = fs::read_to_string(dir.join("out.svg")).unwrap();
+    assert!(svg.contains("<svg"), "{command}");
+    fs::remove_file(dir.join("out.svg")).unwrap();
+    messages
 }
 
 #[test]
@@ -149,6 +160,35 @@ fn forbidden_geometry_is_4_and_leaves_the_old_file_alone() {
         assert!(parts.iter().all(|p| said.contains(p)), "{args:?}: {said}");
         assert_eq!(fs::read_to_string(&old).unwrap(), "precious");
     }
+}
+
+/// Renaming a finished file over `/dev/null` would put a file in its place.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_written_to_and_stays_what_it_is() {
+    use std::os::unix::fs::FileTypeExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (pipe, link, file) =
+        (folder.path().join("pipe"), folder.path().join("link.svg"), folder.path().join("file.svg"));
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || fs::read(pipe).unwrap()
+    });
+    let warp = |to: &Path| {
+        let (input, to) = (sample("icon.svg"), to.to_str().unwrap());
+        let out = pathwarp_in(folder.path(), &["swirl", input.to_str().unwrap(), "-o", to], b"");
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    };
+    warp(&pipe);
+    let piped = reader.join().unwrap();
+    assert!(piped.starts_with(b"<"));
+    assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+    fs::write(&file, "old").unwrap();
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    warp(&link);
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read(&file).unwrap(), piped);
 }
 
 #[test]

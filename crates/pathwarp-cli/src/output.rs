@@ -7,18 +7,33 @@ use std::path::{Path, PathBuf};
 
 /// A file that is ready to be written: nothing is visible under its name before [`Pending::commit_all`].
 pub(crate) struct Pending {
-    file: tempfile::NamedTempFile,
+    content: Content,
     to: PathBuf,
+}
+
+enum Content {
+    /// To be renamed.
+    File(tempfile::NamedTempFile),
+    /// For what is no file (`/dev/null`, `/dev/stdout`, a pipe): renaming would put a file in its place.
+    Bytes(Vec<u8>),
 }
 
 impl Pending {
     /// Writes `bytes` to a temporary file beside `to`.
     pub(crate) fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
+        if is_device(to) {
+            return Ok(Self { content: Content::Bytes(bytes.to_vec()), to: to.to_owned() });
+        }
         Self::written(to, |file| file.write_all(bytes).map_err(|e| format!("cannot be written: {e}")))
     }
 
     /// Has `write` write a temporary file beside `to`.
     pub(crate) fn written(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
+        if is_device(to) {
+            return Err(Failure::file(to, "is no file; name one"));
+        }
+        // A link stays one: what it leads to is replaced.
+        let to = &to.canonicalize().unwrap_or_else(|_| to.to_owned());
         let folder = match to.parent() {
             Some(p) if !p.as_os_str().is_empty() => p,
             _ => Path::new("."),
@@ -42,16 +57,27 @@ impl Pending {
         };
         let mut file = make().map_err(|e| Failure::file(to, format!("cannot be written: {e}")))?;
         write(file.as_file_mut()).map_err(|e| Failure::file(to, e))?;
-        Ok(Self { file, to: to.to_owned() })
+        Ok(Self { content: Content::File(file), to: to.to_owned() })
     }
 
     /// Renames all of them to their names.
     pub(crate) fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
         for p in all {
-            p.file.persist(&p.to).map_err(|e| Failure::file(&p.to, format!("cannot be written: {}", e.error)))?;
+            let written = match p.content {
+                Content::File(file) => file.persist(&p.to).map(drop).map_err(|e| e.error),
+                Content::Bytes(bytes) => {
+                    std::fs::OpenOptions::new().write(true).open(&p.to).and_then(|mut to| to.write_all(&bytes))
+                }
+            };
+            written.map_err(|e| Failure::file(&p.to, format!("cannot be written: {e}")))?;
         }
         Ok(())
     }
+}
+
+/// Whether this is something to write to that is no file: a pipe, a terminal.
+fn is_device(to: &Path) -> bool {
+    to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
 
 /// Writes to standard output; a reader that has had enough is no fault.

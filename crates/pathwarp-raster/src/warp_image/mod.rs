@@ -12,25 +12,36 @@
 //! edges of warped shapes beside the picture are antialiased. Beyond the source's edge all is transparent, and the edge is
 //! antialiased over one pixel of the result.
 //!
+//! Over a tile the inverse is nearly always as good as a cubic through a few of its values ([`trace`]), and neighbouring
+//! pixels are then made together ([`rows`]); elsewhere every pixel asks.
+//!
 //! The work is done in tiles, in parallel. Memory is the source, a third of it again for the pyramid where there is
 //! shrinking, and the result.
 
+mod block;
 mod pyramid;
 mod reach;
+mod rows;
 mod sample;
+mod trace;
 
 use crate::{Error, render::new_pixmap};
+use block::{BYTES, Block, Bytes};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Jet, Map};
 use pyramid::Pyramid;
 use rayon::prelude::*;
 use reach::Reach;
+use rows::Way;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
+use trace::{ASKED, Basis, Trace};
 
 pub use reach::{Extent, extent};
 
 /// Pixels along the side of a tile: its part of the source stays in the cache.
 const TILE: usize = 32;
+/// Tiles over which the inverse is no cubic are divided down to this; then every pixel asks.
+const SMALLEST: usize = 8;
 
 /// What is to be warped, and onto what.
 #[derive(Clone, Copy)]
@@ -56,53 +67,195 @@ pub struct ImageWarp<'a> {
 pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let (width, height) = warp.size;
     let mut out = new_pixmap(f64::from(width), f64::from(height))?;
-    let to_plane = |x: f64, y: f64| warp.shown * Point::new(x, y);
-    let to_source = warp.placed.inverse();
     let reach = Reach::new(warp, warp.shown.inverse(), TILE);
-    let pyramid = Pyramid::new(warp.source);
-
+    let painter = Painter {
+        warp,
+        to_source: warp.placed.inverse(),
+        pyramid: Pyramid::new(warp.source),
+        bytes: Bytes {
+            data: warp.source.data(),
+            width: warp.source.width() as usize,
+            height: warp.source.height() as usize,
+        },
+        basis: Basis::new(),
+        arch: pulp::Arch::new(),
+    };
     let columns = width as usize;
-    let jet_at = |x: f64, y: f64| in_pixels(&warp.inverse.jet(to_plane(x, y)), to_source, warp.shown);
-    out.pixels_mut().par_chunks_mut(columns * TILE).enumerate().for_each(|(band, rows)| {
-        let mut places = [Point::ORIGIN; TILE];
-        let mut jets = [[Jet::default(); TILE]; TILE];
-        for (tile, first) in (0..columns).step_by(TILE).enumerate() {
-            if !reach.touches(tile, band) {
-                continue;
-            }
-            let n = TILE.min(columns - first);
-            let height = rows.len() / columns;
-            let corner = ((first as f64) + 0.5, (band * TILE) as f64 + 0.5);
-            for (j, row) in jets[..height].iter_mut().enumerate() {
-                for (i, place) in places[..n].iter_mut().enumerate() {
-                    *place = to_plane(corner.0 + i as f64, corner.1 + j as f64);
-                }
-                warp.inverse.jets(&places[..n], &mut row[..n]);
-                for jet in &mut row[..n] {
-                    *jet = in_pixels(jet, to_source, warp.shown);
-                }
-            }
-            for (j, row) in rows.chunks_mut(columns).enumerate() {
-                for (i, pixel) in row[first..first + n].iter_mut().enumerate() {
-                    let jet = if jets[j][i].p.is_finite() {
-                        Some(jets[j][i])
-                    } else {
-                        beside(warp.source, |di, dj| {
-                            let at = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
-                            if at.0 < n && at.1 < height {
-                                return jets[at.1][at.0];
-                            }
-                            jet_at(corner.0 + i as f64 + di as f64, corner.1 + j as f64 + dj as f64)
-                        })
-                    };
-                    if let Some(jet) = jet {
-                        *pixel = sample::pixel(&pyramid, &jet);
-                    }
-                }
+    out.data_mut().par_chunks_mut(columns * BYTES * TILE).enumerate().for_each(|(band, rows)| {
+        let mut band = Band { top: band * TILE, stride: columns * BYTES, rows, block: Block::default() };
+        let height = band.rows.len() / band.stride;
+        for left in (0..columns).step_by(TILE) {
+            if reach.touches(left / TILE, band.top / TILE) {
+                let area = Area { left, top: band.top, width: TILE.min(columns - left), height };
+                painter.tile(&mut band, area);
             }
         }
     });
     Ok(out)
+}
+
+/// Some pixels of the result.
+#[derive(Clone, Copy)]
+struct Area {
+    left: usize,
+    top: usize,
+    width: usize,
+    height: usize,
+}
+
+impl Area {
+    /// The four quarters, those that are not empty.
+    fn quarters(self) -> impl Iterator<Item = Self> {
+        let (w, h) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let quarter = move |k: usize| {
+            let (right, low) = (k % 2, k / 2);
+            Self {
+                left: self.left + right * w,
+                top: self.top + low * h,
+                width: if right == 0 { w } else { self.width - w },
+                height: if low == 0 { h } else { self.height - h },
+            }
+        };
+        (0..4).map(quarter).filter(|a| a.width > 0 && a.height > 0)
+    }
+}
+
+/// Whole rows of the result.
+struct Band<'a> {
+    top: usize,
+    stride: usize,
+    rows: &'a mut [u8],
+    /// What a tile reads, kept for the next one's use.
+    block: Block,
+}
+
+impl Band<'_> {
+    /// The bytes of an area's row.
+    #[inline(always)]
+    fn row(&mut self, area: Area, j: usize) -> &mut [u8] {
+        &mut self.rows[(area.top - self.top + j) * self.stride + area.left * BYTES..][..area.width * BYTES]
+    }
+}
+
+/// What all tiles share.
+struct Painter<'a> {
+    warp: &'a ImageWarp<'a>,
+    to_source: Affine,
+    pyramid: Pyramid<'a>,
+    bytes: Bytes<'a>,
+    basis: Basis,
+    arch: pulp::Arch,
+}
+
+impl Painter<'_> {
+    fn tile(&self, band: &mut Band<'_>, area: Area) {
+        match self.trace(area) {
+            Some(trace) => self.arch.dispatch(Traced { painter: self, band, area, trace }),
+            None if area.width.max(area.height) > SMALLEST => {
+                area.quarters().for_each(|quarter| self.tile(band, quarter));
+            }
+            None => self.asked(band, area),
+        }
+    }
+
+    /// The area's places in the source as a polynomial, if they are one.
+    fn trace(&self, area: Area) -> Option<Trace> {
+        // A single column has a width, too, so that there is a derivative.
+        let size = ((area.width - 1).max(1) as f64, (area.height - 1).max(1) as f64);
+        let (left, top) = (area.left as f64 + 0.5, area.top as f64 + 0.5);
+        let mut places = [Point::ORIGIN; ASKED];
+        for (place, (u, v)) in places.iter_mut().zip(self.basis.places()) {
+            *place = self.warp.shown * Point::new(left + u * size.0, top + v * size.1);
+        }
+        let mut answers = [Point::ORIGIN; ASKED];
+        self.warp.inverse.points(&places, &mut answers);
+        for answer in &mut answers {
+            *answer = self.to_source * *answer;
+        }
+        self.basis.trace(&answers, size)
+    }
+
+    /// Pixels that ask the inverse, each by itself.
+    fn asked(&self, band: &mut Band<'_>, area: Area) {
+        let place = |i: isize, j: isize| {
+            self.warp.shown * Point::new(area.left as f64 + i as f64 + 0.5, area.top as f64 + j as f64 + 0.5)
+        };
+        let here = |jet: &Jet| in_pixels(jet, self.to_source, self.warp.shown);
+        let mut places = [Point::ORIGIN; SMALLEST];
+        let mut jets = [[Jet::default(); SMALLEST]; SMALLEST];
+        for (j, row) in jets[..area.height].iter_mut().enumerate() {
+            for (i, p) in places[..area.width].iter_mut().enumerate() {
+                *p = place(i as isize, j as isize);
+            }
+            self.warp.inverse.jets(&places[..area.width], &mut row[..area.width]);
+            for jet in &mut row[..area.width] {
+                *jet = here(jet);
+            }
+        }
+        let at = |i: isize, j: isize| {
+            let known = usize::try_from(i).ok().zip(usize::try_from(j).ok());
+            match known.filter(|(i, j)| *i < area.width && *j < area.height) {
+                Some((i, j)) => jets[j][i],
+                None => here(&self.warp.inverse.jet(place(i, j))),
+            }
+        };
+        for (j, row) in jets.iter().enumerate().take(area.height) {
+            for (pixel, (i, jet)) in band.row(area, j).as_chunks_mut().0.iter_mut().zip(row.iter().enumerate()) {
+                let jet = Some(*jet)
+                    .filter(|jet| jet.p.is_finite())
+                    .or_else(|| beside(self.warp.source, |di, dj| at(i as isize + di, j as isize + dj)));
+                if let Some(jet) = jet {
+                    *pixel = bytes(sample::pixel(&self.pyramid, &jet));
+                }
+            }
+        }
+    }
+}
+
+/// A tile whose pixels' places are a polynomial. A type of its own and no closure: all of it is to be compiled for the vector
+/// unit that there is, which goes by inlining.
+struct Traced<'a, 'b> {
+    painter: &'a Painter<'a>,
+    band: &'a mut Band<'b>,
+    area: Area,
+    trace: Trace,
+}
+
+impl pulp::WithSimd for Traced<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { painter, band, area, trace } = self;
+        let mut way = Way::of(&trace);
+        let mut block = std::mem::take(&mut band.block);
+        if !matches!(way, Way::Each) && !block.read(painter.bytes, &trace, way.margin(), way.layout()) {
+            way = Way::Each;
+        }
+        for j in 0..area.height {
+            let row = trace.pixels(j);
+            let out = band.row(area, j);
+            let other = |i: usize| bytes(sample::pixel(&painter.pyramid, &trace.pixel(i, j)));
+            match way {
+                Way::Between => rows::between(&block, &row, out, other),
+                Way::Stretched => rows::stretched(&block, &row, out, other),
+                Way::Skewed(shapes) => {
+                    let size = [(area.width - 1).max(1) as f32, (area.height - 1).max(1) as f32];
+                    rows::skewed(&block, &row, shapes.row(j as f32, size), out, other);
+                }
+                Way::Each => {
+                    for (i, pixel) in out.as_chunks_mut().0.iter_mut().enumerate() {
+                        *pixel = other(i);
+                    }
+                }
+            }
+        }
+        band.block = block;
+    }
+}
+
+fn bytes(p: PremultipliedColorU8) -> [u8; BYTES] {
+    [p.red(), p.green(), p.blue(), p.alpha()]
 }
 
 /// For a pixel whose middle comes from nowhere, as many inverses say of all that lies off the source: the jet as a neighbour's

@@ -43,7 +43,7 @@ fn covered(at: f64, size: f64, rate: f64) -> f64 {
 /// Catmull and Rom's cubic: E. Catmull, R. Rom, *A class of local interpolating splines*, 1974; R. G. Keys, *Cubic
 /// convolution interpolation for digital image processing*, 1981, with a = −½.
 #[inline]
-fn cubic(t: f32) -> f32 {
+pub(super) fn cubic(t: f32) -> f32 {
     let t = t.abs();
     if t < 1.0 {
         (1.5 * t - 2.5) * t * t + 1.0
@@ -92,17 +92,17 @@ fn interpolated(source: &Level<'_>, x: f64, y: f64) -> Channels {
 
 /// What a pixel covers of the source where that is more than a source pixel: the symmetric matrix S that stretches a unit
 /// square as the Jacobian J does, S² = J·Jᵀ, and in no direction by less than one.
-struct Footprint {
+pub(super) struct Footprint {
     /// The direction of the longest axis.
     axis: [f64; 2],
-    longest: f64,
+    pub(super) longest: f64,
     shortest: f64,
 }
 
 impl Footprint {
     /// `None` where no direction shrinks.
     #[inline]
-    fn new(jet: &Jet) -> Option<Self> {
+    pub(super) fn new(jet: &Jet) -> Option<Self> {
         let (a, c) = (jet.dx.x * jet.dx.x + jet.dy.x * jet.dy.x, jet.dx.y * jet.dx.y + jet.dy.y * jet.dy.y);
         let b = jet.dx.x * jet.dx.y + jet.dy.x * jet.dy.y;
         let (mean, apart) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
@@ -116,6 +116,16 @@ impl Footprint {
         let length = axis[0].hypot(axis[1]);
         let axis = if length > 0.0 { axis.map(|v| v / length) } else { [1.0, 0.0] };
         Some(Self { axis, longest, shortest })
+    }
+
+    /// The matrix S: its upper left, off-diagonal and lower right entry.
+    pub(super) fn stretch(&self) -> [f64; 3] {
+        self.matrix(self.longest, self.shortest)
+    }
+
+    /// The same of S⁻¹ at a jet.
+    pub(super) fn inverse_matrix(jet: &Jet) -> [f64; 3] {
+        Self::new(jet).map_or([1.0, 0.0, 1.0], |f| f.matrix(1.0 / f.longest, 1.0 / f.shortest))
     }
 
     /// ax·axᵀ·p + (1 − ax·axᵀ)·q

@@ -8,6 +8,7 @@ mod bend;
 mod bilinear;
 mod birational;
 mod bulge;
+mod envelope;
 mod expr;
 mod ffd;
 mod lens;
@@ -32,6 +33,7 @@ use std::sync::Arc;
 pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
+        Arc::new(envelope::Envelope),
         Arc::new(bilinear::Bilinear),
         Arc::new(birational::BirationalDeformation),
         Arc::new(bend::Bend),

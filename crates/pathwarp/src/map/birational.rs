@@ -21,7 +21,7 @@
 //! that allows. Across a joint the rows keep their tangents; the map has a crease there.
 
 use super::bernstein::Scaled;
-use super::monoid::{Monoid, Ray, bernstein};
+use super::monoid::{Monoid, Ray};
 use super::{Class, Crease, Creases, Formula, Jet, Level, Map, Patch, RationalBezier, Real, bspline};
 use crate::error::GeometryError;
 use kurbo::{Point, Rect, Vec2};
@@ -300,12 +300,21 @@ impl BirationalInverse {
         let seen = |m: &Monoid| {
             // From a point near: the sums are then not differences of large numbers.
             let o = m.points()[0];
-            let sum =
-                |f: &dyn Fn(usize) -> f64| bernstein(&(0..m.points().len()).map(f).collect::<Vec<_>>(), alpha, beta);
-            let w = sum(&|i| m.weights()[i]);
-            let px = sum(&|i| m.weights()[i] * (m.points()[i].x - o.x));
-            let py = sum(&|i| m.weights()[i] * (m.points()[i].y - o.y));
-            (px - w * (x - o.x), py - w * (y - o.y))
+            let (dx, dy) = (x - o.x, y - o.y);
+            let n = m.points().len() - 1;
+            let term = |i: usize| (m.weights()[i], m.points()[i] - o);
+            let (w, d) = term(n);
+            let (mut sx, mut sy, mut sw) = (S::from(w * d.x), S::from(w * d.y), S::from(w));
+            // As `monoid::bernstein`, three sums in one pass.
+            let (mut power, mut binomial) = (S::from(1.0), 1.0);
+            for i in (0..n).rev() {
+                power = power * alpha;
+                binomial = binomial * (i + 1) as f64 / (n - i) as f64;
+                let (w, d) = term(i);
+                let share = power * (w * binomial);
+                (sx, sy, sw) = (sx * beta + share * d.x, sy * beta + share * d.y, sw * beta + share);
+            }
+            (sx - sw * dx, sy - sw * dy)
         };
         let (a, b) = (seen(&rows[0]), seen(&rows[1]));
         let (dx, dy) = (a.0 - b.0, a.1 - b.1);

@@ -155,7 +155,7 @@ impl Monoid {
 
 /// ⟨c⟩ₙ\[α,β\] = Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ, by Horner's scheme in β with the powers of α carried along.
 #[must_use]
-pub(crate) fn bernstein<S: Real>(c: &[f64], alpha: S, beta: S) -> S {
+fn bernstein<S: Real>(c: &[f64], alpha: S, beta: S) -> S {
     let n = c.len() - 1;
     let (mut sum, mut power, mut binomial) = (S::from(c[n]), S::from(1.0), 1.0);
     // From the last term down, divided by nothing: sum = Σ_{i≥k} cᵢ C(n,i) αⁿ⁻ⁱ βⁱ⁻ᵏ.

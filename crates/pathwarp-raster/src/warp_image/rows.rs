@@ -1,0 +1,360 @@
+//! A tile's pixels, row by row, in the form that the compiler turns into vector instructions. The vector unit's width changes
+//! nothing in the results: every pixel's sums are taken in the same order.
+
+use super::TILE;
+use super::block::{BYTES, Block, Firsts, Layout, OUTSIDE};
+use super::sample::Footprint;
+use super::trace::{Row, Trace};
+
+/// Eight pixels a side hold a kernel that reaches two pixels, stretched by less than this.
+const MOST_STRETCH: f64 = 1.99;
+/// The off-diagonal entry of the footprint's matrix that counts as none: the kernel is then stretched along the picture's
+/// own axes.
+const MOST_SKEW: f64 = 0.1;
+/// Places along a side of a tile where the stretch is looked at.
+const LOOKS: usize = 5;
+/// How a tile's pixels are made.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Way {
+    /// Nothing shrinks: four pixels a side.
+    Between,
+    /// A little shrinks, along the picture's own axes: up to eight.
+    Stretched,
+    /// A little shrinks, along other axes.
+    Skewed(Shapes),
+    /// Each pixel by itself.
+    Each,
+}
+
+/// The inverse of the footprint's matrix in a tile's corners, left to right, top to bottom: it changes little in between.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shapes([[[f32; 3]; 2]; 2]);
+
+impl Shapes {
+    fn of(trace: &Trace) -> Self {
+        Self([0.0, 1.0].map(|v| [0.0, 1.0].map(|u| Footprint::inverse_matrix(&trace.at(u, v)).map(|m| m as f32))))
+    }
+
+    /// In row `j`, in its first column and from column to column.
+    #[inline(always)]
+    pub(super) fn row(&self, j: f32, area: [f32; 2]) -> [[f32; 3]; 2] {
+        let between = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        let [top, bottom] = self.0;
+        let [left, right]: [[f32; 3]; 2] =
+            std::array::from_fn(|side| std::array::from_fn(|k| between(top[side][k], bottom[side][k], j / area[1])));
+        [left, std::array::from_fn(|k| (right[k] - left[k]) / area[0])]
+    }
+}
+
+impl Way {
+    /// How many pixels around a tile's places its kernels reach.
+    #[inline(always)]
+    pub(super) fn margin(&self) -> f64 {
+        match self {
+            Self::Between => 3.0,
+            _ => 6.0,
+        }
+    }
+
+    /// How they read a block.
+    #[inline(always)]
+    pub(super) fn layout(&self) -> Layout {
+        if matches!(self, Self::Skewed(_)) { Layout::Channels } else { Layout::Pixels }
+    }
+
+    pub(super) fn of(trace: &Trace) -> Self {
+        let share = |k: usize| k as f64 / (LOOKS - 1) as f64;
+        let (mut shrinks, mut skew) = (false, 0.0_f64);
+        for k in 0..LOOKS * LOOKS {
+            let jet = trace.at(share(k % LOOKS), share(k / LOOKS));
+            let Some(footprint) = Footprint::new(&jet) else { continue };
+            let [sx, s, sy] = footprint.stretch();
+            if sx.max(sy) + s.abs() > MOST_STRETCH {
+                return Self::Each;
+            }
+            (shrinks, skew) = (true, skew.max(s.abs()));
+        }
+        match shrinks {
+            false => Self::Between,
+            true if skew <= MOST_SKEW => Self::Stretched,
+            true => Self::Skewed(Shapes::of(trace)),
+        }
+    }
+}
+
+/// The places of a row's pixels, counted from the middle of a block's first pixel.
+struct Places {
+    x: [f32; TILE],
+    y: [f32; TILE],
+}
+
+impl Places {
+    #[inline(always)]
+    fn new(row: &Row, block: &Block) -> Self {
+        let [x, y] = block.corner.map(|c| c as f64 + 0.5);
+        Self { x: cubic(row.place(0, x)), y: cubic(row.place(1, y)) }
+    }
+}
+
+#[inline(always)]
+fn cubic(c: [f32; 4]) -> [f32; TILE] {
+    let mut out = [0.0; TILE];
+    for (i, o) in out.iter_mut().enumerate() {
+        let u = i as f32;
+        *o = ((c[3] * u + c[2]) * u + c[1]) * u + c[0];
+    }
+    out
+}
+
+/// A row's pixels: where the `SIDE` × `SIDE` pixels of the block begin that each reads, and their weights.
+struct Taps<const SIDE: usize> {
+    first: Firsts,
+    x: [[f32; TILE]; SIDE],
+    y: [[f32; TILE]; SIDE],
+}
+
+/// Makes the row's pixels whose part of the source is in the block; calls `other` for the others.
+#[inline(always)]
+pub(super) fn between(block: &Block, row: &Row, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
+    const SIDE: usize = 4;
+    let Places { x, y } = Places::new(row, block);
+    let (mut left, mut top) = ([0.0; TILE], [0.0; TILE]);
+    let mut taps = Taps { first: [0; TILE], x: [[0.0; TILE]; SIDE], y: [[0.0; TILE]; SIDE] };
+    for i in 0..TILE {
+        let (a, b) = (x[i].floor(), y[i].floor());
+        (left[i], top[i]) = (a - 1.0, b - 1.0);
+        let (u, v) = (weights(x[i] - a), weights(y[i] - b));
+        for k in 0..SIDE {
+            taps.x[k][i] = u[k];
+            taps.y[k][i] = v[k];
+        }
+    }
+    taps.first = block.firsts(&left, &top, SIDE, Layout::Pixels);
+    paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
+}
+
+/// The same with the kernel stretched.
+#[inline(always)]
+pub(super) fn stretched(block: &Block, row: &Row, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
+    const SIDE: usize = 8;
+    let Places { x, y } = Places::new(row, block);
+    let (left, wx) = kernels(&x, &stretches(row, 0));
+    let (top, wy) = kernels(&y, &stretches(row, 1));
+    let taps = Taps { first: block.firsts(&left, &top, SIDE, Layout::Pixels), x: wx, y: wy };
+    paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
+}
+
+#[inline(always)]
+fn paint<const SIDE: usize, const N: usize>(
+    block: &Block,
+    taps: &Taps<SIDE>,
+    out: &mut [u8],
+    other: impl FnMut(usize) -> [u8; BYTES],
+) {
+    let mut colors = [[0.0; BYTES]; TILE];
+    let n = out.len() / BYTES;
+    for (i, color) in colors.iter_mut().enumerate().take(n) {
+        let Some((mut values, stride)) = block.from(taps.first[i]) else { continue };
+        let mut sums = [0.0; N];
+        for j in 0..SIDE {
+            let Some(pixels) = values.first_chunk::<N>() else { break };
+            for k in 0..N {
+                sums[k] += taps.y[j][i] * pixels[k];
+            }
+            values = values.get(stride..).unwrap_or_default();
+        }
+        for j in 0..SIDE {
+            for c in 0..BYTES {
+                color[c] += taps.x[j][i] * sums[BYTES * j + c];
+            }
+        }
+    }
+    finish(&colors, &taps.first, out, other);
+}
+
+/// Writes a row's colours, the nearest there are as [`super::color`], and those of the pixels that were left out.
+#[inline(always)]
+fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut other: impl FnMut(usize) -> [u8; BYTES]) {
+    // The unit of a number's last bit at this size is 1: adding it rounds, and leaves a whole number in the low bits.
+    const WHOLE: f32 = (1_u32 << 23) as f32;
+    let mut bytes = [[0; BYTES]; TILE];
+    for (bytes, color) in bytes.iter_mut().zip(colors) {
+        let alpha = least(most(color[3], 0.0), 255.0);
+        for c in 0..BYTES {
+            bytes[c] = (least(most(color[c], 0.0), alpha) + WHOLE).to_bits() as u8;
+        }
+    }
+    for ((i, pixel), bytes) in out.as_chunks_mut::<BYTES>().0.iter_mut().enumerate().zip(bytes) {
+        *pixel = if first[i] == OUTSIDE { other(i) } else { bytes };
+    }
+}
+
+/// The same with the kernel stretched along any axes. `shape`: of the row, as [`Shapes::row`] has it.
+#[inline(always)]
+pub(super) fn skewed(
+    block: &Block,
+    row: &Row,
+    shape: [[f32; 3]; 2],
+    out: &mut [u8],
+    other: impl FnMut(usize) -> [u8; BYTES],
+) {
+    const SIDE: usize = 8;
+    const MOST: f32 = MOST_STRETCH as f32;
+    let Places { x, y } = Places::new(row, block);
+    let mut shapes = [[0.0; TILE]; 3];
+    for (k, values) in shapes.iter_mut().enumerate() {
+        for (i, v) in values.iter_mut().enumerate() {
+            *v = shape[0][k] + shape[1][k] * i as f32;
+        }
+    }
+    let (mut left, mut top, mut bottom) = ([0.0; TILE], [0.0; TILE], [0.0; TILE]);
+    for i in 0..TILE {
+        let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
+        let det = ix * iy - k * k;
+        let (wide, high) = (2.0 * least((iy + k.abs()) / det, MOST), 2.0 * least((ix + k.abs()) / det, MOST));
+        (left[i], top[i], bottom[i]) = ((x[i] - wide).ceil(), (y[i] - high).ceil(), y[i] + high);
+    }
+    let first = block.firsts(&left, &top, SIDE, Layout::Channels);
+    let mut colors = [[0.0; BYTES]; TILE];
+    let n = out.len() / BYTES;
+    for (i, color) in colors.iter_mut().enumerate().take(n) {
+        let Some((mut values, stride)) = block.from(first[i]) else { continue };
+        let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
+        let (mut sums, mut totals) = ([[0.0; SIDE]; BYTES], [0.0; SIDE]);
+        let mut at = top[i];
+        while at <= bottom[i] {
+            let dy = at - y[i];
+            let (mut u, mut v) = ([0.0; SIDE], [0.0; SIDE]);
+            for n in 0..SIDE {
+                let dx = left[i] - x[i] + n as f32;
+                u[n] = ix * dx + k * dy;
+                v[n] = k * dx + iy * dy;
+            }
+            let mut weights = [0.0; SIDE];
+            for n in 0..SIDE {
+                weights[n] = catmull_rom(u[n]) * catmull_rom(v[n]);
+                totals[n] += weights[n];
+            }
+            for (c, sums) in sums.iter_mut().enumerate() {
+                let Some(channel) = values.get(c * stride / BYTES..).and_then(<[f32]>::first_chunk::<SIDE>) else {
+                    break;
+                };
+                for n in 0..SIDE {
+                    sums[n] += weights[n] * channel[n];
+                }
+            }
+            values = values.get(stride..).unwrap_or_default();
+            at += 1.0;
+        }
+        let scale = 1.0 / sum(&totals);
+        for (a, s) in color.iter_mut().zip(&sums) {
+            *a = sum(s) * scale;
+        }
+    }
+    finish(&colors, &first, out, other);
+}
+
+/// The smaller one: one instruction, as no number is NaN here.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger one.
+#[inline(always)]
+fn most(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The sum, in an order that suits vectors.
+#[inline(always)]
+fn sum(v: &[f32; 8]) -> f32 {
+    ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]))
+}
+
+/// How many pixels of the source a pixel of the row covers along one coordinate, at least one.
+#[inline(always)]
+fn stretches(row: &Row, coordinate: usize) -> [f32; TILE] {
+    let c = row.place(coordinate, 0.0);
+    let (along, down) = (cubic([c[1], 2.0 * c[2], 3.0 * c[3], 0.0]), cubic(row.down(coordinate)));
+    let mut out = [0.0; TILE];
+    for (o, (a, b)) in out.iter_mut().zip(along.iter().zip(&down)) {
+        // Tiles with more are not made this way.
+        *o = least(most((a * a + b * b).sqrt(), 1.0), MOST_STRETCH as f32);
+    }
+    out
+}
+
+/// Catmull and Rom's weights of the four pixels around a place that lies `t` behind the second.
+#[inline(always)]
+fn weights(t: f32) -> [f32; 4] {
+    const CUBED: [f32; 4] = [-0.5, 1.5, -1.5, 0.5];
+    const SQUARED: [f32; 4] = [1.0, -2.5, 2.0, -0.5];
+    const ONCE: [f32; 4] = [-0.5, 0.0, 0.5, 0.0];
+    const ALONE: [f32; 4] = [0.0, 1.0, 0.0, 0.0];
+    let mut out = [0.0; 4];
+    for k in 0..4 {
+        out[k] = ((CUBED[k] * t + SQUARED[k]) * t + ONCE[k]) * t + ALONE[k];
+    }
+    out
+}
+
+/// For every place, the first of the eight pixels that its stretched kernel reaches, and their weights, whose sum is one.
+#[inline(always)]
+fn kernels(places: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; TILE]; 8]) {
+    let (mut first, mut weights, mut total) = ([0.0; TILE], [[0.0; TILE]; 8], [0.0; TILE]);
+    for i in 0..TILE {
+        first[i] = (places[i] - 2.0 * stretch[i]).ceil();
+    }
+    for (k, weights) in weights.iter_mut().enumerate() {
+        for i in 0..TILE {
+            weights[i] = catmull_rom((first[i] + k as f32 - places[i]) / stretch[i]);
+            total[i] += weights[i];
+        }
+    }
+    for weights in &mut weights {
+        for i in 0..TILE {
+            weights[i] /= total[i];
+        }
+    }
+    (first, weights)
+}
+
+/// Catmull and Rom's cubic without branches: its outer piece, which is zero at 2, and what the inner one has more,
+/// (1 − t)²(2t − 1).
+#[inline(always)]
+fn catmull_rom(place: f32) -> f32 {
+    let t = least(place.abs(), 2.0);
+    let m = most(1.0 - t, 0.0);
+    ((2.5 - 0.5 * t) * t - 4.0) * t + 2.0 + m * m * (1.0 - 2.0 * m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unstretched_the_kernel_is_the_weights() {
+        let mut places = [0.0; TILE];
+        for (i, p) in places.iter_mut().enumerate() {
+            *p = 7.0 + i as f32 / TILE as f32;
+        }
+        let (first, kernels) = kernels(&places, &[1.0; TILE]);
+        for (i, p) in places.into_iter().enumerate() {
+            // On a whole place the first of five pixels has no weight.
+            let skipped = if p == 7.0 { 1 } else { 0 };
+            assert_eq!(first[i] + skipped as f32, 6.0);
+            for (k, w) in weights(p - 7.0).into_iter().enumerate() {
+                assert!((w - kernels[k + skipped][i]).abs() < 1e-6, "{p}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_branches_the_cubic_is_the_same() {
+        for k in -300..300 {
+            let t = 0.01 * k as f32;
+            assert!((catmull_rom(t) - super::super::sample::cubic(t)).abs() < 2e-6, "{t}");
+        }
+    }
+}
