@@ -10,11 +10,11 @@ fuzz_target!(|data: &[u8]| {
     if found.damage.is_some() || !matches!(found.file.kind, pathwarp_gimp::Kind::Xcf(_)) {
         return;
     }
+    // One anchor more in the first stroke, so that everything behind it moves.
+    let mut paths = found.file.paths;
     // GIMP 1's whole numbers may be larger than single precision tells apart.
     let single = |p: &mut [f64; 2]| *p = p.map(|v| f64::from(v as f32));
     paths.iter_mut().flat_map(|p| &mut p.strokes).flat_map(|s| &mut s.points).for_each(single);
-    // One anchor more in the first stroke, so that everything behind it moves.
-    let mut paths = found.file.paths;
     let Some(stroke) = paths.first_mut().and_then(|p| p.strokes.first_mut()) else { return };
     stroke.points.extend([[1.5, -2.5]; 3]);
     let mut out = Vec::new();
