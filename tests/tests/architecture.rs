@@ -29,8 +29,12 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
-    allowed("pathwarp-cli", &["pathwarp", "pathwarp-gimp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"]);
-    for name in ["pathwarp", "pathwarp-gimp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"] {
+    allowed("pathwarp-psd", &[]);
+    allowed(
+        "pathwarp-cli",
+        &["pathwarp", "pathwarp-gimp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster"],
+    );
+    for name in ["pathwarp", "pathwarp-gimp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster"] {
         assert!(
             !of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")),
             "{name} prints"

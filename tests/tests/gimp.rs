@@ -44,8 +44,11 @@ fn listed(file: &Path) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-/// Strokes of every path of a list: closed, and control points.
-fn strokes(list: &Value) -> Vec<(String, Vec<(bool, Vec<[f64; 2]>)>)> {
+/// A path's name and its strokes: closed, and control points.
+type Named = (String, Vec<(bool, Vec<[f64; 2]>)>);
+
+/// Strokes of every path of a list.
+fn strokes(list: &Value) -> Vec<Named> {
     let stroke = |s: &Value| (s["closed"].as_bool().unwrap(), serde_json::from_value(s["points"].clone()).unwrap());
     let path = |p: &Value| {
         (p["name"].as_str().unwrap().to_owned(), p["strokes"].as_array().unwrap().iter().map(stroke).collect())
@@ -87,7 +90,7 @@ fn an_xcf_is_listed_and_referred_to_by_name() {
     assert!(e.contains("holds 3 paths"), "{e}");
 }
 
-fn listed_svg(name: &str) -> Vec<(String, Vec<(bool, Vec<[f64; 2]>)>)> {
+fn listed_svg(name: &str) -> Vec<Named> {
     strokes(&listed(&sample(name)))
 }
 
@@ -102,7 +105,9 @@ fn the_papers_example_is_the_same_from_gimps_file() {
         expect_code(0, &words);
     };
     let (from_svg, from_xcf, list) = (to("a.svg"), to("b.svg"), to("c.json"));
-    run("samples/paper-two-anchors.svg", &from_svg);
+    // Lines stay lines, as GIMP's paths are.
+    let keep = ["shaper", "samples/paper-two-anchors.svg", "--strokes", "keep", "-o", &from_svg];
+    expect_code(0, &keep.into_iter().chain(guides).collect::<Vec<_>>());
     run("samples/paper.xcf", &from_xcf);
     run("samples/paper.xcf#Grid", &list);
     let outline = |points: &[(bool, Vec<[f64; 2]>)]| {

@@ -1,7 +1,7 @@
 //! The command line itself, made from the registry.
 
 use crate::failure::Failure;
-use crate::{Outcome, common, compare, convert, install, output, paths, query, recipe_file, render, unwarp};
+use crate::{Outcome, common, compare, convert, gallery, install, output, paths, query, recipe_file, render, unwarp};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Args, Kind, Param};
@@ -49,6 +49,7 @@ pub(crate) fn build(registry: &Registry) -> Command {
         .subcommand(paths::command())
         .subcommand(convert::command())
         .subcommand(render::command())
+        .subcommand(gallery::command())
         .subcommand(compare::command())
         .subcommand(install::command())
         .subcommand(

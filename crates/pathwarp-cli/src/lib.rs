@@ -16,8 +16,10 @@ mod command;
 mod common;
 mod compare;
 mod convert;
+mod data_file;
 mod deform;
 mod failure;
+mod gallery;
 mod gimp;
 mod install;
 mod output;
@@ -94,6 +96,7 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         "convert" => convert::run(sub),
         "install" => install::run(sub),
         "render" => render::run(sub),
+        "gallery" => gallery::run(registry, sub),
         "schema" => schema::run(registry),
         "unwarp" => unwarp::run(sub),
         "run" => {

@@ -128,6 +128,7 @@ fn page(i: &Info) -> String {
         let value = match p.kind {
             Kind::Flag => String::new(),
             Kind::Choice(words) => words.join(", "),
+            Kind::NameOrFile(words) => format!("{}, or a file", words.join(", ")),
             _ => p.value_name(),
         };
         let default =

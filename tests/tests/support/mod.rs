@@ -21,7 +21,8 @@ pub fn artwork() -> Vec<String> {
         .unwrap()
         .map(|e| e.unwrap().file_name().into_string().unwrap())
         .filter(|n| {
-            n.ends_with(".svg") && !["cages.svg", "anchors.svg", "banner.svg", "envelopes.svg"].contains(&n.as_str())
+            let guides = ["cages.svg", "anchors.svg", "banner.svg", "envelopes.svg", "meshes.svg"];
+            n.ends_with(".svg") && !guides.contains(&n.as_str())
         })
         .collect();
     all.sort();

@@ -294,7 +294,7 @@ fn sides_path(n: &Net) -> BezPath {
 }
 
 /// The eight curves of a net.
-fn rows_path(n: &Net) -> BezPath {
+pub(super) fn rows_path(n: &Net) -> BezPath {
     let mut p = BezPath::new();
     for (i, row) in n.iter().enumerate() {
         p.move_to(row[0]);

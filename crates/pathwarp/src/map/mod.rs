@@ -26,8 +26,10 @@ mod patch;
 mod pins;
 mod quotient;
 mod rational;
+pub mod ruled;
 mod side;
 pub mod surface;
+mod tiled;
 pub mod triangle;
 
 pub use affine::AffineMap;
@@ -48,7 +50,9 @@ pub use patch::Patch;
 pub use pins::{MOST_PINS, pull};
 pub use quotient::Quotient;
 pub use rational::RationalBezier;
+pub use ruled::{Along, Guide};
 pub use side::{Pace, Side};
+pub use tiled::{Row, Tiled};
 pub use triangle::TriangleNet;
 
 use kurbo::{Affine, Point};
