@@ -17,12 +17,8 @@ import gi
 gi.require_version("Gimp", "3.0")
 from gi.repository import Gimp, GLib, GObject  # noqa: E402
 
-# Styles of `pathwarp warp`, in case that the program cannot be asked.
-STYLES = (
-    "arc arc-lower arc-upper arch bulge shell-lower shell-upper flag wave fish rise fisheye inflate squeeze twist"
-).split()
-
-# A deformation: its title, then its arguments: name, kind, label, tip, default. "path" arguments name paths of the image.
+# A deformation: its title, what it does, and its arguments: name, kind, label, tip, default. "path" arguments name paths of the
+# image; the program knows what a "choice" is among.
 DEFORMATIONS = {
     "shaper": ("Shaper…", "Bend a path into a closed path of four sides", [
         ("shaper", "path", "_Shaper", "The closed path of four sides", ""),
@@ -41,8 +37,13 @@ DEFORMATIONS = {
     "warp": ("Warp…", "Bend a path in a style", [
         ("style", "choice", "_Style", "The style", "arc"),
         ("bend", "text", "_Bend", "How far, and which way: -100% to 100%", "50%"),
+        ("axis", "choice", "_Axis", "The direction in which the path runs through the style", "horizontal"),
         ("horizontal", "text", "_Horizontal", "Distortion: -100% to 100%", "0%"),
         ("vertical", "text", "_Vertical", "Distortion: -100% to 100%", "0%"),
+    ]),
+    "wordart": ("Text shape…", "Put a path into a text shape of office programs", [
+        ("preset", "choice", "_Shape", "The shape", "wave1"),
+        ("adj", "text", "_Adjust", "The shape's first adjust value: 1/100000 of the box or %; empty: as it comes", ""),
     ]),
 }
 
@@ -156,7 +157,6 @@ def ask(image, procedure, config, deformation):
     dialog.get_content_area().add(grid)
     names = [path.get_name() for path in image.get_paths()]
     selected = [path.get_name() for path in image.get_selected_paths()]
-    styles = style_names() if deformation == "warp" else []
     fields = {}
     for row, (name, kind, label, tip, _default) in enumerate([("path", "path", "_Path", "The path to bend", "")] + arguments):
         stored = config.get_property(name)
@@ -168,14 +168,17 @@ def ask(image, procedure, config, deformation):
                 field = Gtk.Entry(text=stored, activates_default=True)
             else:
                 field = Gtk.ComboBoxText()
-                choices = styles if kind == "choice" else names if name in ("path", "shaper", "along") else [""] + names
-                for choice in choices:
+                if kind == "choice":
+                    known_names = choices(deformation, name) or [stored]
+                else:
+                    known_names = names if name in ("path", "shaper", "along") else [""] + names
+                for choice in known_names:
                     field.append(choice, choice or "(none)")
                 # The names that the first plug-in's users give their paths.
-                guess = next((n for n in names if n.lower() == name), "")
+                value = stored if stored and stored in known_names else next((n for n in names if n.lower() == name), "")
                 if name == "path":
-                    guess = selected[0] if selected else names[0]
-                field.set_active_id(stored if stored in choices and stored else guess)
+                    value = (selected or [value or names[0]])[0]
+                field.set_active_id(value)
             mnemonic = Gtk.Label(label=label, use_underline=True, xalign=0, mnemonic_widget=field)
             grid.attach(mnemonic, 0, row, 1, 1)
             grid.attach(field, 1, row, 1, 1)
@@ -193,13 +196,18 @@ def ask(image, procedure, config, deformation):
     return confirmed
 
 
-def style_names():
-    """The styles that the program knows."""
+def choices(deformation, argument):
+    """What the program knows for an argument of kind "choice"; empty if it cannot be asked."""
     try:
-        text = run_program(["help", "warp"])[0].decode("utf-8", "replace")
-    except (RuntimeError, OSError):
-        return STYLES
-    return [style for style in STYLES if style in text] or STYLES
+        schema = json.loads(run_program(["schema"])[0])
+    except (RuntimeError, OSError, ValueError):
+        return []
+    for step in schema["properties"]["step"]["items"]["oneOf"]:
+        properties = step["properties"]
+        if properties["deformation"].get("const") == deformation:
+            found = properties[argument]
+            return found.get("enum") or found.get("examples") or []
+    return []
 
 
 def run(procedure, run_mode, image, _drawables, config, deformation):

@@ -237,19 +237,34 @@ fn the_plug_in_is_put_in_place_and_taken_away() {
     assert!(!home.exists());
 }
 
-/// Runs a GIMP without a screen; `None` if it is not installed.
-fn gimp(program: &str, folder: &Path, args: &[&str]) -> Option<String> {
-    let mut c = Command::new(program);
+/// Runs a GIMP without a screen: the program that the environment's `variable` names, or the one of the usual name; `None` if
+/// there is none.
+fn gimp(variable: &str, usual: &str, folder: &Path, args: &[&str]) -> Option<String> {
+    let named = std::env::var_os(variable);
+    let mut c = Command::new(named.as_deref().unwrap_or(usual.as_ref()));
     c.args(["--no-interface", "--no-data", "--no-fonts"]).args(args).stdin(Stdio::null());
     // A profile of its own: nothing of the user's is read or changed.
     c.env("GIMP2_DIRECTORY", folder.join("gimp2")).env("GIMP3_DIRECTORY", folder.join("gimp3"));
     match c.output() {
         Ok(out) => Some(String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned()),
+        Err(e) if named.is_some() => panic!("{variable} names no program that runs: {e}"),
         Err(_) => {
-            eprintln!("skipped: there is no program `{program}` here");
+            eprintln!("skipped: there is no program `{usual}` here, and {variable} names none");
             None
         }
     }
+}
+
+fn gimp_2(folder: &Path, script: &str) -> Option<String> {
+    gimp("PATHWARP_GIMP2", "gimp-console-2.10", folder, &["-b", script, "-b", "(gimp-quit 0)"])
+}
+
+/// Runs a Python script in GIMP 3.
+fn gimp_3(folder: &Path, script: &str) -> Option<String> {
+    let file = folder.join("run.py");
+    fs::write(&file, script).unwrap();
+    let run = format!("exec(open({:?}).read())", file.display().to_string());
+    gimp("PATHWARP_GIMP3", "gimp-console-3.0", folder, &["--quit", "--batch-interpreter", "python-fu-eval", "-b", &run])
 }
 
 /// Script-Fu that writes an image's paths as lines: `P name`, `S closed`, and a number to a line.
@@ -314,37 +329,41 @@ fn gimp_2_agrees_on_what_is_written() {
     let d = dir.path();
     let at = |name: &str| d.join(name).display().to_string();
     fs::write(at("new.xcf"), new_xcf([640, 400], &paths())).unwrap();
-    // GIMP saves it with a layer, so that there are tiles behind the paths.
+    // GIMP saves it with a layer, so that there are tiles behind the paths: with pointers of 32 bits, and of 64.
     let make = format!(
         r#"(let* ((i (car (gimp-file-load 1 "{0}" "{0}"))) (l (car (gimp-layer-new i 640 400 0 "Layer" 100 0))))
             (gimp-image-insert-layer i l 0 0) (gimp-drawable-fill l 2) (gimp-image-set-resolution i 300 200)
-            (gimp-xcf-save 0 i l "{1}" "{1}"))"#,
+            (gimp-xcf-save 0 i l "{1}" "{1}") (gimp-image-convert-precision i 250) (gimp-xcf-save 0 i l "{2}" "{2}"))"#,
         at("new.xcf"),
-        at("real.xcf")
+        at("real.xcf"),
+        at("deep.xcf")
     );
-    let Some(said) = gimp("gimp-console-2.10", d, &["-b", &make, "-b", "(gimp-quit 0)"]) else { return };
-    assert!(d.join("real.xcf").exists(), "{said}");
-    assert_eq!(read(&fs::read(at("real.xcf")).unwrap()).unwrap(), paths());
-
-    expect_code(0, &["affine", &at("real.xcf"), "--into", &at("same.xcf")]);
-    assert_eq!(fs::read(at("same.xcf")).unwrap(), fs::read(at("real.xcf")).unwrap());
-    expect_code(
-        0,
-        &["wave", &at("real.xcf"), "--merge", "off", "--tolerance", "1e-4", "--into", &at("waved.xcf"), "-q"],
-    );
-    assert_ne!(fs::metadata(at("waved.xcf")).unwrap().len(), fs::metadata(at("real.xcf")).unwrap().len());
-    expect_code(0, &["wave", &at("real.xcf"), "-o", &at("waved.svg"), "-q"]);
-    expect_code(0, &["convert", &at("real.xcf"), "-o", &at("plain.svg")]);
+    let Some(said) = gimp_2(d, &make) else { return };
+    assert!(d.join("deep.xcf").exists(), "{said}");
+    let of = |name: &str| read(&fs::read(at(name)).unwrap()).unwrap();
+    let version = |name: &str| fs::read(at(name)).unwrap()[9..13].to_vec();
+    assert_eq!((version("real.xcf"), version("deep.xcf")), (b"file".to_vec(), b"v012".to_vec()));
 
     let mut script = String::from(DUMP);
-    for name in ["same", "waved"] {
-        let (xcf, dump) = (at(&format!("{name}.xcf")), at(&format!("{name}.txt")));
-        script += &format!(
-            "(let* ((i (car (gimp-file-load 1 \"{xcf}\" \"{xcf}\"))) (l (car (gimp-image-get-active-layer i)))) (dump i \"{dump}\")
-               (file-png-save-defaults 1 i l \"{0}\" \"{0}\"))\n",
-            at(&format!("{name}.png"))
-        );
+    for file in ["real", "deep"] {
+        let source = at(&format!("{file}.xcf"));
+        assert_eq!(of(&format!("{file}.xcf")), paths());
+        let into = |name: &str| at(&format!("{file}-{name}.xcf"));
+        expect_code(0, &["affine", &source, "--into", &into("same")]);
+        assert_eq!(fs::read(into("same")).unwrap(), fs::read(&source).unwrap());
+        expect_code(0, &["wave", &source, "--merge", "off", "--tolerance", "1e-4", "--into", &into("waved"), "-q"]);
+        assert_ne!(fs::metadata(into("waved")).unwrap().len(), fs::metadata(&source).unwrap().len());
+        for name in ["same", "waved"] {
+            script += &format!(
+                "(let* ((i (car (gimp-file-load 1 \"{0}\" \"{0}\"))) (l (car (gimp-image-get-active-layer i))))
+                   (dump i \"{1}.txt\") (file-png-save-defaults 1 i l \"{1}.png\" \"{1}.png\"))\n",
+                into(name),
+                at(&format!("{file}-{name}"))
+            );
+        }
     }
+    expect_code(0, &["wave", &at("real.xcf"), "-o", &at("waved.svg"), "-q"]);
+    expect_code(0, &["convert", &at("real.xcf"), "-o", &at("plain.svg")]);
     for (name, dpi) in [("plain", 72), ("plain", 300), ("waved", 72), ("waved", 300)] {
         script += &format!(
             "(let ((i (car (gimp-image-new 640 400 0)))) (gimp-image-set-resolution i {dpi} {dpi})
@@ -354,21 +373,100 @@ fn gimp_2_agrees_on_what_is_written() {
         );
     }
     fs::write(at("dump.scm"), script).unwrap();
-    let load = format!("(load \"{}\")", at("dump.scm"));
-    let said = gimp("gimp-console-2.10", d, &["-b", &load, "-b", "(gimp-quit 0)"]).unwrap();
+    let said = gimp_2(d, &format!("(load \"{}\")", at("dump.scm"))).unwrap();
     assert!(d.join("waved-300.txt").exists(), "{said}");
-    let of = |name: &str| read(&fs::read(at(name)).unwrap()).unwrap();
-    // Ten digits of what the files hold.
-    agree(&dumped(&d.join("same.txt")), &of("real.xcf"), 1e-6, true);
-    agree(&dumped(&d.join("waved.txt")), &of("waved.xcf"), 1e-6, true);
     assert!(!said.to_lowercase().contains("corrupt"), "{said}");
-    // The picture is what it was.
     let pixels =
         |name: &str| pathwarp_raster::Picture::read(&fs::read(at(name)).unwrap()).unwrap().pixmap.data().to_vec();
-    assert!(pixels("same.png") == pixels("waved.png"));
+    for file in ["real", "deep"] {
+        // Ten digits of what the files hold.
+        agree(&dumped(&d.join(format!("{file}-same.txt"))), &paths(), 1e-6, true);
+        agree(&dumped(&d.join(format!("{file}-waved.txt"))), &of(&format!("{file}-waved.xcf")), 1e-6, true);
+        // The picture is what it was.
+        assert!(pixels(&format!("{file}-same.png")) == pixels(&format!("{file}-waved.png")));
+    }
     for dpi in [72, 300] {
-        agree(&dumped(&d.join(format!("plain-{dpi}.txt"))), &of("real.xcf"), 0.01, false);
+        agree(&dumped(&d.join(format!("plain-{dpi}.txt"))), &paths(), 0.01, false);
         agree(&dumped(&d.join(format!("waved-{dpi}.txt"))), &of("waved.svg"), 0.01, false);
+    }
+}
+
+/// What scripts for GIMP 3 begin with.
+const IN_GIMP_3: &str = r#"
+import json
+from gi.repository import Gio
+def strokes(path):
+    all = [path.stroke_get_points(s) for s in path.get_strokes()]
+    return [{"closed": bool(closed), "controlpoints": list(points)} for _kind, points, closed in all]
+def dump(image, file):
+    found = [{"name": p.get_name(), "visible": bool(p.get_visible()), "strokes": strokes(p)} for p in image.get_paths()]
+    json.dump({"paths": found}, open(file, "w"))
+def build(image, file):
+    for p in reversed(json.load(open(file))["paths"]):
+        path = Gimp.Path.new(image, p["name"])
+        for s in p["strokes"]:
+            path.stroke_new_from_points(Gimp.PathStrokeType.BEZIER, s["controlpoints"], s["closed"])
+        image.insert_path(path, None, 0)
+        path.set_visible(p["visible"])
+"#;
+
+/// Paths as items, which GIMP writes when several are selected.
+#[test]
+fn gimp_3_agrees_on_what_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let d = dir.path();
+    let at = |name: &str| d.join(name).display().to_string();
+    fs::write(at("in.json"), to_json(Some([640.0, 400.0]), &paths())).unwrap();
+    let make = format!(
+        r#"{IN_GIMP_3}
+image = Gimp.Image.new(640, 400, Gimp.ImageBaseType.RGB)
+layer = Gimp.Layer.new(image, "Layer", 640, 400, Gimp.ImageType.RGB_IMAGE, 100, Gimp.LayerMode.NORMAL)
+image.insert_layer(layer, None, 0)
+build(image, "{0}")
+for chosen, file in [(image.get_paths(), "{1}"), (image.get_paths()[:1], "{2}")]:
+    image.set_selected_paths(chosen)
+    Gimp.file_save(Gimp.RunMode.NONINTERACTIVE, image, Gio.File.new_for_path(file), None)
+"#,
+        at("in.json"),
+        at("items.xcf"),
+        at("block.xcf")
+    );
+    let Some(said) = gimp_3(d, &make) else { return };
+    assert!(d.join("block.xcf").exists(), "{said}");
+    let of = |name: &str| read(&fs::read(at(name)).unwrap()).unwrap();
+    let mut dumps = String::new();
+    for file in ["items", "block"] {
+        let source = at(&format!("{file}.xcf"));
+        let items = fs::read(&source).unwrap()[9..13] >= b"v018"[..];
+        assert_eq!(items, file == "items");
+        assert_eq!(of(&format!("{file}.xcf")), paths());
+        let waved = at(&format!("{file}-waved.xcf"));
+        expect_code(0, &["wave", &source, "--merge", "off", "--tolerance", "1e-4", "--into", &waved, "-q"]);
+        assert!(fs::metadata(&waved).unwrap().len() > fs::metadata(&source).unwrap().len());
+        let json = at(&format!("{file}-waved.json"));
+        dumps += &format!("dump(Gimp.file_load(Gimp.RunMode.NONINTERACTIVE, Gio.File.new_for_path({waved:?})), {json:?})\n");
+    }
+    expect_code(0, &["convert", &at("items.xcf"), "-o", &at("plain.svg")]);
+    let script = format!(
+        r#"{IN_GIMP_3}
+{dumps}
+for dpi in (72, 300):
+    image = Gimp.Image.new(640, 400, Gimp.ImageBaseType.RGB)
+    image.set_resolution(dpi, dpi)
+    image.import_paths_from_file(Gio.File.new_for_path("{0}"), False, False)
+    dump(image, "{1}/plain-%d.json" % dpi)
+"#,
+        at("plain.svg"),
+        d.display()
+    );
+    let said = gimp_3(d, &script).unwrap();
+    assert!(d.join("plain-300.json").exists(), "{said}");
+    for file in ["items", "block"] {
+        assert_eq!(of(&format!("{file}-waved.json")), of(&format!("{file}-waved.xcf")), "{said}");
+        assert_ne!(of(&format!("{file}-waved.json")), paths());
+    }
+    for dpi in [72, 300] {
+        agree(&of(&format!("plain-{dpi}.json")), &paths(), 0.01, false);
     }
 }
 
@@ -411,19 +509,29 @@ fn the_plug_in_works_in_gimp_3() {
     );
     let line = stroke(false, &[[0., 50.], [0., 50.], [30., 0.], [70., 100.], [100., 50.], [100., 50.]]);
     let path = |name: &str, s: &Stroke| GimpPath { name: name.into(), visible: true, strokes: vec![s.clone()] };
-    let all = [path("Art", &art), path("Cage", &cage), path("Line", &line)];
+    let straight = |a: [f64; 2], b: [f64; 2]| stroke(false, &[a, a, a, b, b, b]);
+    let (foot, place) = (straight([10., 90.], [90., 90.]), straight([300., 200.], [420., 170.]));
+    let all = [
+        path("Art", &art),
+        path("Cage", &cage),
+        path("Line", &line),
+        path("Foot", &foot),
+        path("Place", &place),
+    ];
     fs::write(at("in.json"), to_json(Some([640.0, 400.0]), &all)).unwrap();
     let script = format!(
-        r#"
-import json
+        r#"{IN_GIMP_3}
 image = Gimp.Image.new(640, 400, Gimp.ImageBaseType.RGB)
-for p in json.load(open("{0}"))["paths"]:
-    path = Gimp.Path.new(image, p["name"])
-    for s in p["strokes"]:
-        path.stroke_new_from_points(Gimp.PathStrokeType.BEZIER, s["controlpoints"], s["closed"])
-    image.insert_path(path, None, 0)
+build(image, "{0}")
 found, said = [], []
-for name, values in [("shaper", {{"shaper": "Cage"}}), ("bend", {{"along": "Line"}}), ("shaper", {{"shaper": "Nobody"}})]:
+for name, values in [
+    ("shaper", {{"shaper": "Cage"}}),
+    ("shaper", {{"shaper": "Cage", "base": "Foot", "target": "Place"}}),
+    ("bend", {{"along": "Line"}}),
+    ("warp", {{"style": "flag", "bend": "-30%"}}),
+    ("wordart", {{"preset": "triangle"}}),
+    ("shaper", {{"shaper": "Nobody"}}),
+]:
     procedure = Gimp.get_pdb().lookup_procedure("plug-in-pathwarp-" + name)
     config = procedure.create_config()
     config.set_property("run-mode", Gimp.RunMode.NONINTERACTIVE)
@@ -436,36 +544,38 @@ for name, values in [("shaper", {{"shaper": "Cage"}}), ("bend", {{"along": "Line
         said.append(Gimp.get_pdb().get_last_error())
         continue
     new = answer.index(1)
-    strokes = []
-    for s in new.get_strokes():
-        _kind, points, closed = new.stroke_get_points(s)
-        strokes.append({{"closed": bool(closed), "controlpoints": list(points)}})
-    found.append({{"name": new.get_name(), "visible": bool(new.get_visible()), "strokes": strokes}})
+    found.append({{"name": new.get_name(), "visible": bool(new.get_visible()), "strokes": strokes(new)}})
 json.dump({{"paths": found, "said": said, "all": [p.get_name() for p in image.get_paths()]}}, open("{1}", "w"))
 "#,
         at("in.json"),
         at("out.json")
     );
-    fs::write(at("run.py"), script).unwrap();
-    let run = format!("exec(open({:?}).read())", at("run.py"));
-    let Some(said) = gimp("gimp-console-3.0", d, &["--quit", "--batch-interpreter", "python-fu-eval", "-b", &run])
-    else {
-        return;
-    };
+    let Some(said) = gimp_3(d, &script) else { return };
     assert!(d.join("out.json").exists(), "{said}");
     let text = fs::read_to_string(at("out.json")).unwrap();
     let answer: Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(answer["all"], serde_json::json!(["Art bend", "Art shaper", "Line", "Cage", "Art"]));
+    let new = ["Art wordart", "Art warp", "Art bend", "Art shaper #1", "Art shaper"];
+    let names: Vec<&str> = new.into_iter().chain(all.iter().map(|p| p.name.as_str())).collect();
+    assert_eq!(answer["all"], serde_json::json!(names), "{said}");
     assert!(answer["said"][0].as_str().unwrap().contains("Nobody"), "{answer}");
     let found = read(text.as_bytes()).unwrap();
     // The command line gives the very same points.
-    let input = format!("{}#Art", at("in.json"));
-    for (i, option) in [["shaper", "--shaper", "Cage"], ["bend", "--along", "Line"]].iter().enumerate() {
-        let guide = format!("{}#{}", at("in.json"), option[2]);
-        let out = at(&format!("{}.json", option[0]));
-        expect_code(0, &[option[0], &input, option[1], &guide, "-o", &out, "-q"]);
-        assert_eq!(found[i].strokes, read(&fs::read(out).unwrap()).unwrap()[0].strokes);
-        assert!(found[i].visible);
+    let input = |name: &str| format!("{}#{name}", at("in.json"));
+    let commands: [&[&str]; 5] = [
+        &["shaper", "--shaper", &input("Cage")],
+        &["shaper", "--shaper", &input("Cage"), "--base", &input("Foot"), "--target", &input("Place")],
+        &["bend", "--along", &input("Line")],
+        &["warp", "--style", "flag", "--bend", "-30%"],
+        &["wordart", "--preset", "triangle"],
+    ];
+    assert_eq!(found.len(), commands.len());
+    for (found, command) in found.iter().zip(commands) {
+        let words: Vec<&str> = command.to_vec();
+        let (art, out) = (input("Art"), at("out-of-the-program.json"));
+        expect_code(0, &[words.as_slice(), &[&art, "-o", &out, "-q"]].concat());
+        let wanted = &read(&fs::read(out).unwrap()).unwrap()[0];
+        assert_eq!(found.strokes, wanted.strokes, "{command:?}");
+        assert!(found.visible);
     }
 }
 

@@ -46,7 +46,8 @@ impl Input {
         }
         let name = path.display().to_string();
         let open = || File::open(path).map_err(|e| Error::input(name.clone(), format!("cannot be read: {e}")));
-        if !sniff(open()?) {
+        // Something else under the name of an XCF gets that reader's error.
+        if !sniff(open()?) && !is_called_xcf(path) {
             return Ok(None);
         }
         let place = |e: pathwarp_gimp::Error| {
@@ -105,6 +106,11 @@ impl Input {
             boxes.fold([1.0, 1.0], |[w, h], b| [w.max(b[2].ceil()), h.max(b[3].ceil())])
         })
     }
+}
+
+fn is_called_xcf(path: &Path) -> bool {
+    let name = path.to_string_lossy().to_ascii_lowercase();
+    [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz"].iter().any(|e| name.ends_with(e))
 }
 
 /// What the SVG made from an input of GIMP's is called: `art.xcf.gz#Cage` gives `art-Cage.svg`.

@@ -70,7 +70,11 @@ pub(super) fn all(input: &mut Input<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
             }
             To::Hierarchy => {
                 walk.input.skip(12, "a hierarchy")?;
-                walk.table(Some(To::Level))?;
+                // Only the first level is read by any GIMP. Those behind it are empty since the days of 64-bit pointers,
+                // and GIMP ends their tables with a word of 32 bits.
+                if walk.pointer(Some(To::Level))? {
+                    walk.table((!walk.wide).then_some(To::Level))?;
+                }
             }
             To::Level => {
                 walk.input.skip(8, "a level")?;

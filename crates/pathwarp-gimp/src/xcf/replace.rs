@@ -40,6 +40,10 @@ fn edits(input: &mut Input<'_>, xcf: &Xcf, strokes: &[(usize, Vec<Stroke>)]) -> 
         let Some(record) = xcf.records.get(*i) else {
             return Err(Error::at(0, format!("there is no path number {i} in the file")));
         };
+        // What is as it was keeps its bytes, also in forms that are not written any more.
+        if record.path.strokes == *new {
+            continue;
+        }
         match record.layout {
             Layout::Old { state_at, tattoo } => {
                 if !old_paths::holds(new) {

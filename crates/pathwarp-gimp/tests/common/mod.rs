@@ -210,7 +210,8 @@ pub(crate) fn rest(head: Vec<u8>, version: u32, items: &[GimpPath]) -> Vec<u8> {
             b.words(&[64, 1]);
             out.extend(&b.0);
             let table = out.len();
-            out.resize(table + if has_tile { 2 } else { 1 } * size, 0);
+            // GIMP ends the table of an empty level with 32 bits, also where pointers have 64.
+            out.resize(table + if has_tile { 2 * size } else { 4 }, 0);
             if has_tile {
                 let tile = out.len();
                 set(out, table, tile);
