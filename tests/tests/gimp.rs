@@ -444,7 +444,8 @@ for chosen, file in [(image.get_paths(), "{1}"), (image.get_paths()[:1], "{2}")]
         expect_code(0, &["wave", &source, "--merge", "off", "--tolerance", "1e-4", "--into", &waved, "-q"]);
         assert!(fs::metadata(&waved).unwrap().len() > fs::metadata(&source).unwrap().len());
         let json = at(&format!("{file}-waved.json"));
-        dumps += &format!("dump(Gimp.file_load(Gimp.RunMode.NONINTERACTIVE, Gio.File.new_for_path({waved:?})), {json:?})\n");
+        dumps +=
+            &format!("dump(Gimp.file_load(Gimp.RunMode.NONINTERACTIVE, Gio.File.new_for_path({waved:?})), {json:?})\n");
     }
     expect_code(0, &["convert", &at("items.xcf"), "-o", &at("plain.svg")]);
     let script = format!(
@@ -511,13 +512,7 @@ fn the_plug_in_works_in_gimp_3() {
     let path = |name: &str, s: &Stroke| GimpPath { name: name.into(), visible: true, strokes: vec![s.clone()] };
     let straight = |a: [f64; 2], b: [f64; 2]| stroke(false, &[a, a, a, b, b, b]);
     let (foot, place) = (straight([10., 90.], [90., 90.]), straight([300., 200.], [420., 170.]));
-    let all = [
-        path("Art", &art),
-        path("Cage", &cage),
-        path("Line", &line),
-        path("Foot", &foot),
-        path("Place", &place),
-    ];
+    let all = [path("Art", &art), path("Cage", &cage), path("Line", &line), path("Foot", &foot), path("Place", &place)];
     fs::write(at("in.json"), to_json(Some([640.0, 400.0]), &all)).unwrap();
     let script = format!(
         r#"{IN_GIMP_3}

@@ -62,7 +62,10 @@ impl<'a> Input<'a> {
     pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
         if self.left() < buffer.len() as u64 {
             let (needed, left) = (buffer.len(), self.left());
-            return Err(Error::at(self.at, format!("{what} needs {needed} bytes here, but only {left} are left")));
+            return Err(Error::at(
+                self.at,
+                format!("{what}: {needed} bytes must follow here, but only {left} are left"),
+            ));
         }
         self.allowance = self.allowance.checked_sub(buffer.len() as u64).ok_or_else(|| {
             let problem = format!(

@@ -141,7 +141,8 @@ fn files_come_through_rewriting() {
         let single = |p: [f64; 2]| p.map(|v| f64::from(v as f32));
         for s in wanted.iter_mut().flat_map(|p| &mut p.strokes) {
             let [x, y] = s.points.last().copied().unwrap_or_default();
-            s.points = s.points.iter().copied().map(single).chain((0..9).map(|i| single([x + f64::from(i), y]))).collect();
+            s.points =
+                s.points.iter().copied().map(single).chain((0..9).map(|i| single([x + f64::from(i), y]))).collect();
         }
         let strokes: Vec<_> = wanted.iter().map(|p| p.strokes.clone()).enumerate().collect();
         let mut out = Vec::new();

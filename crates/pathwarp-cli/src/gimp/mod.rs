@@ -50,13 +50,18 @@ impl Input {
         if !sniff(open()?) && !is_called_xcf(path) {
             return Ok(None);
         }
-        let place = |e: pathwarp_gimp::Error| {
-            let hint = if salvage { "" } else { "; --salvage takes the paths before the damage" };
-            Error::input(format!("{name}, byte {}", e.offset), e.problem + hint)
-        };
-        let found = pathwarp_gimp::salvage(open()?).map_err(place)?;
+        let place =
+            |e: pathwarp_gimp::Error, hint: &str| Error::input(format!("{name}, byte {}", e.offset), e.problem + hint);
+        let found = pathwarp_gimp::salvage(open()?).map_err(|e| place(e, ""))?;
         let damage = match found.damage {
-            Some(e) if !salvage => return Err(place(e)),
+            Some(e) if !salvage => {
+                let hint = match found.file.paths.len() {
+                    0 => "; no path stands before the damage".to_owned(),
+                    1 => "; --salvage takes the path before the damage".to_owned(),
+                    n => format!("; --salvage takes the {n} paths before the damage"),
+                };
+                return Err(place(e, &hint));
+            }
             other => other.map(|e| format!("damaged, and read only so far: {e}")),
         };
         Ok(Some(Self { path: path.to_owned(), file: found.file, only: None, damage }))

@@ -1,6 +1,6 @@
 //! Paths as items (version 18 on, GIMP 3): each behind a pointer, with a property list of its own.
 
-use super::{Layout, MOST_PROPERTIES, PROP_END, Record, Xcf, count, string, vectors};
+use super::{Layout, MOST_PROPERTIES, PROP_END, Record, Xcf, count, said_to_have, string, vectors};
 use crate::error::Error;
 use crate::input::Input;
 use crate::path::GimpPath;
@@ -55,7 +55,7 @@ fn table(input: &mut Input<'_>, xcf: &Xcf, of: &str) -> Result<Vec<(u64, u64)>, 
     let mut out = Vec::new();
     loop {
         let at = input.at();
-        let what = format!("the table of {of} pointers, which has no end");
+        let what = format!("the table of {of} pointers has no end");
         let to = if xcf.wide() { input.u64(&what)? } else { u64::from(input.u32(&what)?) };
         if to == 0 {
             return Ok(out);
@@ -83,7 +83,8 @@ fn item(input: &mut Input<'_>, pointer_at: u64) -> Result<Record, Error> {
     let file_end = std::mem::replace(&mut input.end, end);
     let read = content(input);
     input.end = file_end;
-    let (visible, count_at, strokes) = read?;
+    let (visible, count_at, strokes) =
+        read.map_err(|e| if end < file_end { said_to_have(e, size, &format!("the path `{name}`")) } else { e })?;
     if input.at() != end {
         let (found, name) = (input.at() - size_at - 4, &name);
         let problem = format!("the path `{name}` has {found} bytes, but its size word says {size}");

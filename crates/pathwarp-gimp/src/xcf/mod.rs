@@ -181,6 +181,14 @@ pub(super) fn count(input: &mut Input<'_>, least: u64, what: &str) -> Result<u32
     Ok(n)
 }
 
+/// Names the length word behind what an error calls left.
+pub(super) fn said_to_have(mut e: Error, size: u64, what: &str) -> Error {
+    if e.problem.contains("left") {
+        e.problem += &format!(" of the {size} that {what} is said to have");
+    }
+    e
+}
+
 /// A coordinate: neither NaN nor infinite.
 pub(super) fn coordinate(bytes: [u8; 4], at: u64) -> Result<f64, Error> {
     let v = f32::from_be_bytes(bytes);
