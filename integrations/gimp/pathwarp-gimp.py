@@ -18,13 +18,13 @@ gi.require_version("Gimp", "3.0")
 from gi.repository import Gimp, GLib, GObject  # noqa: E402
 
 # A deformation: its title, what it does, and its arguments: name, kind, label, tip, default. "path" arguments name paths of the
-# image; the program knows what a "choice" is among.
+# image; the program knows what a "choice" is among; a "side" is 1 to 4.
 DEFORMATIONS = {
     "shaper": ("Shaper…", "Bend a path into a closed path of four sides", [
         ("shaper", "path", "_Shaper", "The closed path of four sides", ""),
-        ("base", "path", "_Base", "The path's frame: 2, 3 or 4 anchors; none: its box", ""),
+        ("base", "path", "_Base", "The path's frame: 2 or 4 anchors; none: its box", ""),
         ("target", "path", "_Target", "Where the result goes: as many anchors as the Base; none: the Shaper's place", ""),
-        ("bottom", "text", "B_ottom side", "1 to 4; empty: the lowest", ""),
+        ("bottom", "side", "B_ottom side", "The Shaper's side that is the bottom, in the order they were drawn", ""),
         ("reverse-shaper", "flag", "_Reverse Shaper", "Run the bottom side the other way", False),
         ("base-as-drawn", "flag", "Base as _drawn", "Take the Base's anchors in the order they were drawn", False),
         ("target-as-drawn", "flag", "Target as dra_wn", "Take the Target's anchors in the order they were drawn", False),
@@ -36,16 +36,23 @@ DEFORMATIONS = {
     ]),
     "warp": ("Warp…", "Bend a path in a style", [
         ("style", "choice", "_Style", "The style", "arc"),
-        ("bend", "text", "_Bend", "How far, and which way: -100% to 100%", "50%"),
+        ("bend", "percent", "_Bend", "How far, and which way: -100% to 100%", "50%"),
         ("axis", "choice", "_Axis", "The direction in which the path runs through the style", "horizontal"),
-        ("horizontal", "text", "_Horizontal", "Distortion: -100% to 100%", "0%"),
-        ("vertical", "text", "_Vertical", "Distortion: -100% to 100%", "0%"),
+        ("horizontal", "percent", "_Horizontal", "Distortion: -100% to 100%", "0%"),
+        ("vertical", "percent", "_Vertical", "Distortion: -100% to 100%", "0%"),
+        ("keep", "choice", "_Keep straight", "What stays straight, in the styles that allow it", "nothing"),
     ]),
     "wordart": ("Text shape…", "Put a path into a text shape of office programs", [
         ("preset", "choice", "_Shape", "The shape", "wave1"),
         ("adj", "text", "_Adjust", "The shape's first adjust value: 1/100000 of the box or %; empty: as it comes", ""),
     ]),
 }
+
+
+# What every deformation asks for first.
+PATH = ("path", "path", "_Path", "The path to bend; empty: the selected one", "")
+# Guides without which there is nothing to do.
+REQUIRED = {"shaper", "along"}
 
 
 def program():
@@ -96,6 +103,11 @@ def named(image, name):
     raise RuntimeError("There is no path of the name “%s” in this image." % name)
 
 
+def without(file, text):
+    """A message without the name of a file that is gone by then."""
+    return text.replace(file + "#", "").replace(file + ": ", "")
+
+
 def deform(image, deformation, path, values):
     """Deforms `path` and adds the result to the image as a new path, which is given back."""
     folder = tempfile.mkdtemp(prefix="pathwarp-")
@@ -119,9 +131,12 @@ def deform(image, deformation, path, values):
         data = {"width": image.get_width(), "height": image.get_height(), "paths": [point_list(p) for p in used.values()]}
         with open(source, "w", encoding="utf-8") as file:
             json.dump(data, file)
-        said = run_program(arguments + [source + "#" + path.get_name(), "-o", result])[1]
+        try:
+            said = run_program(arguments + [source + "#" + path.get_name(), "-o", result])[1]
+        except RuntimeError as e:
+            raise RuntimeError(without(source, str(e))) from None
         if said:
-            Gimp.message(said)
+            Gimp.message(without(source, said))
         with open(result, encoding="utf-8") as file:
             warped = json.load(file)["paths"]
     finally:
@@ -155,32 +170,38 @@ def ask(image, procedure, config, deformation):
     dialog.set_default_response(Gtk.ResponseType.OK)
     grid = Gtk.Grid(column_spacing=12, row_spacing=6, margin=12)
     dialog.get_content_area().add(grid)
-    names = [path.get_name() for path in image.get_paths()]
-    selected = [path.get_name() for path in image.get_selected_paths()]
+    paths = guesses(image, config, arguments)
     fields = {}
-    for row, (name, kind, label, tip, _default) in enumerate([("path", "path", "_Path", "The path to bend", "")] + arguments):
-        stored = config.get_property(name)
+    for row, (name, kind, label, tip, default) in enumerate([PATH] + arguments):
+        stored = config.get_property(name) or ""
         if kind == "flag":
-            field = Gtk.CheckButton(label=label, use_underline=True, active=stored)
+            field = Gtk.CheckButton(label=label, use_underline=True, active=bool(stored))
             grid.attach(field, 1, row, 1, 1)
         else:
             if kind == "text":
                 field = Gtk.Entry(text=stored, activates_default=True)
+            elif kind == "percent":
+                field = Gtk.SpinButton.new_with_range(-100, 100, 1)
+                field.set_digits(1)
+                field.set_value(percent(stored, default))
+                field.set_activates_default(True)
             else:
                 field = Gtk.ComboBoxText()
-                if kind == "choice":
-                    known_names = choices(deformation, name) or [stored]
+                if kind == "path":
+                    listed, value = paths[name]
+                elif kind == "side":
+                    listed, value = ["", "1", "2", "3", "4"], stored
                 else:
-                    known_names = names if name in ("path", "shaper", "along") else [""] + names
-                for choice in known_names:
-                    field.append(choice, choice or "(none)")
-                # The names that the first plug-in's users give their paths.
-                value = stored if stored and stored in known_names else next((n for n in names if n.lower() == name), "")
-                if name == "path":
-                    value = (selected or [value or names[0]])[0]
+                    listed, value = choices(deformation, name), stored
+                    # A file of one's own.
+                    listed += [stored] if stored not in listed else []
+                for choice in listed:
+                    field.append(choice, choice or ("(the lowest)" if kind == "side" else "(none)"))
                 field.set_active_id(value)
-            mnemonic = Gtk.Label(label=label, use_underline=True, xalign=0, mnemonic_widget=field)
-            grid.attach(mnemonic, 0, row, 1, 1)
+            field.set_hexpand(True)
+            caption = Gtk.Label(label=label + (" (%)" if kind == "percent" else ""), use_underline=True, xalign=0)
+            caption.set_mnemonic_widget(field)
+            grid.attach(caption, 0, row, 1, 1)
             grid.attach(field, 1, row, 1, 1)
         field.set_tooltip_text(tip)
         fields[name] = (kind, field)
@@ -189,11 +210,42 @@ def ask(image, procedure, config, deformation):
     if confirmed:
         for name, (kind, field) in fields.items():
             if kind == "flag":
-                config.set_property(name, field.get_active())
+                value = field.get_active()
+            elif kind == "percent":
+                value = "%g%%" % round(field.get_value(), 1)
             else:
-                config.set_property(name, (field.get_text() if kind == "text" else field.get_active_id()) or "")
+                value = field.get_text() if kind == "text" else field.get_active_id()
+            config.set_property(name, value if kind == "flag" else value or "")
     dialog.destroy()
     return confirmed
+
+
+def percent(text, default):
+    """A share as the dialogue shows it; scripts may have given it as a plain number, too."""
+    for candidate in (text, default):
+        try:
+            return float(candidate[:-1]) if candidate.endswith("%") else 100 * float(candidate)
+        except ValueError:
+            pass
+    return 0
+
+
+def guesses(image, config, arguments):
+    """For every argument that is a path: the names to choose among, and the one that is most likely meant."""
+    names = [path.get_name() for path in image.get_paths()]
+    selected = [path.get_name() for path in image.get_selected_paths()]
+    roles = [name for name, kind, *_ in arguments if kind == "path"]
+    found = {}
+    for role in roles:
+        stored = config.get_property(role)
+        # The names that the first plug-in's users give their paths.
+        found[role] = stored if stored in names else next((n for n in names if n.lower() == role), "")
+    # What is bent is no guide, if there is a choice.
+    free = [n for n in selected + names if n not in found.values() and n.lower() not in roles]
+    path = (free or selected or names)[0]
+    for role in REQUIRED.intersection(roles):
+        found[role] = found[role] or next((n for n in selected + names if n != path), path)
+    return {"path": (names, path)} | {r: (names if r in REQUIRED else [""] + names, n) for r, n in found.items()}
 
 
 def choices(deformation, argument):
@@ -257,8 +309,7 @@ class Pathwarp(Gimp.PlugIn):
         procedure.set_documentation(blurb, "Paths are chosen by name. The result is a new path.", name)
         procedure.set_attribution("The pathwarp authors", "The pathwarp authors", "2026")
         both = GObject.ParamFlags.READWRITE
-        procedure.add_string_argument("path", "_Path", "The path to bend; empty: the selected one", "", both)
-        for argument, kind, label, tip, default in arguments:
+        for argument, kind, label, tip, default in [PATH] + arguments:
             if kind == "flag":
                 procedure.add_boolean_argument(argument, label, tip, default, both)
             else:

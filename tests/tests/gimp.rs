@@ -526,6 +526,7 @@ for name, values in [
     ("warp", {{"style": "flag", "bend": "-30%"}}),
     ("wordart", {{"preset": "triangle"}}),
     ("shaper", {{"shaper": "Nobody"}}),
+    ("shaper", {{"shaper": "Line"}}),
 ]:
     procedure = Gimp.get_pdb().lookup_procedure("plug-in-pathwarp-" + name)
     config = procedure.create_config()
@@ -553,6 +554,9 @@ json.dump({{"paths": found, "said": said, "all": [p.get_name() for p in image.ge
     let names: Vec<&str> = new.into_iter().chain(all.iter().map(|p| p.name.as_str())).collect();
     assert_eq!(answer["all"], serde_json::json!(names), "{said}");
     assert!(answer["said"][0].as_str().unwrap().contains("Nobody"), "{answer}");
+    // Messages name paths, and no file that is gone.
+    let why = answer["said"][1].as_str().unwrap();
+    assert!(why.contains("Line") && !why.contains("paths.json"), "{why}");
     let found = read(text.as_bytes()).unwrap();
     // The command line gives the very same points.
     let input = |name: &str| format!("{}#{name}", at("in.json"));
