@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use support::{expect_code, pathwarp, root, sample};
+use support::{expect_code, pathwarp, pathwarp_in, root, sample};
 
 fn stroke(closed: bool, points: &[[f64; 2]]) -> Stroke {
     Stroke { closed, points: points.iter().map(|p| p.map(|v| f64::from(v as f32))).collect() }
@@ -80,6 +80,9 @@ fn an_xcf_is_listed_and_referred_to_by_name() {
         assert_eq!(*strokes, wanted, "{name}");
     }
     assert_eq!(sample.len(), 4);
+    let out = pathwarp_in(dir.path(), &["paths", "-"], &fs::read(&file).unwrap());
+    assert_eq!(out.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&out.stderr).contains("name the file"));
     // Wherever a path is asked for.
     let along = format!("{}#Base", file.display());
     let (svg, _) = expect_code(0, &["bend", "samples/logo.svg", "--along", &along, "-q"]);
@@ -163,7 +166,12 @@ fn paths_go_back_into_a_copy() {
     expect_code(2, &["wave", &list, "--into", &none]);
     expect_code(2, &["wave", "samples/logo.svg", "--into", &none]);
     expect_code(2, &["wave", &name, "-o", &none]);
+    expect_code(2, &["wave", "samples/logo.svg", "-o", &none]);
     assert!(!Path::new(&none).exists());
+    // What it is goes by its name.
+    let misnamed = dir.path().join("none.svg").display().to_string();
+    let (_, e) = expect_code(2, &["wave", &name, "--into", &misnamed]);
+    assert!(e.contains(".xcf") && !Path::new(&misnamed).exists(), "{e}");
     assert_eq!(fs::read(&file).unwrap(), bytes);
 }
 
@@ -329,23 +337,27 @@ fn gimp_2_agrees_on_what_is_written() {
     let d = dir.path();
     let at = |name: &str| d.join(name).display().to_string();
     fs::write(at("new.xcf"), new_xcf([640, 400], &paths())).unwrap();
-    // GIMP saves it with a layer, so that there are tiles behind the paths: with pointers of 32 bits, and of 64.
+    // GIMP saves it with a layer, so that there are tiles behind the paths: with pointers of 32 bits, and of 64, and with a
+    // floating selection, which points to its layer.
     let make = format!(
         r#"(let* ((i (car (gimp-file-load 1 "{0}" "{0}"))) (l (car (gimp-layer-new i 640 400 0 "Layer" 100 0))))
             (gimp-image-insert-layer i l 0 0) (gimp-drawable-fill l 2) (gimp-image-set-resolution i 300 200)
-            (gimp-xcf-save 0 i l "{1}" "{1}") (gimp-image-convert-precision i 250) (gimp-xcf-save 0 i l "{2}" "{2}"))"#,
+            (gimp-xcf-save 0 i l "{1}" "{1}") (gimp-image-convert-precision i 250) (gimp-xcf-save 0 i l "{2}" "{2}")
+            (gimp-image-select-rectangle i 2 10 10 100 80) (gimp-edit-copy l) (gimp-edit-paste l 0)
+            (gimp-xcf-save 0 i l "{3}" "{3}"))"#,
         at("new.xcf"),
         at("real.xcf"),
-        at("deep.xcf")
+        at("deep.xcf"),
+        at("floating.xcf")
     );
     let Some(said) = gimp_2(d, &make) else { return };
-    assert!(d.join("deep.xcf").exists(), "{said}");
+    assert!(d.join("floating.xcf").exists(), "{said}");
     let of = |name: &str| read(&fs::read(at(name)).unwrap()).unwrap();
     let version = |name: &str| fs::read(at(name)).unwrap()[9..13].to_vec();
     assert_eq!((version("real.xcf"), version("deep.xcf")), (b"file".to_vec(), b"v012".to_vec()));
 
     let mut script = String::from(DUMP);
-    for file in ["real", "deep"] {
+    for file in ["real", "deep", "floating"] {
         let source = at(&format!("{file}.xcf"));
         assert_eq!(of(&format!("{file}.xcf")), paths());
         let into = |name: &str| at(&format!("{file}-{name}.xcf"));
@@ -356,7 +368,9 @@ fn gimp_2_agrees_on_what_is_written() {
         for name in ["same", "waved"] {
             script += &format!(
                 "(let* ((i (car (gimp-file-load 1 \"{0}\" \"{0}\"))) (l (car (gimp-image-get-active-layer i))))
-                   (dump i \"{1}.txt\") (file-png-save-defaults 1 i l \"{1}.png\" \"{1}.png\"))\n",
+                   (dump i \"{1}.txt\") (file-png-save-defaults 1 i l \"{1}.png\" \"{1}.png\")
+                   (if (> (car (gimp-image-get-floating-sel i)) 0) (call-with-output-file \"{1}.on\" (lambda (port)
+                     (display (car (gimp-item-get-name (car (gimp-image-floating-sel-attached-to i)))) port)))))\n",
                 into(name),
                 at(&format!("{file}-{name}"))
             );
@@ -378,12 +392,15 @@ fn gimp_2_agrees_on_what_is_written() {
     assert!(!said.to_lowercase().contains("corrupt"), "{said}");
     let pixels =
         |name: &str| pathwarp_raster::Picture::read(&fs::read(at(name)).unwrap()).unwrap().pixmap.data().to_vec();
-    for file in ["real", "deep"] {
+    for file in ["real", "deep", "floating"] {
         // Ten digits of what the files hold.
         agree(&dumped(&d.join(format!("{file}-same.txt"))), &paths(), 1e-6, true);
         agree(&dumped(&d.join(format!("{file}-waved.txt"))), &of(&format!("{file}-waved.xcf")), 1e-6, true);
         // The picture is what it was.
         assert!(pixels(&format!("{file}-same.png")) == pixels(&format!("{file}-waved.png")));
+    }
+    for name in ["same", "waved"] {
+        assert_eq!(fs::read_to_string(at(&format!("floating-{name}.on"))).unwrap_or_default(), "Layer", "{said}");
     }
     for dpi in [72, 300] {
         agree(&dumped(&d.join(format!("plain-{dpi}.txt"))), &paths(), 0.01, false);

@@ -143,6 +143,11 @@ pub(crate) fn read(input: &Path) -> Result<Vec<u8>, Failure> {
     if input.as_os_str() == "-" {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::Input(format!("standard input: {e}")))?;
+        if gimp::is_xcf(&bytes) {
+            return Err(Failure::Input(
+                "standard input: an XCF is read by seeking in it; name the file instead".into(),
+            ));
+        }
         return Ok(bytes);
     }
     std::fs::read(input).map_err(|e| Failure::file(input, format!("cannot be read: {e}")))
@@ -178,6 +183,10 @@ fn warp(
     let bytes = read(input)?;
     if Picture::is_one(&bytes) {
         return picture::warp(registry, recipe, common, input, target, &bytes);
+    }
+    if let Some(t) = target.filter(|t| gimp::is_form_of_gimps(t)) {
+        let what = "point lists and XCF are written of GIMP's files; `pathwarp convert` makes them of an SVG";
+        return Err(Failure::usage(format!("{}: {what}", t.display())));
     }
     let doc = Document::read(&bytes, &display(input), &read_options(input))?;
     let mut references = References::new(Some(Names::Svg(&doc)));

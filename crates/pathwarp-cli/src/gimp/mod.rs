@@ -118,6 +118,16 @@ fn is_called_xcf(path: &Path) -> bool {
     [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz"].iter().any(|e| name.ends_with(e))
 }
 
+/// Whether these are the bytes of an XCF.
+pub(crate) fn is_xcf(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"gimp xcf ")
+}
+
+/// Whether a result of this name is to be a point list or an XCF.
+pub(crate) fn is_form_of_gimps(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json") || e.eq_ignore_ascii_case("xcf"))
+}
+
 /// What the SVG made from an input of GIMP's is called: `art.xcf.gz#Cage` gives `art-Cage.svg`.
 pub(crate) fn svg_name(input: &Path) -> Option<String> {
     const ENDINGS: [&str; 6] = [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz", ".json", ".txt"];

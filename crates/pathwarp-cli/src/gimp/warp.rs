@@ -161,6 +161,10 @@ fn form(common: &Common, input: &Input, target: Option<&Path>) -> Result<Form, F
         if input.damage.is_some() {
             return Err(Failure::usage("--into needs a sound XCF; a damaged one's paths go to SVG or JSON (-o)"));
         }
+        if !copy.extension().is_some_and(|e| e.eq_ignore_ascii_case("xcf")) {
+            let copy = copy.display();
+            return Err(Failure::usage(format!("--into writes an XCF, and {copy} is not called one (.xcf)")));
+        }
         if let (Ok(a), Ok(b)) = (copy.canonicalize(), input.path.canonicalize())
             && a == b
         {

@@ -1,7 +1,8 @@
 //! Every pointer in a file below version 18: what must be mended when the property list changes its length.
 //!
 //! Tables of layers and channels; each layer leads to a hierarchy and a mask, each channel and mask to a hierarchy, each
-//! hierarchy to levels, each level to tiles.
+//! hierarchy to levels, each level to tiles. One property of layers points as well: a floating selection's, to the layer or
+//! channel that it belongs to.
 
 use super::{MOST_PROPERTIES, PROP_END, Xcf};
 use crate::error::Error;
@@ -11,6 +12,8 @@ use std::collections::BTreeMap;
 /// Where pointers stand, and where they lead.
 pub(super) type Pointers = BTreeMap<u64, u64>;
 
+/// Its whole content is a pointer.
+const PROP_FLOATING_SELECTION: u32 = 5;
 /// As many tiles as 64 GiB of 8-bit RGBA have.
 const MOST_POINTERS: u64 = 1 << 22;
 
@@ -122,7 +125,11 @@ impl Walk<'_, '_> {
             if kind == PROP_END {
                 return Ok(());
             }
-            self.input.skip(length, "a layer's property")?;
+            let end = self.input.at() + length;
+            if kind == PROP_FLOATING_SELECTION && length == if self.wide { 8 } else { 4 } {
+                self.pointer(None)?;
+            }
+            self.input.skip(end - self.input.at(), "a layer's property")?;
         }
         Err(Error::at(self.input.at(), "a layer's property list has no end"))
     }

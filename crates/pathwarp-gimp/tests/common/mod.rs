@@ -173,6 +173,9 @@ pub(crate) fn xcf(version: u32, form: Form, paths: &[GimpPath]) -> Vec<u8> {
     rest(out.0, version, if form == Form::Items { paths } else { &[] })
 }
 
+/// From a layer's start to the pointer of its floating selection: three words, its name, and a property's head.
+const FLOATING: usize = 12 + 4 + "Background".len() + 1 + 8;
+
 /// Tables and what they lead to, after a finished property list.
 pub(crate) fn rest(head: Vec<u8>, version: u32, items: &[GimpPath]) -> Vec<u8> {
     let wide = version >= 11;
@@ -191,7 +194,12 @@ pub(crate) fn rest(head: Vec<u8>, version: u32, items: &[GimpPath]) -> Vec<u8> {
         if layer {
             b.u32(0);
         }
-        b.string(name).property(6, &255u32.to_be_bytes()).property(0, &[]);
+        b.string(name);
+        if layer {
+            // A floating selection: where that stands to which it belongs.
+            b.property(5, &vec![0; size]);
+        }
+        b.property(6, &255u32.to_be_bytes()).property(0, &[]);
         out.extend(&b.0);
         let pointers = out.len();
         out.resize(pointers + if layer { 2 } else { 1 } * size, 0);
@@ -226,6 +234,7 @@ pub(crate) fn rest(head: Vec<u8>, version: u32, items: &[GimpPath]) -> Vec<u8> {
     set(&mut out, pointers + size, mask);
     let (channel, _) = drawable(&mut out, "Channel", false, b"channel ");
     set(&mut out, tables + 2 * size, channel);
+    set(&mut out, layer + FLOATING, channel);
     if version >= 18 {
         for (i, p) in items.iter().enumerate() {
             let at = out.len();
@@ -261,6 +270,8 @@ pub(crate) fn tiles(file: &[u8]) -> [Vec<u8>; 3] {
         let at = pointer(level + 8);
         file[at..at + 64].to_vec()
     };
+    // The floating selection still belongs to the channel.
+    assert_eq!(pointer(pointer(tables) + FLOATING), pointer(tables + 2 * size));
     let layer = pointers_of(pointer(tables), 3);
     let mask = pointers_of(pointer(layer + size), 2);
     let channel = pointers_of(pointer(tables + 2 * size), 2);
