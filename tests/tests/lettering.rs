@@ -83,7 +83,17 @@ fn the_baseline_lands_on_the_curve() {
 #[test]
 fn in_an_envelope_the_baseline_is_the_bottom() {
     let word = WORD.replace("HILTEN", "Hilpen");
-    let args = ["envelope", "--bottom", "M20,150 L380,150", "--height", "100", "--frame", "baseline-capheight", "--tolerance", "0.01"];
+    let args = [
+        "envelope",
+        "--bottom",
+        "M20,150 L380,150",
+        "--height",
+        "100",
+        "--frame",
+        "baseline-capheight",
+        "--tolerance",
+        "0.01",
+    ];
     let (before, after, _) = run(&word, &args);
     assert!(after.bounding_box().unwrap().y1 > 160.0, "the p hangs below");
     let right = 20.0 + 90.0 * (0.741 + 0.258 + 0.258 + 0.615 + 0.564 + 0.618);
@@ -212,6 +222,31 @@ fn what_cannot_be_set_letter_by_letter_is_told() {
     assert!(code == 2 && said.contains("baseline-capheight"), "{code} {said}");
 }
 
+/// `--spacing even` on a circle of radius 120 about 200,220: lengths are true at half the frame's height h, so that a point whose
+/// x is s right of the middle stands at the angle s / (120 + h), written out here apart from the program. Every letter is as wide
+/// there as it was.
+#[test]
+fn even_spacing_keeps_letter_widths_at_half_their_height() {
+    const RADIUS: f64 = 120.0;
+    let arc = "M80,220 A120,120 0 0 1 320,220";
+    // Noto Sans: advances, ascent and the height of capitals in thousandths of the font size.
+    let middle = 20.0 + 0.5 * 90.0 * (0.741 + 0.339 + 0.76 + 0.556 + 0.741);
+    for (frame, height) in [("baseline-capheight", 0.714 * 90.0), ("baseline-ascent", 1.069 * 90.0)] {
+        let args = ["bend", "--along", arc, "--spacing", "even", "--frame", frame, "--tolerance", "0.005"];
+        let (before, after, _) = run(&WORD.replace("HILTEN", "HINEH"), &args);
+        let to = |p: Point| {
+            let (sin, cos) = ((p.x - middle) / (RADIUS + 0.5 * height)).sin_cos();
+            Point::new(200.0, 220.0) + Vec2::new(sin, -cos) * (RADIUS + BASELINE - p.y)
+        };
+        for s in before.segs() {
+            for p in [s.start(), s.eval(0.5)] {
+                let off = away(&after, to(p));
+                assert!(off < 0.006, "{frame}: {p:?} should be at {:?}, is {off} away", to(p));
+            }
+        }
+    }
+}
+
 /// Tight bends name the letter; places too steep for a skew name theirs.
 #[test]
 fn warnings_name_the_letters() {
@@ -227,15 +262,39 @@ fn warnings_name_the_letters() {
 /// `--stretch fit` spreads the letters over the skeleton, `repeat` sets the word again and again; letters stay as they are.
 #[test]
 fn letters_are_spread_and_repeated() {
-    let width = |o: &Outline| o.subpaths.iter().map(|s| Outline { subpaths: vec![s.clone()] }.bounding_box().unwrap());
-    let (before, after, _) = run(WORD, &["bend", "--along", "0,80 800,80", "--glyphs", "rotate", "--stretch", "fit", "--precision", "9"]);
-    for (a, b) in width(&before).zip(width(&after)) {
+    let boxes = |o: &Outline| -> Vec<Rect> {
+        o.subpaths.iter().map(|s| Outline { subpaths: vec![s.clone()] }.bounding_box().unwrap()).collect()
+    };
+    let (before, after, _) =
+        run(WORD, &["bend", "--along", "0,80 800,80", "--glyphs", "rotate", "--stretch", "fit", "--precision", "9"]);
+    for (a, b) in boxes(&before).into_iter().zip(boxes(&after)) {
         assert!((a.width() - b.width()).abs() < 1e-6 && (a.height() - b.height()).abs() < 1e-6);
     }
     let (a, b): (Rect, Rect) = (before.bounding_box().unwrap(), after.bounding_box().unwrap());
     assert!(b.width() > 700.0 && b.width() > 1.9 * a.width());
-    let (_, after, said) = run(WORD, &["bend", "--along", "0,80 1200,80", "--glyphs", "rotate", "--stretch", "repeat", "--gap", "20"]);
+    let (_, after, said) =
+        run(WORD, &["bend", "--along", "0,80 1200,80", "--glyphs", "rotate", "--stretch", "repeat", "--gap", "20"]);
     assert_eq!(after.subpaths.len(), 3 * before.subpaths.len(), "{said}");
     let right = after.bounding_box().unwrap().x1;
     assert!((1180.0..1200.0).contains(&right), "{right}");
+}
+
+/// What is warned of is the ink, not the boxes round it: the p reaches below the centre of a tight hill and the H does not; the
+/// empty corners of L and T may overlap.
+#[test]
+fn warnings_are_of_ink() {
+    let hill = ["bend", "--along", "M100,150 A12,12 0 0 1 124,150"];
+    let (_, _, said) = run(&WORD.replace("HILTEN", "pH"), &hill);
+    assert!(said.contains("the letter `p` folds"), "{said}");
+    let (_, _, said) = run(WORD, &hill);
+    assert!(!said.contains("folds"), "{said}");
+    let valley = ["bend", "--along", "M100,50 A100,100 0 0 0 300,50", "--glyphs", "rotate"];
+    let (_, _, said) = run(&WORD.replace("HILTEN", "HH"), &valley);
+    assert!(said.contains("`HH` run into each other"), "{said}");
+    let (_, _, said) = run(&WORD.replace("HILTEN", "LT"), &valley);
+    assert!(!said.contains("run into"), "{said}");
+    // All round, the last letter meets the first.
+    let ring = "M173,100 A27,27 0 1 1 227,100 A27,27 0 1 1 173,100 Z";
+    let (_, _, said) = run(&WORD.replace("HILTEN", "HIHI"), &["bend", "--along", ring, "--glyphs", "rotate"]);
+    assert!(said.contains("`IH` run into each other"), "{said}");
 }

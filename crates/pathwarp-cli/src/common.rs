@@ -281,7 +281,9 @@ pub(crate) fn rect(t: &str) -> Result<Rect, Failure> {
     let numbers: Result<Vec<f64>, _> = t.split(',').map(|w| w.trim().parse::<f64>()).collect();
     match numbers.as_deref() {
         Ok(&[x, y, w, h]) if w > 0.0 && h > 0.0 && (x + y + w + h).is_finite() => Ok(Rect::new(x, y, x + w, y + h)),
-        _ => Err(Failure::usage(format!("--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive); of lettering baseline-ascent, \
-baseline-capheight, baseline-xheight, ascent-descent, ink"))),
+        _ => Err(Failure::usage(format!(
+            "--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive); of lettering baseline-ascent, \
+baseline-capheight, baseline-xheight, ascent-descent, ink"
+        ))),
     }
 }

@@ -231,7 +231,9 @@ fn warp(
     let mut notes = Vec::new();
     if common.explain {
         if let (FrameChoice::Default, Some(y)) = (common.frame, baseline) {
-            notes.push(format!("frame: the artwork is lettering; its baseline, at {y:.6}, lies on the curve (--frame baseline-ascent)"));
+            notes.push(format!(
+                "frame: the artwork is lettering; its baseline, at {y:.6}, lies on the curve (--frame baseline-ascent)"
+            ));
         }
         notes.extend(built.steps.iter().flat_map(|s| s.notes.clone()));
     }

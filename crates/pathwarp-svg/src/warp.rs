@@ -133,7 +133,11 @@ impl Document {
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
         let identity = map.class() == Class::Affine(Affine::IDENTITY);
-        if identity && options.copies.is_empty() && options.letters.places.is_empty() && options.structure != Structure::Flatten {
+        if identity
+            && options.copies.is_empty()
+            && options.letters.places.is_empty()
+            && options.structure != Structure::Flatten
+        {
             self.source.text.clone_into(&mut out.svg);
             return Ok(out);
         }

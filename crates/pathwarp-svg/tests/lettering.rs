@@ -77,7 +77,8 @@ fn lines_are_told_apart_and_raised_letters_belong_to_theirs() {
     let lettering = read(&drawing(two)).lettering(&Selection::default());
     let frame = lettering.frame(LetteringFrame::BaselineCapHeight).unwrap();
     assert!(near(frame.rect, Rect::new(10.0, 40.0 - 0.714 * 20.0, 20.0 + 1.821 * 20.0, 70.0)), "{frame:?}");
-    let raised = "<text x='10' y='40' font-size='20' font-family='Noto Sans'>HI<tspan dy='-5' font-size='12'>H</tspan></text>";
+    let raised =
+        "<text x='10' y='40' font-size='20' font-family='Noto Sans'>HI<tspan dy='-5' font-size='12'>H</tspan></text>";
     let lettering = read(&drawing(raised)).lettering(&Selection::default());
     assert!(lettering.letters().iter().all(|l| (l.origin.y - 40.0).abs() < 1e-5), "{:?}", lettering.letters());
 }
@@ -115,13 +116,16 @@ fn letters_are_placed_one_by_one() {
         let turn = Affine::rotate_about(0.5, Point::new(20.0, 80.0));
         let places = vec![vec![turn], vec![Affine::translate((5.0, -9.0)), Affine::scale(0.5)]];
         let letters = doc.lettering(&Selection::default()).letters().to_vec();
-        let options =
-            WarpOptions { letters: LetterPlaces { places: places.clone(), ..LetterPlaces::default() }, ..warp_options() };
+        let options = WarpOptions {
+            letters: LetterPlaces { places: places.clone(), ..LetterPlaces::default() },
+            ..warp_options()
+        };
         let out = read(&doc.warp(&Bend, &options).unwrap().svg);
         let found: Vec<Point> = out.shapes().iter().flat_map(|s| s.outline.subpaths.iter().map(|p| p.start)).collect();
-        let wanted = letters.iter().zip(&places).flat_map(|(l, p)| {
-            p.iter().flat_map(move |m| l.outline.subpaths.iter().map(move |s| *m * s.start))
-        });
+        let wanted = letters
+            .iter()
+            .zip(&places)
+            .flat_map(|(l, p)| p.iter().flat_map(move |m| l.outline.subpaths.iter().map(move |s| *m * s.start)));
         if stroke {
             // One of them is half as large: one width will not do, and it becomes an outline.
             assert!(out.shapes().iter().all(|s| s.filled), "the stroke is outlined");

@@ -25,7 +25,7 @@ const COOKBOOK: Page = Page {
     file: "docs/cookbook.md",
     pictures: "images/cookbook",
     intro: "# Cookbook\n\nReal jobs, each one command on a drawing of [samples](../samples). The pictures show the artwork, and the result with \
-its guides. Made by `cargo xtask docs`.\n",
+its guides. [Lettering on paths](lettering-on-paths.md) has a page of its own. Made by `cargo xtask docs`.\n",
     jobs: JOBS,
 };
 

@@ -65,7 +65,6 @@ fn heights(reader: &Reader<'_>, e: ElementId) -> Heights {
 fn numbers<const N: usize>(reader: &Reader<'_>, e: ElementId, name: &str) -> Option<[f64; N]> {
     let text = reader.source.attr(e, name)?;
     let words = text.split([' ', ',', '\t', '\n', '\r']).filter(|w| !w.is_empty());
-    let all: Option<Vec<f64>> =
-        words.take(N + 1).map(|w| w.parse::<f64>().ok().filter(|v| v.is_finite())).collect();
+    let all: Option<Vec<f64>> = words.take(N + 1).map(|w| w.parse::<f64>().ok().filter(|v| v.is_finite())).collect();
     all?.try_into().ok()
 }

@@ -207,10 +207,11 @@ impl Document {
     /// The lines, with the letters whose parts are all painted and meant.
     fn meant_lines(&self, meant: &[bool]) -> Vec<Line> {
         let whole = |l: &Letter| l.owns.iter().all(|(i, _)| meant[*i] && self.shapes[*i].painted);
-        let lines = self.scene.lines.iter().map(|line| Line {
-            letters: line.letters.iter().filter(|l| whole(l)).cloned().collect(),
-            ..line.clone()
-        });
+        let lines = self
+            .scene
+            .lines
+            .iter()
+            .map(|line| Line { letters: line.letters.iter().filter(|l| whole(l)).cloned().collect(), ..line.clone() });
         lines.filter(|l| !l.letters.is_empty()).collect()
     }
 

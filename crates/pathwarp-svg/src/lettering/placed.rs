@@ -27,9 +27,7 @@ impl fmt::Debug for LetterPlaces {
 impl PartialEq for LetterPlaces {
     fn eq(&self, other: &Self) -> bool {
         let (a, b) = (self.after.steps(), other.after.steps());
-        self.places == other.places
-            && a.len() == b.len()
-            && a.iter().zip(b).all(|(a, b)| std::sync::Arc::ptr_eq(a, b))
+        self.places == other.places && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| std::sync::Arc::ptr_eq(a, b))
     }
 }
 
@@ -73,7 +71,8 @@ impl Document {
     #[must_use]
     pub fn placed(&self, options: &WarpOptions) -> Vec<Option<Outline>> {
         let meant = self.meant(&options.selection);
-        let chosen = self.shapes.iter().zip(meant).zip(self.pieces(options)).filter(|((s, meant), _)| *meant && s.painted);
+        let chosen =
+            self.shapes.iter().zip(meant).zip(self.pieces(options)).filter(|((s, meant), _)| *meant && s.painted);
         chosen.map(|((s, _), pieces)| (!pieces.is_empty()).then(|| placed(&s.outline, &pieces))).collect()
     }
 }

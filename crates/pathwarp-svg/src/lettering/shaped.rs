@@ -33,7 +33,13 @@ struct Glyph {
 }
 
 /// The lines of a text whose parts are `parts[first..]`, which `frame` takes to root user space.
-pub(crate) fn lines(text: &usvg::Text, fonts: &usvg::fontdb::Database, frame: Affine, parts: &[Part], first: usize) -> Vec<Line> {
+pub(crate) fn lines(
+    text: &usvg::Text,
+    fonts: &usvg::fontdb::Database,
+    frame: Affine,
+    parts: &[Part],
+    first: usize,
+) -> Vec<Line> {
     let Some(glyphs) = glyphs(text, fonts, parts, first) else { return Vec::new() };
     let straight = text.chunks().iter().all(|c| matches!(c.text_flow(), usvg::TextFlow::Linear))
         && text.writing_mode() == usvg::WritingMode::LeftToRight;
@@ -64,13 +70,16 @@ fn line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<Line> {
     let middles: Vec<f64> = wide.iter().map(|g| g.origin.x + 0.5 * g.advance).collect();
     let across = Point::new(1.0, 0.0).to_vec2();
     let stretch = (frame * across.to_point() - frame * Point::ORIGIN).hypot();
-    line.letters = wide.into_iter().map(|g| Letter {
-        name: g.text,
-        // A letter that is raised stands above the baseline all the same.
-        origin: frame * Point::new(g.origin.x, y),
-        advance: g.advance * stretch,
-        owns: vec![(g.part, g.range)],
-    }).collect();
+    line.letters = wide
+        .into_iter()
+        .map(|g| Letter {
+            name: g.text,
+            // A letter that is raised stands above the baseline all the same.
+            origin: frame * Point::new(g.origin.x, y),
+            advance: g.advance * stretch,
+            owns: vec![(g.part, g.range)],
+        })
+        .collect();
     // Marks without an advance belong to the letter they stand over.
     for m in marks {
         let off = |i: &usize| (middles[*i] - m.centre).abs();
@@ -100,7 +109,7 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
             out.push(Glyph {
                 text: g.text.clone(),
                 origin: Point::new(f64::from(t.tx), f64::from(t.ty)),
-                advance: f64::from(t.sx) * known.advance,
+                advance: f64::from(t.sx).hypot(f64::from(t.ky)) * known.advance,
                 size,
                 heights: known.heights,
                 part,

@@ -15,17 +15,17 @@
 
 mod casteljau;
 mod letters;
+mod map;
 mod piece;
 mod skeleton;
 mod spline;
 
 use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
 use crate::error::{Error, show};
-use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
-use crate::param::{Axis, Kind, Letter, Param, Settings};
-use kurbo::{Affine, Point, Vec2};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Affine, Vec2};
 use letters::Setting;
-use piece::{Piece, Shape};
+use map::{BendMap, Place};
 use skeleton::Skeleton;
 use std::sync::Arc;
 
@@ -205,7 +205,11 @@ impl Deformation for Bend {
         }
         let skeleton = match s.choice("spacing")? {
             "even" if file.is_some() || !by_arc_length => {
-                return Err(Error::usage("spacing", "even", "goes with lengths (--by arclength) and without --handles"));
+                return Err(Error::usage(
+                    "spacing",
+                    "even",
+                    "goes with lengths (--by arclength) and without --handles",
+                ));
             }
             "even" => {
                 let (width, height) = (s.number("width")?, base - rect.center().y);
@@ -293,7 +297,11 @@ impl Deformation for Bend {
                 built.letters = letters::places(&map, setting, &s.frame().letters, &built.copies);
                 built.warnings.extend(letters::warnings(&s.frame().letters, &built.letters));
             }
-            None => built.warnings.extend(map.fold(rect, &s.frame().letters)),
+            // A frame round lettering says nothing of the letters' own heights.
+            None if s.frame().baseline.is_some() && !s.frame().letters.is_empty() => {
+                built.warnings.extend(map.fold(letters::points(&s.frame().letters, &built.copies)));
+            }
+            None => built.warnings.extend(map.fold(map::edges(rect).map(|p| (p, None)))),
         }
         built.overlays.push(Overlay { role: Role::Cage, path: path.outline.to_bez_path(1e-4 * size) });
         Ok(built)
@@ -359,170 +367,6 @@ impl Row {
             (false, false) => 0.0,
         };
         Ok(Self { count: room as usize, spacing })
-    }
-}
-
-/// From the artwork to the strip: distance s = k·x + origin, height d = up·(base − y).
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    k: f64,
-    origin: f64,
-    up: f64,
-    base: f64,
-}
-
-impl Place {
-    fn s(&self, x: f64) -> f64 {
-        self.k * x + self.origin
-    }
-
-    fn d(&self, y: f64) -> f64 {
-        (self.base - y) * self.up
-    }
-
-    /// The jet on `piece`, which begins at distance `begin`.
-    fn jet(&self, piece: &Piece, begin: f64, p: Point) -> Jet {
-        let (at, ds, dd) = piece.jet(self.s(p.x) - begin, self.d(p.y));
-        Jet { p: at, dx: ds * self.k, dy: dd * -self.up }
-    }
-}
-
-/// The map: pieces side by side.
-#[derive(Clone)]
-struct BendMap {
-    pieces: Vec<Arc<Piece>>,
-    length: f64,
-    closed: bool,
-    place: Place,
-    /// The x for which creases are told.
-    reach: (f64, f64),
-}
-
-impl BendMap {
-    /// The piece at `x`, and the distance at which its own begins there.
-    fn piece(&self, x: f64) -> (&Arc<Piece>, f64) {
-        let s = self.place.s(x);
-        let turn = if self.closed { (s / self.length).floor() * self.length } else { 0.0 };
-        let i = self.pieces.partition_point(|p| p.from <= s - turn).max(1) - 1;
-        (&self.pieces[i], self.pieces[i].anchor + turn)
-    }
-
-    /// Where `x` of the source comes to lie on the skeleton, and the unit tangent there.
-    fn stand(&self, x: f64) -> (Point, Vec2) {
-        let (piece, begin) = self.piece(x);
-        let (at, along, _) = piece.jet(self.place.s(x) - begin, 0.0);
-        (at, along / along.hypot())
-    }
-
-    /// A skeleton that is one straight line bends nothing.
-    fn simplest(&self) -> Arc<dyn Map> {
-        match &self.pieces[..] {
-            [only] if !self.closed => match OnPiece::new(only, only.anchor, self.place).affine() {
-                Some(m) => Arc::new(AffineMap(m)),
-                None => Arc::new(self.clone()),
-            },
-            _ => Arc::new(self.clone()),
-        }
-    }
-
-    /// A warning if the artwork's box is turned over somewhere. The determinant is linear in the height: the box's top and
-    /// bottom are where it is worst.
-    fn fold(&self, rect: kurbo::Rect, letters: &[Letter]) -> Option<String> {
-        const SAMPLES: u32 = 1024;
-        let mut worst: Option<(f64, f64, f64)> = None;
-        for i in 0..=SAMPLES {
-            let x = rect.x0 + rect.width() * (f64::from(i) + 0.5) / f64::from(SAMPLES + 1);
-            let det = |y: f64| self.jet(Point::new(x, y)).det() / (self.place.k * self.place.up);
-            let on = det(self.place.base);
-            for y in [rect.y0, rect.y1] {
-                let there = det(y);
-                if there < 0.0 && worst.is_none_or(|(w, ..)| there < w) {
-                    // Where the line between them crosses zero: the centre of curvature.
-                    let centre = self.place.d(y).abs() * on / (on - there);
-                    worst = Some((there, x, centre));
-                }
-            }
-        }
-        worst.map(|(_, x, centre)| {
-            let at = self.point(Point::new(x, self.place.base));
-            let over = letters.iter().find(|l| (l.origin.x..=l.origin.x + l.advance).contains(&x));
-            let who = over.map_or_else(|| "the artwork".to_owned(), |l| format!("the letter `{}`", l.name));
-            format!(
-                "bend: {who} folds over itself near {} of the skeleton, where it reaches more than {centre:.6} away from it, \
-beyond the centre of curvature; a smaller --width, another --baseline or a gentler bend avoids that",
-                show(at)
-            )
-        })
-    }
-}
-
-impl Map for BendMap {
-    fn jet(&self, p: Point) -> Jet {
-        let (piece, begin) = self.piece(p.x);
-        self.place.jet(piece, begin, p)
-    }
-
-    /// Uprights at the skeleton's joints.
-    fn creases(&self, out: &mut Creases) {
-        /// Turns round a closed skeleton whose joints are told.
-        const MOST_TURNS: f64 = 64.0;
-        let (a, b) = (self.place.s(self.reach.0), self.place.s(self.reach.1));
-        let turns = |s: f64| if self.closed { (s / self.length).floor() } else { 0.0 };
-        let (mut turn, last) = (turns(a), turns(b));
-        let last = last.min(turn + MOST_TURNS);
-        while turn <= last {
-            for s in self.pieces.iter().map(|p| p.from).filter(|s| s.is_finite()) {
-                let c = self.place.origin - s - turn * self.length;
-                out.push(Crease::kink(Level::Line { a: self.place.k, b: 0.0, c }));
-            }
-            turn += 1.0;
-        }
-    }
-
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        let (piece, begin) = self.piece(inside.x);
-        Some(Arc::new(OnPiece::new(piece, begin, self.place)))
-    }
-}
-
-/// The smooth map on one piece.
-struct OnPiece {
-    piece: Arc<Piece>,
-    begin: f64,
-    place: Place,
-}
-
-impl OnPiece {
-    fn new(piece: &Arc<Piece>, begin: f64, place: Place) -> Self {
-        Self { piece: Arc::clone(piece), begin, place }
-    }
-
-    fn affine(&self) -> Option<Affine> {
-        let Shape::Straight { p, t, n } = &self.piece.shape else { return None };
-        let Place { k, up, .. } = self.place;
-        let at = *p + *t * (self.place.s(0.0) - self.begin) + *n * self.place.d(0.0);
-        Some(Affine::new([t.x * k, t.y * k, -n.x * up, -n.y * up, at.x, at.y]))
-    }
-}
-
-impl Map for OnPiece {
-    fn jet(&self, p: Point) -> Jet {
-        self.place.jet(&self.piece, self.begin, p)
-    }
-
-    fn class(&self) -> Class {
-        self.affine().map_or(Class::Smooth, Class::Affine)
-    }
-
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        if let Some(m) = self.affine() {
-            return AffineMap(m).image_of(curve);
-        }
-        let Shape::Ribbon { ribbon, unit, table: None } = &self.piece.shape else { return None };
-        let Place { k, origin, up, base } = self.place;
-        let (length, v) = (self.piece.length, up / unit);
-        let to_uv = Affine::new([k / length, 0.0, 0.0, -v, (origin - self.begin) / length, base * v]);
-        Some(ribbon.image_of(&AffineMap(to_uv).image_of(curve)?))
     }
 }
 

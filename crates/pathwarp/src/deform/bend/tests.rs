@@ -1,7 +1,9 @@
 use super::*;
 use crate::check;
-use crate::outline::Seg;
+use crate::map::{Creases, Level, Map as _, RationalBezier};
+use crate::outline::{Outline, Seg};
 use crate::param::Args;
+use kurbo::Point;
 
 #[test]
 fn is_sound() {
@@ -210,7 +212,8 @@ fn even_spacing_keeps_widths_at_half_the_height() {
             }
         }
         // Scaled, the artwork is as long at half its height as the skeleton's offset there.
-        let m = build(&[("along", along), ("spacing", "even"), ("baseline", "0"), ("stretch", "scale"), ("width", "0.4")]);
+        let m =
+            build(&[("along", along), ("spacing", "even"), ("baseline", "0"), ("stretch", "scale"), ("width", "0.4")]);
         let m = m.unwrap().map;
         let (a, b) = (m.jet(Point::new(10.0, 50.0)), m.jet(Point::new(90.0, 50.0)));
         assert!((a.dx.hypot() - b.dx.hypot()).abs() < 1e-8);
@@ -229,7 +232,8 @@ fn even_spacing_keeps_widths_at_half_the_height() {
 fn letters_stand_on_a_circle() {
     use crate::param::Letter;
     let outline = Outline { subpaths: Vec::new() };
-    let letter = |x: f64| Letter { name: "n".into(), origin: Point::new(x, 90.0), advance: 10.0, outline: outline.clone() };
+    let letter =
+        |x: f64| Letter { name: "n".into(), origin: Point::new(x, 90.0), advance: 10.0, outline: outline.clone() };
     let frame = || check::frame().on_baseline(90.0).with_letters([letter(20.0), letter(65.0)].into());
     let set = |how: &str| {
         let args = [("along", "M-100,0 A100,100 0 0 1 100,0"), ("glyphs", how)];
