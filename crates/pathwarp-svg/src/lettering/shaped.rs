@@ -46,7 +46,8 @@ pub(crate) fn lines(
     let mut rows: Vec<Vec<Glyph>> = Vec::new();
     for g in glyphs {
         let same = |row: &&mut Vec<Glyph>| {
-            row.first().is_some_and(|f| (f.origin.y - g.origin.y).abs() < ANOTHER_LINE * f.size.max(g.size))
+            !straight
+                || row.first().is_some_and(|f| (f.origin.y - g.origin.y).abs() < ANOTHER_LINE * f.size.max(g.size))
         };
         match rows.last_mut().filter(same) {
             Some(row) => row.push(g),

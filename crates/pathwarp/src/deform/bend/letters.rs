@@ -12,7 +12,7 @@
 //!
 //! These are the type-on-a-path effects Rainbow, Skew, 3D Ribbon and Stair Step of Adobe Illustrator's manual.
 
-use super::map::BendMap;
+use super::map::{BendMap, Place};
 use super::piece::normal;
 use crate::error::show;
 use crate::outline::{Outline, Seg};
@@ -50,14 +50,48 @@ impl Setting {
         }
     }
 
-    /// Where a letter goes that is moved `by` along the source first.
-    fn place(self, map: &BendMap, letter: &Letter, by: f64) -> Affine {
-        let anchor = if self == Self::Stair { letter.origin.x } else { letter.middle().x };
-        let (c, t) = map.stand(anchor + by);
+    /// Where a letter goes whose anchor comes to distance `s`.
+    fn place(self, map: &BendMap, letter: &Letter, s: f64) -> Affine {
+        let (c, t) = map.stand(s);
         let (x, y) = self.axes(t);
         let (x, y) = (x * map.place.up, y * map.place.up);
-        let at = c.to_vec2() - x * anchor - y * map.place.base;
+        let at = c.to_vec2() - x * self.anchor(letter) - y * map.place.base;
         Affine::new([x.x, x.y, y.x, y.y, at.x, at.y])
+    }
+
+    fn anchor(self, letter: &Letter) -> f64 {
+        if self == Self::Stair { letter.origin.x } else { letter.middle().x }
+    }
+
+    /// The distances on the skeleton of letters that are spread over it: of every line, the gaps grow alike, those between words
+    /// twice, until it reaches from end to end of its share. All round a closed skeleton there is one more gap between words.
+    fn spread(self, map: &BendMap, letters: &[Letter]) -> Vec<f64> {
+        /// A gap wider than this share of its line's mean advance is one between words.
+        const BETWEEN_WORDS: f64 = 0.2;
+        let Place { up, .. } = map.place;
+        let mut out = vec![0.0; letters.len()];
+        for mut line in lines(letters) {
+            line.sort_by(|a, b| letters[*a].origin.x.total_cmp(&letters[*b].origin.x));
+            let end = |i: usize| letters[i].origin.x + letters[i].advance;
+            let (Some(&first), Some(&last)) = (line.first(), line.last()) else { continue };
+            let gaps: Vec<f64> = line.windows(2).map(|p| letters[p[1]].origin.x - end(p[0])).collect();
+            let advances: f64 = line.iter().map(|i| letters[*i].advance).sum();
+            let wide = BETWEEN_WORDS * advances / line.len() as f64;
+            let weight = |gap: f64| if gap > wide { 2.0 } else { 1.0 };
+            let round = if map.closed { weight(f64::INFINITY) } else { 0.0 };
+            let weights = gaps.iter().map(|g| weight(*g)).sum::<f64>() + round;
+            let (from, to) = (map.place.s(letters[first].origin.x), map.place.s(end(last)));
+            let spare = to - from - up * (end(last) - letters[first].origin.x);
+            // A letter alone stands in the middle.
+            let (more, mut at) = if weights > 0.0 { (spare / weights, from) } else { (0.0, from + 0.5 * spare) };
+            at += 0.5 * round * more;
+            for (k, i) in line.into_iter().enumerate() {
+                out[i] = at + up * (self.anchor(&letters[i]) - letters[i].origin.x);
+                let gap = gaps.get(k).copied().unwrap_or_default();
+                at += up * (letters[i].advance + gap) + more * weight(gap);
+            }
+        }
+        out
     }
 }
 
@@ -66,10 +100,39 @@ fn or_here(copies: &[Affine]) -> &[Affine] {
     if copies.is_empty() { &[Affine::IDENTITY] } else { copies }
 }
 
-/// For every letter its place in each of the copies.
-pub(super) fn places(map: &BendMap, setting: Setting, letters: &[Letter], copies: &[Affine]) -> Vec<Vec<Affine>> {
-    let copies = or_here(copies);
-    letters.iter().map(|l| copies.iter().map(|c| setting.place(map, l, c.translation().x)).collect()).collect()
+/// The letters of every line, by their numbers.
+fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
+    /// Baselines nearer than this share of an advance are one.
+    const ONE_LINE: f64 = 1e-3;
+    let mut out: Vec<Vec<usize>> = Vec::new();
+    for (i, l) in letters.iter().enumerate() {
+        let before = out.last_mut().zip(i.checked_sub(1).and_then(|b| letters.get(b)));
+        match before.filter(|(_, b)| (l.origin.y - b.origin.y).abs() <= ONE_LINE * l.advance) {
+            Some((line, _)) => line.push(i),
+            None => out.push(vec![i]),
+        }
+    }
+    out
+}
+
+/// For every letter its place in each of the copies. `spread`: over all the skeleton, with gaps that grow alike.
+pub(super) fn places(
+    map: &BendMap,
+    setting: Setting,
+    letters: &[Letter],
+    copies: &[Affine],
+    spread: bool,
+) -> Vec<Vec<Affine>> {
+    let at = if spread {
+        setting.spread(map, letters)
+    } else {
+        letters.iter().map(|l| map.place.s(setting.anchor(l))).collect()
+    };
+    let all = |(l, s): (&Letter, f64)| {
+        let further = or_here(copies).iter().map(|c| map.place.k * c.translation().x);
+        further.map(|by| setting.place(map, l, s + by)).collect()
+    };
+    letters.iter().zip(at).map(all).collect()
 }
 
 /// What is to be said about letters that were placed.
@@ -97,17 +160,14 @@ and stair keep every letter readable",
             crowded.push((format!("{}{}", letters[a].name, letters[b].name), at));
         }
     };
-    let mut first = 0;
-    /// Baselines nearer than this share of an advance are one.
-    const ONE_LINE: f64 = 1e-3;
-    for line in letters.chunk_by(|a, b| (a.origin.y - b.origin.y).abs() <= ONE_LINE * a.advance) {
-        let last = first + line.len() - 1;
-        (first..last).for_each(|i| look(i, i + 1, 0));
+    for line in lines(letters) {
+        line.windows(2).for_each(|p| look(p[0], p[1], 0));
         // The end of every copy and the beginning of the next, or of the same one all round.
-        if first < last || places[first].len() > 1 {
+        if let (Some(&first), Some(&last)) = (line.first(), line.last())
+            && (first < last || places[first].len() > 1)
+        {
             look(last, first, 1);
         }
-        first = last + 1;
     }
     if let Some((_, at)) = crowded.first() {
         let names: Vec<&str> = crowded.iter().map(|(n, _)| n.as_str()).collect();

@@ -18,7 +18,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    fn s(&self, x: f64) -> f64 {
+    pub(super) fn s(&self, x: f64) -> f64 {
         self.k * x + self.origin
     }
 
@@ -45,18 +45,17 @@ pub(super) struct BendMap {
 }
 
 impl BendMap {
-    /// The piece at `x`, and the distance at which its own begins there.
-    fn piece(&self, x: f64) -> (&Arc<Piece>, f64) {
-        let s = self.place.s(x);
+    /// The piece at distance `s`, and the distance at which its own begins there.
+    fn piece(&self, s: f64) -> (&Arc<Piece>, f64) {
         let turn = if self.closed { (s / self.length).floor() * self.length } else { 0.0 };
         let i = self.pieces.partition_point(|p| p.from <= s - turn).max(1) - 1;
         (&self.pieces[i], self.pieces[i].anchor + turn)
     }
 
-    /// Where `x` of the source comes to lie on the skeleton, and the unit tangent there.
-    pub(super) fn stand(&self, x: f64) -> (Point, Vec2) {
-        let (piece, begin) = self.piece(x);
-        let (at, along, _) = piece.jet(self.place.s(x) - begin, 0.0);
+    /// The place at distance `s` on the skeleton, and the unit tangent there.
+    pub(super) fn stand(&self, s: f64) -> (Point, Vec2) {
+        let (piece, begin) = self.piece(s);
+        let (at, along, _) = piece.jet(s - begin, 0.0);
         (at, along / along.hypot())
     }
 
@@ -117,7 +116,7 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 
 impl Map for BendMap {
     fn jet(&self, p: Point) -> Jet {
-        let (piece, begin) = self.piece(p.x);
+        let (piece, begin) = self.piece(self.place.s(p.x));
         self.place.jet(piece, begin, p)
     }
 
@@ -139,7 +138,7 @@ impl Map for BendMap {
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        let (piece, begin) = self.piece(inside.x);
+        let (piece, begin) = self.piece(self.place.s(inside.x));
         Some(Arc::new(OnPiece::new(piece, begin, self.place)))
     }
 }

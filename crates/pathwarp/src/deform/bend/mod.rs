@@ -44,7 +44,7 @@ Beyond the ends of an open one everything goes straight on. --spline 3 makes a s
 few points: it is drawn towards them and has no corners; an open one begins at the first and ends at the last.\n\n\
 Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by \
 one instead of bent: rotate turns them, skew keeps their uprights upright, ribbon keeps their levels level, stair only moves them. \
-They have their own size then, times --width; --stretch fit spreads them out, scale sizes them. --spacing even counts distances at \
+They have their own size then, times --width; --stretch fit spreads them out from end to end, scale sizes them. --spacing even counts distances at \
 half the height of the artwork instead of on the skeleton, so that letters do not crowd inside a bend nor drift apart outside.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
@@ -294,7 +294,7 @@ impl Deformation for Bend {
         }
         match setting {
             Some(setting) => {
-                built.letters = letters::places(&map, setting, &s.frame().letters, &built.copies);
+                built.letters = letters::places(&map, setting, &s.frame().letters, &built.copies, stretch == "fit");
                 built.warnings.extend(letters::warnings(&s.frame().letters, &built.letters));
             }
             // A frame round lettering says nothing of the letters' own heights.
