@@ -43,52 +43,56 @@ are. The names in other programs' menus: `rotate` is Rainbow, `--skew` Skew, `--
 | `skew` | uprights stay upright | where the curve is steep letters get thin, where it runs back they are mirrored, with a warning |
 | `ribbon` | levels stay level | the same |
 | `stair` | letters only move | steep curves tear words apart |
+
+Letters set one by one keep their size, times `--width`, and their distances. `--stretch fit` spreads them over the curve, `scale` sizes
+them to it, `repeat` sets the line again as often as there is room. Warnings are of ink: letters that only come near each other
+are not told of.
 ",
     jobs: &[
         Job {
             name: "bend",
             title: "Letters that bend",
             text: "The baseline is on the curve without further words. Letters widen above a hill and narrow in a valley.",
-            command: "bend samples/lettering-text.svg --select '#headline' --along 'M20,120 C160,0 320,220 460,100' -o out.svg",
+            command: "bend samples/headline.svg --along 'M10,150 C160,40 320,250 470,130' -o out.svg",
         },
         Job {
             name: "rotate",
             title: "Letters that turn",
             text: "Every letter stands on the curve at the middle of its advance, and keeps its shape.",
-            command: "bend samples/lettering-text.svg --select '#headline' --along 'M20,120 C160,0 320,220 460,100' --glyphs rotate -o out.svg",
+            command: "bend samples/headline.svg --along 'M10,150 C160,40 320,250 470,130' --glyphs rotate -o out.svg",
         },
         Job {
             name: "skew",
             title: "Uprights stay upright",
             text: "Each letter is sheared along the curve: good for slopes and waves.",
-            command: "bend samples/lettering-text.svg --select '#headline' --along 'M20,120 C160,0 320,220 460,100' --skew -o out.svg",
+            command: "bend samples/headline.svg --along 'M10,150 C160,40 320,250 470,130' --skew -o out.svg",
         },
         Job {
             name: "ribbon",
             title: "Levels stay level",
             text: "Stems stand on the curve, bars stay level, as on a ribbon that turns in space.",
-            command: "bend samples/lettering-text.svg --select '#headline' --along 'M20,120 C160,0 320,220 460,100' --ribbon -o out.svg",
+            command: "bend samples/headline.svg --along 'M10,150 C160,40 320,250 470,130' --ribbon -o out.svg",
         },
         Job {
             name: "even",
             title: "Even letters in a tight arch",
             text: "Outside an arch letters drift apart, inside they crowd. `--spacing even` counts distances at half the letters' height, where \
-the eye does; `--stretch fit` spreads the letters from end to end.",
-            command: "bend samples/lettering-text.svg --select '#headline' --along 'M130,150 A110,110 0 0 1 350,150' --glyphs rotate --spacing even --stretch fit -o out.svg",
+the eye does; `--stretch fit` spreads the letters from end to end: all gaps grow alike, those between words twice.",
+            command: "bend samples/headline.svg --along 'M120,220 A120,120 0 0 1 360,220' --glyphs rotate --spacing even --stretch fit -o out.svg",
         },
         Job {
             name: "repeat",
-            title: "A word all round",
-            text: "As many as there is room for, with at least `--gap` between them, spread evenly. Repeated words stand as far apart as \
-their advances, not their ink.",
-            command: "bend samples/lettering-text.svg --select '#headline' --along 'M40,330 A200,200 0 1 1 440,330 A200,200 0 1 1 40,330 Z' --stretch repeat --gap 12% --glyphs rotate -o out.svg",
+            title: "A line all round",
+            text: "As many as there is room for, with at least `--gap` between them, spread evenly. Lines that are repeated stand as far apart as \
+their advances, not their ink. Raised letters keep their height above the line.",
+            command: "bend samples/lettering-text.svg --select '#subline' --along 'M-10,80 A250,150 0 1 1 490,80 A250,150 0 1 1 -10,80 Z' --stretch repeat --gap 14 --glyphs rotate -o out.svg",
         },
         Job {
             name: "arch",
             title: "Arched, with upright stems",
             text: "In an envelope, the frame from the baseline to the capitals puts their feet on the lower curve and their heads on the upper \
 one; `--keep verticals` keeps stems upright.",
-            command: "envelope samples/lettering-text.svg --select '#headline' --frame baseline-capheight --bottom 'M50,170 Q240,90 430,170' --top 'M50,110 Q240,-30 430,110' --keep verticals -o out.svg",
+            command: "envelope samples/headline.svg --frame baseline-capheight --bottom 'M30,210 Q240,130 450,210' --top 'M30,130 Q240,-50 450,130' --keep verticals -o out.svg",
         },
     ],
 };

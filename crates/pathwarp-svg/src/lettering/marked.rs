@@ -16,7 +16,7 @@ pub(crate) fn lines(reader: &Reader<'_>, parts: &[Part], by_source: &HashMap<Ele
         let Some(frame) = reader.transform_to_root(e) else { continue };
         let label = source.attr(e, "aria-label");
         let above = source.ancestors(e).find_map(|a| source.attr(a, "aria-label"));
-        let name = label.or(above).map_or_else(|| source.display_name(e), |l| l.into_owned());
+        let name = label.or(above).map_or_else(|| source.display_name(e), std::borrow::Cow::into_owned);
         let mut line = Line::new(name, Point::new(x0, y0), Point::new(x1, y1), heights(reader, e), frame, true);
         let end = source.elements[e].range.end;
         let inside = (e + 1..source.elements.len()).take_while(|&c| source.elements[c].range.start < end);
@@ -41,7 +41,10 @@ fn letter(
     let frame = parts[*own.first()?].frame;
     let [a, b, ..] = frame.as_coeffs();
     Some(Letter {
-        name: reader.source.attr(e, "aria-label").map_or_else(|| reader.source.display_name(e), |l| l.into_owned()),
+        name: reader
+            .source
+            .attr(e, "aria-label")
+            .map_or_else(|| reader.source.display_name(e), std::borrow::Cow::into_owned),
         origin: frame * Point::new(x, y),
         advance: (Vec2::new(a, b) * advance).hypot(),
         owns: own.into_iter().map(|i| (i, 0..parts[i].local.subpaths.len())).collect(),

@@ -116,7 +116,7 @@ left away). A handle says where the artwork's height goes.",
         },
         Example {
             what: "Lettering whose letters turn but keep their shape",
-            command: "bend samples/lettering-text.svg --select '#headline' --along 'M40,150 Q240,-30 440,150' --glyphs rotate --spacing even -o out.svg",
+            command: "bend samples/headline.svg --along 'M120,220 A120,120 0 0 1 360,220' --glyphs rotate --spacing even --stretch fit -o out.svg",
         },
         Example {
             what: "A grid along a winding path, by the paper's polynomial map",

@@ -74,7 +74,7 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
         },
         Example {
             what: "Text whose baseline comes to lie on the lower curve and whose capitals reach the upper one",
-            command: "envelope samples/lettering-text.svg --select '#headline' --frame baseline-capheight --bottom 'M20,150 Q240,60 460,150' --height 80 -o out.svg",
+            command: "envelope samples/headline.svg --frame baseline-capheight --bottom 'M30,200 Q240,90 450,200' --height 80 -o out.svg",
         },
         Example {
             what: "A circle has no corners: they are taken where it comes nearest to its box's",
