@@ -70,8 +70,7 @@ impl Setting {
         const BETWEEN_WORDS: f64 = 0.2;
         let Place { up, .. } = map.place;
         let mut out = vec![0.0; letters.len()];
-        for mut line in lines(letters) {
-            line.sort_by(|a, b| letters[*a].origin.x.total_cmp(&letters[*b].origin.x));
+        for line in lines(letters) {
             let end = |i: usize| letters[i].origin.x + letters[i].advance;
             let (Some(&first), Some(&last)) = (line.first(), line.last()) else { continue };
             let gaps: Vec<f64> = line.windows(2).map(|p| letters[p[1]].origin.x - end(p[0])).collect();
@@ -100,7 +99,7 @@ fn or_here(copies: &[Affine]) -> &[Affine] {
     if copies.is_empty() { &[Affine::IDENTITY] } else { copies }
 }
 
-/// The letters of every line, by their numbers.
+/// The letters of every line from left to right, by their numbers.
 fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
     /// Baselines nearer than this share of an advance are one.
     const ONE_LINE: f64 = 1e-3;
@@ -111,6 +110,9 @@ fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
             Some((line, _)) => line.push(i),
             None => out.push(vec![i]),
         }
+    }
+    for line in &mut out {
+        line.sort_by(|a, b| letters[*a].origin.x.total_cmp(&letters[*b].origin.x));
     }
     out
 }
@@ -164,7 +166,7 @@ and stair keep every letter readable",
         line.windows(2).for_each(|p| look(p[0], p[1], 0));
         // The end of every copy and the beginning of the next, or of the same one all round.
         if let (Some(&first), Some(&last)) = (line.first(), line.last())
-            && (first < last || places[first].len() > 1)
+            && (line.len() > 1 || places[first].len() > 1)
         {
             look(last, first, 1);
         }
