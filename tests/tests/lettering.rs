@@ -303,3 +303,48 @@ fn warnings_are_of_ink() {
     let (_, _, said) = run(&WORD.replace("HILTEN", "HIHI"), &["bend", "--along", ring, "--glyphs", "rotate"]);
     assert!(said.contains("`IH` run into each other"), "{said}");
 }
+
+/// What `pathwarp text` sets is lettering to `pathwarp bend` and `pathwarp envelope`, as text is: the same frames, the same places
+/// of letters. Text goes through single precision, hence the 1e-3.
+#[test]
+fn lettering_made_here_is_bent_like_text() {
+    let here = support::root();
+    let set = support::pathwarp_in(&here, &["text", "HILTEN", "--size", "90"], b"");
+    assert!(set.status.success(), "{}", String::from_utf8_lossy(&set.stderr));
+    let made = String::from_utf8(set.stdout).unwrap();
+    let baseline = made.split("data-baseline=\"").nth(1).and_then(|t| t.split('"').next()).unwrap();
+    let numbers: Vec<f64> = baseline.split(' ').map(|w| w.parse().unwrap()).collect();
+    let [x0, y0, x1, y1] = numbers[..] else { panic!("{baseline}") };
+    assert!(y0 == y1 && x0 < x1, "{baseline}");
+    let text = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 200'>\
+<text x='{x0}' y='{y0}' font-size='90' font-family='Noto Sans'>HILTEN</text></svg>"
+    );
+    let arc = "M-100,350 A300,300 0 0 1 500,350";
+    let (bottom, top) = ("M20,170 Q200,60 380,170", "M20,90 Q200,-60 380,90");
+    for args in [
+        &["bend", "--along", arc][..],
+        &["bend", "--along", arc, "--glyphs", "rotate"],
+        &["bend", "--along", arc, "--skew", "--stretch", "fit"],
+        &["bend", "--along", arc, "--ribbon", "--spacing", "even", "--frame", "baseline-xheight"],
+        &["bend", "--along", arc, "--glyphs", "stair", "--stretch", "repeat", "--gap", "9"],
+        &["envelope", "--bottom", bottom, "--top", top, "--frame", "baseline-capheight"],
+        &["envelope", "--bottom", bottom, "--top", top, "--frame", "ascent-descent", "--keep", "verticals"],
+    ] {
+        let mut all = args.to_vec();
+        all.extend(["--tolerance", "1e-4", "--precision", "9", "--merge", "off"]);
+        let (_, wanted, _) = run(&text, &all);
+        all.insert(1, "-");
+        let bent = support::pathwarp_in(&here, &all, made.as_bytes());
+        assert!(bent.status.success(), "{args:?}: {}", String::from_utf8_lossy(&bent.stderr));
+        let bent = drawn(&Document::read(&bent.stdout, "bent", &ReadOptions::default()).unwrap());
+        assert!(bent.bounding_box().unwrap().width() > 250.0, "{args:?}");
+        for (a, b) in [(&bent, &wanted), (&wanted, &bent)] {
+            let corners: Vec<Point> = a.segs().map(|s| s.start()).collect();
+            assert!(corners.len() > 50, "{args:?}");
+            for p in corners {
+                assert!(away(b, p) < 1e-3, "{args:?}: {p:?} is {} away", away(b, p));
+            }
+        }
+    }
+}

@@ -31,6 +31,7 @@ mod report;
 mod schema;
 mod space;
 mod terminal;
+mod text;
 mod unwarp;
 
 use failure::Failure;
@@ -92,6 +93,7 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         "paths" => paths::run(sub),
         "render" => render::run(sub),
         "gallery" => gallery::run(registry, sub),
+        "text" => text::run(sub),
         "schema" => schema::run(registry),
         "unwarp" => unwarp::run(sub),
         "run" => {

@@ -7,8 +7,12 @@ pub(crate) const PAGE: Page = Page {
     pictures: "images/lettering-on-paths",
     intro: "# Lettering on paths
 
-Text in a drawing, and outlines made by `pathwarp text`, tell where their baselines are and where each letter begins and ends. Other
-outlines do not: for those `--frame X,Y,W,H` names the box, and `bend --baseline` the height.
+Text in a drawing, and outlines made by [`pathwarp text`](lettering.md), tell where their baselines are and where each letter begins and
+ends. Other outlines do not: for those `--frame X,Y,W,H` names the box, and `bend --baseline` the height.
+
+```sh
+pathwarp text 'Summit Camp' | pathwarp bend - --along 'M0,120 Q200,0 400,120' --glyphs rotate -o out.svg
+```
 
 ## Frames
 
@@ -46,7 +50,7 @@ are. The names in other programs' menus: `rotate` is Rainbow, `--skew` Skew, `--
 
 Letters set one by one keep their size, times `--width`, and their distances. `--stretch fit` spreads them over the curve, `scale` sizes
 them to it, `repeat` sets the line again as often as there is room. Warnings are of ink: letters that only come near each other
-are not told of.
+are not told of. The letters of joined scripts, such as Arabic, part where they are set one by one: bend them.
 ",
     jobs: &[
         Job {
