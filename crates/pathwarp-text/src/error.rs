@@ -1,5 +1,6 @@
 //! What can go wrong between the bytes of a font and its lettering.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
 /// Why there is no lettering.
@@ -72,8 +73,8 @@ pub enum Error {
         /// What is wrong.
         problem: String,
     },
-    /// The font made the shaper fail.
-    #[error("the font is damaged: the text cannot be shaped with it")]
+    /// The font made its reader or the shaper fail.
+    #[error("the font is damaged: nothing can be set with it")]
     Failed,
 }
 
@@ -81,4 +82,9 @@ impl Error {
     pub(crate) fn setting(value: &str, problem: impl Into<String>) -> Self {
         Self::Setting { value: value.to_owned(), problem: problem.into() }
     }
+}
+
+/// Runs what reads a font. The readers are made for hostile fonts, but they are not ours: should one panic, that is an error.
+pub(crate) fn guarded<T>(read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or(Err(Error::Failed))
 }

@@ -1,5 +1,6 @@
 //! A font: its bytes understood, its axes set, its metrics.
 
+use crate::error::guarded;
 use crate::glyph::Outlines;
 use crate::{Error, Variation};
 use harfrust::{ShaperData, ShaperInstance};
@@ -76,6 +77,10 @@ impl<'a> Font<'a> {
     /// # Errors
     /// The bytes are no such font, or the file has fewer.
     pub fn new(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
+        guarded(|| Self::read(bytes, index))
+    }
+
+    fn read(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
         let font = match FileRef::new(bytes) {
             Ok(FileRef::Font(font)) if index == 0 => font,
             Ok(FileRef::Font(_)) => return Err(Error::NoSuchFace { index, count: 1 }),
@@ -109,7 +114,11 @@ impl<'a> Font<'a> {
     ///
     /// # Errors
     /// The font has no such axis (the message names those it has), or the value is outside of it.
-    pub fn with_variations(mut self, variations: &[Variation]) -> Result<Self, Error> {
+    pub fn with_variations(self, variations: &[Variation]) -> Result<Self, Error> {
+        guarded(|| self.at(variations))
+    }
+
+    fn at(mut self, variations: &[Variation]) -> Result<Self, Error> {
         let axes = self.axes();
         for v in variations {
             let tag = v.tag.to_string();

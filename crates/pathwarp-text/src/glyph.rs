@@ -37,7 +37,7 @@ impl<'a> Outlines<'a> {
     /// The outline of a glyph; empty for spaces.
     pub(crate) fn draw(&self, glyph: GlyphId, at: LocationRef<'_>) -> Result<BezPath, Error> {
         let damaged = |problem: String| Error::Glyph { glyph: glyph.to_u32(), problem };
-        if self.parts(glyph, 0, &mut HashMap::new()) > MOST_PARTS {
+        if self.parts(glyph, 0, &mut HashMap::new())? > MOST_PARTS {
             return Err(damaged(format!("it has more than {MOST_PARTS} parts")));
         }
         let mut pen = Pen::default();
@@ -52,31 +52,35 @@ impl<'a> Outlines<'a> {
         Ok(pen.path)
     }
 
-    /// How many parts drawing a glyph takes, all the way down; each glyph is counted once and its sum remembered.
-    fn parts(&self, glyph: GlyphId, depth: usize, known: &mut HashMap<u32, usize>) -> usize {
+    /// How many parts drawing a glyph takes, all the way down; each glyph is counted once and its sum remembered. A part
+    /// without points but with data for them, which the reader does not survive, is an error.
+    fn parts(&self, glyph: GlyphId, depth: usize, known: &mut HashMap<u32, usize>) -> Result<usize, Error> {
         /// One more than the reader follows.
         const DEEP: usize = 33;
         if let Some(n) = known.get(&glyph.to_u32()) {
-            return *n;
+            return Ok(*n);
         }
-        let Some((glyf, loca)) = &self.composites else { return 1 };
+        let Some((glyf, loca)) = &self.composites else { return Ok(1) };
         // Met again inside itself: the reader refuses that.
         known.insert(glyph.to_u32(), MOST_PARTS + 1);
         let n = match loca.get_glyf(glyph, glyf) {
             Ok(Some(Glyph::Composite(c))) if depth < DEEP => {
                 let mut n = 1_usize;
                 for part in c.components() {
-                    n = n.saturating_add(self.parts(part.glyph.into(), depth + 1, known));
+                    n = n.saturating_add(self.parts(part.glyph.into(), depth + 1, known)?);
                     if n > MOST_PARTS {
                         break;
                     }
                 }
                 n
             }
+            Ok(Some(Glyph::Simple(s))) if s.num_points() == 0 && !s.glyph_data().is_empty() => {
+                return Err(Error::Glyph { glyph: glyph.to_u32(), problem: "it has no points".into() });
+            }
             _ => 1,
         };
         known.insert(glyph.to_u32(), n);
-        n
+        Ok(n)
     }
 }
 
@@ -108,5 +112,33 @@ impl OutlinePen for Pen {
 
     fn close(&mut self) {
         self.path.close_path();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The last contour ends at point 65535, so that the number of points wraps to none; or there are no contours, but data.
+    #[test]
+    fn glyphs_without_points_are_refused() {
+        const HEBREW: &[u8] = include_bytes!("../tests/fonts/hebrew.ttf");
+        /// The box and the number of contours come first (OpenType 1.9.1, glyf).
+        const HEADER: usize = 10;
+        let (font, shin) = (FontRef::new(HEBREW).unwrap(), GlyphId::new(10));
+        let draw =
+            |bytes: &[u8]| Outlines::new(&FontRef::new(bytes).unwrap()).unwrap().draw(shin, LocationRef::default());
+        assert!(!draw(HEBREW).unwrap().is_empty());
+
+        let tag = skrifa::Tag::new(b"glyf");
+        let table = font.table_directory().table_records().iter().find(|r| r.tag() == tag).unwrap().offset() as usize;
+        let start = table + font.loca(None).unwrap().get_raw(10).unwrap() as usize;
+        let contours = usize::from(HEBREW[start + 1]);
+        for (at, two) in [(HEADER + 2 * (contours - 1), [0xff, 0xff]), (0, [0, 0])] {
+            let mut bytes = HEBREW.to_vec();
+            bytes[start + at..][..2].copy_from_slice(&two);
+            let damaged = draw(&bytes);
+            assert!(matches!(damaged, Err(Error::Glyph { glyph: 10, .. })), "{damaged:?}");
+        }
     }
 }

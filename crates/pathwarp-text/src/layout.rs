@@ -1,5 +1,6 @@
 //! Text to lines of clusters: cut, shaped, spaced, aligned.
 
+use crate::error::guarded;
 use crate::itemize::{self, Run};
 use crate::shape::{self, Glyph, MOST_GLYPHS, ShapedCluster, Shaper};
 use crate::{Error, Feature, Font, Metrics};
@@ -7,7 +8,6 @@ use kurbo::{Affine, BezPath, Point, Rect};
 use skrifa::GlyphId;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use unicode_script::Script;
 
 /// More characters than this are a book.
@@ -204,7 +204,7 @@ pub fn layout(text: &str, fonts: &[Font<'_>], style: &Style) -> Result<Lettering
     };
     let mut shaper = Shaper { fonts, size: style.size, features: features(style), language, budget: MOST_GLYPHS };
     let mut painter = Painter { fonts, size: style.size, drawn: HashMap::new(), budget: MOST_ELEMENTS };
-    let mut set = || -> Result<Vec<Line>, Error> {
+    let set = || -> Result<Vec<Line>, Error> {
         let metrics = font.metrics(style.size);
         let step = style.line_height.unwrap_or(metrics.ascent + metrics.descent + metrics.line_gap);
         let mut out = Vec::with_capacity(lines.len());
@@ -216,8 +216,7 @@ pub fn layout(text: &str, fonts: &[Font<'_>], style: &Style) -> Result<Lettering
         align(&mut out, style.align, rtl);
         Ok(out)
     };
-    // The shaper is made for hostile fonts, but it is not ours.
-    let lines = catch_unwind(AssertUnwindSafe(&mut set)).unwrap_or(Err(Error::Failed))?;
+    let lines = guarded(set)?;
     let missing: BTreeSet<char> = lines.iter().flat_map(|l| missing(l, fonts)).collect();
     let out = Lettering { text, metrics: font.metrics(style.size), rtl, lines, missing: missing.into_iter().collect() };
     if out.page().area() > 0.0 { Ok(out) } else { Err(Error::Empty) }

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{bundled, file};
-use kurbo::{BezPath, Shape};
+use kurbo::{BezPath, Point, Shape};
 use pathwarp_text::{
     Align, Direction, Error, Font, Lettering, Ligatures, Line, Style, Variation, features, layout, variations,
 };
@@ -214,7 +214,7 @@ fn damaged_fonts_do_no_harm() {
         *state ^= *state << 17;
         (*state >> 33) as usize
     }
-    let finite = |path: &BezPath| path.iter().all(|el| el.end_point().is_none_or(|p| p.is_finite()));
+    let finite = |path: &BezPath| path.iter().all(|el| el.end_point().is_none_or(Point::is_finite));
     let mut state = 0x2545_F491_4F6C_DD1D;
     let (mut set, mut refused) = (0, 0);
     for (name, text) in [
