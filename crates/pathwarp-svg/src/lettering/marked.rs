@@ -5,29 +5,35 @@ use crate::geometry::Reader;
 use crate::scene::Part;
 use crate::source::ElementId;
 use pathwarp::kurbo::{Point, Vec2};
-use std::collections::HashMap;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 
-/// The lines that `<g data-baseline>` elements tell of.
+/// The lines that `<g data-baseline>` elements tell of. A letter belongs to the innermost one.
 pub(crate) fn lines(reader: &Reader<'_>, parts: &[Part], by_source: &HashMap<ElementId, Vec<usize>>) -> Vec<Line> {
     let source = reader.source;
-    let mut out = Vec::new();
+    let mut out: BTreeMap<ElementId, Line> = BTreeMap::new();
     for e in 0..source.elements.len() {
-        let Some([x0, y0, x1, y1]) = numbers(reader, e, "data-baseline") else { continue };
-        let Some(frame) = reader.transform_to_root(e) else { continue };
-        let label = source.attr(e, "aria-label");
-        let above = source.ancestors(e).find_map(|a| source.attr(a, "aria-label"));
-        let name = label.or(above).map_or_else(|| source.display_name(e), std::borrow::Cow::into_owned);
-        let mut line = Line::new(name, Point::new(x0, y0), Point::new(x1, y1), heights(reader, e), frame, true);
-        let end = source.elements[e].range.end;
-        let inside = (e + 1..source.elements.len()).take_while(|&c| source.elements[c].range.start < end);
-        for c in inside {
-            line.letters.extend(letter(reader, parts, by_source, c));
-        }
-        if !line.letters.is_empty() {
-            out.push(line);
+        let Some(letter) = letter(reader, parts, by_source, e) else { continue };
+        let mut above = source.ancestors(e);
+        let Some((group, ends)) = above.find_map(|a| Some((a, numbers(reader, a, "data-baseline")?))) else { continue };
+        match out.entry(group) {
+            Entry::Occupied(mut line) => line.get_mut().letters.push(letter),
+            Entry::Vacant(place) => {
+                if let Some(line) = line(reader, group, ends) {
+                    place.insert(line).letters.push(letter);
+                }
+            }
         }
     }
-    out
+    out.into_values().collect()
+}
+
+fn line(reader: &Reader<'_>, e: ElementId, [x0, y0, x1, y1]: [f64; 4]) -> Option<Line> {
+    let source = reader.source;
+    let frame = reader.transform_to_root(e)?;
+    let label = source.ancestors(e).find_map(|a| source.attr(a, "aria-label"));
+    let name = label.map_or_else(|| source.display_name(e), std::borrow::Cow::into_owned);
+    Some(Line::new(name, Point::new(x0, y0), Point::new(x1, y1), heights(reader, e), frame, true))
 }
 
 fn letter(
