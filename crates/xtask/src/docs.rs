@@ -12,6 +12,10 @@ use std::process::Command;
 /// Where the pages lie.
 const PAGES: &str = "docs/deformations";
 
+/// What docs/gimp.md and the README show, and the command that draws it.
+const GIMP_PICTURE: &str = "docs/images/gimp-paper.png";
+const GIMP_EXAMPLE: &str = "shaper samples/paper.xcf --base '#Base' --target '#Target' --shaper '#Shaper'";
+
 /// Writes all pages and pictures, drawn by `program` if one is named, else by one built for it.
 pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> {
     let folder = root.join(PAGES);
@@ -29,6 +33,7 @@ pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> 
         let Some(example) = e.info().examples.first() else { continue };
         picture(root, &program, example.command, &folder.join(format!("{}.png", e.info().name)))?;
     }
+    picture(root, &program, GIMP_EXAMPLE, &root.join(GIMP_PICTURE))?;
     guide::run(root, &program)?;
     let jobs = cookbook::run(root, &program)?;
     Ok(format!(
@@ -59,7 +64,7 @@ pub(crate) fn picture(root: &Path, program: &Path, command: &str, png: &Path) ->
         }
     }
     let out = Command::new(program)
-        .args(&words)
+        .args(words)
         .args(["--quiet", "-o", "-", "--preview"])
         .arg(png)
         .current_dir(root)
