@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use pathwarp::kurbo::Rect;
+use pathwarp_svg::LetteringFrame;
 use std::path::PathBuf;
 
 /// The default tolerance as a part of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
@@ -13,7 +14,10 @@ const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
 /// Where a percentage gets its meaning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum FrameChoice {
+    /// Not said: the artwork, or of lettering what a deformation with a baseline wants.
+    Default,
     Artwork,
+    Lettering(LetteringFrame),
     ViewBox,
     Rect(Rect),
 }
@@ -92,9 +96,14 @@ pub(crate) fn args() -> Vec<Arg> {
         choice("merge", &["on", "off"]).help("Join pieces across smooth joints where that saves nodes; off keeps every node of the source [default: on]"),
         Arg::new("frame")
             .long("frame")
-            .value_name("artwork|viewbox|X,Y,W,H")
+            .value_name("artwork|viewbox|baseline-ascent|baseline-capheight|…|X,Y,W,H")
             .allow_hyphen_values(true)
-            .help("The box that percentages and defaults refer to [default: artwork]"),
+            .help(
+                "The box that percentages and defaults refer to. Of lettering (text, or made by `pathwarp text`) also \
+                 baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the lines), \
+                 ascent-descent, or ink, the letters' own box [default: artwork; baseline-ascent where a deformation with a \
+                 --baseline gets lettering and nothing else]",
+            ),
         Arg::new("select")
             .long("select")
             .value_name("SEL")
@@ -271,11 +280,17 @@ fn image_size(text: &str) -> Result<(u32, Option<u32>), Failure> {
 }
 
 fn frame(text: Option<&String>) -> Result<FrameChoice, Failure> {
-    match text.map(String::as_str) {
-        None | Some("artwork") => Ok(FrameChoice::Artwork),
-        Some("viewbox") => Ok(FrameChoice::ViewBox),
-        Some(t) => rect(t).map(FrameChoice::Rect),
-    }
+    let Some(text) = text else { return Ok(FrameChoice::Default) };
+    Ok(match text.as_str() {
+        "artwork" => FrameChoice::Artwork,
+        "viewbox" => FrameChoice::ViewBox,
+        "ink" => FrameChoice::Lettering(LetteringFrame::Ink),
+        "baseline-ascent" => FrameChoice::Lettering(LetteringFrame::BaselineAscent),
+        "baseline-capheight" => FrameChoice::Lettering(LetteringFrame::BaselineCapHeight),
+        "baseline-xheight" => FrameChoice::Lettering(LetteringFrame::BaselineXHeight),
+        "ascent-descent" => FrameChoice::Lettering(LetteringFrame::AscentDescent),
+        t => FrameChoice::Rect(rect(t)?),
+    })
 }
 
 /// A box typed as X,Y,W,H.
@@ -283,6 +298,9 @@ pub(crate) fn rect(t: &str) -> Result<Rect, Failure> {
     let numbers: Result<Vec<f64>, _> = t.split(',').map(|w| w.trim().parse::<f64>()).collect();
     match numbers.as_deref() {
         Ok(&[x, y, w, h]) if w > 0.0 && h > 0.0 && (x + y + w + h).is_finite() => Ok(Rect::new(x, y, x + w, y + h)),
-        _ => Err(Failure::usage(format!("--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive)"))),
+        _ => Err(Failure::usage(format!(
+            "--frame: `{t}` is none of artwork, viewbox, X,Y,W,H (W and H positive); of lettering baseline-ascent, \
+baseline-capheight, baseline-xheight, ascent-descent, ink"
+        ))),
     }
 }

@@ -10,12 +10,15 @@ use crate::{Outcome, gimp, picture, preview, recipe_file, space, terminal};
 use clap::ArgMatches;
 use pathwarp::deform::Registry;
 use pathwarp::fold::{self, Orientation};
+use pathwarp::kurbo::Rect;
 use pathwarp::outline::Outline;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::refit;
 use pathwarp_raster::Picture;
-use pathwarp_svg::{Document, Images, Origin, ReadOptions, Selection, WarpOptions, Warped};
+use pathwarp_svg::{
+    Document, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions, Warped,
+};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::io::{IsTerminal, Read};
@@ -195,13 +198,10 @@ fn warp(
     let selection =
         Selection { select: common.select.clone(), exclude: common.exclude.clone(), guides: references.guides };
     let artwork_box = doc.artwork_box(&selection);
-    let frame = match common.frame {
-        FrameChoice::Artwork => artwork_box.unwrap_or_else(|| doc.view_box()),
-        FrameChoice::ViewBox => doc.view_box(),
-        FrameChoice::Rect(r) => r,
-    };
+    let frame = frame(&doc, &selection, common.frame, artwork_box, wants_baseline(registry, &recipe))?;
     let artwork: Vec<&Outline> = doc.selected(&selection).map(|s| &s.outline).collect();
-    let built = recipe.build(registry, Frame::new(frame), &artwork.iter().copied())?;
+    let baseline = frame.baseline;
+    let built = recipe.build(registry, frame, &artwork.iter().copied())?;
 
     let tolerance = common.tolerance_for(artwork_box);
     let options = WarpOptions {
@@ -213,6 +213,7 @@ fn warp(
         on_error: common.on_error,
         gradients: common.gradients,
         copies: built.copies.clone(),
+        letters: LetterPlaces { places: built.letters.clone(), after: built.after.clone() },
         images: if common.images {
             Images::Warp(Arc::new(Bender::new(&built.map, common.image_dpi)))
         } else {
@@ -244,10 +245,47 @@ fn warp(
     if let Some(file) = &common.preview {
         output.push(Pending::new(file, &preview::draw(&doc, &warped.svg, &built, &read_options(input))?)?);
     }
-    let notes = if common.explain { built.steps.iter().flat_map(|s| s.notes.clone()).collect() } else { Vec::new() };
+    let mut notes = Vec::new();
+    if common.explain {
+        if let (FrameChoice::Default, Some(y)) = (common.frame, baseline) {
+            notes.push(format!(
+                "frame: the artwork is lettering; its baseline, at {y:.6}, lies on the curve (--frame baseline-ascent)"
+            ));
+        }
+        notes.extend(built.steps.iter().flat_map(|s| s.notes.clone()));
+    }
     let partly = !report.skipped.is_empty() || report.shapes.iter().any(|s| !s.over_budget.is_empty());
     let to_stdout = target.is_none().then(|| warped.svg.into_bytes());
     Ok(Job { report, output, to_stdout, notes, partly })
+}
+
+/// Whether a recipe's first step has a `--baseline` that was left at its default.
+fn wants_baseline(registry: &Registry, recipe: &Recipe) -> bool {
+    let Some(step) = recipe.steps.first() else { return false };
+    let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+    params.iter().any(|p| p.name == "baseline") && step.args.get("baseline").is_empty()
+}
+
+/// The frame that was chosen, with the letters in it.
+fn frame(
+    doc: &Document,
+    selection: &Selection,
+    choice: FrameChoice,
+    artwork_box: Option<Rect>,
+    on_baseline: bool,
+) -> Result<Frame, Failure> {
+    let lettering = doc.lettering(selection);
+    let artwork = || Frame::new(artwork_box.unwrap_or_else(|| doc.view_box()));
+    let frame = match choice {
+        FrameChoice::Default if on_baseline && lettering.is_all() && lettering.is_level() => {
+            lettering.frame(LetteringFrame::BaselineAscent).unwrap_or_else(|_| artwork())
+        }
+        FrameChoice::Default | FrameChoice::Artwork => artwork(),
+        FrameChoice::ViewBox => Frame::new(doc.view_box()),
+        FrameChoice::Rect(r) => Frame::new(r),
+        FrameChoice::Lettering(kind) => lettering.frame(kind)?,
+    };
+    Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
 }
 
 fn report(
@@ -258,7 +296,7 @@ fn report(
     file: &str,
     target: Option<&Path>,
 ) -> report::Input {
-    let folds = folds(doc, built, &options.selection);
+    let folds = folds(doc, built, options);
     let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
     warnings.extend(warped.warnings.iter().cloned());
     // Parts of one text or `use` share an id, and are one shape in the report.
@@ -304,13 +342,18 @@ fn report(
 }
 
 /// Every selected shape's orientation under the map.
-fn folds<'a>(doc: &'a Document, built: &BuiltRecipe, selection: &Selection) -> Vec<(&'a str, Orientation)> {
-    let shapes: Vec<_> = doc.selected(selection).collect();
-    let one = |s: &'a pathwarp_svg::Shape| {
-        let outline = s.outline.repeated(&built.copies);
-        (s.id.as_str(), fold::orientation(&outline, s.filled, &built.map))
+fn folds<'a>(doc: &'a Document, built: &BuiltRecipe, options: &WarpOptions) -> Vec<(&'a str, Orientation)> {
+    let shapes: Vec<_> = doc.selected(&options.selection).collect();
+    // Letters that are placed one by one fold only where a later step folds them.
+    let placed = doc.placed(options);
+    let one = |(s, placed): (&'a pathwarp_svg::Shape, &Option<Outline>)| {
+        let orientation = match placed {
+            Some(outline) => fold::orientation(outline, s.filled, &built.after),
+            None => fold::orientation(&s.outline.repeated(&built.copies), s.filled, &built.map),
+        };
+        (s.id.as_str(), orientation)
     };
-    shapes.into_par_iter().map(one).collect()
+    shapes.into_par_iter().zip(&placed).map(one).collect()
 }
 
 /// Warnings and leavings, for people.

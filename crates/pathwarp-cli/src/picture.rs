@@ -45,8 +45,11 @@ pub(crate) fn warp(
     let picture = Picture::read(bytes)?;
     let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
     let frame = match common.frame {
-        FrameChoice::Artwork | FrameChoice::ViewBox => area,
+        FrameChoice::Default | FrameChoice::Artwork | FrameChoice::ViewBox => area,
         FrameChoice::Rect(r) => r,
+        FrameChoice::Lettering(_) => {
+            return Err(Failure::usage("--frame: a photograph has no lettering to lay a frame round; give X,Y,W,H"));
+        }
     };
     let corners = [(0.0, 0.0), (area.x1, 0.0), (area.x1, area.y1), (0.0, area.y1)].map(Point::from);
     let artwork = Outline::from_points(&corners, true);

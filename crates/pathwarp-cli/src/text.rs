@@ -88,7 +88,7 @@ pub(crate) fn command() -> Command {
              pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg\n  \
              pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg\n  \
              pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg\n  \
-             pathwarp text Welcome --margin 60% | pathwarp bend - --along 'M0,70 Q150,0 300,70' -o arc.svg",
+             pathwarp text Welcome --margin 60% | pathwarp bend - --along 'M0,90 Q170,0 340,90' -o arc.svg",
         )
 }
 

@@ -14,6 +14,10 @@ use usvg::Paint;
 /// The attributes that say where a shape is, and are gone when it has become a path.
 const GEOMETRY: [&str; 14] = ["d", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r", "x1", "y1", "x2", "y2"];
 
+/// The attributes that tell of lettering.
+const LETTERING: [&str; 6] =
+    ["data-glyph", "data-baseline", "data-ascent", "data-descent", "data-cap-height", "data-x-height"];
+
 struct Keeper<'a, 'w> {
     edits: Edits<'a>,
     source: &'a Source,
@@ -314,6 +318,7 @@ impl<'a> Keeper<'a, '_> {
             }
         }
         self.edits.set_attr(e, "d", part_data(p, Some(done)));
+        self.forget_lettering(e);
         self.animated(e);
         let fit = done.fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
         for (name, paint) in
@@ -363,8 +368,23 @@ impl<'a> Keeper<'a, '_> {
         }
     }
 
+    /// What a letter said of where it stands holds no longer, nor what its line and text said.
+    fn forget_lettering(&mut self, e: ElementId) {
+        if self.source.attr(e, "data-glyph").is_none() {
+            return;
+        }
+        for a in self.source.ancestors(e) {
+            for name in LETTERING {
+                if self.source.attr(a, name).is_some() {
+                    self.edits.remove_attr(a, name);
+                }
+            }
+        }
+    }
+
     /// A shape element as a group: its attributes and children stay, its geometry becomes `content`.
     fn fragment(&mut self, e: ElementId, content: String) {
+        self.forget_lettering(e);
         self.edits.rename(e, "g");
         for name in GEOMETRY.into_iter().chain(["points"]) {
             self.edits.remove_attr(e, name);

@@ -48,7 +48,7 @@ pub use document::{Document, NamedPath, Shape};
 pub use embed::Origin;
 pub use fonts::{FontFile, GenericFamilies, bundled_font, system_font};
 pub use image::{BentImage, ImageRequest, ImageWarper, Images};
-pub use lettering::{LetteringOptions, write_lettering};
+pub use lettering::{LetterPlaces, Lettering, LetteringFrame, LetteringOptions, write_lettering};
 pub use options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
 pub use read::{ReadOptions, parse_tree};
 pub use select::Selection;

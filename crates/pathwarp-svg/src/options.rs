@@ -1,6 +1,7 @@
 //! How a document is warped.
 
 use crate::image::Images;
+use crate::lettering::LetterPlaces;
 use crate::select::Selection;
 use pathwarp::kurbo::Affine;
 use pathwarp::refit;
@@ -83,6 +84,8 @@ pub struct WarpOptions {
     /// Where copies of every shape stand before the warp, in root user space, the original included; a shape and its copies
     /// become one path, clip paths and masks alike. Empty: the shape alone.
     pub copies: Vec<Affine>,
+    /// Letters that are placed one by one.
+    pub letters: LetterPlaces,
     /// What becomes of bitmaps.
     pub images: Images,
 }
@@ -101,6 +104,7 @@ impl WarpOptions {
             on_error: OnError::default(),
             gradients: Gradients::default(),
             copies: Vec::new(),
+            letters: LetterPlaces::default(),
             images: Images::default(),
         }
     }

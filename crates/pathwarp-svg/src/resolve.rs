@@ -1,6 +1,7 @@
 //! Builds the scene: walks usvg's tree, finds the source element, the true outline and the exact transform of everything in it.
 
 use crate::geometry::{self, Reader};
+use crate::lettering::{self, Line};
 use crate::scene::{Bitmap, Clip, Group, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::Outline;
@@ -28,6 +29,8 @@ struct Builder<'a> {
     taken: HashSet<ElementId>,
     slots: Vec<Slot>,
     bitmaps: Vec<Bitmap>,
+    lines: Vec<Line>,
+    fonts: &'a usvg::fontdb::Database,
     /// Whether the source speaks of a page background.
     backed: bool,
     /// The group that holds root user space; its own transform leads out of it.
@@ -65,20 +68,23 @@ pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Ve
         taken: HashSet::new(),
         slots: Vec::new(),
         bitmaps: Vec::new(),
+        lines: Vec::new(),
+        fonts: tree.fontdb(),
         backed: source.text.contains("background-color"),
         top: None,
     };
     let (top, to_px) = b.root_group(tree, page);
     b.top = Some(std::ptr::from_ref(top));
     let root = b.group(top, Affine::IDENTITY, Context { owner: None, role: Role::Paint, slot: None });
-    let Builder { parts, clips, masks, tiles, pictures, slots, bitmaps, unkeepable, .. } = b;
+    let Builder { parts, clips, masks, tiles, pictures, slots, bitmaps, mut lines, unkeepable, .. } = b;
     let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
     for (i, p) in parts.iter().enumerate() {
         if let Some(e) = p.source {
             by_source.entry(e).or_default().push(i);
         }
     }
-    Scene { root, parts, clips, masks, tiles, pictures, slots, bitmaps, by_source, to_px, unkeepable }
+    lines.extend(lettering::marked_lines(&reader, &parts, &by_source));
+    Scene { root, parts, clips, masks, tiles, pictures, slots, bitmaps, lines, by_source, to_px, unkeepable }
 }
 
 fn bits(m: Affine) -> [u64; 6] {
@@ -326,7 +332,12 @@ impl Builder<'_> {
             self.unkept("a text cannot be told from another with the same id");
         }
         let context = Context { owner: context.owner.or(element), ..context };
+        let first = self.parts.len();
         let content = self.group(t.flattened(), frame, context);
+        if context.role == Role::Paint {
+            let lines = lettering::shaped_lines(t, self.fonts, frame, &self.parts, first);
+            self.lines.extend(lines.into_iter().map(|l| Line { owner: context.owner, ..l }));
+        }
         Node::Text { element, content: Box::new(content) }
     }
 

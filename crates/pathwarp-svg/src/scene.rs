@@ -3,6 +3,7 @@
 //!
 //! Root user space is the coordinate system inside the root `<svg>` (viewBox units).
 
+use crate::lettering::Line;
 use crate::source::ElementId;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Rect};
@@ -164,6 +165,8 @@ pub(crate) struct Scene {
     pub(crate) pictures: HashMap<usize, Group>,
     pub(crate) bitmaps: Vec<Bitmap>,
     pub(crate) slots: Vec<Slot>,
+    /// Lines of lettering.
+    pub(crate) lines: Vec<Line>,
     /// The parts written as each element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
     /// Root user space to px.

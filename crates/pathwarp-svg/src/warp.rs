@@ -2,6 +2,7 @@
 
 use crate::document::Document;
 use crate::image::{self, Picture};
+use crate::lettering::{Piece, placed};
 use crate::number::MOST_DECIMALS;
 use crate::options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
 use crate::paint::{self, Fit};
@@ -9,7 +10,7 @@ use crate::scene::{Bitmap, Part, Role, Scene};
 use crate::select::Selection;
 use crate::{keep, read, stroke, write};
 use pathwarp::kurbo::{Affine, BezPath, Point, Shape as _};
-use pathwarp::map::{Class, Map};
+use pathwarp::map::{AffineMap, Chain, Class, Map};
 use pathwarp::refit::{self, Assurance};
 use pathwarp::{Error, GeometryError, Outline};
 use rayon::prelude::*;
@@ -132,7 +133,11 @@ impl Document {
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
         let identity = map.class() == Class::Affine(Affine::IDENTITY);
-        if identity && options.copies.is_empty() && options.structure != Structure::Flatten {
+        if identity
+            && options.copies.is_empty()
+            && options.letters.places.is_empty()
+            && options.structure != Structure::Flatten
+        {
             self.source.text.clone_into(&mut out.svg);
             return Ok(out);
         }
@@ -144,17 +149,18 @@ impl Document {
         let options = &options;
         let parts = &self.scene.parts;
         let slots = self.place_slots(map, &meant, &options.selection);
-        let one = |(p, meant): (&Part, &bool)| {
+        let pieces = self.pieces(options);
+        let one = |((p, meant), pieces): ((&Part, &bool), &Vec<Piece>)| {
             let write = written(&self.scene, &slots, p.slot, p.frame);
-            (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
+            (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options, pieces))
         };
         /// Below so many segments the work is done before another thread has woken up.
         const WORTH_IT: usize = 100;
         let segments: usize = parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * options.copies.len().max(1);
         let results: Vec<Option<Result<Done, GeometryError>>> = if segments < WORTH_IT {
-            parts.iter().zip(&meant).map(one).collect()
+            parts.iter().zip(&meant).zip(&pieces).map(one).collect()
         } else {
-            parts.par_iter().zip(&meant).map(one).collect()
+            parts.par_iter().zip(&meant).zip(&pieces).map(one).collect()
         };
         let mut outcomes = Vec::with_capacity(parts.len());
         let mut last = None;
@@ -327,8 +333,20 @@ pub(crate) fn stretch(m: Affine) -> f64 {
     (s + t) / 2.0
 }
 
-fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> Result<Done, GeometryError> {
-    let outline = p.outline().repeated(&options.copies);
+fn warp_part(
+    p: &Part,
+    write: Affine,
+    map: &dyn Map,
+    options: &WarpOptions,
+    pieces: &[Piece],
+) -> Result<Done, GeometryError> {
+    let whole = p.outline();
+    // Letters that are placed go on from there; everything else goes through the map.
+    let (outline, last): (Outline, &dyn Map) = if pieces.is_empty() {
+        (whole.repeated(&options.copies), map)
+    } else {
+        (placed(&whole, pieces), &options.letters.after)
+    };
     let back = write.inverse();
     let size = stretch(write);
     let tolerance = options.refit.tolerance;
@@ -339,7 +357,7 @@ fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> R
     let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
     // What rounding takes is not the refit's to spend.
     let left = (tolerance - rounding).max(0.5 * tolerance);
-    let warped = refit::warp_path(&outline, map, &refit::Options { tolerance: left, ..options.refit.clone() })?;
+    let warped = refit::warp_path(&outline, last, &refit::Options { tolerance: left, ..options.refit.clone() })?;
     let mut done = Done {
         path: local(warped.path, back),
         decimals,
@@ -353,12 +371,29 @@ fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> R
         || p.stroke.as_ref().is_some_and(|s| painted_by_server(s.paint()));
     if served && options.gradients == Gradients::Fit {
         let result = done.path.bounding_box();
-        let fit = |b| paint::fit_copies(b, p.frame, write, map, &options.copies, result);
+        let fit = |b| match pieces {
+            // A gradient follows a letter that has a path of its own.
+            [Piece { places, .. }] if places.len() == 1 => {
+                paint::fit(b, places[0] * p.frame, write, &options.letters.after)
+            }
+            _ => paint::fit_copies(b, p.frame, write, map, &options.copies, result),
+        };
         done.fit = p.local.bounding_box().and_then(fit);
     }
     if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
-        let width = || stroke::width(&outline, p.frame, write, map, s);
-        let outlined = || outline_stroke(p, s, write, map, options);
+        let width = || {
+            if pieces.is_empty() {
+                return stroke::width(&outline, p.frame, write, map, s);
+            }
+            let each = pieces.iter().flat_map(|piece| piece.places.iter().map(move |m| (piece, *m)));
+            let widths = each.map(|(piece, m)| {
+                let mut way = Chain::new([Arc::new(AffineMap(m)) as Arc<dyn Map>]);
+                way.push(Arc::new(options.letters.after.clone()));
+                stroke::width(&piece.of(&whole), p.frame, write, &way, s)
+            });
+            stroke::Width::common(&widths.collect::<Option<Vec<_>>>()?)
+        };
+        let outlined = || outline_stroke(p, s, write, last, options, pieces);
         match options.strokes {
             Strokes::Keep => {}
             Strokes::Scale => done.stroke = StrokeDone::Scaled(width().map_or(1.0, |w| w.scale)),
@@ -384,10 +419,19 @@ fn outline_stroke(
     write: Affine,
     map: &dyn Map,
     options: &WarpOptions,
+    pieces: &[Piece],
 ) -> Result<BezPath, GeometryError> {
     // The expansion is an approximation of its own; a quarter of the tolerance is its share.
-    let outline: Outline = stroke::outline(p, s, (options.refit.tolerance / stretch(p.frame) * 0.25).max(1e-9));
-    let warped = refit::warp_path(&outline.transformed(p.frame).repeated(&options.copies), map, &options.refit)?;
+    let fine = (options.refit.tolerance / stretch(p.frame) * 0.25).max(1e-9);
+    let expanded = |local: &Outline, places: &[Affine]| {
+        stroke::outline(local, s, fine).transformed(p.frame).repeated(places).subpaths
+    };
+    let outline = if pieces.is_empty() {
+        expanded(&p.local, &options.copies)
+    } else {
+        pieces.iter().flat_map(|piece| expanded(&piece.of(&p.local), &piece.places)).collect()
+    };
+    let warped = refit::warp_path(&Outline { subpaths: outline }, map, &options.refit)?;
     Ok(local(warped.path, write.inverse()))
 }
 

@@ -43,6 +43,10 @@ pub struct BuiltRecipe {
     pub steps: Vec<Built>,
     /// Where the artwork stands before it is mapped ([`Built::copies`] of the first step). Empty: where it is.
     pub copies: Vec<Affine>,
+    /// Where every letter of the frame goes instead of through the first step ([`Built::letters`]). Empty: all go through it.
+    pub letters: Vec<Vec<Affine>>,
+    /// The steps after the first, composed: what letters that are placed go through.
+    pub after: Chain,
 }
 
 impl Recipe {
@@ -59,6 +63,9 @@ impl Recipe {
         let mut map = Chain::default();
         let mut steps = Vec::with_capacity(self.steps.len());
         let mut copies = Vec::new();
+        let mut letters: Vec<Vec<Affine>> = Vec::new();
+        let mut after = Chain::default();
+        let first = frame.clone();
         for (i, step) in self.steps.iter().enumerate() {
             let entry = registry.get(&step.deformation).ok_or_else(|| {
                 let known: Vec<_> = registry.entries().iter().map(|e| e.info().name).collect();
@@ -68,28 +75,40 @@ impl Recipe {
                 }
             })?;
             if i > 0 {
-                frame = image_box(artwork.clone(), &copies, &map).map_or(frame, Frame::new);
+                let image = if letters.is_empty() {
+                    image_box(artwork.clone(), &copies, &map)
+                } else {
+                    let placed = first.letters.iter().zip(&letters).map(|(l, p)| (&l.outline, p.as_slice()));
+                    placed.filter_map(|(o, p)| image_box(std::iter::once(o), p, &after)).reduce(|a, b| a.union(b))
+                };
+                frame = image.map_or(frame, Frame::new);
             }
             let mut built = entry.build_from(&step.args, &frame)?;
-            if !built.copies.is_empty() {
+            let first_only =
+                [("repeats the artwork", !built.copies.is_empty()), ("places letters", !built.letters.is_empty())];
+            for (what, _) in first_only.into_iter().filter(|(_, there)| *there) {
                 let problem = match (i, step.inverse) {
-                    (_, true) => "repeats the artwork, which has no inverse",
-                    (0, false) => "",
-                    _ => "repeats the artwork, which only the first step can do; put it first, or in a run of its own",
+                    (0, false) => continue,
+                    (_, true) => "has no inverse",
+                    _ => "only the first step can do; put it first, or in a run of its own",
                 };
-                if !problem.is_empty() {
-                    let place = format!("step {}, {}", i + 1, step.deformation);
-                    return Err(Error::Input { place, problem: problem.into() });
-                }
+                let place = format!("step {}, {}", i + 1, step.deformation);
+                return Err(Error::Input { place, problem: format!("{what}, which {problem}") });
+            }
+            if i == 0 {
                 copies.clone_from(&built.copies);
+                letters.clone_from(&built.letters);
             }
             if step.inverse {
                 built = inverted(built, &frame);
             }
+            if i > 0 {
+                after.push(Arc::clone(&built.map));
+            }
             map.push(Arc::clone(&built.map));
             steps.push(built);
         }
-        Ok(BuiltRecipe { map, steps, copies })
+        Ok(BuiltRecipe { map, steps, copies, letters, after })
     }
 }
 
@@ -169,7 +188,7 @@ mod tests {
             ],
         };
         let frame = Frame::new(art.bounding_box().unwrap());
-        let build = |r: &Recipe| r.build(&Registry::builtin(), frame, &std::iter::once(&art)).unwrap().map;
+        let build = |r: &Recipe| r.build(&Registry::builtin(), frame.clone(), &std::iter::once(&art)).unwrap().map;
         let (there, back) = (build(&recipe), build(&recipe.inverted()));
         for p in [Point::new(3.0, 4.0), Point::new(77.0, 31.0)] {
             assert!(back.point(there.point(p)).distance(p) < 1e-12);

@@ -1,25 +1,43 @@
-//! `docs/cookbook.md`: real jobs, each one command on a sample, with its picture.
+//! Pages of jobs: each one command on a sample, with its picture. Here is `docs/cookbook.md`.
 
 use crate::Fault;
 use crate::docs;
+use crate::lettering;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The page.
-const PAGE: &str = "docs/cookbook.md";
-/// Where its pictures lie.
-const PICTURES: &str = "docs/images/cookbook";
+/// A page of jobs.
+pub(crate) struct Page {
+    /// Where it lies.
+    pub(crate) file: &'static str,
+    /// Where its pictures lie, as the page sees them.
+    pub(crate) pictures: &'static str,
+    /// Title and what stands before the jobs.
+    pub(crate) intro: &'static str,
+    pub(crate) jobs: &'static [Job],
+}
+
+/// All of them.
+const PAGES: [&Page; 2] = [&COOKBOOK, &lettering::PAGE];
+
+const COOKBOOK: Page = Page {
+    file: "docs/cookbook.md",
+    pictures: "images/cookbook",
+    intro: "# Cookbook\n\nReal jobs, each one command on a drawing of [samples](../samples). The pictures show the artwork, and the result with \
+its guides. [Lettering on paths](lettering-on-paths.md) has a page of its own. Made by `cargo xtask docs`.\n",
+    jobs: JOBS,
+};
 
 /// A job: one more is one more entry of [`JOBS`].
-struct Job {
+pub(crate) struct Job {
     /// The picture's file name, kebab-case.
-    name: &'static str,
-    title: &'static str,
+    pub(crate) name: &'static str,
+    pub(crate) title: &'static str,
     /// One paragraph.
-    text: &'static str,
+    pub(crate) text: &'static str,
     /// The words after `pathwarp`, run from the project's root, `-o out.svg` included.
-    command: &'static str,
+    pub(crate) command: &'static str,
 }
 
 const JOBS: &[Job] = &[
@@ -121,50 +139,55 @@ laser cutters and engravers want them. A rounded box has no corners by angle: th
     },
 ];
 
-/// Writes the page and draws its pictures.
+/// Writes the pages and draws their pictures; gives the number of jobs.
 pub(crate) fn run(root: &Path, program: &Path) -> Result<usize, Fault> {
-    let write = |file: &str, text: &str| {
-        let file = root.join(file);
-        fs::write(&file, text).map_err(|e| format!("{}: {e}", file.display()))
-    };
-    fs::create_dir_all(root.join(PICTURES)).map_err(|e| format!("{PICTURES}: {e}"))?;
-    write(PAGE, &page())?;
-    for job in JOBS {
-        docs::picture(root, program, job.command, &root.join(PICTURES).join(format!("{}.png", job.name)))?;
+    for p in PAGES {
+        let pictures = p.folder(root);
+        fs::create_dir_all(&pictures).map_err(|e| format!("{}: {e}", pictures.display()))?;
+        fs::write(root.join(p.file), p.text()).map_err(|e| format!("{}: {e}", p.file))?;
+        for job in p.jobs {
+            docs::picture(root, program, job.command, &pictures.join(format!("{}.png", job.name)))?;
+        }
     }
-    Ok(JOBS.len())
+    Ok(PAGES.iter().map(|p| p.jobs.len()).sum())
 }
 
-fn page() -> String {
-    let mut out = String::from(
-        "# Cookbook\n\nReal jobs, each one command on a drawing of [samples](../samples). The pictures show the artwork, and the result with \
-its guides. Made by `cargo xtask docs`.\n",
-    );
-    for job in JOBS {
-        let Job { name, title, text, command } = job;
-        let _ = write!(
-            out,
-            "\n## {title}\n\n![{title}](images/cookbook/{name}.png)\n\n{text}\n\n```sh\npathwarp {command}\n```\n"
-        );
+impl Page {
+    fn folder(&self, root: &Path) -> PathBuf {
+        root.join("docs").join(self.pictures)
     }
-    out
+
+    fn text(&self) -> String {
+        let mut out = String::from(self.intro);
+        for job in self.jobs {
+            let Job { name, title, text, command } = job;
+            let _ = write!(
+                out,
+                "\n## {title}\n\n![{title}]({}/{name}.png)\n\n{text}\n\n```sh\npathwarp {command}\n```\n",
+                self.pictures
+            );
+        }
+        out
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The page in the repository is the one that would be made now, with a picture for every job and none besides.
+    /// The pages in the repository are those that would be made now, with a picture for every job and none besides.
     #[test]
-    fn the_page_is_up_to_date() {
+    fn the_pages_are_up_to_date() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let there = fs::read_to_string(root.join(PAGE)).unwrap_or_default();
-        assert!(there == page(), "{PAGE} is out of date: run `cargo xtask docs`");
-        let mut wanted: Vec<String> = JOBS.iter().map(|j| format!("{}.png", j.name)).collect();
-        let files = fs::read_dir(root.join(PICTURES)).unwrap();
-        let mut found: Vec<String> = files.map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
-        wanted.sort();
-        found.sort();
-        assert_eq!(wanted, found);
+        for p in PAGES {
+            let there = fs::read_to_string(root.join(p.file)).unwrap_or_default();
+            assert!(there == p.text(), "{} is out of date: run `cargo xtask docs`", p.file);
+            let mut wanted: Vec<String> = p.jobs.iter().map(|j| format!("{}.png", j.name)).collect();
+            let files = fs::read_dir(p.folder(&root)).unwrap();
+            let mut found: Vec<String> = files.map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
+            wanted.sort();
+            found.sort();
+            assert_eq!(wanted, found);
+        }
     }
 }

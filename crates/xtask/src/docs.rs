@@ -42,7 +42,7 @@ pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> 
     guide::run(root, &program)?;
     let jobs = cookbook::run(root, &program)?;
     Ok(format!(
-        "wrote {} pages to {} and {jobs} jobs to the cookbook; look at every picture before you commit it",
+        "wrote {} pages to {} and {jobs} jobs to the cookbook and its like; look at every picture before you commit it",
         pages.len(),
         folder.display()
     ))

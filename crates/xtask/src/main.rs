@@ -4,6 +4,7 @@ mod cookbook;
 mod corpus;
 mod docs;
 mod guide;
+mod lettering;
 mod new_deformation;
 mod refit_report;
 

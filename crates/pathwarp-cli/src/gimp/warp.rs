@@ -41,9 +41,12 @@ pub(crate) fn warp(
     let artwork = boxes.reduce(|a, b| a.union(b));
     let [width, height] = input.canvas();
     let frame = match common.frame {
-        FrameChoice::Artwork => artwork.unwrap_or(Rect::new(0.0, 0.0, width, height)),
+        FrameChoice::Default | FrameChoice::Artwork => artwork.unwrap_or(Rect::new(0.0, 0.0, width, height)),
         FrameChoice::ViewBox => Rect::new(0.0, 0.0, width, height),
         FrameChoice::Rect(r) => r,
+        FrameChoice::Lettering(_) => {
+            return Err(Failure::usage("--frame: GIMP paths do not tell where their baseline is; give X,Y,W,H"));
+        }
     };
     let built = recipe.build(registry, Frame::new(frame), &outlines.iter())?;
     if built.steps.iter().any(|s| s.space.is_some())

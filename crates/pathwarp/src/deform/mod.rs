@@ -168,6 +168,9 @@ pub struct Built {
     /// the artwork alone. A map gives every point one image, so that copies are made before it; only the first step of a
     /// recipe can ask for them.
     pub copies: Vec<Affine>,
+    /// For every letter of the frame the places it goes to, instead of where the map takes it: one affine map for each copy of
+    /// the artwork. Empty: the map takes the letters as well. Only the first step of a recipe can place letters.
+    pub letters: Vec<Vec<Affine>>,
     /// Where the source's points lie in space (x right, y down, z away, user units), for deformations onto surfaces: for the
     /// files that `--mesh` and `--curves` ask for. `None` where the surface is not met.
     pub space: Option<IntoSpace>,
@@ -187,6 +190,7 @@ impl Built {
             warnings: Vec::new(),
             saves: Vec::new(),
             copies: Vec::new(),
+            letters: Vec::new(),
             space: None,
         }
     }

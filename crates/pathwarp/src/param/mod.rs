@@ -4,13 +4,16 @@
 //! with typed getters.
 
 mod args;
+mod letter;
 mod settings;
 mod unit;
 
 pub use args::{Args, NamedPath, NamedText, is_inline};
+pub use letter::Letter;
 pub use settings::Settings;
 
 use kurbo::{Point, Rect};
+use std::sync::Arc;
 
 /// Which length 100 % of a [`Kind::Length`] stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -180,17 +183,34 @@ impl Param {
 }
 
 /// The box that gives `%` a meaning: the artwork's, the view box, or one the user names. Root user units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// The box.
     pub rect: Rect,
+    /// The height (y) of the lettering's baseline, if the box was laid round lettering: what a deformation with a baseline puts
+    /// on its curve by default.
+    pub baseline: Option<f64>,
+    /// The letters in the artwork, as far as they are known. Empty: the artwork has none, or their baseline is not level.
+    pub letters: Arc<[Letter]>,
 }
 
 impl Frame {
     /// A frame on `rect`.
     #[must_use]
     pub fn new(rect: Rect) -> Self {
-        Self { rect: rect.abs() }
+        Self { rect: rect.abs(), baseline: None, letters: Arc::new([]) }
+    }
+
+    /// The same with these letters in it.
+    #[must_use]
+    pub fn with_letters(self, letters: Arc<[Letter]>) -> Self {
+        Self { letters, ..self }
+    }
+
+    /// The same, laid round lettering whose baseline is at `y`.
+    #[must_use]
+    pub fn on_baseline(self, y: f64) -> Self {
+        Self { baseline: Some(y), ..self }
     }
 
     /// 100 % along `axis`.

@@ -14,16 +14,18 @@
 //! its joint conditions (4) and (5) are checked and told. A skeleton may be given as a B-spline ([`spline`]). Joints of the skeleton are creases: uprights in the artwork.
 
 mod casteljau;
+mod letters;
+mod map;
 mod piece;
 mod skeleton;
 mod spline;
 
 use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
 use crate::error::{Error, show};
-use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
 use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Affine, Point, Vec2};
-use piece::{Piece, Shape};
+use kurbo::{Affine, Vec2};
+use letters::Setting;
+use map::{BendMap, Place};
 use skeleton::Skeleton;
 use std::sync::Arc;
 
@@ -39,7 +41,11 @@ to the skeleton, fit stretches it lengthwise only. --stretch repeat sets copies 
 room for, and spreads them evenly.\n\nAn open skeleton is run left to right and a closed one clockwise, so that up \
 is up, or outside; --as-drawn and --reverse overrule that. On a closed skeleton the artwork's middle stands on its highest point. \
 Beyond the ends of an open one everything goes straight on. --spline 3 makes a smooth skeleton of a \
-few points: it is drawn towards them and has no corners; an open one begins at the first and ends at the last.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
+few points: it is drawn towards them and has no corners; an open one begins at the first and ends at the last.\n\n\
+Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by \
+one instead of bent: rotate turns them, skew keeps their uprights upright, ribbon keeps their levels level, stair only moves them. \
+They have their own size then, times --width; --stretch fit spreads them out from end to end, scale sizes them. --spacing even counts distances at \
+half the height of the artwork instead of on the skeleton, so that letters do not crowd inside a bend nor drift apart outside.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
 left away). A handle says where the artwork's height goes.",
@@ -61,7 +67,7 @@ left away). A handle says where the artwork's height goes.",
         Param::length("offset", Axis::X, "Shift along the skeleton, user units or % of the artwork's width.")
             .default("0"),
         Param::length("gap", Axis::X, "The least space between repeated artwork, user units or % of its width.").default("0"),
-        Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton.")
+        Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton; of lettering its own baseline, unless you give another.")
             .default("50%"),
         Param::number("width", "Heights are multiplied by this.").default("100%").within(1e-6, 1e6).slider(0.1, 3.0),
         Param::new(
@@ -77,6 +83,20 @@ left away). A handle says where the artwork's height goes.",
             "Take the skeleton's anchors as control points of a uniform B-spline of this degree; its own curves count for nothing.",
         )
         .within(1.0, 3.0),
+        Param::new(
+            "glyphs",
+            Kind::Choice(&["bend", "rotate", "skew", "ribbon", "stair"]),
+            "Letters: bend them, or set them one by one: turned, sheared with upright uprights or level levels, or just moved.",
+        )
+        .default("bend"),
+        Param::flag("skew", "The same as --glyphs skew."),
+        Param::flag("ribbon", "The same as --glyphs ribbon."),
+        Param::new(
+            "spacing",
+            Kind::Choice(&["baseline", "even"]),
+            "Where lengths are counted: on the skeleton, or at half the artwork's height, which evens out letters in a bend.",
+        )
+        .default("baseline"),
         Param::flag("as-drawn", "Take the skeleton in the direction it was drawn, a closed one from its start."),
         Param::flag("reverse", "Run the skeleton the other way."),
     ],
@@ -93,6 +113,10 @@ left away). A handle says where the artwork's height goes.",
         Example {
             what: "A border of logos round a circle",
             command: "bend samples/logo.svg --along 'M100,400 A300,300 0 1 1 700,400 A300,300 0 1 1 100,400 Z' --stretch repeat --gap 10% --baseline 0 -o out.svg",
+        },
+        Example {
+            what: "Lettering whose letters turn but keep their shape",
+            command: "bend samples/headline.svg --along 'M120,220 A120,120 0 0 1 360,220' --glyphs rotate --spacing even --stretch fit -o out.svg",
         },
         Example {
             what: "A grid along a winding path, by the paper's polynomial map",
@@ -169,7 +193,31 @@ impl Deformation for Bend {
         let skeleton = Skeleton::new(&path, as_drawn, s.flag("reverse")?)?;
         let by_arc_length = s.choice("by")? == "arclength";
         let size = s.frame().extent(Axis::Diagonal).max(skeleton.length);
+        let setting = setting(s)?;
 
+        let base = match s.frame().baseline {
+            Some(y) if !s.given("baseline") => y,
+            _ => rect.y1 - s.number("baseline")?,
+        };
+        let stretch = s.choice("stretch")?;
+        if stretch != "keep" && rect.width() <= 0.0 {
+            return Err(Error::usage("stretch", stretch, "cannot stretch artwork that has no width"));
+        }
+        let skeleton = match s.choice("spacing")? {
+            "even" if file.is_some() || !by_arc_length => {
+                return Err(Error::usage(
+                    "spacing",
+                    "even",
+                    "goes with lengths (--by arclength) and without --handles",
+                ));
+            }
+            "even" => {
+                let (width, height) = (s.number("width")?, base - rect.center().y);
+                let scale = if stretch == "scale" { skeleton.even_scale(rect.width(), width * height)? } else { 1.0 };
+                skeleton.at_height(width * height * scale)?
+            }
+            _ => skeleton,
+        };
         let skeleton = match &file {
             Some(f) if skeleton.has_arcs() => {
                 return Err(Error::input(
@@ -199,10 +247,6 @@ impl Deformation for Bend {
             None => skeleton.with_handles(None, unit, false)?,
         };
 
-        let stretch = s.choice("stretch")?;
-        if stretch != "keep" && rect.width() <= 0.0 {
-            return Err(Error::usage("stretch", stretch, "cannot stretch artwork that has no width"));
-        }
         let k = if matches!(stretch, "keep" | "repeat") { 1.0 } else { length / rect.width() };
         let row = match stretch {
             "repeat" => Row::new(rect.width(), s.number("gap")?, length, closed)?,
@@ -219,7 +263,7 @@ impl Deformation for Bend {
             k,
             origin: to + s.number("offset")? - k * from,
             up: s.number("width")? * if stretch == "scale" { k } else { 1.0 },
-            base: rect.y1 - s.number("baseline")?,
+            base,
         };
         let pieces = joined.pieces.into_iter().map(Arc::new).collect();
         let shift = row.spacing * (row.count - 1) as f64;
@@ -248,10 +292,43 @@ impl Deformation for Bend {
                 k * rect.width()
             ));
         }
-        built.warnings.extend(map.fold(rect));
+        match setting {
+            Some(setting) => {
+                built.letters = letters::places(&map, setting, &s.frame().letters, &built.copies, stretch == "fit");
+                built.warnings.extend(letters::warnings(&s.frame().letters, &built.letters));
+            }
+            // A frame round lettering says nothing of the letters' own heights.
+            None if s.frame().baseline.is_some() && !s.frame().letters.is_empty() => {
+                built.warnings.extend(map.fold(letters::points(&s.frame().letters, &built.copies)));
+            }
+            None => built.warnings.extend(map.fold(map::edges(rect).map(|p| (p, None)))),
+        }
         built.overlays.push(Overlay { role: Role::Cage, path: path.outline.to_bez_path(1e-4 * size) });
         Ok(built)
     }
+}
+
+/// How letters are set one by one, if they are.
+fn setting(s: &Settings<'_>) -> Result<Option<Setting>, Error> {
+    let mut said: Vec<&str> = if s.given("glyphs") { vec![s.choice("glyphs")?] } else { Vec::new() };
+    for name in ["skew", "ribbon"] {
+        if s.flag(name)? {
+            said.push(name);
+        }
+    }
+    if let [first, rest @ ..] = said.as_slice()
+        && rest.iter().any(|r| r != first)
+    {
+        return Err(Error::usage("glyphs", said.join(", "), "letters can be set in one way only"));
+    }
+    let name = said.first().copied().unwrap_or("bend");
+    let setting = Setting::named(name);
+    if setting.is_some() && s.frame().letters.is_empty() {
+        let problem = "needs letters on a level baseline: text, or outlines made by `pathwarp text`. Other outlines do not tell where \
+a letter begins; --glyphs bend bends them";
+        return Err(Error::usage("glyphs", name, problem));
+    }
+    Ok(setting)
 }
 
 /// Copies of the artwork side by side.
@@ -290,160 +367,6 @@ impl Row {
             (false, false) => 0.0,
         };
         Ok(Self { count: room as usize, spacing })
-    }
-}
-
-/// From the artwork to the strip: distance s = k·x + origin, height d = up·(base − y).
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    k: f64,
-    origin: f64,
-    up: f64,
-    base: f64,
-}
-
-impl Place {
-    fn s(&self, x: f64) -> f64 {
-        self.k * x + self.origin
-    }
-
-    fn d(&self, y: f64) -> f64 {
-        (self.base - y) * self.up
-    }
-
-    /// The jet on `piece`, which begins at distance `begin`.
-    fn jet(&self, piece: &Piece, begin: f64, p: Point) -> Jet {
-        let (at, ds, dd) = piece.jet(self.s(p.x) - begin, self.d(p.y));
-        Jet { p: at, dx: ds * self.k, dy: dd * -self.up }
-    }
-}
-
-/// The map: pieces side by side.
-#[derive(Clone)]
-struct BendMap {
-    pieces: Vec<Arc<Piece>>,
-    length: f64,
-    closed: bool,
-    place: Place,
-    /// The x for which creases are told.
-    reach: (f64, f64),
-}
-
-impl BendMap {
-    /// The piece at `x`, and the distance at which its own begins there.
-    fn piece(&self, x: f64) -> (&Arc<Piece>, f64) {
-        let s = self.place.s(x);
-        let turn = if self.closed { (s / self.length).floor() * self.length } else { 0.0 };
-        let i = self.pieces.partition_point(|p| p.from <= s - turn).max(1) - 1;
-        (&self.pieces[i], self.pieces[i].anchor + turn)
-    }
-
-    /// A skeleton that is one straight line bends nothing.
-    fn simplest(&self) -> Arc<dyn Map> {
-        match &self.pieces[..] {
-            [only] if !self.closed => match OnPiece::new(only, only.anchor, self.place).affine() {
-                Some(m) => Arc::new(AffineMap(m)),
-                None => Arc::new(self.clone()),
-            },
-            _ => Arc::new(self.clone()),
-        }
-    }
-
-    /// A warning if the artwork's box is turned over somewhere. The determinant is linear in the height: the box's top and
-    /// bottom are where it is worst.
-    fn fold(&self, rect: kurbo::Rect) -> Option<String> {
-        const SAMPLES: u32 = 1024;
-        let mut worst: Option<(f64, Point, f64)> = None;
-        for i in 0..=SAMPLES {
-            let x = rect.x0 + rect.width() * (f64::from(i) + 0.5) / f64::from(SAMPLES + 1);
-            let det = |y: f64| self.jet(Point::new(x, y)).det() / (self.place.k * self.place.up);
-            let on = det(self.place.base);
-            for y in [rect.y0, rect.y1] {
-                let there = det(y);
-                if there < 0.0 && worst.is_none_or(|(w, ..)| there < w) {
-                    // Where the line between them crosses zero: the centre of curvature.
-                    let centre = self.place.d(y).abs() * on / (on - there);
-                    worst = Some((there, self.point(Point::new(x, self.place.base)), centre));
-                }
-            }
-        }
-        worst.map(|(_, at, centre)| {
-            format!(
-                "bend: the artwork folds over itself near {} of the skeleton, where it reaches more than {centre:.6} away from it, \
-beyond the centre of curvature; a smaller --width, another --baseline or a gentler bend avoids that",
-                show(at)
-            )
-        })
-    }
-}
-
-impl Map for BendMap {
-    fn jet(&self, p: Point) -> Jet {
-        let (piece, begin) = self.piece(p.x);
-        self.place.jet(piece, begin, p)
-    }
-
-    /// Uprights at the skeleton's joints.
-    fn creases(&self, out: &mut Creases) {
-        /// Turns round a closed skeleton whose joints are told.
-        const MOST_TURNS: f64 = 64.0;
-        let (a, b) = (self.place.s(self.reach.0), self.place.s(self.reach.1));
-        let turns = |s: f64| if self.closed { (s / self.length).floor() } else { 0.0 };
-        let (mut turn, last) = (turns(a), turns(b));
-        let last = last.min(turn + MOST_TURNS);
-        while turn <= last {
-            for s in self.pieces.iter().map(|p| p.from).filter(|s| s.is_finite()) {
-                let c = self.place.origin - s - turn * self.length;
-                out.push(Crease::kink(Level::Line { a: self.place.k, b: 0.0, c }));
-            }
-            turn += 1.0;
-        }
-    }
-
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        let (piece, begin) = self.piece(inside.x);
-        Some(Arc::new(OnPiece::new(piece, begin, self.place)))
-    }
-}
-
-/// The smooth map on one piece.
-struct OnPiece {
-    piece: Arc<Piece>,
-    begin: f64,
-    place: Place,
-}
-
-impl OnPiece {
-    fn new(piece: &Arc<Piece>, begin: f64, place: Place) -> Self {
-        Self { piece: Arc::clone(piece), begin, place }
-    }
-
-    fn affine(&self) -> Option<Affine> {
-        let Shape::Straight { p, t, n } = &self.piece.shape else { return None };
-        let Place { k, up, .. } = self.place;
-        let at = *p + *t * (self.place.s(0.0) - self.begin) + *n * self.place.d(0.0);
-        Some(Affine::new([t.x * k, t.y * k, -n.x * up, -n.y * up, at.x, at.y]))
-    }
-}
-
-impl Map for OnPiece {
-    fn jet(&self, p: Point) -> Jet {
-        self.place.jet(&self.piece, self.begin, p)
-    }
-
-    fn class(&self) -> Class {
-        self.affine().map_or(Class::Smooth, Class::Affine)
-    }
-
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        if let Some(m) = self.affine() {
-            return AffineMap(m).image_of(curve);
-        }
-        let Shape::Ribbon { ribbon, unit, table: None } = &self.piece.shape else { return None };
-        let Place { k, origin, up, base } = self.place;
-        let (length, v) = (self.piece.length, up / unit);
-        let to_uv = Affine::new([k / length, 0.0, 0.0, -v, (origin - self.begin) / length, base * v]);
-        Some(ribbon.image_of(&AffineMap(to_uv).image_of(curve)?))
     }
 }
 

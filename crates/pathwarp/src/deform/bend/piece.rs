@@ -11,8 +11,9 @@ use kurbo::{Point, Vec2};
 pub(super) enum Shape {
     /// F = p + s·t + d·n.
     Straight { p: Point, t: Vec2, n: Vec2 },
-    /// F = C(u(s)) + d·S with S the unit normal, plus at the ends what brings it to the mitre of a corner.
-    Normals { seg: Seg, table: ArcLength, mitres: [Vec2; 2] },
+    /// F = C(u(s)) + d·S with S the unit normal, plus at the ends what brings it to the mitre of a corner. s is the length of
+    /// the offset curve at height `even`.
+    Normals { seg: Seg, table: ArcLength, mitres: [Vec2; 2], even: f64 },
     /// The paper's polynomial F(u, v), v = d / unit; u by arc length if there is a table, else s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
 }
@@ -34,11 +35,11 @@ impl Piece {
     pub(super) fn jet(&self, s: f64, d: f64) -> (Point, Vec2, Vec2) {
         match &self.shape {
             Shape::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
-            Shape::Normals { seg, table, mitres: [a, b] } => {
+            Shape::Normals { seg, table, mitres: [a, b], even } => {
                 let Moving { p, t, bend } = moving(seg, table.parameter(s));
                 let share = s / self.length;
                 let side = normal(t) + *a * (1.0 - share) + *b * share;
-                let along = t * (1.0 + bend * d) + (*b - *a) * (d / self.length);
+                let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + (*b - *a) * (d / self.length);
                 (p + side * d, along, side)
             }
             Shape::Ribbon { ribbon, unit, table } => {

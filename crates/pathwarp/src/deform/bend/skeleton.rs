@@ -21,6 +21,8 @@ pub(super) struct Skeleton {
     segs: Vec<(Seg, ArcLength)>,
     pub(super) closed: bool,
     pub(super) length: f64,
+    /// The height at which lengths are counted.
+    even: f64,
     name: String,
 }
 
@@ -54,11 +56,56 @@ impl Skeleton {
             return Err(Error::usage("along", path.name.clone(), "has no length"));
         }
         let segs = measured.into_iter().filter(|(_, t)| t.length() > 1e-12 * length).collect();
-        Ok(Self { segs, closed: sub.closed, length, name: path.name.clone() })
+        Ok(Self { segs, closed: sub.closed, length, even: 0.0, name: path.name.clone() })
     }
 
     pub(super) fn has_arcs(&self) -> bool {
         self.segs.iter().any(|(s, _)| matches!(s, Seg::Arc(_)))
+    }
+
+    /// The same with lengths counted at height `d`: along the offset curve, whose speed is (1 + κd) times the skeleton's.
+    pub(super) fn at_height(self, d: f64) -> Result<Self, Error> {
+        /// Places on a piece where the offset is looked at.
+        const SAMPLES: u32 = 256;
+        /// Slower than this share of the skeleton's speed, the offset is at its cusps.
+        const SLOWEST: f64 = 1e-3;
+        let rate = move |s: &Seg, u: f64| 1.0 + moving(s, u).bend * d;
+        for (seg, _) in &self.segs {
+            let mut all = (0..=SAMPLES).map(|i| f64::from(i) / f64::from(SAMPLES));
+            if let Some(u) = all.find(|u| rate(seg, *u).is_nan() || rate(seg, *u) < SLOWEST) {
+                let problem = format!(
+                    "needs a gentler bend: near {} the centre of curvature is no further from the skeleton than half the \
+artwork's height; a smaller --width avoids that too",
+                    show(seg.eval(u))
+                );
+                return Err(Error::usage("spacing", "even", problem));
+            }
+        }
+        let measured = self.segs.into_iter().map(|(s, _)| {
+            let table = ArcLength::new(&move |u| s.deriv(u).hypot() * rate(&s, u));
+            (s, table)
+        });
+        let segs: Vec<(Seg, ArcLength)> = measured.collect();
+        let length = segs.iter().map(|(_, t)| t.length()).sum();
+        Ok(Self { segs, length, even: d, ..self })
+    }
+
+    /// The scale at which artwork of `width`, measured where it is `height` high at scale 1, is as long as the skeleton's offset
+    /// there: k·width = length + k·height·(total turn), for the offset's length is linear in the height.
+    pub(super) fn even_scale(&self, width: f64, height: f64) -> Result<f64, Error> {
+        /// Places on a piece between which its tangent turns by less than half a circle.
+        const SAMPLES: u32 = 256;
+        let turn = |s: &Seg| {
+            let tangent = |i: u32| moving(s, f64::from(i) / f64::from(SAMPLES)).t;
+            (0..SAMPLES).map(|i| (tangent(i), tangent(i + 1))).map(|(a, b)| a.cross(b).atan2(a.dot(b))).sum::<f64>()
+        };
+        let turn: f64 = self.segs.iter().map(|(s, _)| turn(s)).sum();
+        let scale = self.length / (width - height * turn);
+        if scale > 0.0 && scale.is_finite() {
+            return Ok(scale);
+        }
+        let problem = "the artwork is so high against its width that no size of it fits; use --spacing baseline";
+        Err(Error::usage("spacing", "even", problem))
     }
 
     /// Arcs as cubics within `tolerance`, lines as quadratics if `raise`: what the paper's handles can stand on.
@@ -139,7 +186,7 @@ impl Skeleton {
                 Seg::Line(_) if mitres == [Vec2::ZERO; 2] => {
                     Shape::Straight { p: first.p, t: first.t, n: normal(first.t) }
                 }
-                _ => Shape::Normals { seg: *seg, table: table.clone(), mitres },
+                _ => Shape::Normals { seg: *seg, table: table.clone(), mitres, even: self.even },
             };
             (shape, table.length())
         });

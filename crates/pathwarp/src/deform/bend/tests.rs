@@ -1,7 +1,9 @@
 use super::*;
 use crate::check;
-use crate::outline::Seg;
+use crate::map::{Creases, Level, Map as _, RationalBezier};
+use crate::outline::{Outline, Seg};
 use crate::param::Args;
+use kurbo::Point;
 
 #[test]
 fn is_sound() {
@@ -192,4 +194,70 @@ fn artwork_is_repeated_as_often_as_there_is_room() {
     let fault =
         |gap: &str| build(&[("along", "0,50 320,50"), ("stretch", "repeat"), ("gap", gap)]).err().unwrap().to_string();
     assert!(fault("-100").contains("artwork's width") && fault("-99.999").contains("the most"));
+}
+
+/// Counted at half the height, equal steps of x are equal distances there, and the derivatives are right.
+#[test]
+fn even_spacing_keeps_widths_at_half_the_height() {
+    for along in ["M0,60 C60,-40 140,160 300,50", "M-100,150 A150,150 0 0 1 200,150", "0,80 400,40"] {
+        let pairs = [("along", along), ("spacing", "even"), ("baseline", "0"), ("align", "start"), ("width", "0.4")];
+        let m = build(&pairs).unwrap().map;
+        for i in 0..100 {
+            let p = Point::new(0.05 + f64::from(i), 50.0);
+            let (j, h) = (m.jet(p), 1e-5);
+            assert!((j.dx.hypot() - 1.0).abs() < 1e-9, "{along}: {p:?} {j:?}");
+            for p in [p, Point::new(p.x, 90.0)] {
+                let dx = (m.point(p + Vec2::new(h, 0.0)) - m.point(p - Vec2::new(h, 0.0))) / (2.0 * h);
+                assert!((dx - m.jet(p).dx).hypot() < 1e-5, "{along} {p:?}");
+            }
+        }
+        // Scaled, the artwork is as long at half its height as the skeleton's offset there.
+        let m =
+            build(&[("along", along), ("spacing", "even"), ("baseline", "0"), ("stretch", "scale"), ("width", "0.4")]);
+        let m = m.unwrap().map;
+        let (a, b) = (m.jet(Point::new(10.0, 50.0)), m.jet(Point::new(90.0, 50.0)));
+        assert!((a.dx.hypot() - b.dx.hypot()).abs() < 1e-8);
+        assert!((a.dy.hypot() - 0.4 * a.dx.hypot()).abs() < 1e-6, "{along}: {} {}", a.dy.hypot(), a.dx.hypot());
+    }
+    let fault = |more: (&str, &str)| {
+        let pairs = [("along", "M20,50 A30,30 0 1 0 80,50"), ("spacing", "even"), ("as-drawn", "true"), more];
+        build(&pairs).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert!(fault(("baseline", "0")).contains("gentler bend"), "{}", fault(("baseline", "0")));
+    assert!(fault(("by", "parameter")).contains("--by arclength"));
+}
+
+/// On a circle of radius 100 about 0,0 a letter whose middle is at distance s from the top is turned by s/100.
+#[test]
+fn letters_stand_on_a_circle() {
+    use crate::param::Letter;
+    let outline = Outline { subpaths: Vec::new() };
+    let letter =
+        |x: f64| Letter { name: "n".into(), origin: Point::new(x, 90.0), advance: 10.0, outline: outline.clone() };
+    let frame = || check::frame().on_baseline(90.0).with_letters([letter(20.0), letter(65.0)].into());
+    let set = |how: &str| {
+        let args = [("along", "M-100,0 A100,100 0 0 1 100,0"), ("glyphs", how)];
+        Bend.build_from(&Args::from_pairs(&args), &frame()).unwrap().letters
+    };
+    for (k, middle) in [(0, 25.0), (1, 70.0)] {
+        let (sin, cos) = ((middle - 50.0) / 100.0_f64).sin_cos();
+        // A point 3 to the right of the middle and 7 above the baseline.
+        let p = Point::new(middle + 3.0, 83.0);
+        let c = Vec2::new(100.0 * sin, -100.0 * cos);
+        let wanted = [
+            ("rotate", c + Vec2::new(cos, sin) * 3.0 + Vec2::new(sin, -cos) * 7.0),
+            ("skew", c + Vec2::new(cos, sin) * 3.0 + Vec2::new(0.0, -7.0)),
+            ("ribbon", c + Vec2::new(3.0, 0.0) + Vec2::new(sin, -cos) * 7.0),
+        ];
+        for (how, to) in wanted {
+            let [m] = set(how)[k][..] else { panic!("one copy") };
+            assert!((m * p).distance(to.to_point()) < 1e-10, "{how} {k}: {:?} {to:?}", m * p);
+        }
+        // Stairs: where the advance begins is on the circle.
+        let (sin, cos) = ((middle - 55.0) / 100.0_f64).sin_cos();
+        let [m] = set("stair")[k][..] else { panic!("one copy") };
+        let on = Point::new(100.0 * sin, -100.0 * cos);
+        assert!((m * Point::new(middle - 5.0, 90.0)).distance(on) < 1e-10);
+        assert_eq!(m.as_coeffs()[..4], [1.0, 0.0, 0.0, 1.0]);
+    }
 }

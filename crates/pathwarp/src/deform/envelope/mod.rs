@@ -73,6 +73,10 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
             command: "envelope samples/lettering.svg --bottom 'M0,160 C120,100 260,220 400,150' --height 90 -o out.svg",
         },
         Example {
+            what: "Text whose baseline comes to lie on the lower curve and whose capitals reach the upper one",
+            command: "envelope samples/headline.svg --frame baseline-capheight --bottom 'M30,200 Q240,90 450,200' --height 80 -o out.svg",
+        },
+        Example {
             what: "A circle has no corners: they are taken where it comes nearest to its box's",
             command: "envelope samples/monogram.svg --envelope 'M200,100 A100,100 0 1 1 0,100 A100,100 0 1 1 200,100 Z' -o out.svg",
         },
