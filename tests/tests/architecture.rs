@@ -28,8 +28,9 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-svg", &["pathwarp"]);
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
-    allowed("pathwarp-cli", &["pathwarp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"]);
-    for name in ["pathwarp", "pathwarp-mesh", "pathwarp-svg", "pathwarp-raster"] {
+    allowed("pathwarp-psd", &[]);
+    allowed("pathwarp-cli", &["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster"]);
+    for name in ["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster"] {
         assert!(
             !of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")),
             "{name} prints"

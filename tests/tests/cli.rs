@@ -21,23 +21,34 @@ fn every_example_in_help_runs() {
     let dir = tempfile::tempdir().unwrap();
     for e in registry.entries() {
         for example in e.info().examples {
-            let args: Vec<String> =
-                words(example.command)
-                    .into_iter()
-                    .map(|w| {
-                        if w.starts_with("out") && w.contains('.') {
-                            dir.path().join(w).display().to_string()
-                        } else {
-                            w
-                        }
-                    })
-                    .collect();
-            expect_code(0, &args);
-            let svg = fs::read_to_string(dir.path().join("out.svg")).unwrap();
-            assert!(svg.contains("<svg"), "{}", example.command);
-            fs::remove_file(dir.path().join("out.svg")).unwrap();
+            run_into(dir.path(), example.command);
         }
     }
+}
+
+#[test]
+fn every_job_of_the_cookbook_runs() {
+    let page = fs::read_to_string(root().join("docs/cookbook.md")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("pathwarp ")).collect();
+    assert!(commands.len() >= 15, "{commands:?}");
+    for command in commands {
+        let messages = run_into(dir.path(), command);
+        assert!(messages.is_empty(), "{command}: {messages}");
+    }
+}
+
+/// Runs a command line of the documentation, what it writes going to `dir`; gives its messages.
+fn run_into(dir: &Path, command: &str) -> String {
+    let inside = |w: String| {
+        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w }
+    };
+    let args: Vec<String> = words(command).into_iter().map(inside).collect();
+    let (_, messages) = expect_code(0, &args);
+    let svg = fs::read_to_string(dir.join("out.svg")).unwrap();
+    assert!(svg.contains("<svg"), "{command}");
+    fs::remove_file(dir.join("out.svg")).unwrap();
+    messages
 }
 
 #[test]

@@ -93,6 +93,36 @@ fn every_sample_looks_as_it_did() {
     assert!(off.is_empty(), "{}", off.join("\n"));
 }
 
+/// A sheet's cells share its pixels: what one of them may differ by.
+const CELL_SHARE: f64 = SHARE / 16.0;
+
+/// Every warp style and every text shape, as `pathwarp gallery` draws them.
+#[test]
+fn every_style_looks_as_it_did() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut off = Vec::new();
+    for (label, words) in [
+        ("styles", &["samples/lettering.svg", "--cell", "150x100"][..]),
+        ("styles-vertical", &["samples/lettering.svg", "--cell", "150x100", "--bend", "-60%", "--axis", "vertical"]),
+        ("wordart", &["samples/logo.svg", "--cell", "110x90", "--columns", "8", "--set", "wordart"]),
+    ] {
+        let sheet = folder.path().join(label).with_extension("png");
+        let out = sheet.display().to_string();
+        support::expect_code(0, &[&["gallery"], words, &["-o", &out]].concat());
+        let file = root().join("tests/reference").join(format!("gallery-{label}.png"));
+        if std::env::var_os("PATHWARP_STORE").is_some() {
+            fs::copy(&sheet, &file).unwrap();
+            continue;
+        }
+        let known = fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        let d = compare(&decode_png(&known).unwrap(), &decode_png(&fs::read(&sheet).unwrap()).unwrap()).unwrap();
+        if d.share_over(VISIBLE) > CELL_SHARE {
+            off.push(format!("{}: {:.4} % of the pixels differ", file.display(), 100.0 * d.share_over(VISIBLE)));
+        }
+    }
+    assert!(off.is_empty(), "{}", off.join("\n"));
+}
+
 /// The companion: the comparison fails where it should, on a picture moved by half a pixel and on one with a shape missing.
 #[test]
 fn the_comparison_can_fail() {

@@ -15,8 +15,10 @@
 mod command;
 mod common;
 mod compare;
+mod data_file;
 mod deform;
 mod failure;
+mod gallery;
 mod output;
 mod paths;
 mod picture;
@@ -89,6 +91,7 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         "man" => command::man(registry),
         "paths" => paths::run(sub),
         "render" => render::run(sub),
+        "gallery" => gallery::run(registry, sub),
         "schema" => schema::run(registry),
         "unwarp" => unwarp::run(sub),
         "run" => {

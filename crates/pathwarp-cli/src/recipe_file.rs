@@ -115,6 +115,7 @@ fn texts(value: &Value) -> Option<Vec<String>> {
 fn names_file(param: &Param, value: &str) -> bool {
     match param.kind {
         Kind::File | Kind::Save => true,
+        Kind::NameOrFile(_) => param.reads_file(value),
         Kind::Path => !value.starts_with('#') && !pathwarp::param::is_inline(value),
         _ => false,
     }

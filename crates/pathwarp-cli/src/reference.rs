@@ -1,5 +1,6 @@
 //! Path references: `FILE#NAME`, `FILE`, `#NAME`.
 
+use crate::data_file;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
 use pathwarp::recipe::Recipe;
@@ -24,9 +25,7 @@ impl<'a> References<'a> {
         for step in &mut recipe.steps {
             if let Some(e) = registry.get(&step.deformation) {
                 step.args.resolve_paths(e.info().params, |r| self.look_up(r))?;
-                step.args.resolve_files(e.info().params, |f| {
-                    std::fs::read_to_string(f).map_err(|e| Error::input(f, format!("cannot be read: {e}")))
-                })?;
+                step.args.resolve_files(e.info().params, data_file::read)?;
             }
         }
         Ok(())

@@ -37,6 +37,7 @@ mod read;
 mod resolve;
 mod scene;
 mod select;
+pub mod sheet;
 mod source;
 mod stroke;
 mod warp;

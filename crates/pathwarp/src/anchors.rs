@@ -61,8 +61,32 @@ pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<S
     Ok(sub)
 }
 
+/// The only run of a path that is closed, drawn back to its start, or a polyline of as many lines as `polyline` accepts: plain
+/// points have no way to say that they close.
+pub(crate) fn closed_subpath(
+    path: &NamedPath,
+    expected: &'static str,
+    polyline: impl Fn(usize) -> bool,
+) -> Result<Subpath, Error> {
+    let mut sub = only_subpath(path, expected)?;
+    let lines = !sub.closed && polyline(sub.segs.len()) && sub.segs.iter().all(|g| matches!(g, Seg::Line(_)));
+    if lines && sub.start != sub.end() {
+        let closed = Outline::from_points(&sub.anchors(), true);
+        sub = only_subpath(&NamedPath { name: path.name.clone(), outline: closed }, expected)?;
+    }
+    if !sub.closed && sub.end().distance(sub.start) <= 1e-9 * sub.start.to_vec2().hypot().max(1.0) && sub.segs.len() > 1
+    {
+        // Drawn back to its start without being closed: closed in all but name.
+        sub.closed = true;
+    }
+    if !sub.closed {
+        return Err(GeometryError::NotClosed { path: path.name.clone(), start: sub.start, end: sub.end() }.into());
+    }
+    Ok(sub)
+}
+
 /// The same piece, its last point moved to `end` (by rounding only).
-fn ending_at(seg: &Seg, end: Point) -> Seg {
+pub(crate) fn ending_at(seg: &Seg, end: Point) -> Seg {
     match *seg {
         Seg::Line(l) => Seg::Line(Line::new(l.p0, end)),
         Seg::Quad(mut q) => {

@@ -115,7 +115,7 @@ fn table(entry: &dyn Deformation, faults: &mut Faults) {
                 Kind::Path => s.path_if(p.name).map(|_| ()),
                 Kind::Choice(_) => s.choice(p.name).map(|_| ()),
                 Kind::Text(_) | Kind::Save => Ok(()),
-                Kind::File => s.file_if(p.name).map(|_| ()),
+                Kind::File | Kind::NameOrFile(_) => s.file_if(p.name).map(|_| ()),
                 Kind::Number | Kind::Length(_) | Kind::Angle | Kind::Count => s.number(p.name).map(|_| ()),
             });
             if let Err(e) = got {

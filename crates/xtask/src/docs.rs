@@ -1,6 +1,7 @@
-//! `cargo xtask docs`: a page for every deformation, from its own table, with a picture made by its first example.
+//! `cargo xtask docs`: a page for every deformation, from its own table, with a picture made by its first example; and the
+//! cookbook.
 
-use crate::Fault;
+use crate::{Fault, cookbook};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::Kind;
 use std::fmt::Write as _;
@@ -11,8 +12,8 @@ use std::process::Command;
 /// Where the pages lie.
 const PAGES: &str = "docs/deformations";
 
-/// Writes all pages and pictures.
-pub(crate) fn run(root: &Path) -> Result<String, Fault> {
+/// Writes all pages and pictures, drawn by `program` if one is named, else by one built for it.
+pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> {
     let folder = root.join(PAGES);
     fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let pages = pages();
@@ -20,11 +21,20 @@ pub(crate) fn run(root: &Path) -> Result<String, Fault> {
         let file = folder.join(name);
         fs::write(&file, text).map_err(|e| format!("{}: {e}", file.display()))?;
     }
-    let program = build(root)?;
+    let program = match program {
+        Some(p) => p.to_owned(),
+        None => build(root)?,
+    };
     for e in Registry::builtin().entries() {
-        picture(root, &program, e.info())?;
+        let Some(example) = e.info().examples.first() else { continue };
+        picture(root, &program, example.command, &folder.join(format!("{}.png", e.info().name)))?;
     }
-    Ok(format!("wrote {} pages to {}; look at every picture before you commit it", pages.len(), folder.display()))
+    let jobs = cookbook::run(root, &program)?;
+    Ok(format!(
+        "wrote {} pages to {} and {jobs} jobs to the cookbook; look at every picture before you commit it",
+        pages.len(),
+        folder.display()
+    ))
 }
 
 /// The program that draws the pictures.
@@ -38,24 +48,26 @@ fn build(root: &Path) -> Result<std::path::PathBuf, Fault> {
     Ok(root.join("target/release/pathwarp").with_extension(std::env::consts::EXE_EXTENSION))
 }
 
-fn picture(root: &Path, program: &Path, info: &Info) -> Result<(), Fault> {
-    let Some(example) = info.examples.first() else { return Ok(()) };
-    let mut words = words(example.command);
+/// Draws what a command makes of its artwork.
+pub(crate) fn picture(root: &Path, program: &Path, command: &str, png: &Path) -> Result<(), Fault> {
+    let mut words = words(command);
     // What the example writes is not wanted here, nor a preview of its own.
     for option in ["-o", "--preview"] {
         if let Some(i) = words.iter().position(|w| w == option) {
             words.drain(i..(i + 2).min(words.len()));
         }
     }
-    let png = root.join(PAGES).join(format!("{}.png", info.name));
     let out = Command::new(program)
         .args(&words)
         .args(["--quiet", "-o", "-", "--preview"])
-        .arg(&png)
+        .arg(png)
         .current_dir(root)
         .output()
         .map_err(|e| format!("{}: {e}", program.display()))?;
-    if out.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&out.stderr).into_owned()) }
+    if out.status.success() {
+        return Ok(());
+    }
+    Err(format!("pathwarp {command}: {}", String::from_utf8_lossy(&out.stderr)))
 }
 
 /// Words of a shell command line with single quotes.
@@ -111,6 +123,7 @@ fn page(i: &Info) -> String {
         let value = match p.kind {
             Kind::Flag => String::new(),
             Kind::Choice(words) => words.join(", "),
+            Kind::NameOrFile(words) => format!("{}, or a file", words.join(", ")),
             _ => p.value_name(),
         };
         let default =

@@ -1,5 +1,6 @@
 //! Chores of the workspace, run as `cargo xtask NAME`.
 
+mod cookbook;
 mod corpus;
 mod docs;
 mod new_deformation;
@@ -88,7 +89,15 @@ fn main() -> ExitCode {
                         .help("Where to draw"),
                 ),
         )
-        .subcommand(Command::new("docs").about("Write a page and a picture for every deformation"))
+        .subcommand(
+            Command::new("docs").about("Write a page and a picture for every deformation, and the cookbook").arg(
+                Arg::new("program")
+                    .long("program")
+                    .value_name("FILE")
+                    .value_parser(value_parser!(PathBuf))
+                    .help("The pathwarp that draws [default: one is built]"),
+            ),
+        )
         .get_matches();
     let done = match matches.subcommand() {
         Some(("new-deformation", m)) => {
@@ -101,7 +110,7 @@ fn main() -> ExitCode {
             every: m.get_one("every").copied().unwrap_or(1),
         }),
         Some(("corpus", _)) => corpus::run().map(|()| "wrote corpus/icons.txt".to_owned()).map_err(|e| e.to_string()),
-        Some(("docs", _)) => docs::run(&root),
+        Some(("docs", m)) => docs::run(&root, m.get_one::<PathBuf>("program").map(PathBuf::as_path)),
         Some(("refit-report", m)) => {
             match (m.get_one::<String>("path"), m.get_one::<f64>("tolerance"), m.get_one::<PathBuf>("out")) {
                 (Some(path), Some(tolerance), Some(out)) if *tolerance > 0.0 => {

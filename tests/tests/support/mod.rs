@@ -20,7 +20,10 @@ pub fn artwork() -> Vec<String> {
     let mut all: Vec<String> = std::fs::read_dir(root().join("samples"))
         .unwrap()
         .map(|e| e.unwrap().file_name().into_string().unwrap())
-        .filter(|n| n.ends_with(".svg") && !["cages.svg", "anchors.svg", "banner.svg"].contains(&n.as_str()))
+        .filter(|n| {
+            let guides = ["cages.svg", "anchors.svg", "banner.svg", "envelopes.svg", "meshes.svg"];
+            n.ends_with(".svg") && !guides.contains(&n.as_str())
+        })
         .collect();
     all.sort();
     assert!(all.len() >= 8);

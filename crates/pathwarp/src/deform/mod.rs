@@ -8,9 +8,11 @@ mod bend;
 mod bilinear;
 mod birational;
 mod bulge;
+mod envelope;
 mod expr;
 mod ffd;
 mod lens;
+mod mesh;
 mod mls;
 mod mobius;
 mod polar;
@@ -19,7 +21,9 @@ mod shaper;
 mod similitude;
 mod swirl;
 mod triangle;
+mod warp;
 mod wave;
+mod wordart;
 
 use crate::error::Error;
 use crate::map::Map;
@@ -32,11 +36,15 @@ use std::sync::Arc;
 pub fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Shaper),
+        Arc::new(envelope::Envelope),
+        Arc::new(warp::Warp),
+        Arc::new(wordart::WordArt),
         Arc::new(bilinear::Bilinear),
         Arc::new(birational::BirationalDeformation),
         Arc::new(bend::Bend),
         Arc::new(polar::Polar),
         Arc::new(ffd::Ffd),
+        Arc::new(mesh::Mesh),
         Arc::new(triangle::Triangle),
         Arc::new(mls::Mls),
         Arc::new(projective::Projective),

@@ -12,7 +12,7 @@ use crate::anchors::{self, Anchors, Arrangement};
 use crate::error::{Error, GeometryError};
 use crate::map::net::{self, Net};
 use crate::map::{AffineMap, BicubicNet, Chain, Class, Map};
-use crate::outline::{Outline, Seg};
+use crate::outline::Seg;
 use crate::param::{Kind, NamedPath, Param, Settings};
 use kurbo::{BezPath, CubicBez, Point};
 use std::sync::Arc;
@@ -201,21 +201,7 @@ fn to_target(name: &str, corners: &[Point; 4], target: &Anchors) -> Result<Arc<d
 
 /// The net of a closed path with four sides, its bottom chosen by the paper's rule or by the user.
 fn from_cage(path: &NamedPath, s: &Settings<'_>, notes: &mut Vec<String>) -> Result<Net, Error> {
-    let mut sub = anchors::only_subpath(path, "exactly four, in one closed path")?;
-    // Plain points have no way to say that they close.
-    let polyline = !sub.closed && sub.segs.len() == 3 && sub.segs.iter().all(|g| matches!(g, Seg::Line(_)));
-    if polyline && sub.start != sub.end() {
-        let closed = Outline::from_points(&sub.anchors(), true);
-        sub = anchors::only_subpath(&NamedPath { name: path.name.clone(), outline: closed }, "exactly four")?;
-    }
-    if !sub.closed && sub.end().distance(sub.start) <= 1e-9 * sub.start.to_vec2().hypot().max(1.0) && sub.segs.len() > 1
-    {
-        // Drawn back to its start without being closed: closed in all but name.
-        sub.closed = true;
-    }
-    if !sub.closed {
-        return Err(GeometryError::NotClosed { path: path.name.clone(), start: sub.start, end: sub.end() }.into());
-    }
+    let sub = anchors::closed_subpath(path, "exactly four, in one closed path", |lines| lines == 3)?;
     let drawn = sub.anchors();
     let [Some(a), Some(b), Some(c), Some(d)] = [0, 1, 2, 3].map(|i| (drawn.len() == 4).then(|| drawn[i])) else {
         return Err(GeometryError::AnchorCount {
@@ -308,7 +294,7 @@ fn sides_path(n: &Net) -> BezPath {
 }
 
 /// The eight curves of a net.
-fn rows_path(n: &Net) -> BezPath {
+pub(super) fn rows_path(n: &Net) -> BezPath {
     let mut p = BezPath::new();
     for (i, row) in n.iter().enumerate() {
         p.move_to(row[0]);
@@ -337,6 +323,7 @@ fn list(points: &[Point]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outline::Outline;
     use crate::param::{Args, Frame};
     use kurbo::{ParamCurve, Rect};
 

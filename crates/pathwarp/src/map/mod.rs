@@ -5,10 +5,12 @@
 
 mod affine;
 pub mod anamorph;
+pub(crate) mod arclength;
 pub(crate) mod bernstein;
 mod birational;
 pub(crate) mod bspline;
 mod chain;
+mod coons;
 mod crease;
 pub mod dilation;
 mod dual;
@@ -24,12 +26,16 @@ mod patch;
 mod pins;
 mod quotient;
 mod rational;
+pub mod ruled;
+mod side;
 pub mod surface;
+mod tiled;
 pub mod triangle;
 
 pub use affine::AffineMap;
 pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
+pub use coons::{Coons, Sides};
 pub use crease::{Crease, CreaseKind, Creases, Level};
 pub use dual::{Dual, Real};
 pub use formula::Formula;
@@ -44,6 +50,9 @@ pub use patch::Patch;
 pub use pins::{MOST_PINS, pull};
 pub use quotient::Quotient;
 pub use rational::RationalBezier;
+pub use ruled::{Along, Guide};
+pub use side::{Pace, Side};
+pub use tiled::{Row, Tiled};
 pub use triangle::TriangleNet;
 
 use kurbo::{Affine, Point};

@@ -85,7 +85,7 @@ impl Args {
         Ok(())
     }
 
-    /// Reads every file that a parameter of kind [`Kind::File`] names, with `read`.
+    /// Reads every file that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names, with `read`.
     ///
     /// # Errors
     /// Whatever `read` says.
@@ -94,8 +94,9 @@ impl Args {
         params: &[Param],
         mut read: impl FnMut(&str) -> Result<String, Error>,
     ) -> Result<(), Error> {
-        for p in params.iter().filter(|p| p.kind == Kind::File) {
-            for name in self.typed.get(p.name).into_iter().flatten() {
+        for p in params {
+            let typed = self.typed.get(p.name).into_iter().flatten();
+            for name in typed.filter(|v| p.reads_file(v)) {
                 if !self.files.contains_key(name) {
                     let text = read(name)?;
                     self.files.insert(name.clone(), NamedText { name: name.clone(), text });

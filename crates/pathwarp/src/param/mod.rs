@@ -46,6 +46,9 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// Any text: the deformation reads it itself. The words say what, e.g. `I,J:DX,DY`.
     Text(&'static str),
+    /// One of these words or another spelling that the deformation knows, or a file whose text it reads: what holds a dot or a
+    /// slash is a file.
+    NameOrFile(&'static [&'static str]),
     /// A file whose text the deformation reads.
     File,
     /// A file that the deformation's data is saved to.
@@ -160,7 +163,18 @@ impl Param {
             Kind::Path => "PATHREF".into(),
             Kind::Choice(words) => words.join("|"),
             Kind::Text(what) => what.into(),
+            Kind::NameOrFile(_) => "NAME|FILE".into(),
             Kind::File | Kind::Save => "FILE".into(),
+        }
+    }
+
+    /// Whether `value`, typed for this parameter, names a file to be read.
+    #[must_use]
+    pub fn reads_file(&self, value: &str) -> bool {
+        match self.kind {
+            Kind::File => true,
+            Kind::NameOrFile(_) => value.contains(['.', '/', '\\']),
+            _ => false,
         }
     }
 }

@@ -200,12 +200,13 @@ impl<'a> Settings<'a> {
         unit::rect(text, self.frame).map(Some).map_err(|e| Error::usage(name, text, e))
     }
 
-    /// The file that a parameter of kind [`Kind::File`] names, already read.
+    /// The file that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names, already read; `None` if a name was given
+    /// instead.
     ///
     /// # Errors
     /// It was named but not read: [`Args::resolve_files`] was not called.
     pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
-        let Some((file, _)) = self.text(name) else { return Ok(None) };
+        let Some((file, _)) = self.text(name).filter(|(t, p)| p.reads_file(t)) else { return Ok(None) };
         let unread = || Error::input(file, "cannot be read here");
         self.args.file(file).map(Some).ok_or_else(unread)
     }

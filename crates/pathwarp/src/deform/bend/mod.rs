@@ -13,7 +13,6 @@
 //! Source: *A generalized de Casteljau approach to 3D free-form deformation* (Chang & Rockwood, SIGGRAPH 1994), here in the plane;
 //! its joint conditions (4) and (5) are checked and told. A skeleton may be given as a B-spline ([`spline`]). Joints of the skeleton are creases: uprights in the artwork.
 
-mod arclength;
 mod casteljau;
 mod piece;
 mod skeleton;

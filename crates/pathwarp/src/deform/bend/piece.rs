@@ -1,8 +1,8 @@
 //! One piece of a bent strip: a piece of the skeleton, and the sides that stand on it.
 
-use super::arclength::ArcLength;
 use super::casteljau::Ribbon;
 use crate::map::Dual;
+use crate::map::arclength::ArcLength;
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 

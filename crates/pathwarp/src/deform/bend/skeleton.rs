@@ -1,10 +1,10 @@
 //! The skeleton: a path's pieces in a row, measured, turned the way it was meant, and joined.
 
-use super::arclength::ArcLength;
 use super::casteljau::Ribbon;
 use super::piece::{Moving, Piece, Shape, moving, normal};
 use crate::anchors;
 use crate::error::{Error, show};
+use crate::map::arclength::ArcLength;
 use crate::outline::{Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{Point, Vec2};

@@ -4,6 +4,7 @@
 //! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each, and a branch is the list
 //! with the side known.
 
+pub(super) mod calc;
 mod parse;
 mod program;
 

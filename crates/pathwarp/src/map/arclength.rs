@@ -20,7 +20,7 @@ const MOST_SPANS: usize = 2000;
 
 /// The inverse of a curve's arc length.
 #[derive(Debug, Clone)]
-pub(super) struct ArcLength {
+pub(crate) struct ArcLength {
     spans: Vec<Span>,
 }
 
@@ -35,7 +35,7 @@ struct Span {
 
 impl ArcLength {
     /// For a curve over [0, 1] with this speed.
-    pub(super) fn new(speed: &dyn Fn(f64) -> f64) -> Self {
+    pub(crate) fn new(speed: &dyn Fn(f64) -> f64) -> Self {
         let rough: f64 = (0..16).map(|i| integral(speed, f64::from(i) / 16.0, f64::from(i + 1) / 16.0)).sum();
         let mut spans = Vec::new();
         let mut todo = vec![(0.0, 1.0, 0)];
@@ -61,12 +61,12 @@ impl ArcLength {
     }
 
     /// The whole length.
-    pub(super) fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.spans.last().map_or(0.0, |s| s.s1)
     }
 
     /// The parameter at distance `s`, in [0, 1].
-    pub(super) fn parameter(&self, s: f64) -> f64 {
+    pub(crate) fn parameter(&self, s: f64) -> f64 {
         let i = self.spans.partition_point(|span| span.s1 < s).min(self.spans.len() - 1);
         let span = &self.spans[i];
         let size = span.s1 - span.s0;
@@ -110,17 +110,17 @@ fn solve(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, whole: f64, share: f64) -> 
     let mut u = a + (b - a) * share;
     for _ in 0..60 {
         let off = integral(speed, a, u) - wanted;
+        let step = off / speed(u);
+        // There: before the bracket, which rounding would have halved for nothing.
+        if step.abs() <= 2.0 * f64::EPSILON * (b - a) {
+            break;
+        }
         if off > 0.0 {
             hi = u;
         } else {
             lo = u;
         }
-        let next = u - off / speed(u);
-        let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-        if (next - u).abs() <= 1e-16 * (b - a) || off == 0.0 {
-            break;
-        }
-        u = next;
+        u = if u - step > lo && u - step < hi { u - step } else { 0.5 * (lo + hi) };
     }
     u
 }

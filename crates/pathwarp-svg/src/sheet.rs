@@ -1,0 +1,174 @@
+//! A sheet of drawings side by side, labelled: one SVG that shows the same everywhere.
+//!
+//! Every drawing is written out as usvg resolves it, its ids made its own, so that none reaches into another. Labels are outlines
+//! of the bundled font. Drawings have one scale, at which three quarters of them fit; larger ones are made to fit.
+
+use crate::{ReadOptions, parse_tree};
+use pathwarp::Error;
+use pathwarp::kurbo::Rect;
+use std::fmt::Write as _;
+use usvg::WriteOptions;
+
+/// A drawing and what stands below it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cell {
+    /// The drawing.
+    pub svg: String,
+    /// Its label.
+    pub label: String,
+}
+
+/// How a sheet is laid out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SheetOptions {
+    /// Cells side by side.
+    pub columns: usize,
+    /// Width and height of a cell in px, its label included.
+    pub cell: (f64, f64),
+    /// What stands at the top.
+    pub title: String,
+}
+
+/// Between cells and around them.
+const GAP: f64 = 16.0;
+/// Between a cell's border and what it shows.
+const INSET: f64 = 12.0;
+/// The title's line.
+const TITLE: f64 = 34.0;
+/// A label's line.
+const LABEL: f64 = 22.0;
+/// The size of labels that fit; longer ones are smaller.
+const LABEL_SIZE: f64 = 13.0;
+/// What a letter takes of its size, on average.
+const LETTER: f64 = 0.57;
+
+/// The sheet as SVG text.
+///
+/// # Errors
+/// A drawing that cannot be read.
+pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Result<String, Error> {
+    let (w, h) = options.cell;
+    let columns = options.columns.clamp(1, cells.len().max(1));
+    let rows = cells.len().div_ceil(columns);
+    let place = |k: usize| {
+        let (i, j) = ((k % columns) as f64, (k / columns) as f64);
+        (GAP + i * (w + GAP), GAP + TITLE + j * (h + GAP))
+    };
+    let width = GAP + columns as f64 * (w + GAP);
+    let height = GAP + TITLE + rows as f64 * (h + GAP);
+    let mut drawn = Vec::with_capacity(cells.len());
+    for (k, c) in cells.iter().enumerate() {
+        let tree = parse_tree(c.svg.as_bytes(), &c.label, read)?;
+        let b = tree.root().abs_layer_bounding_box();
+        let (x, y) = (f64::from(b.x()), f64::from(b.y()));
+        let seen = Rect::new(x, y, x + f64::from(b.width()), y + f64::from(b.height()));
+        let own = WriteOptions { id_prefix: Some(format!("s{k}-")), ..WriteOptions::default() };
+        drawn.push((seen, inside(&tree.to_string(&own)).to_owned()));
+    }
+    let room = ((w - 2.0 * INSET).max(1.0), (h - 2.0 * INSET - LABEL).max(1.0));
+    let fit = |b: &Rect| (room.0 / b.width().max(1e-9)).min(room.1 / b.height().max(1e-9));
+    let mut fits: Vec<f64> = drawn.iter().map(|(b, _)| fit(b)).collect();
+    fits.sort_by(f64::total_cmp);
+    let common = fits.get(fits.len() / 4).copied().unwrap_or(1.0);
+
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
+         height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n"
+    );
+    let mut labels = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"Noto Sans\">\n\
+         <text x=\"{GAP}\" y=\"{}\" font-size=\"17\" fill=\"#222\">{}</text>\n",
+        GAP + 17.0,
+        escaped(&options.title)
+    );
+    for (k, (seen, content)) in drawn.iter().enumerate() {
+        let (x, y) = place(k);
+        let (cx, cy) = (x + 0.5 * w, y + INSET + 0.5 * room.1);
+        let (c, scale) = (seen.center(), common.min(fit(seen)));
+        let _ = write!(
+            out,
+            "<g id=\"cell-{k}\">\n<title>{}</title>\n<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"6\" fill=\"#f5f5f2\"/>\n\
+             <g transform=\"matrix({scale} 0 0 {scale} {} {})\">{content}</g>\n</g>\n",
+            escaped(&cells[k].label),
+            cx - scale * c.x,
+            cy - scale * c.y
+        );
+        let letters = cells[k].label.chars().count().max(1) as f64;
+        let _ = writeln!(
+            labels,
+            "<text x=\"{cx}\" y=\"{}\" font-size=\"{}\" fill=\"#555\" text-anchor=\"middle\">{}</text>",
+            y + h - INSET + 2.0,
+            LABEL_SIZE.min(w / (letters * LETTER)),
+            escaped(&cells[k].label)
+        );
+    }
+    labels.push_str("</svg>\n");
+    let bundled = ReadOptions { system_fonts: false, ..ReadOptions::default() };
+    let outlines = parse_tree(labels.as_bytes(), "labels", &bundled)?;
+    let own = WriteOptions { id_prefix: Some("label-".into()), ..WriteOptions::default() };
+    let _ = write!(out, "<g id=\"labels\">{}</g>\n</svg>\n", inside(&outlines.to_string(&own)));
+    Ok(out)
+}
+
+/// What the root element holds.
+fn inside(svg: &str) -> &str {
+    let start = svg.find("<svg").and_then(|i| svg[i..].find('>').map(|j| i + j + 1)).unwrap_or(0);
+    let end = svg.rfind("</svg>").unwrap_or(svg.len()).max(start);
+    &svg[start..end]
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ONE: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100\" height=\"50\"><defs><linearGradient id=\"g\">\
+        <stop stop-color=\"red\"/><stop offset=\"1\" stop-color=\"blue\"/></linearGradient></defs>\
+        <rect width=\"100\" height=\"50\" fill=\"url(#g)\"/></svg>";
+
+    /// Ids are each drawing's own, labels are no text, and drawings lie within their cells.
+    #[test]
+    fn drawings_lie_in_their_cells_and_keep_to_themselves() {
+        let half = ONE.replace("<rect width=\"100\"", "<rect width=\"50\"").replace("red", "lime");
+        let cells = [(ONE, "whole & all"), (&half, "half"), (ONE, "again")]
+            .map(|(s, l)| Cell { svg: s.into(), label: l.into() });
+        let options = SheetOptions { columns: 2, cell: (124.0, 96.0), title: "Title".into() };
+        let svg = sheet(&cells, &options, &ReadOptions::default()).unwrap();
+        assert!(!svg.contains("<text") && svg.contains("<title>whole &amp; all</title>"));
+        let doc = usvg::roxmltree::Document::parse(&svg).unwrap();
+        let mut ids: Vec<&str> = doc.descendants().filter_map(|n| n.attribute("id")).collect();
+        let count = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), count);
+        for k in 0..3 {
+            assert!(svg.contains(&format!("url(#s{k}-")), "{k}");
+        }
+        let tree = parse_tree(svg.as_bytes(), "sheet", &ReadOptions::default()).unwrap();
+        assert_eq!((tree.size().width(), tree.size().height()), (296.0, 274.0));
+        let gradients: Vec<usvg::Rect> = filled(tree.root());
+        // 124 − 24 = 100 wide: the largest fits exactly; the half one is half as wide, in the middle of its cell.
+        let sizes: Vec<(f32, f32, f32)> = gradients.iter().map(|r| (r.x(), r.width(), r.height())).collect();
+        let near =
+            |a: (f32, f32, f32), b: (f32, f32, f32)| (a.0 - b.0).abs() + (a.1 - b.1).abs() + (a.2 - b.2).abs() < 1e-2;
+        assert!(
+            near(sizes[0], (28.0, 100.0, 50.0)) && near(sizes[1], (193.0, 50.0, 50.0)) && near(sizes[2], sizes[0]),
+            "{sizes:?}"
+        );
+    }
+
+    /// The boxes of what is filled with a gradient.
+    fn filled(g: &usvg::Group) -> Vec<usvg::Rect> {
+        let of = |n: &usvg::Node| match n {
+            usvg::Node::Group(g) => filled(g),
+            usvg::Node::Path(p) if p.fill().is_some_and(|f| matches!(f.paint(), usvg::Paint::LinearGradient(_))) => {
+                vec![p.abs_bounding_box()]
+            }
+            _ => Vec::new(),
+        };
+        g.children().iter().flat_map(of).collect()
+    }
+}

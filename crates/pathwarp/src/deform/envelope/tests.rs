@@ -1,0 +1,379 @@
+//! The envelope against formulas written out separately, and against the shaper.
+
+use super::*;
+use crate::deform::Registry;
+use crate::map::Creases;
+use crate::param::{Args, Frame};
+use crate::refit;
+use kurbo::{ParamCurve, ParamCurveArclen, PathSeg, Rect, Vec2};
+
+const SQUARE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
+
+fn built(pairs: &[(&str, &str)]) -> Result<Built, Error> {
+    Envelope.build_from(&Args::from_pairs(pairs), &Frame::new(SQUARE))
+}
+
+fn map(pairs: &[(&str, &str)]) -> Arc<dyn Map> {
+    built(pairs).unwrap_or_else(|e| panic!("{pairs:?}: {e}")).map
+}
+
+fn fault(pairs: &[(&str, &str)]) -> String {
+    built(pairs).err().unwrap_or_else(|| panic!("{pairs:?} builds")).to_string()
+}
+
+fn grid(n: u32, beyond: f64) -> impl Iterator<Item = Point> {
+    let at = move |i: u32| -beyond + (100.0 + 2.0 * beyond) * f64::from(i) / f64::from(n);
+    (0..=n).flat_map(move |i| (0..=n).map(move |j| Point::new(at(i), at(j))))
+}
+
+/// Criterion: with one cubic for every side, the shaper to 1e-12, beyond the box as well.
+#[test]
+fn one_cubic_a_side_is_the_shaper() {
+    const CAGES: [&str; 3] = [
+        "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z",
+        "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z",
+        "M 0,10 C 5,2 60,-6 80,0 C 86,50 90,70 99,104 C 60,120 50,80 3,96 C -10,60 4,40 0,10 Z",
+    ];
+    let registry = Registry::builtin();
+    for cage in CAGES {
+        for reverse in [false, true] {
+            let flag = |name: &'static str| reverse.then_some((name, "true"));
+            let mut own = vec![("envelope", cage), ("by", "parameter")];
+            own.extend(flag("reverse"));
+            let shaper = registry.get("shaper").unwrap();
+            let args = Args::from_pairs(&if reverse {
+                vec![("shaper", cage), ("reverse-shaper", "true")]
+            } else {
+                vec![("shaper", cage)]
+            });
+            let (a, b) = (map(&own), shaper.build_from(&args, &Frame::new(SQUARE)).unwrap().map);
+            for p in grid(24, 10.0) {
+                let (x, y) = (a.jet(p), b.jet(p));
+                assert!(
+                    x.p.distance(y.p) < 1e-12 * 100.0_f64.max(y.p.to_vec2().hypot()),
+                    "{cage} {p:?} {:e}",
+                    x.p.distance(y.p)
+                );
+                assert!((x.dx - y.dx).hypot() + (x.dy - y.dy).hypot() < 1e-12, "{cage} {p:?}");
+            }
+        }
+    }
+}
+
+/// A wavy run of `n` pieces from one corner to another, lines, quadratics, cubics and arcs in turn.
+fn wavy(from: Point, to: Point, n: u32) -> String {
+    use std::fmt::Write as _;
+    let (step, side) = ((to - from) / f64::from(n), (to - from).turn_90() / (f64::from(n) * 4.0));
+    let mut out = String::new();
+    for i in 0..n {
+        let (a, b) = (from + step * f64::from(i), from + step * f64::from(i + 1));
+        let sign = if i % 2 == 0 { 1.0 } else { -0.6 };
+        let (c, d) = (a + step * 0.3 + side * sign, a + step * 0.6 + side * (0.5 * sign));
+        let _ = match (i + n) % 4 {
+            0 => write!(out, "L{},{} ", b.x, b.y),
+            1 => write!(out, "C{},{} {},{} {},{} ", c.x, c.y, d.x, d.y, b.x, b.y),
+            2 => write!(out, "Q{},{} {},{} ", c.x, c.y, b.x, b.y),
+            _ => write!(out, "A{0},{0} 0 0 1 {1},{2} ", 0.9 * step.hypot(), b.x, b.y),
+        };
+    }
+    out
+}
+
+/// The point at a share of a run's length, by kurbo's own integration: an independent truth.
+fn by_length(segs: &[Seg], share: f64) -> Point {
+    let as_kurbo = |s: &Seg| match s {
+        Seg::Line(l) => PathSeg::Line(*l),
+        Seg::Quad(q) => PathSeg::Quad(*q),
+        Seg::Cubic(c) => PathSeg::Cubic(*c),
+        Seg::Arc(_) => panic!("arcs are measured by their angle"),
+    };
+    // A circular arc's length is its angle times its radius.
+    let length = |s: &Seg| if let Seg::Arc(a) = s { a.sweep.abs() * a.a.hypot() } else { as_kurbo(s).arclen(1e-12) };
+    let all: f64 = segs.iter().map(length).sum();
+    let mut left = share * all;
+    for s in segs {
+        let own = length(s);
+        if left <= own {
+            return match s {
+                Seg::Arc(a) => a.eval(left / own),
+                _ => as_kurbo(s).eval(as_kurbo(s).inv_arclen(left, 1e-12)),
+            };
+        }
+        left -= own;
+    }
+    segs.last().unwrap().end()
+}
+
+/// Criterion: sides of 1, 3 and 17 pieces are reproduced to 1e-9, at the share of their length.
+#[test]
+fn boundaries_are_reproduced_by_length() {
+    let c = [(0.0, 100.0), (110.0, 95.0), (100.0, -10.0), (-5.0, 5.0)].map(Point::from);
+    for n in [1, 3, 17] {
+        let runs: Vec<String> = (0..4).map(|i| wavy(c[i], c[(i + 1) % 4], n)).collect();
+        let path = format!("M{},{} {}Z", c[0].x, c[0].y, runs.concat());
+        let corners = c.map(|p| format!("{},{}", p.x, p.y)).join(" ");
+        let m = map(&[("envelope", &path), ("corners", &corners)]);
+        let outline = Outline::from_svg(&path).unwrap();
+        let segs: Vec<Seg> = outline.segs().copied().collect();
+        assert_eq!(segs.len(), 4 * n as usize);
+        for (k, side) in segs.chunks(n as usize).enumerate() {
+            for i in 0..=40 {
+                let t = f64::from(i) / 40.0;
+                let on = [(100.0 * t, 100.0), (100.0, 100.0 - 100.0 * t), (100.0 - 100.0 * t, 0.0), (0.0, 100.0 * t)];
+                let (got, wanted) = (m.point(on[k].into()), by_length(side, t));
+                assert!(got.distance(wanted) < 1e-9, "{n} pieces, side {k}, {t}: {:e}", got.distance(wanted));
+            }
+        }
+    }
+}
+
+/// The inside against the formula written out, with the shares of length from kurbo.
+#[test]
+fn the_inside_is_the_coons_patch() {
+    let path = "M0,100 C20,120 40,80 50,100 Q70,130 110,95 L100,50 Q120,20 100,-10 C70,-30 30,10 -5,5 Q20,60 0,100 Z";
+    let segs: Vec<Seg> = Outline::from_svg(path).unwrap().segs().copied().collect();
+    let m = map(&[("envelope", path), ("corners", "1,3,5,6")]);
+    let [b, r, t, l] = [&segs[..2], &segs[2..4], &segs[4..5], &segs[5..]];
+    for p in grid(13, 0.0) {
+        let (u, v) = (p.x / 100.0, 1.0 - p.y / 100.0);
+        let [b, r, t, l] =
+            [by_length(b, u), by_length(r, v), by_length(t, 1.0 - u), by_length(l, 1.0 - v)].map(Point::to_vec2);
+        let corner = |x: f64, y: f64| Vec2::new(x, y);
+        let bilinear = (corner(0.0, 100.0) * (1.0 - u) + corner(110.0, 95.0) * u) * (1.0 - v)
+            + (corner(-5.0, 5.0) * (1.0 - u) + corner(100.0, -10.0) * u) * v;
+        let wanted = b * (1.0 - v) + t * v + l * (1.0 - u) + r * u - bilinear;
+        assert!((m.point(p).to_vec2() - wanted).hypot() < 1e-9, "{p:?}");
+    }
+}
+
+/// Branches agree with the map inside their cells and on their edges, whatever the pace, and have exact derivatives.
+#[test]
+fn branches_and_creases() {
+    let path = "M0,100 C20,120 40,80 50,100 Q70,130 110,95 L100,50 Q120,20 100,-10 C70,-30 30,10 -5,5 Q20,60 0,100 Z";
+    for by in ["length", "parameter"] {
+        let m = map(&[("envelope", path), ("corners", "1,3,5,6"), ("by", by)]);
+        let mut creases = Creases::default();
+        m.creases(&mut creases);
+        assert_eq!(creases.items().len(), if by == "length" { 6 } else { 2 }, "{by}");
+        for p in grid(17, 20.0).filter(|p| creases.items().iter().all(|c| c.level.at(*p).abs() > 1e-3)) {
+            let (a, b) = (m.jet(p), m.branch(p).unwrap().jet(p));
+            assert!(a.p.distance(b.p) < 1e-11 && (a.dx - b.dx).hypot() + (a.dy - b.dy).hypot() < 1e-11, "{by} {p:?}");
+            let h = 1e-5;
+            let dx = (m.point(p + Vec2::new(h, 0.0)) - m.point(p - Vec2::new(h, 0.0))) / (2.0 * h);
+            assert!((dx - a.dx).hypot() < 1e-6, "{by} {p:?} {dx:?} {:?}", a.dx);
+        }
+        // No tear at a crease: branches on both sides agree on it.
+        for c in creases.items() {
+            for q in grid(9, 0.0) {
+                let (f, g) = (c.level.at(q), c.level.at(q + Vec2::new(1.0, 0.0)) - c.level.at(q));
+                let (h, eps) = (c.level.at(q + Vec2::new(0.0, 1.0)) - c.level.at(q), 1e-4);
+                let n = Vec2::new(g, h) / (g * g + h * h);
+                let on = q - n * f;
+                let [a, b] = [eps, -eps].map(|e| m.branch(on + n * e).unwrap().point(on));
+                assert!(a.distance(b) < 1e-9, "{by} {c:?} {on:?}: {a:?} {b:?}");
+            }
+        }
+        // By parameter the cells are polynomials, and say so.
+        let known = m.branch(Point::new(20.0, 80.0)).unwrap().algebra().is_some();
+        assert_eq!(known, by == "parameter");
+    }
+}
+
+/// Criterion: text is never mirrored, wherever the path starts and whichever way it runs.
+#[test]
+fn nothing_is_mirrored_and_the_bottom_is_below() {
+    let shapes = [
+        "M20,34 C60,44 96,40 130,20 C164,40 200,44 240,34 C244,110 226,190 130,240 C34,190 16,110 20,34 Z",
+        "M400,72 C420,20 510,14 520,84 C528,146 440,190 400,240 C360,190 272,146 280,84 C290,14 380,20 400,72 Z",
+        "M550,60 C620,20 690,96 780,56 L752,120 L780,184 C690,224 620,148 550,188 Z",
+        "M200,100 A100,60 0 1 1 0,100 A100,60 0 1 1 200,100 Z",
+        "M30,0 H170 A30,30 0 0 1 200,30 V70 A30,30 0 0 1 170,100 H30 A30,30 0 0 1 0,70 V30 A30,30 0 0 1 30,0 Z",
+        "M100,0 L200,170 L0,170 Z",
+        "M0,50 L50,0 H150 L200,50 L150,100 H50 Z",
+        // A crescent whose lowest corners are its horns.
+        "M0,100 A100,100 0 0 1 200,100 L170,110 A70,70 0 0 0 30,110 Z",
+    ];
+    for shape in shapes {
+        let sub = Outline::from_svg(shape).unwrap().subpaths.remove(0);
+        for reversed in [false, true] {
+            for start in 0..sub.segs.len() {
+                let mut turned = if reversed { sub.reversed() } else { sub.clone() };
+                turned.segs.rotate_left(start);
+                turned.start = turned.segs[0].start();
+                let path =
+                    crate::param::NamedPath { name: "--envelope".into(), outline: Outline { subpaths: vec![turned] } };
+                let args = Args::new();
+                let frame = Frame::new(SQUARE);
+                let s = Settings::new(INFO.params, &args, &frame).unwrap();
+                let ring = corners::ring(&path, &s).unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
+                let sides = paced(&ring, &s, "nothing", &mut Vec::new(), &mut Vec::new()).unwrap();
+                let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
+                // On both sides of the middle, where a heart has its notch.
+                let [l, r] = [40.0, 60.0].map(|x| m.jet(Point::new(x, 50.0)));
+                assert!(l.det() > 0.0 && r.det() > 0.0, "{shape} from {start}, reversed {reversed}: mirrored");
+                // Right is right, and up is up: wrong corners turn it by 45° or more, a wavy shape by less.
+                let (dx, dy) = (l.dx + r.dx, l.dy + r.dy);
+                assert!(
+                    dx.y.abs() < 0.5 * dx.x && dy.x.abs() < 0.5 * dy.y,
+                    "{shape} from {start}: turned, {dx:?} {dy:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn corners_by_the_stated_rule() {
+    let note = |pairs: &[(&str, &str)]| built(pairs).unwrap().notes.join("\n");
+    // A circle's are on its diagonals, an ellipse's on those of its box.
+    let n = note(&[("envelope", "M200,100 A100,50 0 1 1 0,100 A100,50 0 1 1 200,100 Z")]);
+    let (x, y) = (100.0 * R2, 50.0 * R2);
+    let p = |sx: f64, sy: f64| show(Point::new(100.0 + sx * x, 100.0 + sy * y));
+    let wanted = [p(-1.0, 1.0), p(1.0, 1.0), p(1.0, -1.0), p(-1.0, -1.0)].join(" ");
+    assert!(n.contains(&wanted) && n.contains("nearest to the corners of its box"), "{n}\n{wanted}");
+    // A swallow-tailed pennant: five corners, the notch is none of the four.
+    let n = note(&[("envelope", "M0,0 L100,0 L80,50 L100,100 L0,100 Z")]);
+    assert!(n.contains("0,100 100,100 100,0 0,0"), "{n}");
+    // Four by angle, among smooth joints.
+    let n = note(&[("envelope", "M0,0 L50,0 L100,0 L100,50 L100,100 L0,100 Z")]);
+    assert!(n.contains("found by angle") && n.contains("0,100 100,100 100,0 0,0"), "{n}");
+    // A square on its tip has its corners where they are, though none is in a quarter of its box.
+    let n = note(&[("envelope", "M50,0 L100,50 L50,100 L0,50 Z")]);
+    assert!(n.contains("found by angle"), "{n}");
+    // A fish's tail is narrow, yet drawn with four corners.
+    let n = note(&[(
+        "envelope",
+        "M8,266 C34,212 44,288 94,234 C97,229 97,223 94,218 C44,164 34,240 8,186 C18,210 18,242 8,266 Z",
+    )]);
+    assert!(n.contains("8,266 94,234 94,218 8,186"), "{n}");
+    // A triangle has none at its tip.
+    let n = note(&[("envelope", "M50,0 L100,100 L0,100 Z")]);
+    assert!(n.contains("0,100 100,100 60,20 40,20"), "{n}");
+    // Chosen bottoms: the picture is turned, never mirrored.
+    for k in ["1", "2", "3", "4"] {
+        let m = map(&[("envelope", "0,0 100,0 100,100 0,100"), ("bottom-side", k)]);
+        assert!((m.jet(Point::new(20.0, 30.0)).det() - 1.0).abs() < 1e-12);
+    }
+    let m = map(&[("envelope", "0,0 100,0 100,100 0,100"), ("bottom-side", "1")]);
+    assert!(m.point(Point::new(10.0, 100.0)).distance(Point::new(90.0, 0.0)) < 1e-12);
+    let m = map(&[("envelope", "0,0 100,0 100,100 0,100"), ("reverse", "true")]);
+    assert!(m.point(Point::new(10.0, 80.0)).distance(Point::new(90.0, 80.0)) < 1e-12);
+}
+
+/// Criterion: `--keep verticals`, measured on the refitted result: upright within 0.1° and straight.
+#[test]
+fn uprights_stay_upright_through_the_refit() {
+    const TOLERANCE: f64 = 0.005;
+    let hill = "M0,60 C40,60 60,10 110,10 C160,10 190,50 240,50 S300,20 360,20";
+    let valley = "M0,120 C50,120 90,150 140,150 C190,150 220,110 270,110 C310,110 340,135 360,135";
+    let cases: [&[(&str, &str)]; 3] = [
+        &[("bottom", valley), ("top", hill), ("keep", "verticals")],
+        &[("bottom", "M0,160 C100,80 260,80 360,160"), ("height", "70"), ("keep", "verticals")],
+        &[("bottom", "M0,160 Q180,60 360,160"), ("top", "M0,60 C120,0 200,-40 360,60"), ("keep", "verticals")],
+    ];
+    for pairs in cases {
+        let b = built(pairs).unwrap();
+        assert!(b.warnings.is_empty(), "{:?}", b.warnings);
+        for i in 0..=20 {
+            let x = 5.0 * f64::from(i);
+            let art = Outline::from_svg(&format!("M{x},0 V100")).unwrap();
+            let w = refit::warp_path(&art, &b.map, &refit::Options::new(TOLERANCE)).unwrap();
+            let segs: Vec<PathSeg> = w.path.segments().collect();
+            assert_eq!(segs.len(), 1, "{x}");
+            let (from, to) = (segs[0].eval(0.0), segs[0].eval(1.0));
+            for k in 0..=200 {
+                let p = segs[0].eval(f64::from(k) / 200.0);
+                assert!((p - from).cross(to - from).abs() / (to - from).hypot() < 1e-9, "{x}: bent");
+            }
+            let lean = (to.x - from.x).abs().atan2((to.y - from.y).abs()).to_degrees();
+            assert!(lean < 0.1, "{x} leans by {lean}°");
+            // And it is where it should be: at the same share of the curves' width, on both.
+            assert!((from.x - 3.6 * x).abs() < 1e-9, "{x} {from:?}");
+        }
+    }
+    // Where no such map is, the uprights are straight all the same, and the warning says how far they lean.
+    let b = built(&[
+        ("bottom", "M0,100 A50,50 0 0 1 100,100"),
+        ("top", "M-20,100 A70,70 0 0 1 120,100"),
+        ("keep", "verticals"),
+    ])
+    .unwrap();
+    assert!(b.warnings.iter().any(|w| w.contains("lean by up to 90.0°")), "{:?}", b.warnings);
+    let bent = |m: &dyn Map, x: f64| {
+        let [a, b, c] = [0.0, 40.0, 100.0].map(|y| m.point(Point::new(x, y)));
+        (b - a).cross(c - a).abs() / (c - a).hypot()
+    };
+    assert!((0..=20).all(|i| bent(&*b.map, 5.0 * f64::from(i)) < 1e-10));
+}
+
+#[test]
+fn keep_says_when_nothing_can() {
+    let curved = "M0,0 L100,0 Q130,50 100,100 L0,100 Z";
+    let e = fault(&[("envelope", curved), ("keep", "verticals")]);
+    assert!(
+        e.contains("--keep") && e.contains("right side is curved: near 115,50") && e.contains("--bottom and --top"),
+        "{e}"
+    );
+    let e = fault(&[("envelope", curved), ("keep", "lines")]);
+    assert!(e.contains("four straight sides") && e.contains("right side"), "{e}");
+    // What is asked for exists here.
+    let m = map(&[("envelope", curved), ("keep", "horizontals")]);
+    assert!((m.point(Point::new(70.0, 30.0)).y - 30.0).abs() < 1e-10);
+    let m = map(&[("envelope", "0,90 100,80 80,10 10,0"), ("keep", "lines")]);
+    assert!(matches!(m.class(), Class::Projective(_)));
+}
+
+#[test]
+fn crossings_and_folds_are_named() {
+    let warned = |pairs: &[(&str, &str)], what: &[&str]| {
+        let w = built(pairs).unwrap().warnings.join("\n");
+        assert!(what.iter().all(|t| w.contains(t)), "{what:?}:\n{w}");
+    };
+    // A loop in the bottom; it crosses itself on its axis, x = 50.
+    warned(
+        &[("bottom", "M0,100 C150,20 -50,20 100,100"), ("top", "0,0 100,0")],
+        &["the bottom side crosses itself near 50,"],
+    );
+    warned(
+        &[("bottom", "0,100 100,20"), ("top", "0,50 100,60")],
+        &["the bottom and the top side cross near 55.5", "folds over"],
+    );
+    // The bottom doubles back without crossing anything.
+    let hook = [("bottom", "0,100 80,90 20,60 100,40"), ("top", "0,0 100,0")];
+    warned(&hook, &["folds over near", "nearest to the bottom side"]);
+    assert_eq!(built(&hook).unwrap().warnings.len(), 1);
+    assert!(built(INFO.demo).unwrap().warnings.is_empty(), "{:?}", built(INFO.demo).unwrap().warnings);
+}
+
+#[test]
+fn every_fault_is_named() {
+    assert!(fault(&[]).contains("--envelope is needed"));
+    assert!(fault(&[("envelope", "M0,0 Q50,50 100,0")]).contains("not closed"));
+    assert!(fault(&[("envelope", "0,0 100,0 200,0")]).contains("is flat"));
+    assert!(fault(&[("bottom", "M0,0 L1,0 L1,1 Z")]).contains("for a closed path use --envelope"));
+    assert!(fault(&[("left", "0,0 0,9")]).contains("--right is needed"));
+    assert!(fault(&[("bottom", "0,9 9,9"), ("left", "0,9 0,0")]).contains("--top is needed"));
+    assert!(fault(&[("bottom", "0,9 9,9"), ("top", "0,0 9,0"), ("left", "1,9 1,0")]).contains("does not meet"));
+    assert!(fault(&[("bottom", "0,9 9,9"), ("top", "0,0 9,0"), ("height", "3")]).contains("--height"));
+    assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("top", "0,0 9,0")]).contains("cannot go with"));
+    assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3,7")]).contains("nodes 1 to 4"));
+    assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3,3")]).contains("twice"));
+    assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3")]).contains("--corners"));
+    assert!(fault(&[("bottom", "M0,0 C150,20 -50,20 100,0"), ("by", "extent")]).contains("bottom side does not"));
+    let many = (0..2100).map(|i| format!("{},{}", i, (i % 7) * (i % 5))).collect::<Vec<_>>().join(" ");
+    assert!(fault(&[("envelope", &many)]).contains("2000 are the most"));
+}
+
+/// The shared Newton inverse finds its way back, over joints too, at every pace.
+#[test]
+fn it_can_be_undone() {
+    let path = "M0,100 C20,120 40,80 50,100 Q70,130 110,95 L100,50 Q120,20 100,-10 C70,-30 30,10 -5,5 Q20,60 0,100 Z";
+    for by in ["length", "parameter", "extent"] {
+        let m = map(&[("envelope", path), ("corners", "1,3,5,6"), ("by", by)]);
+        let back = crate::map::NewtonInverse::over(Arc::clone(&m), SQUARE, 0.25);
+        for p in grid(23, -1.0) {
+            let q = back.point(m.point(p));
+            assert!(q.distance(p) < 1e-9, "{by} {p:?} {q:?}");
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Warps of Photoshop layers, as the command line hands them over: JSON made of the file's warp descriptors.
+
+use super::quilt::{File, Quilt};
+use crate::deform::Built;
+use crate::deform::warp::{self, style};
+use crate::error::Error;
+use crate::param::Settings;
+use kurbo::Rect;
+use serde::Deserialize;
+
+/// What the file holds.
+#[derive(Deserialize)]
+struct Warps {
+    warps: Vec<Warp>,
+}
+
+/// A layer's warp: the fields of its descriptor.
+#[derive(Deserialize)]
+struct Warp {
+    layer: String,
+    style: String,
+    /// Percent.
+    value: f64,
+    perspective: f64,
+    perspective_other: f64,
+    vertical: bool,
+    /// Its points, of a custom warp.
+    mesh: Option<File>,
+}
+
+pub(super) enum Found {
+    /// A style, set up.
+    Style(Built),
+    /// A quilt, and its layer's name.
+    Quilt(Quilt, String),
+}
+
+/// The warp of the layer asked for, over `region`.
+pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
+    let Some(file) = s.file_if("psd")? else {
+        return Err(Error::Missing { param: "--psd".into(), hint: "a Photoshop file".into() });
+    };
+    let parsed: Warps = serde_json::from_str(&file.text)
+        .map_err(|e| Error::input(&file.name, format!("its warps cannot be understood: {e}")))?;
+    let wrong = |what: String| Error::input(&file.name, what);
+    let wanted = s.texts("layer").last().copied();
+    let listed = parsed.warps.iter().map(|w| format!("`{}` ({})", w.layer, w.style)).collect::<Vec<_>>().join(", ");
+    let mut fits = parsed.warps.into_iter().filter(|w| wanted.map_or(w.style != "warpNone", |l| w.layer == l));
+    let warp = match (fits.next(), fits.next()) {
+        (Some(one), None) => one,
+        (None, _) if listed.is_empty() => return Err(wrong("has no layer with a warp".into())),
+        (None, _) => return Err(wrong(format!("has no such warped layer; there are {listed}"))),
+        (Some(_), Some(_)) => {
+            return Err(wrong(format!("has several warped layers; say which with --layer: {listed}")));
+        }
+    };
+    if let Some(mesh) = warp.mesh {
+        return Ok(Found::Quilt(Quilt::from_file(&file.name, mesh, region)?, warp.layer));
+    }
+    let style = style::builtin().into_iter().find(|k| k.is_called(&warp.style)).ok_or_else(|| {
+        wrong(format!("layer `{}` has the warp {}, which has no known formula", warp.layer, warp.style))
+    })?;
+    let bent = style::Bent {
+        bend: warp.value / 100.0,
+        distortion: [warp.perspective / 100.0, warp.perspective_other / 100.0],
+        vertical: warp.vertical,
+    };
+    let net = style.net(region.width(), region.height(), &bent).map_err(|e| wrong(format!("its style {e}")))?;
+    let mut built = warp::over(region, &net)?;
+    built.notes.push(format!("layer {}: style {}, bend {}%", warp.layer, style.name, warp.value));
+    Ok(Found::Style(built))
+}

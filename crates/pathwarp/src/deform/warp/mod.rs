@@ -1,0 +1,186 @@
+//! Warp styles: ready-made bends of a box, each one bicubic net.
+//!
+//! The fifteen styles that drawing programs share, as data ([`style`], `styles.json`): the net of sixteen points that each makes
+//! of the artwork's box. The numbers are those measured on the market leader's program and published with the OPuller editor
+//! (AnatomikPerq, 2026); the arcs are the usual cubics of circles' arcs, and the inner points of the families with bent sides are
+//! equation (7) of K. Koppinen, *A plane transformation from 16 control points*, which is the bilinear Coons patch.
+
+pub(crate) mod style;
+
+use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use crate::error::Error;
+use crate::map::net::Net;
+use crate::map::{AffineMap, BicubicNet, Class, Map};
+use crate::param::{Kind, Param, Settings};
+use kurbo::{Affine, Rect};
+use std::sync::Arc;
+use style::{Bent, Style};
+
+pub(super) struct Warp;
+
+/// The names, in the order of the menus where people know them from.
+const NAMES: &[&str] = &[
+    "arc",
+    "arc-lower",
+    "arc-upper",
+    "arch",
+    "bulge",
+    "shell-lower",
+    "shell-upper",
+    "flag",
+    "wave",
+    "fish",
+    "rise",
+    "fisheye",
+    "inflate",
+    "squeeze",
+    "twist",
+];
+
+static INFO: Info = Info {
+    name: "warp",
+    title: "bend artwork in one of fifteen styles: arc, flag, fisheye, …",
+    group: "Envelopes",
+    about: "The warp styles that drawing programs share, by the nets measured on the best known of them: arc, arc-lower, arc-upper, arch, bulge, \
+shell-lower, shell-upper, flag, wave, fish, rise, fisheye, inflate, squeeze, twist. --bend says how much and which way; \
+`pathwarp gallery` draws them all. Names as Photoshop writes them (warpArc) are known too.\n\nBends beyond 100% go on by the same \
+formula; those made of circles' arcs end at 190%. --horizontal and --vertical distort the result in addition, as if it leant away \
+to a side.\n\nA style of your own is a TOML or JSON file: rules that move the sixteen points of a net (row,column; 0,0 is the top left \
+one), formulas of w and h (the box), b (the bend), u and v (the point's place), and k, S, C for circles' arcs:\n\n  \
+name = \"roof\"\n  family = \"boundary\"   # or \"points\", \"frame\": what distortions act on\n  \
+moves = [{ at = \"0,1\", y = \"-b*h/2\" }, { at = \"0,2\", y = \"-b*h/2\" }]",
+    source: "Nets measured on Adobe Illustrator 2026, published with the OPuller editor, 2026; completion: K. Koppinen, A plane \
+transformation from 16 control points, equation (7)",
+    params: &[
+        Param::new("style", Kind::NameOrFile(NAMES), "The style: a name, or a file of your own.").default("arc"),
+        Param::number("bend", "How far it bends, and which way.").default("50%").slider(-1.0, 1.0),
+        Param::new(
+            "axis",
+            Kind::Choice(&["horizontal", "vertical"]),
+            "The direction in which artwork runs through the style.",
+        )
+        .default("horizontal"),
+        Param::number("horizontal", "Distortion: the right side grows by this, the left one shrinks.")
+            .default("0%")
+            .within(-1.0, 1.0),
+        Param::number("vertical", "Distortion: the lower side grows by this, the upper one shrinks.")
+            .default("0%")
+            .within(-1.0, 1.0),
+    ],
+    demo: &[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")],
+    examples: &[
+        Example { what: "A word on an arc", command: "warp samples/lettering.svg --style arc --bend 50% -o out.svg" },
+        Example { what: "A logo on a flag", command: "warp samples/logo.svg --style flag --bend -30% -o out.svg" },
+        Example {
+            what: "A badge seen through a fisheye, leaning away to the right",
+            command: "warp samples/badge.svg --style fisheye --bend 60% --horizontal -25% -o out.svg",
+        },
+        Example {
+            what: "A style from a file",
+            command: "warp samples/lettering.svg --style samples/roof.toml --bend 80% -o out.svg",
+        },
+    ],
+    laws: &[
+        Law::Identity(&[("style", "arc"), ("bend", "0")]),
+        Law::Identity(&[("style", "shell-upper"), ("bend", "0"), ("axis", "vertical")]),
+        Law::Identity(&[("style", "twist"), ("bend", "0%")]),
+        Law::Same(&[("style", "warpArcUpper")], &[("style", "arc-upper"), ("bend", "0.5")]),
+        // Arch and flag move uprights up and down.
+        Law::KeepsLinesAlong(&[("style", "arch"), ("bend", "-70%")], (0.0, 1.0)),
+        Law::KeepsLinesAlong(&[("style", "flag"), ("bend", "150%")], (0.0, 1.0)),
+        Law::Area(&[("style", "flag"), ("bend", "30%")], 1.0),
+        // On a square the box itself is its transpose.
+        Law::KeepsLinesAlong(&[("style", "arch"), ("axis", "vertical")], (1.0, 0.0)),
+    ],
+    cases: &[
+        // A half circle: its middle lies the cubic's 3/4·(2/3·diameter) above the ends.
+        Case { args: &[("style", "arch"), ("bend", "100%")], at: (50.0, 0.0), to: (50.0, -50.0), tolerance: 1e-12 },
+        // The wings of a full fan are level.
+        Case { args: &[("style", "arc"), ("bend", "100%")], at: (0.0, 0.0), to: (-100.0, 100.0), tolerance: 1e-12 },
+        Case { args: &[("style", "arc"), ("bend", "100%")], at: (50.0, 100.0), to: (50.0, 50.0), tolerance: 1e-12 },
+        // 3·(1/3)(2/3)²·100 up and down again.
+        Case {
+            args: &[("style", "flag"), ("bend", "50%")],
+            at: (100.0 / 3.0, 50.0),
+            to: (100.0 / 3.0, 50.0 + 200.0 / 9.0),
+            tolerance: 1e-12,
+        },
+        Case {
+            args: &[("style", "rise"), ("bend", "50%"), ("axis", "vertical")],
+            at: (50.0, 0.0),
+            to: (50.0, 0.0),
+            tolerance: 1e-12,
+        },
+    ],
+};
+
+impl Deformation for Warp {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let style = style(s)?;
+        let bend = s.number("bend")?;
+        if let Some(limit) = style.limit().filter(|l| bend.abs() > *l) {
+            let most = limit * 100.0;
+            let problem = format!("is out of range: {} bends from -{most}% to {most}%", style.name);
+            return Err(Error::usage("bend", s.texts("bend").join(" "), problem));
+        }
+        let vertical = s.choice("axis")? == "vertical";
+        let bent = Bent { bend, distortion: [s.number("horizontal")?, s.number("vertical")?], vertical };
+        let rect = s.frame().rect;
+        let wrong = |what: String| Error::usage("style", s.texts("style").join(" "), what);
+        let net = style.net(rect.width(), rect.height(), &bent).map_err(wrong)?;
+        let mut built = over(rect, &net)?;
+        built.notes.push(format!(
+            "style {}: bend {}%, {}{}",
+            style.name,
+            bend * 100.0,
+            if vertical { "vertical" } else { "horizontal" },
+            if style.title.is_empty() { String::new() } else { format!("; {}", style.title) }
+        ));
+        Ok(built)
+    }
+}
+
+/// The style asked for.
+fn style(s: &Settings<'_>) -> Result<Style, Error> {
+    if let Some(file) = s.file_if("style")? {
+        return serde_json::from_str(&file.text)
+            .map_err(|e| Error::input(&file.name, format!("is no warp style: {e}")));
+    }
+    let name = s.texts("style").last().copied().unwrap_or_default();
+    style::builtin().into_iter().find(|style| style.is_called(name)).ok_or_else(|| {
+        Error::usage("style", name, format!("is no style; there are {}, and files (TOML or JSON)", NAMES.join(", ")))
+    })
+}
+
+/// The map of one net, given from the box's top left corner, over that box.
+pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
+    if !(rect.width() > 0.0 && rect.height() > 0.0) {
+        return Err(crate::error::GeometryError::FlatFrame { width: rect.width(), height: rect.height() }.into());
+    }
+    let net: Net = net.map(|row| row.map(|p| p + rect.origin().to_vec2()));
+    let pre = Affine::new([
+        1.0 / rect.width(),
+        0.0,
+        0.0,
+        1.0 / rect.height(),
+        -rect.x0 / rect.width(),
+        -rect.y0 / rect.height(),
+    ]);
+    let map = BicubicNet::new(&net, pre);
+    let map: Arc<dyn Map> = match map.class() {
+        Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, &crate::param::Frame::new(rect)))),
+        Class::Projective(_) | Class::Smooth => Arc::new(map),
+    };
+    let overlays = vec![
+        Overlay { role: Role::Base, path: kurbo::Shape::to_path(&rect, 0.1) },
+        Overlay { role: Role::Cage, path: super::shaper::rows_path(&net) },
+    ];
+    Ok(Built { overlays, ..Built::new(map) })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,382 @@
+//! The nets against the measured table, written out here once more with plain numbers and circles.
+
+use super::style::{Bent, builtin};
+use super::*;
+use crate::check;
+use crate::outline::{Outline, Seg};
+use crate::param::{Args, Frame};
+use crate::refit;
+use kurbo::{CubicBez, ParamCurve, Point};
+use std::f64::consts::PI;
+
+#[test]
+fn is_sound() {
+    let faults = check::entry(&Warp);
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+const W: f64 = 240.0;
+const H: f64 = 90.0;
+
+type N = [[(f64, f64); 4]; 4];
+
+fn rest(w: f64, h: f64) -> N {
+    let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+    t.map(|v| t.map(|u| (u * w, v * h)))
+}
+
+/// An arc through |b|·π about (W/2, yc) with radius r, above or below its centre.
+fn arc(w: f64, b: f64, yc: f64, r: f64, up: bool) -> [(f64, f64); 4] {
+    let theta = b.abs() * PI;
+    let (s, c, k) = ((theta / 2.0).sin(), (theta / 2.0).cos(), 4.0 / 3.0 * (theta / 4.0).tan());
+    let side = if up { -1.0 } else { 1.0 };
+    let (x0, x1, y) = (w / 2.0 - r * s, w / 2.0 + r * s, yc + side * r * c);
+    let (dx, dy) = (k * r * c, side * k * r * s);
+    [(x0, y), (x0 + dx, y + dy), (x1 - dx, y + dy), (x1, y)]
+}
+
+fn mirrored(n: N, h: f64) -> N {
+    [3, 2, 1, 0].map(|j: usize| n[j].map(|(x, y)| (x, h - y)))
+}
+
+/// Straight sides with handles at thirds, and the inner points of the bilinear Coons patch.
+fn completed(mut n: N) -> N {
+    let mix = |p: (f64, f64), q: (f64, f64), t: f64| (p.0 + (q.0 - p.0) * t, p.1 + (q.1 - p.1) * t);
+    for c in [0, 3] {
+        (n[1][c], n[2][c]) = (mix(n[0][c], n[3][c], 1.0 / 3.0), mix(n[0][c], n[3][c], 2.0 / 3.0));
+    }
+    inner(n)
+}
+
+fn inner(mut n: N) -> N {
+    let sum = |terms: &[(f64, (f64, f64))]| {
+        terms.iter().fold((0.0, 0.0), |a, (k, p)| (a.0 + k * p.0 / 9.0, a.1 + k * p.1 / 9.0))
+    };
+    let p = n;
+    let one = |j: usize, c: usize, cj: usize, cc: usize| {
+        let (fj, fc) = (3 - cj, 3 - cc);
+        sum(&[
+            (6.0, p[cj][c]),
+            (6.0, p[j][cc]),
+            (3.0, p[fj][c]),
+            (3.0, p[j][fc]),
+            (-4.0, p[cj][cc]),
+            (-2.0, p[cj][fc]),
+            (-2.0, p[fj][cc]),
+            (-1.0, p[fj][fc]),
+        ])
+    };
+    (n[1][1], n[1][2], n[2][1], n[2][2]) = (one(1, 1, 0, 0), one(1, 2, 0, 3), one(2, 1, 3, 0), one(2, 2, 3, 3));
+    n
+}
+
+/// The table.
+fn table(style: &str, b: f64, w: f64, h: f64) -> N {
+    let theta = b.abs() * PI;
+    let (s, c) = ((theta / 2.0).sin(), (theta / 2.0).cos());
+    let r = w / (2.0 * s);
+    let mut n = rest(w, h);
+    match style {
+        "arc" => {
+            n[3] = arc(w, b, h + r * c, r, true);
+            n[0] = arc(w, b, h + r * c, r + h, true);
+            let n = completed(n);
+            if b < 0.0 { mirrored(n, h) } else { n }
+        }
+        "arc-lower" => {
+            n[3] = if b > 0.0 { arc(w, b, h - r * c, r, false) } else { arc(w, b, h + r * c, r, true) };
+            completed(n)
+        }
+        "arc-upper" => {
+            n[0] = if b > 0.0 { arc(w, b, r * c, r, true) } else { arc(w, b, -r * c, r, false) };
+            completed(n)
+        }
+        "arch" => {
+            n[0] = if b > 0.0 { arc(w, b, r * c, r, true) } else { arc(w, b, -r * c, r, false) };
+            n[3] = n[0].map(|(x, y)| (x, y + h));
+            completed(n)
+        }
+        "bulge" => {
+            let up = b > 0.0;
+            n[0] = if up { arc(w, b, r * c, r, true) } else { arc(w, b, -r * c, r, false) };
+            n[3] = if up { arc(w, b, h - r * c, r, false) } else { arc(w, b, h + r * c, r, true) };
+            completed(n)
+        }
+        "shell-upper" | "shell-lower" => {
+            let turn = if b > 0.0 { s } else { -s };
+            n[0] = if b > 0.0 { arc(w, b, h + r * c, r + h, true) } else { arc(w, b, -r * c, r, false) };
+            n[1][0] = (n[0][0].0 + h / 3.0 * turn, n[0][0].1 + h / 3.0 * c);
+            n[1][3] = (n[0][3].0 - h / 3.0 * turn, n[0][3].1 + h / 3.0 * c);
+            if style == "shell-lower" { mirrored(n, h) } else { n }
+        }
+        "flag" | "fish" => {
+            for j in 0..4 {
+                let g = if style == "flag" { 1.0 } else { [-1.0, -1.0 / 3.0, 1.0 / 3.0, 1.0][j] };
+                n[j][1].1 += 2.0 * b * h * g;
+                n[j][2].1 -= 2.0 * b * h * g;
+            }
+            n
+        }
+        "wave" => {
+            for row in &mut n[1..3] {
+                row[1].1 += 4.0 / 3.0 * b * h;
+                row[2].1 -= 4.0 / 3.0 * b * h;
+            }
+            n
+        }
+        "rise" => {
+            for row in &mut n {
+                row[0].1 += 2.0 * b * h;
+                row[1].1 += 2.0 * b * h;
+            }
+            n
+        }
+        "fisheye" => {
+            let (x, y) = (2.0 / 3.0 * b * w, 2.0 / 3.0 * b * h);
+            for (j, c, sx, sy) in [(1, 1, -1.0, -1.0), (1, 2, 1.0, -1.0), (2, 1, -1.0, 1.0), (2, 2, 1.0, 1.0)] {
+                n[j][c].0 += sx * x;
+                n[j][c].1 += sy * y;
+            }
+            n
+        }
+        "inflate" | "squeeze" => {
+            let (l, m) = ([1.0, 1.0 / 3.0, -1.0 / 3.0, -1.0], [0.0, 1.0, 1.0, 0.0]);
+            let sign = if style == "squeeze" { -1.0 } else { 1.0 };
+            for j in 0..4 {
+                for c in 0..4 {
+                    n[j][c].0 -= sign * b / 3.0 * w * l[c] * m[j];
+                    n[j][c].1 -= b / 3.0 * h * m[c] * l[j];
+                }
+            }
+            n
+        }
+        "twist" => {
+            let a = b.abs();
+            let moves = if b > 0.0 {
+                [(1, 1, a * w, 0.0), (1, 2, 0.0, a * h), (2, 1, 0.0, -a * h), (2, 2, -a * w, 0.0)]
+            } else {
+                [(1, 1, 0.0, a * h), (1, 2, -a * w, 0.0), (2, 1, a * w, 0.0), (2, 2, 0.0, -a * h)]
+            };
+            for (j, c, x, y) in moves {
+                n[j][c].0 += x;
+                n[j][c].1 += y;
+            }
+            n
+        }
+        other => panic!("{other}"),
+    }
+}
+
+const BENDS: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
+
+fn plain(bend: f64) -> Bent {
+    Bent { bend, distortion: [0.0, 0.0], vertical: false }
+}
+
+fn off(net: &Net, n: &N) -> f64 {
+    let pairs = net.iter().flatten().zip(n.iter().flatten());
+    pairs.map(|(p, q)| p.distance((*q).into())).fold(0.0, f64::max)
+}
+
+#[test]
+fn every_style_is_there_under_every_spelling() {
+    let styles = builtin();
+    assert_eq!(styles.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), NAMES);
+    for (ours, psd) in
+        [("arc", "warpArc"), ("shell-lower", "warpShellLower"), ("fisheye", "warpFishEye"), ("twist", "warpTwist")]
+    {
+        let found: Vec<_> = styles.iter().filter(|s| s.is_called(psd)).map(|s| s.name.as_str()).collect();
+        assert_eq!(found, [ours]);
+    }
+    // Every style has its spelling in Photoshop's files.
+    assert!(styles.iter().all(|s| s.also.iter().any(|a| a.starts_with("warp"))));
+}
+
+#[test]
+fn nets_are_the_tables() {
+    for style in builtin() {
+        for b in BENDS {
+            let net = style.net(W, H, &plain(b)).unwrap();
+            let d = off(&net, &table(&style.name, b, W, H));
+            assert!(d < 1e-9, "{} {b}: {d:e}\n{net:?}", style.name);
+        }
+        let zero = style.net(W, H, &plain(0.0)).unwrap();
+        assert!(off(&zero, &rest(W, H)) < 1e-12, "{}", style.name);
+    }
+}
+
+/// Sideways it is the same style on the transposed box; a rise ends where it began.
+#[test]
+fn the_vertical_axis_is_transposition() {
+    for style in builtin() {
+        for b in BENDS {
+            let net = style.net(W, H, &Bent { vertical: true, ..plain(b) }).unwrap();
+            let across = table(&style.name, b, H, W);
+            let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
+            let expected: N = std::array::from_fn(|j| {
+                std::array::from_fn(|c| {
+                    let (x, y) = across[c][j];
+                    (y + shift, x)
+                })
+            });
+            assert!(off(&net, &expected) < 1e-9, "{} {b}", style.name);
+        }
+    }
+}
+
+/// Columns, then rows, about the middles of their ends; what is scaled depends on the family.
+fn distorted(style: &str, b: f64, h: f64, v: f64) -> N {
+    let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+    let scale = |n: &N| {
+        let mut out = *n;
+        for c in 0..4 {
+            let m = ((n[0][c].0 + n[3][c].0) / 2.0, (n[0][c].1 + n[3][c].1) / 2.0);
+            let f = 1.0 + h * (2.0 * t[c] - 1.0);
+            for j in 0..4 {
+                out[j][c] = (m.0 + (n[j][c].0 - m.0) * f, m.1 + (n[j][c].1 - m.1) * f);
+            }
+        }
+        let n = out;
+        for j in 0..4 {
+            let m = ((n[j][0].0 + n[j][3].0) / 2.0, (n[j][0].1 + n[j][3].1) / 2.0);
+            let f = 1.0 + v * (2.0 * t[j] - 1.0);
+            for c in 0..4 {
+                out[j][c] = (m.0 + (n[j][c].0 - m.0) * f, m.1 + (n[j][c].1 - m.1) * f);
+            }
+        }
+        out
+    };
+    let n = table(style, b, W, H);
+    match style {
+        "twist" | "fisheye" | "shell-upper" | "shell-lower" => scale(&n),
+        "wave" | "inflate" | "squeeze" => {
+            let (zero, mut out) = (rest(W, H), scale(&rest(W, H)));
+            for j in 0..4 {
+                for c in 0..4 {
+                    let f = (1.0 + h * (2.0 * t[c] - 1.0)) * (1.0 + v * (2.0 * t[j] - 1.0));
+                    out[j][c].0 += (n[j][c].0 - zero[j][c].0) * f;
+                    out[j][c].1 += (n[j][c].1 - zero[j][c].1) * f;
+                }
+            }
+            out
+        }
+        _ => inner(scale(&n)),
+    }
+}
+
+#[test]
+fn distortions_come_in_order() {
+    for style in builtin() {
+        for b in BENDS {
+            for (h, v) in [(0.3, 0.0), (0.0, -0.4), (0.25, -0.6), (-1.0, 0.5)] {
+                let net = style.net(W, H, &Bent { distortion: [h, v], ..plain(b) }).unwrap();
+                let d = off(&net, &distorted(&style.name, b, h, v));
+                assert!(d < 1e-9, "{} {b} {h} {v}: {d:e}", style.name);
+            }
+        }
+    }
+    // Order matters where both act on bent sides, so that the test can tell.
+    let arch = builtin().into_iter().find(|s| s.name == "arch").unwrap();
+    let one = arch.net(W, H, &Bent { distortion: [0.25, -0.6], ..plain(0.5) }).unwrap();
+    let upright = arch.net(H, W, &Bent { distortion: [-0.6, 0.25], vertical: true, ..plain(0.5) }).unwrap();
+    let swapped: N = std::array::from_fn(|j| std::array::from_fn(|c| (upright[c][j].y, upright[c][j].x)));
+    assert!(off(&one, &swapped) > 0.1);
+}
+
+fn build(pairs: &[(&str, &str)]) -> Built {
+    Warp.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(5.0, 7.0, 5.0 + W, 7.0 + H))).unwrap()
+}
+
+/// A drawing: every node of the result that comes from one of the source lies where the table's net puts it, and the box's own
+/// sides come out as one curve each, the net's outermost rows and columns.
+#[test]
+fn a_drawings_nodes_lie_where_the_table_says() {
+    let drawing = "M40,20 C80,10 90,60 130,50 L200,80 Q220,40 160,30 Z M20,20 A14,9 10 1 0 60,70 L20,90";
+    let art = Outline::from_svg(drawing).unwrap();
+    let frame =
+        Outline::from_points(&[(5.0, 7.0), (5.0 + W, 7.0), (5.0 + W, 7.0 + H), (5.0, 7.0 + H)].map(Point::from), true);
+    for name in NAMES {
+        for b in BENDS {
+            let n = table(name, b, W, H);
+            let at = |p: Point| {
+                let column = n.map(|r| {
+                    let q = r.map(|(x, y)| Point::new(x + 5.0, y + 7.0));
+                    CubicBez::new(q[0], q[1], q[2], q[3]).eval((p.x - 5.0) / W)
+                });
+                CubicBez::new(column[0], column[1], column[2], column[3]).eval((p.y - 7.0) / H)
+            };
+            let map = build(&[("style", name), ("bend", &b.to_string())]).map;
+            let out = refit::warp_path(&art, &map, &refit::Options::new(0.02)).unwrap();
+            let nodes: Vec<Point> = out.path.segments().flat_map(|s| [s.start(), s.end()]).collect();
+            for seg in art.segs() {
+                let q = at(seg.start());
+                let near = nodes.iter().map(|p| p.distance(q)).fold(f64::INFINITY, f64::min);
+                assert!(near < 1e-9, "{name} {b}: no node at {q:?}, the nearest {near:e} away");
+            }
+            let side = refit::warp_path(&frame, &map, &refit::Options::new(1e-6)).unwrap();
+            let segs: Vec<Seg> = Outline::from(&side.path).segs().copied().collect();
+            assert!(segs.len() == 4, "{name} {b}: {} segments", segs.len());
+            let top = segs[0].to_cubic();
+            for i in 0..=10 {
+                let t = f64::from(i) / 10.0;
+                let p = Point::new(5.0 + t * W, 7.0);
+                assert!(top.nearest_to(at(p)) < 2e-6, "{name} {b} {t}");
+            }
+        }
+    }
+}
+
+trait NearestTo {
+    fn nearest_to(&self, p: Point) -> f64;
+}
+
+impl NearestTo for CubicBez {
+    fn nearest_to(&self, p: Point) -> f64 {
+        kurbo::ParamCurveNearest::nearest(self, p, 1e-9).distance_sq.sqrt()
+    }
+}
+
+#[test]
+fn one_net_is_certified() {
+    let map = build(&[("style", "fisheye"), ("bend", "70%")]).map;
+    let art = Outline::from_svg("M40,20 C80,10 90,60 130,50 L200,80 Z").unwrap();
+    let options = refit::Options { certify: true, ..refit::Options::new(0.01) };
+    let out = refit::warp_path(&art, &map, &options).unwrap();
+    assert!(out.report.max_error <= 0.01, "{:?}", out.report);
+    assert_eq!(out.report.assurance, refit::Assurance::Certified);
+}
+
+#[test]
+fn files_of_ones_own_and_their_faults() {
+    let with = |text: &str| {
+        let mut args = Args::from_pairs(&[("style", "my.json"), ("bend", "50%")]);
+        args.resolve_files(Warp.info().params, |_| Ok(text.to_owned())).unwrap();
+        Warp.build_from(&args, &check::frame())
+    };
+    let flag = r#"{ "name": "f", "family": "points", "moves": [{ "at": "*,1", "y": "2*b*h" }, { "at": "*,2", "y": "-2*b*h" }] }"#;
+    let (own, ours) = (
+        with(flag).unwrap().map,
+        Warp.build_from(&Args::from_pairs(&[("style", "flag")]), &check::frame()).unwrap().map,
+    );
+    for p in [(10.0, 10.0), (60.0, 30.0), (95.0, 99.0)] {
+        assert!(own.point(p.into()).distance(ours.point(p.into())) < 1e-12);
+    }
+    let head = r#"{ "name": "f", "family": "points", "#;
+    for (rest, part) in [
+        (r#""moves": [{ "at": "4,1" }] }"#, "`4,1`"),
+        (r#""moves": [{ "at": "1,1", "y": "2*q" }] }"#, "q"),
+        (r#""arcs": [{ "row": 7, "y": "0", "half": "w", "lift": "k" }] }"#, "row 7"),
+        (r#""let": ["t = 1/0"] }"#, "finite"),
+        (r#""colour": 1 }"#, "colour"),
+    ] {
+        let fault = with(&format!("{head}{rest}")).map(|_| ()).unwrap_err().to_string();
+        assert!(fault.contains(part), "{fault}");
+    }
+    let refused = |pairs: &[(&str, &str)]| {
+        Warp.build_from(&Args::from_pairs(pairs), &check::frame()).map(|_| ()).unwrap_err().to_string()
+    };
+    assert!(refused(&[("style", "flags")]).contains("arc-lower"));
+    assert!(refused(&[("bend", "191%")]).contains("-190% to 190%"));
+    // What is no arc goes on.
+    assert!(Warp.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
+}

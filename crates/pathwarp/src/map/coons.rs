@@ -1,0 +1,193 @@
+//! The Coons patch: the map of a box into four curved sides.
+//!
+//! > F(u,v) = (1−v)·B(u) + v·T(u) + (1−u)·L(v) + u·R(v) − Σ corners, blended bilinearly
+//!
+//! (S. A. Coons, *Surfaces for Computer-Aided Design of Space Forms*, MIT 1967), with B, T the bottom and the top run left to
+//! right, L, R the left and the right side run upwards, (u,v) an affine function of the source point. With one cubic for every
+//! side this is the shaper's completed net (Koppinen, *A plane transformation from 16 control points*, equation 7). With straight
+//! L and R it is the ruled map (1−v)·B(u) + v·T(u): what stood upright is straight.
+//!
+//! Lines u = k and v = k through the joints of facing sides cut the box into cells. Where all four pieces of a cell are
+//! polynomials (lines; Bézier curves at their own pace), the cell's map is a bicubic net, and exact images follow.
+
+use super::side::Side;
+use super::{AffineMap, BicubicNet, Class, Crease, Creases, Jet, Level, Map};
+use kurbo::{Affine, Point, Vec2};
+use std::sync::Arc;
+
+/// The map of a box into four sides.
+#[derive(Debug, Clone)]
+pub struct Coons {
+    pre: Affine,
+    cut: Arc<Cut>,
+}
+
+/// The sides, and where their joints cut the box.
+#[derive(Debug)]
+struct Cut {
+    sides: Sides,
+    us: Vec<f64>,
+    vs: Vec<f64>,
+}
+
+/// Four sides that meet in four corners.
+#[derive(Debug, Clone)]
+pub struct Sides {
+    /// Left to right.
+    pub bottom: Side,
+    /// Upwards.
+    pub right: Side,
+    /// Left to right.
+    pub top: Side,
+    /// Upwards.
+    pub left: Side,
+}
+
+/// A crease beyond the box lies this share of it outside, so that artwork which touches the box's edge is not cut there by
+/// rounding. The map bends from there on; between here and the edge it does so by the square of this.
+const OUTSIDE: f64 = 1e-9;
+
+fn simplest(net: BicubicNet) -> Arc<dyn Map> {
+    match net.class() {
+        Class::Affine(m) => Arc::new(AffineMap(m)),
+        _ => Arc::new(net),
+    }
+}
+
+/// Which piece of each side: bottom, right, top, left.
+type Cell = [usize; 4];
+
+impl Coons {
+    /// The map; `pre` takes the source to the unit square, v upwards.
+    #[must_use]
+    pub fn new(sides: Sides, pre: Affine) -> Self {
+        let merged = |a: &Side, b: &Side| {
+            let mut all = [a.joints(), b.joints()].concat();
+            all.sort_by(f64::total_cmp);
+            all.dedup_by(|b, a| *b - *a <= OUTSIDE);
+            all
+        };
+        let (us, vs) = (merged(&sides.bottom, &sides.top), merged(&sides.left, &sides.right));
+        Self { pre, cut: Arc::new(Cut { sides, us, vs }) }
+    }
+
+    /// The sides.
+    #[must_use]
+    pub fn sides(&self) -> &Sides {
+        &self.cut.sides
+    }
+
+    /// The same map in its simplest form: one net, or affine, where it is that.
+    #[must_use]
+    pub fn simplest(self) -> Arc<dyn Map> {
+        match self.net([0; 4]) {
+            Some(net) if self.cut.us.is_empty() && self.cut.vs.is_empty() => simplest(net),
+            _ => Arc::new(self),
+        }
+    }
+
+    fn cell(&self, u: f64, v: f64) -> Cell {
+        let s = self.sides();
+        [s.bottom.piece(u), s.right.piece(v), s.top.piece(u), s.left.piece(v)]
+    }
+
+    /// The jet in terms of the source point, on known pieces.
+    fn on(&self, [b, r, t, l]: Cell, p: Point) -> Jet {
+        let Point { x: u, y: v } = self.pre * p;
+        let s = self.sides();
+        let ((b, db), (t, dt)) = (s.bottom.on(b, u), s.top.on(t, u));
+        let ((l, dl), (r, dr)) = (s.left.on(l, v), s.right.on(r, v));
+        let [p00, p10, p01, p11] = self.corners();
+        // Everything counted from the nearest numbers: sums of differences round less.
+        let value = b + (t - b) * v + ((l - p00.lerp(p01, v)) * (1.0 - u) + (r - p10.lerp(p11, v)) * u);
+        let du = db * (1.0 - v) + dt * v + ((r - p10.lerp(p11, v)) - (l - p00.lerp(p01, v)));
+        let dv = (t - b) + (dl - (p01 - p00)) * (1.0 - u) + (dr - (p11 - p10)) * u;
+        let [a, bb, c, d, ..] = self.pre.as_coeffs();
+        Jet { p: value, dx: du * a + dv * bb, dy: du * c + dv * d }
+    }
+
+    /// Bottom left, bottom right, top left, top right.
+    fn corners(&self) -> [Point; 4] {
+        let ([a, b], [c, d]) = (self.sides().bottom.ends(), self.sides().top.ends());
+        [a, b, c, d]
+    }
+
+    /// The bicubic net of a cell whose four pieces are polynomials.
+    fn net(&self, cell: Cell) -> Option<BicubicNet> {
+        let s = self.sides();
+        let [b, r, t, l] = cell;
+        // The cell's range: the stretch of both facing pieces.
+        let range = |joints: &[f64], holds: &dyn Fn(f64) -> bool| {
+            let mut ends: Vec<f64> = std::iter::once(0.0).chain(joints.iter().copied()).collect();
+            ends.push(1.0);
+            ends.windows(2).find(|e| holds(0.5 * (e[0] + e[1]))).map(|e| (e[0], e[1]))
+        };
+        let (u0, u1) = range(&self.cut.us, &|m| s.bottom.piece(m) == b && s.top.piece(m) == t)?;
+        let (v0, v1) = range(&self.cut.vs, &|m| s.right.piece(m) == r && s.left.piece(m) == l)?;
+        let points = |c: kurbo::CubicBez| [c.p0, c.p1, c.p2, c.p3].map(Point::to_vec2);
+        let bottom = points(s.bottom.cubic(b, u0, u1)?);
+        let top = points(s.top.cubic(t, u0, u1)?);
+        let left = points(s.left.cubic(l, v0, v1)?);
+        let right = points(s.right.cubic(r, v0, v1)?);
+        let [p00, p10, p01, p11] = self.corners().map(Point::to_vec2);
+        // A linear function's Bernstein coefficients of degree 3 are its values at thirds, and every term is a product of one
+        // in u and one in v.
+        let third = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / 3.0;
+        let net = std::array::from_fn(|j| {
+            let v = third(v0, v1, j);
+            std::array::from_fn(|i| {
+                let u = third(u0, u1, i);
+                let lying: Vec2 = bottom[i] * (1.0 - v) + top[i] * v;
+                let corner = (p00 * (1.0 - u) + p10 * u) * (1.0 - v) + (p01 * (1.0 - u) + p11 * u) * v;
+                (lying + (left[j] * (1.0 - u) + right[j] * u) - corner).to_point()
+            })
+        });
+        let to_cell = Affine::scale_non_uniform(1.0 / (u1 - u0), 1.0 / (v1 - v0)) * Affine::translate((-u0, -v0));
+        Some(BicubicNet::new(&net, to_cell * self.pre))
+    }
+}
+
+impl Map for Coons {
+    fn jet(&self, p: Point) -> Jet {
+        let q = self.pre * p;
+        self.on(self.cell(q.x, q.y), p)
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let (mut us, mut vs) = (self.cut.us.clone(), self.cut.vs.clone());
+        let s = self.sides();
+        for (levels, pair) in [(&mut us, [&s.bottom, &s.top]), (&mut vs, [&s.left, &s.right])] {
+            if !pair.iter().all(|s| s.runs_on()) {
+                levels.extend([-OUTSIDE, 1.0 + OUTSIDE]);
+            }
+        }
+        let [a, b, c, d, e, f] = self.pre.as_coeffs();
+        for k in us {
+            out.push(Crease::kink(Level::Line { a, b: c, c: e - k }));
+        }
+        for k in vs {
+            out.push(Crease::kink(Level::Line { a: b, b: d, c: f - k }));
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        let q = self.pre * inside;
+        let cell = self.cell(q.x, q.y);
+        Some(match self.net(cell) {
+            Some(net) => simplest(net),
+            None => Arc::new(OnCell { whole: self.clone(), cell }),
+        })
+    }
+}
+
+/// The smooth map on one cell.
+struct OnCell {
+    whole: Coons,
+    cell: Cell,
+}
+
+impl Map for OnCell {
+    fn jet(&self, p: Point) -> Jet {
+        self.whole.on(self.cell, p)
+    }
+}

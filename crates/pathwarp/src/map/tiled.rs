@@ -1,0 +1,217 @@
+//! A map in tiles: rows of smooth maps side by side, each in charge of a rectangle of the source plane.
+//!
+//! The outermost tiles run on beyond the region. The lines between tiles are creases: uprights within their row, levels all
+//! along. Neighbours need not agree there; where they do not, a path that crosses is drawn on by a straight line.
+
+use super::inverse::{NOWHERE, NewtonInverse};
+use super::{Crease, CreaseKind, Creases, Jet, Level, Map, RationalBezier};
+use kurbo::{Point, Rect};
+use std::sync::Arc;
+
+/// Tiles side by side.
+#[derive(Clone)]
+pub struct Row {
+    /// Where one tile ends and the next begins: rising, one less than there are tiles.
+    pub cuts: Vec<f64>,
+    /// The tiles' maps, from the left; at least one.
+    pub maps: Vec<Arc<dyn Map>>,
+}
+
+/// A map in tiles.
+#[derive(Clone)]
+pub struct Tiled {
+    region: Rect,
+    /// Where one row ends and the next begins: rising.
+    cuts: Vec<f64>,
+    rows: Vec<Row>,
+}
+
+/// How far beyond the region its creases are told, as a multiple of its size: artwork reaches over its frame by less.
+const REACH: f64 = 1e3;
+/// How far beyond its own rectangle an answer of a tile's inverse still counts, as a share of the rectangle: room for the ends
+/// of a part that lie on the border, and for their rounding.
+const ROOM: f64 = 1e-9;
+
+impl Tiled {
+    /// Rows over `region`, divided at the heights `cuts`. A single tile is its map itself.
+    ///
+    /// `None`: no rows, or their cuts do not fit their number.
+    #[must_use]
+    pub fn over(region: Rect, cuts: Vec<f64>, rows: Vec<Row>) -> Option<Arc<dyn Map>> {
+        let fits = |cuts: &[f64], n: usize| cuts.len() + 1 == n && cuts.windows(2).all(|w| w[0] <= w[1]);
+        if !fits(&cuts, rows.len()) || !rows.iter().all(|r| fits(&r.cuts, r.maps.len())) {
+            return None;
+        }
+        match &rows[..] {
+            [Row { maps, .. }] if maps.len() == 1 => maps.first().cloned(),
+            _ => Some(Arc::new(Self { region, cuts, rows })),
+        }
+    }
+
+    fn place(&self, p: Point) -> (usize, usize) {
+        let j = self.cuts.partition_point(|c| *c < p.y);
+        (j, self.rows[j].cuts.partition_point(|c| *c < p.x))
+    }
+
+    fn tile(&self, p: Point) -> &Arc<dyn Map> {
+        let (j, i) = self.place(p);
+        &self.rows[j].maps[i]
+    }
+
+    /// A tile's rectangle, the outermost ones' up to the region's border.
+    fn rect(&self, j: usize, i: usize) -> Rect {
+        let span = |cuts: &[f64], k: usize, from: f64, to: f64| {
+            (if k == 0 { from } else { cuts[k - 1] }, cuts.get(k).copied().unwrap_or(to))
+        };
+        let r = self.region;
+        let (y0, y1) = span(&self.cuts, j, r.y0, r.y1);
+        let (x0, x1) = span(&self.rows[j].cuts, i, r.x0, r.x1);
+        Rect::new(x0, y0, x1, y1)
+    }
+
+    /// The same, the outermost ones' far out.
+    fn reach(&self, j: usize, i: usize) -> Rect {
+        let (mut b, r) = (self.rect(j, i), self.region);
+        let far = r.inflate(REACH * r.width(), REACH * r.height());
+        b.x0 = if b.x0 == r.x0 { far.x0 } else { b.x0 };
+        b.x1 = if b.x1 == r.x1 { far.x1 } else { b.x1 };
+        b.y0 = if b.y0 == r.y0 { far.y0 } else { b.y0 };
+        b.y1 = if b.y1 == r.y1 { far.y1 } else { b.y1 };
+        b
+    }
+
+    fn tiles(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.rows.iter().enumerate().flat_map(|(j, r)| (0..r.maps.len()).map(move |i| (j, i)))
+    }
+}
+
+impl Map for Tiled {
+    fn jet(&self, p: Point) -> Jet {
+        self.tile(p).jet(p)
+    }
+
+    fn point(&self, p: Point) -> Point {
+        self.tile(p).point(p)
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        for y in &self.cuts {
+            out.push(Crease::kink(Level::Line { a: 0.0, b: 1.0, c: -y }));
+        }
+        for (j, row) in self.rows.iter().enumerate() {
+            let last = row.maps.len() - 1;
+            let within = Rect { x0: self.reach(j, 0).x0, x1: self.reach(j, last).x1, ..self.reach(j, 0) };
+            for x in &row.cuts {
+                let (a, b, c) = (1.0, 0.0, -x);
+                out.push(Crease::kink(if self.cuts.is_empty() {
+                    Level::Line { a, b, c }
+                } else {
+                    Level::Stretch { a, b, c, within }
+                }));
+            }
+        }
+        for (j, i) in self.tiles() {
+            let mut own = Creases::default();
+            self.rows[j].maps[i].creases(&mut own);
+            for c in own.items() {
+                let (level, tiled) = (c.level.clone(), self.clone());
+                let level = Level::Field(Arc::new(move |p| if tiled.place(p) == (j, i) { level.at(p) } else { 1.0 }));
+                out.push(Crease { level, kind: c.kind });
+            }
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        let tile = self.tile(inside);
+        Some(tile.branch(inside).unwrap_or_else(|| tile.clone()))
+    }
+
+    /// Where the control points, and so the curve, lie in one tile.
+    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        let mut place = None;
+        for p in &curve.points {
+            if p[2] <= 0.0 {
+                return None;
+            }
+            let here = self.place(Point::new(p[0] / p[2], p[1] / p[2]));
+            if place.replace(here).is_some_and(|before| before != here) {
+                return None;
+            }
+        }
+        let (j, i) = place?;
+        self.rows[j].maps[i].image_of(curve)
+    }
+
+    /// By Newton's method in every tile, half the region's size beyond it.
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(TiledInverse::new(self)))
+    }
+}
+
+/// The inverse of a [`Tiled`] map.
+#[derive(Clone)]
+struct TiledInverse {
+    of: Tiled,
+    /// Every tile's inverse, and the rectangle its answers must lie in.
+    tiles: Vec<(Rect, Arc<NewtonInverse>)>,
+}
+
+impl TiledInverse {
+    fn new(of: &Tiled) -> Self {
+        let r = of.region;
+        let wide = r.inflate(0.5 * r.width(), 0.5 * r.height());
+        let tiles = of.tiles().map(|(j, i)| {
+            let domain = of.reach(j, i).intersect(wide);
+            let room = ROOM * (domain.width() + domain.height());
+            let (map, core) = (of.rows[j].maps[i].clone(), of.rect(j, i));
+            (domain.inflate(room, room), Arc::new(NewtonInverse::with_core(map, core, domain, 0.0, [1, 1])))
+        });
+        Self { of: of.clone(), tiles: tiles.collect() }
+    }
+
+    /// The first preimage in the region, else the first beyond it.
+    fn solve(&self, q: Point) -> Option<(usize, Jet)> {
+        let found = |k: usize| {
+            let (rect, inverse) = &self.tiles[k];
+            inverse.solve_where(q, |p| rect.contains(p)).map(|j| (k, j))
+        };
+        let mut beyond = None;
+        for k in 0..self.tiles.len() {
+            match found(k) {
+                Some((k, jet)) if self.of.region.contains(jet.p) => return Some((k, jet)),
+                Some(other) if beyond.is_none() => beyond = Some(other),
+                _ => {}
+            }
+        }
+        beyond
+    }
+}
+
+impl Map for TiledInverse {
+    fn jet(&self, q: Point) -> Jet {
+        self.solve(q).map_or(NOWHERE, |s| s.1)
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        // The forward map's creases, seen from the image.
+        let mut own = Creases::default();
+        self.of.creases(&mut own);
+        for c in own.items().iter().filter(|c| c.kind == CreaseKind::Kink) {
+            let (level, back) = (c.level.clone(), self.clone());
+            out.push(Crease::kink(Level::Field(Arc::new(move |q| level.at(back.point(q))))));
+        }
+    }
+
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        let (k, _) = self.solve(inside)?;
+        let (rect, _) = self.tiles[k];
+        let (j, i) = self.of.tiles().nth(k)?;
+        // Room for the ends of a part that lie on the tile's border.
+        let reach = 1e-3 * (rect.width() + rect.height());
+        Some(Arc::new(NewtonInverse::new(self.of.rows[j].maps[i].clone(), rect, reach, [1, 1])))
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.of.clone()))
+    }
+}
