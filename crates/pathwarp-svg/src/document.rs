@@ -1,6 +1,7 @@
 //! An SVG file: what it paints, what it calls things, and its text.
 
 use crate::geometry::Reader;
+use crate::letters;
 use crate::read::{self, ReadOptions};
 use crate::resolve;
 use crate::scene::{self, Role, Scene};
@@ -78,7 +79,8 @@ impl Document {
             // Where positions are not to be trusted, the text must not be touched.
             let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
             let (tree, missing_fonts) = read::tree(text, name, options)?;
-            let scene = resolve::build(&tree, &source, &ids, dpi);
+            let letters = letters::owners(&source, &ids, name, options)?;
+            let scene = resolve::build(&tree, &source, &ids, &letters, dpi);
             let shapes = shapes(&scene, &source);
             let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
             Ok((tree, missing_fonts, scene, shapes, page))

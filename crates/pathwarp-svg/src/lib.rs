@@ -30,6 +30,7 @@ mod fonts;
 mod geometry;
 mod image;
 mod keep;
+mod letters;
 mod number;
 mod options;
 mod paint;

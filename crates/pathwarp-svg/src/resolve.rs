@@ -1,6 +1,7 @@
 //! Builds the scene: walks usvg's tree, finds the source element, the true outline and the exact transform of everything in it.
 
 use crate::geometry::{self, Reader};
+use crate::letters::Owners;
 use crate::scene::{Bitmap, Clip, Group, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::Outline;
@@ -12,6 +13,7 @@ use usvg::{Fill, Stroke};
 struct Builder<'a> {
     reader: Reader<'a>,
     ids: &'a HashMap<String, Vec<ElementId>>,
+    letters: &'a Owners,
     /// The source's transforms by what they are in f32; `None` where two different ones round to the same.
     exact: HashMap<[u32; 6], Option<Affine>>,
     /// The source's shapes by roughly where they start: for copies, which carry no id. Filled when first needed.
@@ -45,12 +47,19 @@ struct Context {
 }
 
 /// Resolves the drawing. `ids` says what the tree's ids stand for.
-pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Vec<ElementId>>, dpi: f64) -> Scene {
+pub(crate) fn build(
+    tree: &usvg::Tree,
+    source: &Source,
+    ids: &HashMap<String, Vec<ElementId>>,
+    letters: &Owners,
+    dpi: f64,
+) -> Scene {
     let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
     let reader = Reader { source, dpi, page };
     let mut b = Builder {
         reader,
         ids,
+        letters,
         exact: exact_transforms(&reader),
         starts: None,
         outlines: HashMap::new(),
@@ -327,7 +336,8 @@ impl Builder<'_> {
         }
         let context = Context { owner: context.owner.or(element), ..context };
         let content = self.group(t.flattened(), frame, context);
-        Node::Text { element, content: Box::new(content) }
+        let owners = element.and_then(|e| self.letters.get(&e)).cloned().unwrap_or_default();
+        Node::Text { element, content: Box::new(content), owners }
     }
 
     fn unkept(&mut self, why: &str) {

@@ -52,6 +52,8 @@ pub(crate) enum Node {
     Text {
         element: Option<ElementId>,
         content: Box<Group>,
+        /// Of each node of the content the element it comes from; empty where nothing inside has a name.
+        owners: Vec<ElementId>,
     },
 }
 

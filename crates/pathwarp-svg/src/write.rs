@@ -128,7 +128,7 @@ impl<'a> Writer<'a> {
             Node::Group(g) => self.group(g, ""),
             Node::Part(i) => self.part(*i),
             Node::Image(i) => self.image(*i),
-            Node::Text { element, content } => {
+            Node::Text { element, content, .. } => {
                 let id = element.filter(|_| !self.in_source).map_or(String::new(), |e| self.id_attribute(e));
                 let inner = self.group(content, "");
                 if id.is_empty() { inner } else { format!("<{0}{id}>{inner}</{0}>", self.tag("g")) }
@@ -149,6 +149,23 @@ impl<'a> Writer<'a> {
 
     /// A group with `lead` as the first of its content.
     pub(crate) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
+        let head = self.head(g, extra);
+        let inner = self.nodes(&g.children);
+        self.wrapped(&head, &format!("{lead}{inner}"))
+    }
+
+    /// What a group does, around content that is written already.
+    pub(crate) fn group_around(&mut self, g: &Group, content: &str) -> String {
+        let head = self.head(g, "");
+        self.wrapped(&head, content)
+    }
+
+    fn wrapped(&self, head: &str, content: &str) -> String {
+        if head.is_empty() { content.to_owned() } else { format!("<{0}{head}>{content}</{0}>", self.tag("g")) }
+    }
+
+    /// A group's attributes.
+    fn head(&mut self, g: &Group, extra: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
             properties.push(("opacity", short(f64::from(g.opacity))));
@@ -182,11 +199,7 @@ impl<'a> Writer<'a> {
             let _ = write!(head, " transform=\"{}\"", matrix(transform));
         }
         head.push_str(&self.attributes(&properties));
-        let inner = self.nodes(&g.children);
-        if head.is_empty() {
-            return format!("{lead}{inner}");
-        }
-        format!("<{0}{head}>{lead}{inner}</{0}>", self.tag("g"))
+        head
     }
 
     pub(crate) fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {

@@ -60,6 +60,19 @@ fn main() -> ExitCode {
                         .value_parser(value_parser!(usize))
                         .default_value("1")
                         .help("Take one file of N"),
+                )
+                .arg(
+                    Arg::new("pictures")
+                        .long("pictures")
+                        .value_name("FOLDER")
+                        .value_parser(value_parser!(PathBuf))
+                        .help("Where to put pictures of what misses: as it should be, as it is, the difference"),
+                )
+                .arg(
+                    Arg::new("times")
+                        .long("times")
+                        .action(ArgAction::SetTrue)
+                        .help("Only time reading and writing"),
                 ),
         )
         .subcommand(
@@ -108,6 +121,8 @@ fn main() -> ExitCode {
             folders: m.get_many("svg").unwrap_or_default().cloned().collect(),
             fonts: m.get_one("fonts").cloned(),
             every: m.get_one("every").copied().unwrap_or(1),
+            pictures: m.get_one("pictures").cloned(),
+            times: m.get_flag("times"),
         }),
         Some(("corpus", _)) => corpus::run().map(|()| "wrote corpus/icons.txt".to_owned()).map_err(|e| e.to_string()),
         Some(("docs", m)) => docs::run(&root, m.get_one::<PathBuf>("program").map(PathBuf::as_path)),
