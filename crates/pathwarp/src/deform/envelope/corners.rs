@@ -16,10 +16,10 @@ const MOST_PIECES: usize = 2000;
 const SAMPLES: u32 = 64;
 
 /// Four sides of a closed path in the order in which the map uses them.
-pub(super) struct Ring {
+pub(in crate::deform) struct Ring {
     /// Bottom (left to right), right (upwards), top (right to left), left (downwards).
-    pub(super) sides: [Vec<Seg>; 4],
-    pub(super) notes: Vec<String>,
+    pub(in crate::deform) sides: [Vec<Seg>; 4],
+    pub(in crate::deform) notes: Vec<String>,
 }
 
 /// A place on the path: piece and parameter.

@@ -3,7 +3,7 @@
 //! The map is the Coons patch of the sides ([`Coons`]), which for sides of one cubic is the shaper's (Koppinen, *A plane
 //! transformation from 16 control points*, equation 7).
 
-mod corners;
+pub(super) mod corners;
 mod curves;
 mod faults;
 #[cfg(test)]
@@ -129,47 +129,51 @@ impl Deformation for Envelope {
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let ring = ring(s)?;
-        let frame = anchors::frame_corners(s)?;
-        let rect = s.frame().rect;
-        let pre = Affine::new([
-            1.0 / rect.width(),
-            0.0,
-            0.0,
-            -1.0 / rect.height(),
-            -rect.x0 / rect.width(),
-            rect.y1 / rect.height(),
-        ]);
-        let mut notes = ring.notes.clone();
-        let mut warnings = Vec::new();
-        let keep = s.choice("keep")?;
-        let overlays = vec![Overlay { role: Role::Cage, path: outline(&ring) }];
-
-        if keep == "lines" {
-            for (k, side) in ring.sides.iter().enumerate() {
-                demand_straight(side, NAMES[k], "--keep lines needs four straight sides")?;
-            }
-            let corners = ring.sides.each_ref().map(|side| side.first().map_or(Point::ORIGIN, Seg::start));
-            let anchors::Anchors::Four(from) = frame else { return Err(no_length("frame")) };
-            notes.push("kept: every line, by the projective map of the four corners".into());
-            return Ok(Built {
-                notes,
-                overlays,
-                ..Built::new(Arc::new(anchors::projective("--envelope", from, corners)?))
-            });
-        }
-
-        let sides = paced(&ring, s, keep, &mut notes, &mut warnings)?;
-        let map = Coons::new(sides, pre);
-        let inverse = Affine::new([rect.width(), 0.0, 0.0, -rect.height(), rect.x0, rect.y1]);
-        warnings.extend(faults::warnings(&map, inverse));
-        let map = map.simplest();
-        let map = match map.class() {
-            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
-            _ => map,
-        };
-        Ok(Built { notes, overlays, warnings, ..Built::new(map) })
+        let by = if s.given("by") { Some(s.choice("by")?) } else { None };
+        over(&ring(s)?, s, s.choice("keep")?, by)
     }
+}
+
+/// The map of the frame into these sides that keeps what is to be kept; `by` is the pace, where it was given.
+pub(super) fn over(ring: &Ring, s: &Settings<'_>, keep: &str, by: Option<&str>) -> Result<Built, Error> {
+    let frame = anchors::frame_corners(s)?;
+    let rect = s.frame().rect;
+    let pre = Affine::new([
+        1.0 / rect.width(),
+        0.0,
+        0.0,
+        -1.0 / rect.height(),
+        -rect.x0 / rect.width(),
+        rect.y1 / rect.height(),
+    ]);
+    let mut notes = ring.notes.clone();
+    let mut warnings = Vec::new();
+    let overlays = vec![Overlay { role: Role::Cage, path: outline(ring) }];
+
+    if keep == "lines" {
+        for (k, side) in ring.sides.iter().enumerate() {
+            demand_straight(side, NAMES[k], "--keep lines needs four straight sides")?;
+        }
+        let corners = ring.sides.each_ref().map(|side| side.first().map_or(Point::ORIGIN, Seg::start));
+        let anchors::Anchors::Four(from) = frame else { return Err(no_length("frame")) };
+        notes.push("kept: every line, by the projective map of the four corners".into());
+        return Ok(Built {
+            notes,
+            overlays,
+            ..Built::new(Arc::new(anchors::projective("--envelope", from, corners)?))
+        });
+    }
+
+    let sides = paced(ring, by, keep, &mut notes, &mut warnings)?;
+    let map = Coons::new(sides, pre);
+    let inverse = Affine::new([rect.width(), 0.0, 0.0, -rect.height(), rect.x0, rect.y1]);
+    warnings.extend(faults::warnings(&map, inverse));
+    let map = map.simplest();
+    let map = match map.class() {
+        Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
+        _ => map,
+    };
+    Ok(Built { notes, overlays, warnings, ..Built::new(map) })
 }
 
 const NAMES: [&str; 4] = ["bottom", "right", "top", "left"];
@@ -208,7 +212,7 @@ fn ring(s: &Settings<'_>) -> Result<Ring, Error> {
 /// The sides at their pace, and those made straight that have to be.
 fn paced(
     ring: &Ring,
-    s: &Settings<'_>,
+    by: Option<&str>,
     keep: &str,
     notes: &mut Vec<String>,
     warnings: &mut Vec<String>,
@@ -216,7 +220,7 @@ fn paced(
     let [bottom, right, top, left] = &ring.sides;
     let back = |c: &[Seg]| c.iter().rev().map(Seg::reversed).collect::<Vec<_>>();
     let (top, left) = (back(top), back(left));
-    let by = s.choice("by")?;
+    let (given, by) = (by.is_some(), by.unwrap_or("length"));
     let pace = |lying: bool| match by {
         "parameter" => Pace::Parameter,
         "extent" if lying => Pace::Width,
@@ -244,7 +248,7 @@ fn paced(
     };
     // The kept lines run between a pair of curves; the other two sides are kept lines themselves.
     let (pair, names) = if lying { ([bottom, &top], [0, 2]) } else { ([&left, right], [3, 1]) };
-    let upright = if s.given("by") { None } else { Side::new(pair[0], axis).zip(Side::new(pair[1], axis)) };
+    let upright = if given { None } else { Side::new(pair[0], axis).zip(Side::new(pair[1], axis)) };
     let even = upright.is_some();
     let (a, b) = match upright {
         Some(pair) => pair,
@@ -255,7 +259,7 @@ fn paced(
     notes.push(format!(
         "kept: {what} are straight and lean by at most {lean:.3}°, by the ruled map between the two curves"
     ));
-    if !s.given("by") && !even {
+    if !given && !even {
         warnings.push(format!(
             "envelope: {what} stay straight but lean by up to {lean:.1}°: a curve turns back or is too steep to be gone along evenly across the screen"
         ));

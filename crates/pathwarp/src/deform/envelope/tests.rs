@@ -206,7 +206,7 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 let frame = Frame::new(SQUARE);
                 let s = Settings::new(INFO.params, &args, &frame).unwrap();
                 let ring = corners::ring(&path, &s).unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
-                let sides = paced(&ring, &s, "nothing", &mut Vec::new(), &mut Vec::new()).unwrap();
+                let sides = paced(&ring, None, "nothing", &mut Vec::new(), &mut Vec::new()).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
                 // On both sides of the middle, where a heart has its notch.
                 let [l, r] = [40.0, 60.0].map(|x| m.jet(Point::new(x, 50.0)));

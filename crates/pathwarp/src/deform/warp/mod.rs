@@ -7,12 +7,14 @@
 
 pub(crate) mod style;
 
+use super::envelope::{self, corners::Ring};
 use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
 use crate::error::Error;
 use crate::map::net::Net;
 use crate::map::{AffineMap, BicubicNet, Class, Map};
+use crate::outline::Seg;
 use crate::param::{Kind, Param, Settings};
-use kurbo::{Affine, Rect};
+use kurbo::{Affine, CubicBez, Point, Rect};
 use std::sync::Arc;
 use style::{Bent, Style};
 
@@ -66,6 +68,12 @@ transformation from 16 control points, equation (7)",
         Param::number("vertical", "Distortion: the lower side grows by this, the upper one shrinks.")
             .default("0%")
             .within(-1.0, 1.0),
+        Param::new(
+            "keep",
+            Kind::Choice(&["nothing", "verticals", "horizontals", "lines"]),
+            "What is to stay straight: the artwork is put between the style's sides by a map that keeps it, as `envelope --keep` does.",
+        )
+        .default("nothing"),
     ],
     demo: &[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")],
     examples: &[
@@ -74,6 +82,10 @@ transformation from 16 control points, equation (7)",
         Example {
             what: "A badge seen through a fisheye, leaning away to the right",
             command: "warp samples/badge.svg --style fisheye --bend 60% --horizontal -25% -o out.svg",
+        },
+        Example {
+            what: "Lettering in a bulge whose uprights stay upright",
+            command: "warp samples/lettering.svg --style bulge --bend 40% --keep verticals -o out.svg",
         },
         Example {
             what: "A style from a file",
@@ -132,7 +144,8 @@ impl Deformation for Warp {
         let rect = s.frame().rect;
         let wrong = |what: String| Error::usage("style", s.texts("style").join(" "), what);
         let net = style.net(rect.width(), rect.height(), &bent).map_err(wrong)?;
-        let mut built = over(rect, &net)?;
+        let keep = s.choice("keep")?;
+        let mut built = if keep == "nothing" { over(rect, &net)? } else { kept(s, keep, &net, &bent)? };
         built.notes.push(format!(
             "style {}: bend {}%, {}{}",
             style.name,
@@ -142,6 +155,34 @@ impl Deformation for Warp {
         ));
         Ok(built)
     }
+}
+
+/// The sides of the style's net, and the map between them that keeps lines of one kind; where there is none, the styles that
+/// have one are named.
+fn kept(s: &Settings<'_>, keep: &str, net: &Net, bent: &Bent) -> Result<Built, Error> {
+    let frame = s.frame().rect;
+    let ring = |net: &Net| sides(&net.map(|row| row.map(|p| p + frame.origin().to_vec2())));
+    envelope::over(&ring(net), s, keep, None).map_err(|e| {
+        let possible = |style: &Style| {
+            let net = style.net(frame.width(), frame.height(), bent).ok();
+            net.is_some_and(|n| envelope::over(&ring(&n), s, keep, None).is_ok())
+        };
+        let names: Vec<String> = style::builtin().into_iter().filter(possible).map(|style| style.name).collect();
+        let others = if names.is_empty() { "no style at this bend".to_owned() } else { names.join(", ") };
+        let Error::Usage { problem, .. } = e else { return e };
+        // What the envelope advises is for drawn curves.
+        let what = problem.split(". No map").next().unwrap_or_default();
+        Error::usage("keep", keep, format!("cannot be had with this style ({what}); it can with {others}"))
+    })
+}
+
+/// A net's four sides, as an envelope has them: bottom to the right, right side upwards, top to the left, left side downwards.
+fn sides(net: &Net) -> Ring {
+    let row = |r: usize| net[r];
+    let column = |c: usize| [net[0][c], net[1][c], net[2][c], net[3][c]];
+    let seg = |[a, b, c, d]: [Point; 4]| vec![Seg::Cubic(CubicBez::new(a, b, c, d))];
+    let back = |[a, b, c, d]: [Point; 4]| [d, c, b, a];
+    Ring { sides: [seg(row(3)), seg(back(column(3))), seg(back(row(0))), seg(column(0))], notes: Vec::new() }
 }
 
 /// The style asked for.

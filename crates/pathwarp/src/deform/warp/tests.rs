@@ -380,3 +380,33 @@ fn files_of_ones_own_and_their_faults() {
     // What is no arc goes on.
     assert!(Warp.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
 }
+
+/// `--keep verticals`: upright within 0.1° where the style's sides allow it, for the styles that have no upright map of their own.
+#[test]
+fn kept_verticals_are_upright() {
+    use crate::param::{Args, Frame};
+    let build = |pairs: &[(&str, &str)]| {
+        Warp.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 200.0, 100.0)))
+    };
+    for style in ["arch", "arc-lower", "arc-upper", "bulge", "flag", "rise", "fish"] {
+        for bend in ["-50%", "20%", "50%"] {
+            let built = build(&[("style", style), ("bend", bend), ("keep", "verticals")]);
+            let built = built.unwrap_or_else(|e| panic!("{style} {bend}: {e}"));
+            assert!(built.warnings.is_empty(), "{style} {bend}: {:?}", built.warnings);
+            let free = build(&[("style", style), ("bend", bend)]).unwrap().map;
+            for i in 0..=20 {
+                let x = 10.0 * f64::from(i);
+                let [a, b, c] = [0.0, 37.0, 100.0].map(|y| built.map.point((x, y).into()));
+                let lean = (c.x - a.x).abs().atan2((c.y - a.y).abs()).to_degrees();
+                assert!(lean < 0.1, "{style} {bend} at {x}: {lean}°");
+                assert!((b - a).cross(c - a).abs() < 1e-9 * (c - a).hypot2(), "{style} {bend} at {x}: bent");
+            }
+            // The shape is the style's own: corners on corners, and the bottom's points on its bottom.
+            for corner in [(0.0, 0.0), (200.0, 0.0), (0.0, 100.0), (200.0, 100.0)] {
+                assert!(built.map.point(corner.into()).distance(free.point(corner.into())) < 1e-9, "{style} {bend}");
+            }
+        }
+    }
+    let e = build(&[("style", "inflate"), ("bend", "50%"), ("keep", "verticals")]).err().unwrap().to_string();
+    assert!(e.contains("cannot be had with this style") && e.contains("arch") && !e.contains("inflate,"), "{e}");
+}
