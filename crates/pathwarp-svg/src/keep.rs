@@ -15,8 +15,7 @@ use usvg::Paint;
 const GEOMETRY: [&str; 14] = ["d", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r", "x1", "y1", "x2", "y2"];
 
 /// A style without what a class may have said and the groups inside say for themselves.
-pub(crate) const NO_EFFECTS: &str =
-    " style=\"opacity:1;clip-path:none;mask:none;filter:none;mix-blend-mode:normal\"";
+pub(crate) const NO_EFFECTS: &str = " style=\"opacity:1;clip-path:none;mask:none;filter:none;mix-blend-mode:normal\"";
 
 pub(crate) struct Keeper<'a, 'w> {
     pub(crate) edits: Edits<'a>,
@@ -317,7 +316,7 @@ impl<'a> Keeper<'a, '_> {
                 }
             }
         }
-        self.edits.set_attr(e, "d", part_data(p, Some(done)));
+        self.edits.set_attr(e, "d", part_data(p, Some(done), self.source));
         self.animated(e);
         let fit = done.fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
         for (name, paint) in

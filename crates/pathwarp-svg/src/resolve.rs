@@ -363,8 +363,9 @@ impl Builder<'_> {
                 break;
             }
         }
+        let mut drawn = source.filter(|_| outline.is_some());
         if source.is_none() {
-            outline = self.copy_of(p.data());
+            (drawn, outline) = self.copy_of(p.data()).unzip();
             // The page's own background is no artwork; it is the first thing of all.
             let background = self.parts.is_empty() && self.backed;
             if context.owner.is_none() && p.is_visible() && !background {
@@ -384,6 +385,7 @@ impl Builder<'_> {
             source,
             owner: context.owner,
             role: context.role,
+            drawn,
             local: outline.unwrap_or_else(|| geometry::from_usvg(p.data())),
             frame,
             fill: p.fill().cloned(),
@@ -397,8 +399,8 @@ impl Builder<'_> {
         self.parts.len() - 1
     }
 
-    /// The source's own outline of a copied path (in a `use`, in a marker).
-    fn copy_of(&mut self, path: &usvg::tiny_skia_path::Path) -> Option<Outline> {
+    /// The element that a path (in a `use`, in a marker) is a copy of, and its own outline.
+    fn copy_of(&mut self, path: &usvg::tiny_skia_path::Path) -> Option<(ElementId, Outline)> {
         /// Cells of the size of f32's rounding would miss neighbours; these are coarse enough, and three by three are asked.
         fn cell(p: Point) -> [i64; 2] {
             [p.x, p.y].map(|v| (v * 16.0).floor() as i64)
@@ -426,9 +428,9 @@ impl Builder<'_> {
             .filter_map(|c| starts.get(&c))
             .flatten()
             .take(TRIES)
-            .filter_map(|e| self.outlines.get(e))
-            .find(|o| geometry::same_path(o, path))
-            .cloned()
+            .filter_map(|e| Some((*e, self.outlines.get(e)?)))
+            .find(|(_, o)| geometry::same_path(o, path))
+            .map(|(e, o)| (e, o.clone()))
     }
 
     fn clip(&mut self, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, slot: Option<usize>) -> usize {

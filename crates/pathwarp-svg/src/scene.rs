@@ -29,6 +29,8 @@ pub(crate) struct Part {
     /// The element that is replaced as a whole if this part changes: a `use`, a text, a shape with markers.
     pub(crate) owner: Option<ElementId>,
     pub(crate) role: Role,
+    /// The element whose geometry `local` is, read from the source itself: its own, or the one it is a copy of.
+    pub(crate) drawn: Option<ElementId>,
     /// In its own user space.
     pub(crate) local: Outline,
     /// From there to root user space.

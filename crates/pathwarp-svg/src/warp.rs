@@ -131,8 +131,9 @@ impl Document {
     /// structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
-        let identity = map.class() == Class::Affine(Affine::IDENTITY);
-        if identity && options.copies.is_empty() && options.structure != Structure::Flatten {
+        // What nothing moves is left in the source's own words.
+        let identity = map.class() == Class::Affine(Affine::IDENTITY) && options.copies.is_empty();
+        if identity && options.structure != Structure::Flatten {
             self.source.text.clone_into(&mut out.svg);
             return Ok(out);
         }
@@ -146,7 +147,7 @@ impl Document {
         let slots = self.place_slots(map, &meant, &options.selection);
         let one = |(p, meant): (&Part, &bool)| {
             let write = written(&self.scene, &slots, p.slot, p.frame);
-            (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
+            (*meant && !identity && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options))
         };
         /// Below so many segments the work is done before another thread has woken up.
         const WORTH_IT: usize = 100;

@@ -5,12 +5,12 @@
 
 use crate::document::Document;
 use crate::image::{BentImage, Picture};
-use crate::number::{escape, matrix, path_data, short};
+use crate::number::{escape, matrix, outline_data, path_data, short};
 use crate::options::WarpOptions;
 use crate::scene::{Group, Node, Part};
-use crate::source::ElementId;
+use crate::source::{ElementId, Source};
 use crate::warp::{Done, Notes, Outcome, Placed, Skipped, StrokeDone};
-use pathwarp::kurbo::{Affine, BezPath, Shape as _};
+use pathwarp::kurbo::{Affine, Rect, Shape as _};
 use pathwarp::map::Map;
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
@@ -211,7 +211,7 @@ impl<'a> Writer<'a> {
         let job = self.job;
         let p = &job.document.scene.parts[i];
         let done = job.outcomes[i].done();
-        let d = part_data(p, done);
+        let d = part_data(p, done, &job.document.source);
         let id = if self.in_source { String::new() } else { p.source.map_or(String::new(), |e| self.id_attribute(e)) };
         let mut properties = self.properties(i);
         let Some(StrokeDone::Outlined(outline)) = done.map(|d| &d.stroke) else {
@@ -426,31 +426,21 @@ pub(crate) fn data_uri(bent: &BentImage) -> String {
     format!("data:image/png;base64,{}", base64(&bent.png))
 }
 
-/// A part's path in its own user space.
-pub(crate) fn part_path(p: &Part, done: Option<&Done>) -> BezPath {
-    /// Fine against any stroke or pixel, for parts that are written but not warped.
-    const FINE: f64 = 1e-4;
+/// The box around a part's path in its own user space.
+pub(crate) fn part_box(p: &Part, done: Option<&Done>) -> Rect {
     match done {
-        Some(d) => d.path.clone(),
-        None => {
-            let size = p.local.bounding_box().map_or(1.0, |b| b.width().max(b.height()));
-            p.local.to_bez_path((size * FINE).max(1e-12))
-        }
+        Some(d) => d.path.bounding_box(),
+        None => p.local.bounding_box().unwrap_or_default(),
     }
 }
 
-pub(crate) fn part_data(p: &Part, done: Option<&Done>) -> String {
-    /// f32's digits and some more.
-    const DIGITS: i32 = 10;
-    match done {
-        Some(d) => path_data(&d.path, d.decimals),
-        None => {
-            let path = part_path(p, None);
-            let b = path.bounding_box();
-            let size = b.x0.abs().max(b.x1.abs()).max(b.y0.abs()).max(b.y1.abs());
-            let decimals = if size > 0.0 { DIGITS - size.log10().ceil() as i32 } else { DIGITS };
-            path_data(&path, decimals.clamp(0, 14) as u8)
-        }
+/// A part's path data; what is not warped in the source's own words, as far as it has any.
+pub(crate) fn part_data(p: &Part, done: Option<&Done>, source: &Source) -> String {
+    let own = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
+    match (done, p.drawn.and_then(own)) {
+        (Some(d), _) => path_data(&d.path, d.decimals),
+        (None, Some(d)) => escape(&d),
+        (None, None) => outline_data(&p.local),
     }
 }
 

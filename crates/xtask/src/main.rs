@@ -68,12 +68,7 @@ fn main() -> ExitCode {
                         .value_parser(value_parser!(PathBuf))
                         .help("Where to put pictures of what misses: as it should be, as it is, the difference"),
                 )
-                .arg(
-                    Arg::new("times")
-                        .long("times")
-                        .action(ArgAction::SetTrue)
-                        .help("Only time reading and writing"),
-                ),
+                .arg(Arg::new("times").long("times").action(ArgAction::SetTrue).help("Only time reading and writing")),
         )
         .subcommand(
             Command::new("refit-report")

@@ -137,23 +137,44 @@ impl Case<'_> {
 
     fn identity(&mut self, original: &Pixmap, scale: f64, options: &WarpOptions) {
         let mut options = options.clone();
-        // As the command line does it; "a copy where it stands" leads past the short cut for maps that move nothing.
         match self.document.warp(&Still, &options) {
             Ok(w) => {
-                let same = w.svg.as_bytes() == self.document.source()
-                    || self.document.source().starts_with(&[0x1f, 0x8b]);
+                let same =
+                    w.svg.as_bytes() == self.document.source() || self.document.source().starts_with(&[0x1f, 0x8b]);
                 self.out.push(("identity: the file itself", same, String::new()));
             }
             Err(e) => self.out.push(("identity: the file itself", false, e.to_string())),
         }
-        for (check, exactly, structure, map) in [
-            ("identity, written anew", "identity, written anew, pixel for pixel", Structure::Flatten, &Still as &dyn Map),
-            ("identity, patched", "identity, patched, pixel for pixel", Structure::Auto, &Still),
-            ("identity refitted, written anew", "", Structure::Flatten, &Plain(Affine::IDENTITY)),
-            ("identity refitted, patched", "", Structure::Auto, &Plain(Affine::IDENTITY)),
+        // "A copy where it stands" leads past the short cut for maps that move nothing.
+        let (alone, moved) = (Vec::new(), vec![Affine::IDENTITY]);
+        let hidden = Plain(Affine::IDENTITY);
+        for (check, exactly, structure, map, copies) in [
+            (
+                "identity, written anew",
+                "identity, written anew, pixel for pixel",
+                Structure::Flatten,
+                &Still as &dyn Map,
+                &alone,
+            ),
+            (
+                "identity, control points moved, written anew",
+                "identity, control points moved, written anew, pixel for pixel",
+                Structure::Flatten,
+                &Still,
+                &moved,
+            ),
+            (
+                "identity, control points moved, patched",
+                "identity, control points moved, patched, pixel for pixel",
+                Structure::Auto,
+                &Still,
+                &moved,
+            ),
+            ("identity refitted, written anew", "", Structure::Flatten, &hidden, &moved),
+            ("identity refitted, patched", "", Structure::Auto, &hidden, &moved),
         ] {
             options.structure = structure;
-            options.copies = vec![Affine::IDENTITY];
+            options.copies.clone_from(copies);
             let found = self.warped(check, map, &options).and_then(|(w, d)| {
                 let picture = pictures::whole(d.tree(), scale).ok_or("no picture")?;
                 let difference = compare(original, &picture).map_err(|e| e.to_string())?;
@@ -198,10 +219,11 @@ impl Case<'_> {
         let Some(map) = pictures::shaper(self.document.view_box()) else {
             return self.out.push((CHECK, false, "no shaper".into()));
         };
-        let (warped, after) = match self.warped(CHECK, &*map, &self.options(scale * f64::from(pictures::finer(self.document)))) {
-            Err(e) => return self.out.push((CHECK, false, e)),
-            Ok(w) => w,
-        };
+        let (warped, after) =
+            match self.warped(CHECK, &*map, &self.options(scale * f64::from(pictures::finer(self.document)))) {
+                Err(e) => return self.out.push((CHECK, false, e)),
+                Ok(w) => w,
+            };
         let Some((ours, expected, inside)) = pictures::bent(self.document, after.tree(), &map, scale) else { return };
         let Some(mean) = pictures::mean_inside(&ours, &expected, &inside) else { return };
         let ok = mean <= MEAN;
