@@ -197,7 +197,7 @@ fn warp(
         gradients: common.gradients,
         copies: built.copies.clone(),
         images: if common.images {
-            Images::Warp(Arc::new(Bender::new(&built.map, common.image_dpi)))
+            Images::Warp(Arc::new(Bender::new(Arc::new(built.map.clone()), common.image_dpi)))
         } else {
             Images::Keep
         },

@@ -33,6 +33,8 @@ mod space;
 mod terminal;
 mod unwarp;
 
+pub use picture::Bender;
+
 use failure::Failure;
 use pathwarp::deform::Registry;
 use std::ffi::OsString;

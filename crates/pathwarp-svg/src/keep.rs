@@ -298,7 +298,8 @@ impl<'a> Keeper<'a, '_> {
         let job = self.job;
         let p = &job.document.scene.parts[i];
         let Some(done) = job.outcomes[i].done() else { return };
-        if let (StrokeDone::Outlined(_), Some(_)) = (&done.stroke, &p.stroke) {
+        let outlined = p.stroke.is_some() && matches!(done.stroke, StrokeDone::Outlined(_));
+        if outlined || done.fill.as_ref().is_some_and(|f| !f.elements().is_empty()) {
             let content = self.writer.part(i);
             self.fragment(e, content);
             return;
@@ -335,6 +336,9 @@ impl<'a> Keeper<'a, '_> {
                     self.edits.set_property(e, name, value);
                 }
             }
+        }
+        if done.fill.is_some() {
+            self.edits.set_property(e, "fill", "none".into());
         }
         let scale = stroke_scale(Some(done));
         if let Some(s) = p.stroke.as_ref().filter(|_| (scale - 1.0).abs() > 1e-9) {

@@ -212,7 +212,7 @@ fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)>
 
 /// Text made safe for an attribute value in double quotes, and for element content.
 pub(crate) fn escape(text: &str) -> String {
-    if !text.contains(['&', '<', '>', '"', '\n', '\r', '\t']) {
+    if !text.bytes().any(|b| matches!(b, b'&' | b'<' | b'>' | b'"' | b'\n' | b'\r' | b'\t')) {
         return text.to_owned();
     }
     let mut out = String::with_capacity(text.len());

@@ -2,7 +2,7 @@
 
 use crate::geometry::{self, Reader};
 use crate::letters::Owners;
-use crate::scene::{Bitmap, Clip, Group, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
+use crate::scene::{Bitmap, Clip, Group, Local, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point, Rect, Size};
@@ -349,7 +349,12 @@ impl Builder<'_> {
         let mut outline = None;
         let candidates = self.ids.get(p.id()).map_or(&[][..], Vec::as_slice);
         let shared = candidates.len() > 1;
-        for &e in candidates {
+        let only = self.element(p.id()).filter(|&e| self.tag(e) == "path");
+        let later = only.and_then(|e| self.path_later(e, p.data()));
+        if later.is_some() {
+            source = only;
+        }
+        for &e in candidates.iter().filter(|_| later.is_none()) {
             if !is_shape(self.tag(e)) || (shared && self.taken.contains(&e)) {
                 continue;
             }
@@ -363,7 +368,7 @@ impl Builder<'_> {
                 break;
             }
         }
-        let mut drawn = source.filter(|_| outline.is_some());
+        let mut drawn = source.filter(|_| outline.is_some() || later.is_some());
         if source.is_none() {
             (drawn, outline) = self.copy_of(p.data()).unzip();
             // The page's own background is no artwork; it is the first thing of all.
@@ -386,7 +391,7 @@ impl Builder<'_> {
             owner: context.owner,
             role: context.role,
             drawn,
-            local: outline.unwrap_or_else(|| geometry::from_usvg(p.data())),
+            local: later.unwrap_or_else(|| outline.unwrap_or_else(|| geometry::from_usvg(p.data())).into()),
             frame,
             fill: p.fill().cloned(),
             stroke: p.stroke().cloned(),
@@ -397,6 +402,16 @@ impl Builder<'_> {
             slot: context.slot,
         });
         self.parts.len() - 1
+    }
+
+    /// The outline of a `path` element that usvg has made `path` of: not worked out before it is asked for.
+    fn path_later(&self, e: ElementId, path: &usvg::tiny_skia_path::Path) -> Option<Local> {
+        let d = self.reader.source.attr(e, "d")?.into_owned();
+        let path = path.clone();
+        Some(Local::later(move || {
+            let exact = Outline::from_svg_lossy(&d);
+            if geometry::same_path(&exact, &path) { exact } else { geometry::from_usvg(&path) }
+        }))
     }
 
     /// The element that a path (in a `use`, in a marker) is a copy of, and its own outline.

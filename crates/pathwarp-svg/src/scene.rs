@@ -7,8 +7,9 @@ use crate::source::ElementId;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Rect};
 use std::collections::HashMap;
-use std::ops::Range;
-use std::sync::Arc;
+use std::fmt;
+use std::ops::{Deref, Range};
+use std::sync::{Arc, LazyLock};
 use usvg::{BlendMode, Fill, PaintOrder, ShapeRendering, Stroke};
 
 /// What a shape does for the picture.
@@ -32,7 +33,7 @@ pub(crate) struct Part {
     /// The element whose geometry `local` is, read from the source itself: its own, or the one it is a copy of.
     pub(crate) drawn: Option<ElementId>,
     /// In its own user space.
-    pub(crate) local: Outline,
+    pub(crate) local: Local,
     /// From there to root user space.
     pub(crate) frame: Affine,
     pub(crate) fill: Option<Fill>,
@@ -43,6 +44,35 @@ pub(crate) struct Part {
     /// The stroke's width is in px whatever the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
     pub(crate) slot: Option<usize>,
+}
+
+/// An outline that is worked out when it is first looked at: what is only read and written again never is.
+pub(crate) struct Local(LazyLock<Outline, Box<dyn FnOnce() -> Outline + Send>>);
+
+impl Local {
+    pub(crate) fn later(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
+        Self(LazyLock::new(Box::new(f)))
+    }
+}
+
+impl From<Outline> for Local {
+    fn from(o: Outline) -> Self {
+        Self::later(move || o)
+    }
+}
+
+impl Deref for Local {
+    type Target = Outline;
+
+    fn deref(&self) -> &Outline {
+        &self.0
+    }
+}
+
+impl fmt::Debug for Local {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        (**self).fmt(f)
+    }
 }
 
 #[derive(Debug)]

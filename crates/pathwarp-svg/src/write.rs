@@ -214,25 +214,39 @@ impl<'a> Writer<'a> {
         let d = part_data(p, done, &job.document.source);
         let id = if self.in_source { String::new() } else { p.source.map_or(String::new(), |e| self.id_attribute(e)) };
         let mut properties = self.properties(i);
-        let Some(StrokeDone::Outlined(outline)) = done.map(|d| &d.stroke) else {
+        let outlined = match (done.map(|d| &d.stroke), &p.stroke) {
+            (Some(StrokeDone::Outlined(o)), Some(s)) => Some((o, s)),
+            _ => None,
+        };
+        let area = done.and_then(|d| d.fill.as_ref());
+        let Some(done) = done.filter(|_| outlined.is_some() || area.is_some()) else {
             return self.path(&d, &id, &properties);
         };
-        let (Some(stroke), Some(done)) = (&p.stroke, done) else { return String::new() };
-        let o = path_data(outline, done.decimals);
-        let mut over = self.shared(p);
-        let paint = self.paint(stroke.paint(), p, Some(done));
-        over.push(("fill", paint));
-        over.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
-        over.push(("fill-rule", "nonzero".into()));
-        over.push(("stroke", "none".into()));
-        over.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || self.may_inherit(n));
+        let (top, over) = match outlined {
+            Some((outline, stroke)) => {
+                let mut over = self.shared(p);
+                let paint = self.paint(stroke.paint(), p, Some(done));
+                over.push(("fill", paint));
+                over.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
+                over.push(("fill-rule", "nonzero".into()));
+                over.push(("stroke", "none".into()));
+                over.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || self.may_inherit(n));
+                (path_data(outline, done.decimals), over)
+            }
+            None => {
+                let mut over = properties.clone();
+                over.retain(|p| !p.0.starts_with("fill"));
+                over.push(("fill", "none".into()));
+                (d.clone(), over)
+            }
+        };
+        if p.fill.is_none() || area.is_some_and(|a| a.elements().is_empty()) {
+            return self.path(&top, &id, &over);
+        }
+        let top = self.path(&top, "", &over);
         properties.retain(|p| p.0 == "fill" || !p.0.starts_with("stroke") && p.0 != "paint-order");
         properties.push(("stroke", "none".into()));
-        let top = self.path(&o, "", &over);
-        if p.fill.is_none() {
-            return if id.is_empty() { top } else { self.path(&o, &id, &over) };
-        }
-        let base = self.path(&d, "", &properties);
+        let base = self.path(&area.map_or(d, |a| path_data(a, done.decimals)), "", &properties);
         let both =
             if p.paint_order == PaintOrder::StrokeAndFill { format!("{top}{base}") } else { format!("{base}{top}") };
         if id.is_empty() { both } else { format!("<{0}{id}>{both}</{0}>", self.tag("g")) }
@@ -429,7 +443,7 @@ pub(crate) fn data_uri(bent: &BentImage) -> String {
 /// The box around a part's path in its own user space.
 pub(crate) fn part_box(p: &Part, done: Option<&Done>) -> Rect {
     match done {
-        Some(d) => d.path.bounding_box(),
+        Some(d) => d.fill.iter().fold(d.path.bounding_box(), |b, f| b.union(f.bounding_box())),
         None => p.local.bounding_box().unwrap_or_default(),
     }
 }

@@ -4,11 +4,13 @@ use super::pictures::{self, Pair};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Jet, Map};
 use pathwarp::refit;
+use pathwarp_cli::Bender;
 use pathwarp_raster::{Pixmap, compare};
-use pathwarp_svg::{Document, ReadOptions, Structure, WarpOptions, Warped};
+use pathwarp_svg::{Document, Images, ReadOptions, Structure, WarpOptions, Warped};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The longest side of a picture, pixels.
@@ -110,8 +112,9 @@ impl Case<'_> {
         let turn =
             Affine::translate(middle) * Affine::new([0.8, 0.15, -0.22, 0.62, 0.0, 0.0]) * Affine::translate(-middle);
         let fine = pictures::fine(document, scale);
-        let options = self.options(fine.needed);
-        match self.warped("affine map", &Plain(turn), &options) {
+        let map: Arc<dyn Map> = Arc::new(Plain(turn));
+        let options = bending(&map, self.options(fine.needed * f64::from(fine.n)));
+        match self.warped("affine map", &*map, &options) {
             Err(e) => self.out.push(("affine map", false, e)),
             Ok((warped, after)) => {
                 self.structure(&warped);
@@ -120,7 +123,7 @@ impl Case<'_> {
                 let (share, word) = pair.share(&fine);
                 let ok = share <= SHARE;
                 if !ok {
-                    self.keep("affine", pair.pictures(fine.whole));
+                    self.keep("affine", pair.pictures(&fine));
                 }
                 self.out.push(("affine map", ok, word + &remarks(&warped)));
             }
@@ -219,11 +222,11 @@ impl Case<'_> {
         let Some(map) = pictures::shaper(self.document.view_box()) else {
             return self.out.push((CHECK, false, "no shaper".into()));
         };
-        let (warped, after) =
-            match self.warped(CHECK, &*map, &self.options(scale * f64::from(pictures::finer(self.document)))) {
-                Err(e) => return self.out.push((CHECK, false, e)),
-                Ok(w) => w,
-            };
+        let options = bending(&map, self.options(scale * f64::from(pictures::finer(self.document))));
+        let (warped, after) = match self.warped(CHECK, &*map, &options) {
+            Err(e) => return self.out.push((CHECK, false, e)),
+            Ok(w) => w,
+        };
         let Some((ours, expected, inside)) = pictures::bent(self.document, after.tree(), &map, scale) else { return };
         let Some(mean) = pictures::mean_inside(&ours, &expected, &inside) else { return };
         let ok = mean <= MEAN;
@@ -252,6 +255,12 @@ impl Case<'_> {
         name.reverse();
         pictures::side_by_side(&a, &b, &folder.join(format!("{check}--{}.png", name.join("--"))));
     }
+}
+
+/// With bitmaps bent, as the program does it.
+fn bending(map: &Arc<dyn Map>, mut options: WarpOptions) -> WarpOptions {
+    options.images = Images::Warp(Arc::new(Bender::new(Arc::clone(map), None)));
+    options
 }
 
 /// What the program said of its own accord, for telling causes.

@@ -12,13 +12,14 @@ use std::path::Path;
 use std::sync::Arc;
 use usvg::Tree;
 
-/// Side of the largest picture of a whole drawing, pixels.
-const LARGE: f64 = 1600.0;
-/// The width that a stroke must have in a picture to be drawn by the area it covers; thinner ones are paled.
+/// Side of the largest picture of a whole drawing, pixels as drawn.
+const LARGE: f64 = 2400.0;
+/// The width that a stroke must have, pixels as drawn, to be drawn by the area it covers; thinner ones are paled.
 const WIDE: f64 = 1.1;
 /// The smallest stretch of the affine map, a little less.
 const SQUEEZE: f64 = 0.6;
-/// How much larger the pictures are that bent drawings are compared in, before pixels are averaged.
+/// How many times as large pictures are drawn before their pixels are averaged. The renderer cuts a pixel's edge into four and
+/// draws a stroke's edge to a quarter of a pixel, so that edges in the same place may differ by a fifth of all levels.
 const FINER: u32 = 3;
 /// How much larger still is the picture that is bent.
 const SHARPER: f64 = 2.0;
@@ -29,6 +30,8 @@ pub(super) struct Fine {
     pub(super) whole: f64,
     /// At which the thinnest stroke is wide enough.
     pub(super) needed: f64,
+    /// How many times as large they are drawn.
+    pub(super) n: u32,
 }
 
 /// The scales for a drawing that is at least drawn at `least`.
@@ -36,10 +39,11 @@ pub(super) fn fine(document: &Document, least: f64) -> Fine {
     /// Beyond this magnification f32 shows its grain.
     const MOST: f64 = 400.0;
     let size = document.size_px();
-    let largest = LARGE / size.width.max(size.height);
+    let n = finer(document);
+    let largest = LARGE / f64::from(n) / size.width.max(size.height);
     let thinnest = thinnest(document.tree().root()).unwrap_or(f64::INFINITY);
-    let needed = (WIDE / (SQUEEZE * thinnest)).max(least);
-    Fine { whole: needed.min(largest), needed: needed.min(MOST * largest) }
+    let needed = (WIDE / (SQUEEZE * thinnest) / f64::from(n)).max(least);
+    Fine { whole: needed.min(largest), needed: needed.min(MOST * largest), n }
 }
 
 /// The width of the thinnest stroke, px.
@@ -62,7 +66,7 @@ fn transform(m: Affine) -> Transform {
     Transform::from_row(a, b, c, d, e, f)
 }
 
-/// How much larger a bent drawing's pictures are made. Filters take too long on large ones.
+/// How many times as large pictures of a drawing are drawn. Filters take too long on large ones.
 pub(super) fn finer(document: &Document) -> u32 {
     if document.tree().filters().is_empty() { FINER } else { 1 }
 }
@@ -82,17 +86,18 @@ pub(super) struct Pair<'a> {
 
 impl Pair<'_> {
     /// Both, whole.
-    pub(super) fn pictures(&self, scale: f64) -> Option<(Pixmap, Pixmap)> {
-        let b = whole(self.b, scale)?;
+    pub(super) fn pictures(&self, fine: &Fine) -> Option<(Pixmap, Pixmap)> {
+        let drawn = fine.whole * f64::from(fine.n);
+        let b = whole(self.b, drawn)?;
         let mut a = Pixmap::new(b.width(), b.height())?;
-        resvg::render(self.a, transform(Affine::scale(scale) * self.moved), &mut a.as_mut());
-        Some((a, b))
+        resvg::render(self.a, transform(Affine::scale(drawn) * self.moved), &mut a.as_mut());
+        Some((smaller(&a, fine.n)?, smaller(&b, fine.n)?))
     }
 
     /// The share of pixels that differ. Where the whole picture is too small for the thinnest stroke, the places where it
     /// differs most are looked at again, as large as needed.
     pub(super) fn share(&self, fine: &Fine) -> (f64, String) {
-        let Some((a, b)) = self.pictures(fine.whole) else { return (1.0, "no picture".into()) };
+        let Some((a, b)) = self.pictures(fine) else { return (1.0, "no picture".into()) };
         let difference = match compare(&a, &b) {
             Ok(d) => d,
             Err(e) => return (1.0, e.to_string()),
@@ -117,16 +122,17 @@ impl Pair<'_> {
 
     /// Both as they look around a place of the whole picture.
     fn window(&self, at: Point, fine: &Fine) -> Option<(Pixmap, Pixmap)> {
-        const SIDE: u32 = 640;
+        const SIDE: u32 = 320;
         let half = f64::from(SIDE) / 2.0;
-        let place = Affine::translate((half, half))
+        let place = Affine::scale(f64::from(fine.n))
+            * Affine::translate((half, half))
             * Affine::scale(fine.needed / fine.whole)
             * Affine::translate(-at.to_vec2())
             * Affine::scale(fine.whole);
         let draw = |tree, m| {
-            let mut out = Pixmap::new(SIDE, SIDE)?;
+            let mut out = Pixmap::new(SIDE * fine.n, SIDE * fine.n)?;
             resvg::render(tree, transform(m), &mut out.as_mut());
-            Some(out)
+            smaller(&out, fine.n)
         };
         Some((draw(self.a, place * self.moved)?, draw(self.b, place)?))
     }
@@ -205,6 +211,9 @@ pub(super) fn bent(
 
 /// Every so many pixels, along either side, averaged into one.
 fn smaller(p: &Pixmap, n: u32) -> Option<Pixmap> {
+    if n == 1 {
+        return Some(p.clone());
+    }
     let mut out = Pixmap::new((p.width() / n).max(1), (p.height() / n).max(1))?;
     let (width, from) = (out.width(), p.width());
     for (i, to) in (0_u32..).zip(out.pixels_mut()) {
