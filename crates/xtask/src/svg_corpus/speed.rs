@@ -49,7 +49,12 @@ fn timed(file: &Path, options: &ReadOptions, warp: &WarpOptions) -> Option<(f64,
     if text.contains("<text") || text.contains("image/svg") {
         return None;
     }
-    let options = ReadOptions { base_dir: file.parent().map(Path::to_owned), ..options.clone() };
+    let options = ReadOptions {
+        base_dir: file.parent().map(Path::to_owned),
+        system_fonts: false,
+        fonts: Vec::new(),
+        ..options.clone()
+    };
     let theirs = usvg::Options { resources_dir: options.base_dir.clone(), ..usvg::Options::default() };
     let mut best = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
