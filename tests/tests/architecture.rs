@@ -1,4 +1,4 @@
-//! Dependencies run one way: cli → {svg, raster} → pathwarp → kurbo.
+//! Dependencies run one way: cli → {svg, raster} → {pathwarp, text} → kurbo.
 
 mod support;
 
@@ -25,12 +25,16 @@ fn dependencies_run_one_way() {
             assert!(ours.contains(&d.as_str()), "{name} must not depend on {d}");
         }
     };
-    allowed("pathwarp-svg", &["pathwarp"]);
+    allowed("pathwarp-text", &[]);
+    allowed("pathwarp-svg", &["pathwarp", "pathwarp-text"]);
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
-    allowed("pathwarp-cli", &["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster"]);
-    for name in ["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster"] {
+    allowed(
+        "pathwarp-cli",
+        &["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster", "pathwarp-text"],
+    );
+    for name in ["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster", "pathwarp-text"] {
         assert!(
             !of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")),
             "{name} prints"

@@ -1,7 +1,7 @@
 //! The command line itself, made from the registry.
 
 use crate::failure::Failure;
-use crate::{Outcome, common, compare, gallery, output, paths, query, recipe_file, render, unwarp};
+use crate::{Outcome, common, compare, gallery, output, paths, query, recipe_file, render, text, unwarp};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Args, Kind, Param};
@@ -46,6 +46,7 @@ pub(crate) fn build(registry: &Registry) -> Command {
         .subcommand(query::command(registry))
         .subcommand(unwarp::command())
         .subcommand(Command::new("schema").about("Print the JSON schema of recipe files"))
+        .subcommand(text::command())
         .subcommand(paths::command())
         .subcommand(render::command())
         .subcommand(gallery::command())

@@ -31,6 +31,7 @@ mod report;
 mod schema;
 mod space;
 mod terminal;
+mod text;
 mod unwarp;
 
 pub use picture::Bender;
@@ -94,6 +95,7 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         "paths" => paths::run(sub),
         "render" => render::run(sub),
         "gallery" => gallery::run(registry, sub),
+        "text" => text::run(sub),
         "schema" => schema::run(registry),
         "unwarp" => unwarp::run(sub),
         "run" => {

@@ -1,5 +1,6 @@
 //! Fonts for text: the system's where wanted, given files, and a bundled one for whatever is missing.
 
+use pathwarp::Error;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -22,6 +23,80 @@ pub struct GenericFamilies {
     pub fantasy: Option<String>,
     /// `monospace`
     pub monospace: Option<String>,
+}
+
+/// The bytes of the bundled font: Noto Sans (OFL) for Latin, Greek and Cyrillic.
+#[must_use]
+pub fn bundled_font() -> &'static [u8] {
+    BUNDLED
+}
+
+/// A font as it lies in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FontFile {
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
+    /// Which of its fonts, counted from 0.
+    pub index: u32,
+}
+
+/// The font of a family, installed on the machine or bundled, that comes nearest to `weight` (100 to 900; 400 is regular). CSS's
+/// generic families are families too.
+///
+/// # Errors
+/// [`Error::Usage`] if there is no such family; it names some that have a similar name.
+pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, Error> {
+    let db = database(true, &[]);
+    let query = |name: &str| {
+        db.query(&fontdb::Query {
+            families: &[Family::Name(name)],
+            weight: fontdb::Weight(weight),
+            stretch: fontdb::Stretch::Normal,
+            style: if italic { fontdb::Style::Italic } else { fontdb::Style::Normal },
+        })
+    };
+    let generic = match family.to_ascii_lowercase().as_str() {
+        "serif" => Some(FontFamily::Serif),
+        "sans-serif" => Some(FontFamily::SansSerif),
+        "cursive" => Some(FontFamily::Cursive),
+        "fantasy" => Some(FontFamily::Fantasy),
+        "monospace" => Some(FontFamily::Monospace),
+        _ => None,
+    };
+    let exact = || db.faces().flat_map(|f| &f.families).find(|(n, _)| n.eq_ignore_ascii_case(family)).map(|(n, _)| n);
+    let found = match generic {
+        Some(kind) => of_kind(&kind, &GenericFamilies::default(), query),
+        None => exact().and_then(|name| query(name)),
+    };
+    let file = found.and_then(|id| db.with_face_data(id, |bytes, index| FontFile { bytes: bytes.to_vec(), index }));
+    file.ok_or_else(|| {
+        Error::usage("font", family, format!("is no file, and no family of this machine; {}", similar(family, &db)))
+    })
+}
+
+/// Families whose names look like `family`: each of its words is nearly a word of theirs.
+fn similar(family: &str, db: &Database) -> String {
+    /// A likeness (Jaro and Winkler's, 1 is the same) of words with a letter or two wrong; unrelated ones hardly reach it.
+    const ALIKE: f64 = 0.85;
+    /// Names that help; more are noise.
+    const SHOWN: usize = 6;
+    let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
+    let likeness = |name: &str| {
+        let name = name.to_lowercase();
+        let best = |w: &String| name.split_whitespace().map(|n| strsim::jaro_winkler(w, n)).fold(0.0, f64::max);
+        wanted.iter().map(best).sum::<f64>() / wanted.len().max(1) as f64
+    };
+    let mut names: Vec<&str> = db.faces().flat_map(|f| &f.families).map(|(n, _)| n.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut names: Vec<(f64, &str)> =
+        names.into_iter().map(|n| (likeness(n), n)).filter(|(l, _)| *l >= ALIKE).collect();
+    names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
+    if names.is_empty() {
+        return "the bundled one is Noto Sans".into();
+    }
+    let names: Vec<&str> = names.iter().take(SHOWN).map(|(_, n)| *n).collect();
+    format!("there are {}", names.join(", "))
 }
 
 /// Families that were asked for and not found.

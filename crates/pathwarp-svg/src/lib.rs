@@ -30,6 +30,7 @@ mod fonts;
 mod geometry;
 mod image;
 mod keep;
+mod lettering;
 mod letters;
 mod number;
 mod options;
@@ -46,8 +47,9 @@ mod write;
 
 pub use document::{Document, NamedPath, Shape};
 pub use embed::Origin;
-pub use fonts::GenericFamilies;
+pub use fonts::{FontFile, GenericFamilies, bundled_font, system_font};
 pub use image::{BentImage, ImageRequest, ImageWarper, Images};
+pub use lettering::{LetteringOptions, write_lettering};
 pub use options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
 pub use read::{ReadOptions, parse_tree};
 pub use select::Selection;

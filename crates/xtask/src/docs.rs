@@ -1,7 +1,7 @@
 //! `cargo xtask docs`: a page for every deformation, from its own table, with a picture made by its first example; and the
-//! cookbook.
+//! cookbook; and the pictures of the guides.
 
-use crate::{Fault, cookbook};
+use crate::{Fault, cookbook, guide};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::Kind;
 use std::fmt::Write as _;
@@ -29,6 +29,7 @@ pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> 
         let Some(example) = e.info().examples.first() else { continue };
         picture(root, &program, example.command, &folder.join(format!("{}.png", e.info().name)))?;
     }
+    guide::run(root, &program)?;
     let jobs = cookbook::run(root, &program)?;
     Ok(format!(
         "wrote {} pages to {} and {jobs} jobs to the cookbook; look at every picture before you commit it",
@@ -71,7 +72,7 @@ pub(crate) fn picture(root: &Path, program: &Path, command: &str, png: &Path) ->
 }
 
 /// Words of a shell command line with single quotes.
-fn words(line: &str) -> Vec<String> {
+pub(crate) fn words(line: &str) -> Vec<String> {
     let mut out = Vec::new();
     for (i, part) in line.split('\'').enumerate() {
         if i % 2 == 1 {

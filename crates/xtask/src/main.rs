@@ -3,6 +3,7 @@
 mod cookbook;
 mod corpus;
 mod docs;
+mod guide;
 mod new_deformation;
 mod refit_report;
 mod svg_corpus;

@@ -1,0 +1,221 @@
+//! A font: its bytes understood, its axes set, its metrics.
+
+use crate::error::guarded;
+use crate::glyph::Outlines;
+use crate::{Error, Variation};
+use harfrust::{ShaperData, ShaperInstance};
+use kurbo::Shape as _;
+use skrifa::charmap::Charmap;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::raw::{FileRef, ReadError, TableProvider as _};
+use skrifa::string::StringId;
+use skrifa::{FontRef, GlyphId, MetadataProvider as _};
+use std::fmt;
+
+/// Heights of a font: all positive, counted from the baseline.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Metrics {
+    /// From the baseline up to the top of the line's box.
+    pub ascent: f64,
+    /// From the baseline down to its bottom.
+    pub descent: f64,
+    /// The room that the font wants between one line's box and the next.
+    pub line_gap: f64,
+    /// The height of capitals: from the OS/2 table, or else of the H; without either, the ascent.
+    pub cap_height: f64,
+    /// The height of small letters: from the OS/2 table, or else of the x; without either, the height of capitals.
+    pub x_height: f64,
+}
+
+impl Metrics {
+    pub(crate) fn scaled(self, by: f64) -> Self {
+        Self {
+            ascent: self.ascent * by,
+            descent: self.descent * by,
+            line_gap: self.line_gap * by,
+            cap_height: self.cap_height * by,
+            x_height: self.x_height * by,
+        }
+    }
+}
+
+/// An axis of a variable font.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Four characters, such as `wght`.
+    pub tag: String,
+    /// What the font calls it.
+    pub name: String,
+    /// Its smallest value.
+    pub min: f64,
+    /// Its value unless set.
+    pub default: f64,
+    /// Its largest value.
+    pub max: f64,
+}
+
+/// A font read from bytes, at a place on its axes.
+pub struct Font<'a> {
+    pub(crate) font: FontRef<'a>,
+    pub(crate) data: ShaperData,
+    pub(crate) instance: ShaperInstance,
+    pub(crate) outlines: Outlines<'a>,
+    charmap: Charmap<'a>,
+    units_per_em: f64,
+    metrics: Metrics,
+}
+
+impl fmt::Debug for Font<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Font").field("name", &self.name()).field("metrics", &self.metrics).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Font<'a> {
+    /// Reads a font (TrueType or OpenType, `glyf`, CFF or CFF2 outlines); `index` counts the fonts of a collection, from 0.
+    ///
+    /// # Errors
+    /// The bytes are no such font, or the file has fewer.
+    pub fn new(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
+        guarded(|| Self::read(bytes, index))
+    }
+
+    fn read(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
+        let font = match FileRef::new(bytes) {
+            Ok(FileRef::Font(font)) if index == 0 => font,
+            Ok(FileRef::Font(_)) => return Err(Error::NoSuchFace { index, count: 1 }),
+            Ok(FileRef::Collection(all)) if index < all.len() => all.get(index).map_err(|e| not_a_font(bytes, &e))?,
+            Ok(FileRef::Collection(all)) => return Err(Error::NoSuchFace { index, count: all.len() }),
+            Err(e) => return Err(not_a_font(bytes, &e)),
+        };
+        let missing = |table: &str, e: &ReadError| Error::NotAFont(format!("its {table} table: {e}"));
+        let units_per_em = f64::from(font.head().map_err(|e| missing("head", &e))?.units_per_em());
+        // 16 to 16384 is what the specification allows (OpenType 1.9.1, head); real fonts stray, but not to nothing.
+        if units_per_em < 1.0 {
+            return Err(Error::NotAFont("its em has no units".into()));
+        }
+        font.maxp().map_err(|e| missing("maxp", &e))?;
+        font.hmtx().map_err(|e| missing("hmtx", &e))?;
+        font.cmap().map_err(|e| missing("cmap", &e))?;
+        let mut out = Self {
+            data: ShaperData::new(&font),
+            instance: ShaperInstance::default(),
+            outlines: Outlines::new(&font)?,
+            charmap: Charmap::new(&font),
+            units_per_em,
+            metrics: Metrics::default(),
+            font,
+        };
+        out.measure();
+        Ok(out)
+    }
+
+    /// The same font at another place on its axes; axes that are not named are where the font has them.
+    ///
+    /// # Errors
+    /// The font has no such axis (the message names those it has), or the value is outside of it.
+    pub fn with_variations(self, variations: &[Variation]) -> Result<Self, Error> {
+        guarded(|| self.at(variations))
+    }
+
+    fn at(mut self, variations: &[Variation]) -> Result<Self, Error> {
+        let axes = self.axes();
+        for v in variations {
+            let tag = v.tag.to_string();
+            let Some(axis) = axes.iter().find(|a| a.tag == tag) else {
+                return Err(Error::NoSuchAxis { tag, axes: in_words(&axes) });
+            };
+            if !(axis.min..=axis.max).contains(&v.value) {
+                return Err(Error::OutsideAxis { tag, value: v.value, min: axis.min, max: axis.max });
+            }
+        }
+        let location = self.font.axes().location(variations.iter().map(|v| (v.tag, v.value as f32)));
+        self.instance = ShaperInstance::from_coords(&self.font, location.coords().iter().copied());
+        self.measure();
+        Ok(self)
+    }
+
+    /// The axes of a variable font; none for others.
+    #[must_use]
+    pub fn axes(&self) -> Vec<Axis> {
+        let axis = |a: skrifa::Axis| Axis {
+            tag: a.tag().to_string(),
+            name: self.string(a.name_id()).unwrap_or_default(),
+            min: f64::from(a.min_value()),
+            default: f64::from(a.default_value()),
+            max: f64::from(a.max_value()),
+        };
+        self.font.axes().iter().map(axis).collect()
+    }
+
+    /// What the font calls itself; empty if it does not.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.string(StringId::FULL_NAME).or_else(|| self.string(StringId::FAMILY_NAME)).unwrap_or_default()
+    }
+
+    fn string(&self, id: StringId) -> Option<String> {
+        self.font.localized_strings(id).english_or_first().map(|s| s.to_string())
+    }
+
+    /// Units of the font's own coordinates to the em.
+    #[must_use]
+    pub fn units_per_em(&self) -> f64 {
+        self.units_per_em
+    }
+
+    /// The font's heights at a size of one em = `size`.
+    #[must_use]
+    pub fn metrics(&self, size: f64) -> Metrics {
+        self.metrics.scaled(size / self.units_per_em)
+    }
+
+    /// Whether the font has a glyph for a character.
+    #[must_use]
+    pub fn has(&self, c: char) -> bool {
+        self.charmap.map(c).is_some_and(|g| g.to_u32() != 0)
+    }
+
+    pub(crate) fn location(&self) -> LocationRef<'_> {
+        LocationRef::new(self.instance.coords())
+    }
+
+    /// The heights, in the font's units.
+    fn measure(&mut self) {
+        let m = self.font.metrics(Size::unscaled(), self.location());
+        let positive = |v: Option<f32>| v.map(f64::from).filter(|v| *v > 0.0 && v.is_finite());
+        let or_zero = |v: f32| if v.is_finite() { f64::from(v) } else { 0.0 };
+        let ascent = or_zero(m.ascent);
+        let cap_height = positive(m.cap_height).or_else(|| self.top_of('H')).unwrap_or(ascent);
+        self.metrics = Metrics {
+            ascent,
+            descent: -or_zero(m.descent),
+            line_gap: or_zero(m.leading).max(0.0),
+            cap_height,
+            x_height: positive(m.x_height).or_else(|| self.top_of('x')).unwrap_or(cap_height),
+        };
+    }
+
+    fn top_of(&self, c: char) -> Option<f64> {
+        let glyph: GlyphId = self.charmap.map(c)?;
+        let outline = self.outlines.draw(glyph, self.location()).ok()?;
+        // Outlines have y pointing down.
+        Some(-outline.bounding_box().y0).filter(|top| !outline.is_empty() && *top > 0.0)
+    }
+}
+
+fn in_words(axes: &[Axis]) -> String {
+    if axes.is_empty() {
+        return "it is not a variable font".into();
+    }
+    let all: Vec<String> = axes.iter().map(|a| format!("{} ({} to {})", a.tag, a.min, a.max)).collect();
+    format!("it has {}", all.join(", "))
+}
+
+fn not_a_font(bytes: &[u8], e: &ReadError) -> Error {
+    Error::NotAFont(match bytes.get(..4) {
+        Some(b"wOFF" | b"wOF2") => "it is packed for the web (WOFF); unpack it to .ttf or .otf first".into(),
+        Some(b"%!PS" | [0x80, 0x01, ..]) => "it is a Type 1 font; .ttf, .otf, .ttc and .otc files are read".into(),
+        _ => format!("{e}; .ttf, .otf, .ttc and .otc files are read"),
+    })
+}

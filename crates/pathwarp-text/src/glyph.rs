@@ -1,0 +1,144 @@
+//! Outlines of glyphs: the font's own curves, y pointing down, in its units.
+
+use crate::Error;
+use kurbo::{BezPath, Point};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::pen::PathStyle;
+use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlineGlyphFormat, OutlinePen};
+use skrifa::raw::TableProvider as _;
+use skrifa::raw::tables::glyf::{Glyf, Glyph};
+use skrifa::raw::tables::loca::Loca;
+use skrifa::{FontRef, GlyphId};
+use std::collections::HashMap;
+
+/// A glyph made of more parts than this, counting parts of parts, is none. The reader bounds points and depth, but parts
+/// without points would keep it busy for ever.
+const MOST_PARTS: usize = 10_000;
+
+/// The outlines of a font.
+pub(crate) struct Outlines<'a> {
+    glyphs: OutlineGlyphCollection<'a>,
+    composites: Option<(Glyf<'a>, Loca<'a>)>,
+}
+
+impl<'a> Outlines<'a> {
+    pub(crate) fn new(font: &FontRef<'a>) -> Result<Self, Error> {
+        let kinds = [OutlineGlyphFormat::Glyf, OutlineGlyphFormat::Cff2, OutlineGlyphFormat::Cff];
+        let Some(glyphs) = kinds.into_iter().find_map(|k| OutlineGlyphCollection::with_format(font, k)) else {
+            return Err(Error::NotAFont("it has no outlines (bitmap fonts are not set)".into()));
+        };
+        let composites = match glyphs.format() {
+            Some(OutlineGlyphFormat::Glyf) => font.glyf().ok().zip(font.loca(None).ok()),
+            _ => None,
+        };
+        Ok(Self { glyphs, composites })
+    }
+
+    /// The outline of a glyph; empty for spaces.
+    pub(crate) fn draw(&self, glyph: GlyphId, at: LocationRef<'_>) -> Result<BezPath, Error> {
+        let damaged = |problem: String| Error::Glyph { glyph: glyph.to_u32(), problem };
+        if self.parts(glyph, 0, &mut HashMap::new())? > MOST_PARTS {
+            return Err(damaged(format!("it has more than {MOST_PARTS} parts")));
+        }
+        let mut pen = Pen::default();
+        if let Some(outline) = self.glyphs.get(glyph) {
+            // HarfBuzz's way keeps fractions of units in variable fonts, where FreeType's rounds.
+            let settings = DrawSettings::unhinted(Size::unscaled(), at).with_path_style(PathStyle::HarfBuzz);
+            outline.draw(settings, &mut pen).map_err(|e| damaged(e.to_string()))?;
+        }
+        if pen.path.iter().any(|el| el.end_point().is_some_and(|p| !p.is_finite())) {
+            return Err(damaged("it has points that are not finite".into()));
+        }
+        Ok(pen.path)
+    }
+
+    /// How many parts drawing a glyph takes, all the way down; each glyph is counted once and its sum remembered. A part
+    /// without points but with data for them, which the reader does not survive, is an error.
+    fn parts(&self, glyph: GlyphId, depth: usize, known: &mut HashMap<u32, usize>) -> Result<usize, Error> {
+        /// One more than the reader follows.
+        const DEEP: usize = 33;
+        if let Some(n) = known.get(&glyph.to_u32()) {
+            return Ok(*n);
+        }
+        let Some((glyf, loca)) = &self.composites else { return Ok(1) };
+        // Met again inside itself: the reader refuses that.
+        known.insert(glyph.to_u32(), MOST_PARTS + 1);
+        let n = match loca.get_glyf(glyph, glyf) {
+            Ok(Some(Glyph::Composite(c))) if depth < DEEP => {
+                let mut n = 1_usize;
+                for part in c.components() {
+                    n = n.saturating_add(self.parts(part.glyph.into(), depth + 1, known)?);
+                    if n > MOST_PARTS {
+                        break;
+                    }
+                }
+                n
+            }
+            Ok(Some(Glyph::Simple(s))) if s.num_points() == 0 && !s.glyph_data().is_empty() => {
+                return Err(Error::Glyph { glyph: glyph.to_u32(), problem: "it has no points".into() });
+            }
+            _ => 1,
+        };
+        known.insert(glyph.to_u32(), n);
+        Ok(n)
+    }
+}
+
+#[derive(Default)]
+struct Pen {
+    path: BezPath,
+}
+
+fn point(x: f32, y: f32) -> Point {
+    Point::new(f64::from(x), -f64::from(y))
+}
+
+impl OutlinePen for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.path.move_to(point(x, y));
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.path.line_to(point(x, y));
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.path.quad_to(point(x1, y1), point(x, y));
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.path.curve_to(point(x1, y1), point(x2, y2), point(x, y));
+    }
+
+    fn close(&mut self) {
+        self.path.close_path();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The last contour ends at point 65535, so that the number of points wraps to none; or there are no contours, but data.
+    #[test]
+    fn glyphs_without_points_are_refused() {
+        const HEBREW: &[u8] = include_bytes!("../tests/fonts/hebrew.ttf");
+        /// The box and the number of contours come first (OpenType 1.9.1, glyf).
+        const HEADER: usize = 10;
+        let (font, shin) = (FontRef::new(HEBREW).unwrap(), GlyphId::new(10));
+        let draw =
+            |bytes: &[u8]| Outlines::new(&FontRef::new(bytes).unwrap()).unwrap().draw(shin, LocationRef::default());
+        assert!(!draw(HEBREW).unwrap().is_empty());
+
+        let tag = skrifa::Tag::new(b"glyf");
+        let table = font.table_directory().table_records().iter().find(|r| r.tag() == tag).unwrap().offset() as usize;
+        let start = table + font.loca(None).unwrap().get_raw(10).unwrap() as usize;
+        let contours = usize::from(HEBREW[start + 1]);
+        for (at, two) in [(HEADER + 2 * (contours - 1), [0xff, 0xff]), (0, [0, 0])] {
+            let mut bytes = HEBREW.to_vec();
+            bytes[start + at..][..2].copy_from_slice(&two);
+            let damaged = draw(&bytes);
+            assert!(matches!(damaged, Err(Error::Glyph { glyph: 10, .. })), "{damaged:?}");
+        }
+    }
+}

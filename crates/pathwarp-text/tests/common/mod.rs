@@ -1,0 +1,18 @@
+//! The tests' fonts.
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
+
+use std::path::Path;
+
+/// A file beside `fonts/README.md`.
+pub fn file(name: &str) -> Vec<u8> {
+    read(&format!("tests/fonts/{name}"))
+}
+
+/// Noto Sans, as the program bundles it: 1000 units to the em; A is 639 wide, i 258, the space 260.
+pub fn bundled() -> Vec<u8> {
+    read("../pathwarp-svg/fonts/NotoSans-Regular.subset.ttf")
+}
+
+fn read(name: &str) -> Vec<u8> {
+    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap()
+}
