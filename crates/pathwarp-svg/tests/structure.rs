@@ -139,3 +139,13 @@ fn filters_written_anew_saturate_beyond_one() {
     assert_ne!(expected, [46, 139, 87], "the filter does nothing");
     assert!(expected.iter().zip(found).all(|(a, b)| a.abs_diff(b) <= 1), "{expected:?} {found:?}");
 }
+
+#[test]
+fn the_caps_of_dots_follow_the_map() {
+    for cap in ["square", "round"] {
+        let d = "M50 50h0M20 20l0 0l0 0M80 30l0 0";
+        let svg =
+            drawing(&format!("<path d='{d}' fill='none' stroke='red' stroke-width='16' stroke-linecap='{cap}'/>"));
+        common::check(cap, &svg, oblique(), &warp_options());
+    }
+}
