@@ -368,8 +368,10 @@ fn warp_part(p: &Part, write: Affine, map: &dyn Map, options: &WarpOptions) -> R
         let fit = |b| paint::fit_copies(b, p.frame, write, map, &options.copies, result);
         done.fit = p.local.bounding_box().and_then(fit);
     }
-    if let Some(area) = filled_area(p, &outline, map, tolerance) {
-        let stroked = p.stroke.is_some() && p.role != Role::Clip;
+    let stroked = p.stroke.is_some() && p.role != Role::Clip;
+    // Who wants centre lines wants each of them once: there, only a fill without a stroke is closed.
+    let wanted = !(stroked && options.strokes == Strokes::Keep);
+    if let Some(area) = filled_area(p, &outline, map, tolerance).filter(|a| wanted || a.is_empty()) {
         if area.is_empty() {
             done.fill = Some(BezPath::new());
         } else {
