@@ -1,4 +1,4 @@
-//! Dependencies run one way: cli → {svg, raster} → {pathwarp, text} → kurbo.
+//! Dependencies run one way: cli → {svg, raster, gimp, mesh} → {pathwarp, text} → kurbo.
 
 mod support;
 
@@ -28,13 +28,30 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-text", &[]);
     allowed("pathwarp-svg", &["pathwarp", "pathwarp-text"]);
     allowed("pathwarp-raster", &["pathwarp"]);
+    allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed(
         "pathwarp-cli",
-        &["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster", "pathwarp-text"],
+        &[
+            "pathwarp",
+            "pathwarp-gimp",
+            "pathwarp-mesh",
+            "pathwarp-psd",
+            "pathwarp-svg",
+            "pathwarp-raster",
+            "pathwarp-text",
+        ],
     );
-    for name in ["pathwarp", "pathwarp-mesh", "pathwarp-psd", "pathwarp-svg", "pathwarp-raster", "pathwarp-text"] {
+    for name in [
+        "pathwarp",
+        "pathwarp-gimp",
+        "pathwarp-mesh",
+        "pathwarp-psd",
+        "pathwarp-svg",
+        "pathwarp-raster",
+        "pathwarp-text",
+    ] {
         assert!(
             !of(name).iter().any(|d| d.starts_with("clap") || d == "indicatif" || d.starts_with("ans")),
             "{name} prints"

@@ -261,6 +261,30 @@ fn the_report_has_every_field() {
 }
 
 #[test]
+fn what_misses_the_tolerance_is_told_with_its_place() {
+    // Three thousand waves across the drawing.
+    let dir = tempfile::tempdir().unwrap();
+    let run = |options: &[&str]| {
+        let mut args = vec!["expr", "--x", "x", "--y", "y + 5*sin(200*x)", "--report", "r.json"];
+        args.extend(options);
+        let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
+        let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+        (out, report["inputs"][0].clone())
+    };
+    for options in [&["--tolerance", "0.001"][..], &["--tolerance", "0.001", "--certify", "--merge", "off"]] {
+        let (out, r) = run(options);
+        assert_eq!(out.status.code(), Some(1));
+        assert!(text(&out.stderr).contains("misses the tolerance near"), "{}", text(&out.stderr));
+        let s = &r["shapes"][0];
+        assert!(s["max_error"].as_f64().unwrap() > 0.001 && s["assurance"] == "checked" && s["certified"] == false);
+        let places = s["over_budget"].as_array().unwrap();
+        assert!(!places.is_empty());
+        // On the horizontal sides: the others are moved as they are.
+        assert!(places.iter().all(|p| p[1] == 0.0 || p[1] == 100.0), "{places:?}");
+    }
+}
+
+#[test]
 fn folds_are_warned_of_and_counted() {
     let dir = tempfile::tempdir().unwrap();
     // A shaper whose top side runs back on itself.

@@ -1,7 +1,9 @@
 //! The command line itself, made from the registry.
 
 use crate::failure::Failure;
-use crate::{Outcome, common, compare, gallery, output, paths, query, recipe_file, render, text, unwarp};
+use crate::{
+    Outcome, common, compare, convert, gallery, install, output, paths, query, recipe_file, render, text, unwarp,
+};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Args, Kind, Param};
@@ -17,7 +19,7 @@ const ABOUT: &str = "Bends, warps and deforms SVG artwork, and gives clean Bézi
 const INVERSE: &str = "inverse";
 
 const AFTER: &str = "Path references (PATHREF), wherever an option takes a path:
-  FILE#NAME       the path of that id, label or title in an SVG file
+  FILE#NAME       the path of that id, label or title in an SVG file, or of that name in GIMP's (XCF, point lists)
   FILE            the only path in the file; a JSON file of points [[x,y],…]
   #NAME           in the input document; it is then a guide: left out of the artwork, kept in the file
   'M 0,0 C …'     SVG path data in place
@@ -48,9 +50,11 @@ pub(crate) fn build(registry: &Registry) -> Command {
         .subcommand(Command::new("schema").about("Print the JSON schema of recipe files"))
         .subcommand(text::command())
         .subcommand(paths::command())
+        .subcommand(convert::command())
         .subcommand(render::command())
         .subcommand(gallery::command())
         .subcommand(compare::command())
+        .subcommand(install::command())
         .subcommand(
             Command::new("completions")
                 .about("Print completions for a shell")

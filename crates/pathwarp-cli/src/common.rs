@@ -24,6 +24,10 @@ pub(crate) struct Common {
     pub(crate) inputs: Vec<PathBuf>,
     pub(crate) out: Option<PathBuf>,
     pub(crate) out_dir: Option<PathBuf>,
+    /// The copy of an XCF that the result is put into.
+    pub(crate) into: Option<PathBuf>,
+    /// Whether a damaged file of GIMP's gives the paths before the damage.
+    pub(crate) salvage: bool,
     pub(crate) tolerance: Option<f64>,
     pub(crate) certify: bool,
     pub(crate) merge: bool,
@@ -62,7 +66,7 @@ pub(crate) fn args() -> Vec<Arg> {
         Arg::new("INPUT")
             .num_args(0..)
             .value_parser(value_parser!(PathBuf))
-            .help("SVG files (also .svgz), PNG and JPEG pictures; - or none reads standard input"),
+            .help("SVG files (also .svgz), PNG and JPEG pictures, GIMP's paths (XCF, point lists; FILE or FILE#NAME); - or none reads standard input"),
         Arg::new("out").short('o').long("out").value_name("OUT").value_parser(value_parser!(PathBuf)).help(
             "Where to write the result; - or none writes to standard output",
         ),
@@ -72,6 +76,13 @@ pub(crate) fn args() -> Vec<Arg> {
             .value_parser(value_parser!(PathBuf))
             .conflicts_with("out")
             .help("Where to write the results of several inputs, under their own names"),
+        Arg::new("into")
+            .long("into")
+            .value_name("COPY.xcf")
+            .value_parser(value_parser!(PathBuf))
+            .conflicts_with_all(["out", "out-dir"])
+            .help("For an XCF: write it to COPY with its paths warped and every other byte kept"),
+        flag("salvage").help("Of a damaged file of GIMP's, take the paths before the damage"),
         Arg::new("tolerance")
             .long("tolerance")
             .value_name("D")
@@ -133,10 +144,11 @@ pub(crate) fn args() -> Vec<Arg> {
 }
 
 /// Options that say where things go or how loud to be, rather than what the result is.
-const OF_THE_RUN: [&str; 11] = [
+const OF_THE_RUN: [&str; 12] = [
     "INPUT",
     "out",
     "out-dir",
+    "into",
     "report",
     "preview",
     "write-recipe",
@@ -184,6 +196,8 @@ impl Common {
             inputs: m.get_many::<PathBuf>("INPUT").map(|v| v.cloned().collect()).unwrap_or_default(),
             out: path("out").filter(|p| p.as_os_str() != "-"),
             out_dir: path("out-dir"),
+            into: path("into"),
+            salvage: m.get_flag("salvage"),
             tolerance: positive("tolerance")?,
             certify: m.get_flag("certify"),
             merge: word("merge") != "off",
@@ -228,6 +242,9 @@ impl Common {
         if common.inputs.len() > 1 {
             if common.out_dir.is_none() {
                 return Err(Failure::usage("several inputs need --out-dir DIR; their results cannot share one file"));
+            }
+            if common.into.is_some() {
+                return Err(Failure::usage("--into writes one file; give one XCF"));
             }
             if common.preview.is_some() {
                 return Err(Failure::usage("--preview draws one input; give one"));

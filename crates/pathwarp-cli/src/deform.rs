@@ -4,9 +4,9 @@ use crate::common::{Common, FrameChoice};
 use crate::failure::Failure;
 use crate::output::{self, Pending};
 use crate::picture::Bender;
-use crate::reference::References;
+use crate::reference::{Names, References};
 use crate::report::{self, Report, Totals};
-use crate::{Outcome, picture, preview, recipe_file, space, terminal};
+use crate::{Outcome, gimp, picture, preview, recipe_file, space, terminal};
 use clap::ArgMatches;
 use pathwarp::deform::Registry;
 use pathwarp::fold::{self, Orientation};
@@ -109,7 +109,9 @@ fn targets(common: &Common, inputs: &[PathBuf]) -> Result<Vec<Option<PathBuf>>, 
     for i in inputs {
         let name = i.file_name().filter(|n| *n != "-");
         let mut to = dir.join(name.ok_or_else(|| Failure::usage("--out-dir needs named inputs"))?);
-        if to.extension().is_some_and(|e| e.eq_ignore_ascii_case("svgz")) {
+        if let Some(name) = gimp::svg_name(i) {
+            to.set_file_name(name);
+        } else if to.extension().is_some_and(|e| e.eq_ignore_ascii_case("svgz")) {
             to.set_extension("svg");
         }
         if out.contains(&Some(to.clone())) {
@@ -141,6 +143,11 @@ pub(crate) fn read(input: &Path) -> Result<Vec<u8>, Failure> {
     if input.as_os_str() == "-" {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::Input(format!("standard input: {e}")))?;
+        if gimp::is_xcf(&bytes) {
+            return Err(Failure::Input(
+                "standard input: an XCF is read by seeking in it; name the file instead".into(),
+            ));
+        }
         return Ok(bytes);
     }
     std::fs::read(input).map_err(|e| Failure::file(input, format!("cannot be read: {e}")))
@@ -167,12 +174,22 @@ fn warp(
     input: &Path,
     target: Option<&Path>,
 ) -> Result<Job, Failure> {
+    if let Some(file) = gimp::Input::open(input, common.salvage)? {
+        return gimp::warp(registry, recipe, common, &file, target);
+    }
+    if common.into.is_some() {
+        return Err(Failure::usage(format!("--into puts paths back into an XCF; {} is none", display(input))));
+    }
     let bytes = read(input)?;
     if Picture::is_one(&bytes) {
         return picture::warp(registry, recipe, common, input, target, &bytes);
     }
+    if let Some(t) = target.filter(|t| gimp::is_form_of_gimps(t)) {
+        let what = "point lists and XCF are written of GIMP's files; `pathwarp convert` makes them of an SVG";
+        return Err(Failure::usage(format!("{}: {what}", t.display())));
+    }
     let doc = Document::read(&bytes, &display(input), &read_options(input))?;
-    let mut references = References::new(Some(&doc));
+    let mut references = References::new(Some(Names::Svg(&doc)));
     let mut recipe = recipe.clone();
     references.resolve(registry, &mut recipe)?;
     let selection =

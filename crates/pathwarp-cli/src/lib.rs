@@ -15,10 +15,13 @@
 mod command;
 mod common;
 mod compare;
+mod convert;
 mod data_file;
 mod deform;
 mod failure;
 mod gallery;
+mod gimp;
+mod install;
 mod output;
 mod paths;
 mod picture;
@@ -93,6 +96,8 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         "completions" => command::completions(registry, sub),
         "man" => command::man(registry),
         "paths" => paths::run(sub),
+        "convert" => convert::run(sub),
+        "install" => install::run(sub),
         "render" => render::run(sub),
         "gallery" => gallery::run(registry, sub),
         "text" => text::run(sub),

@@ -1,6 +1,7 @@
 //! Output files, written whole or not at all.
 
 use crate::failure::Failure;
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -20,8 +21,16 @@ enum Content {
 impl Pending {
     /// Writes `bytes` to a temporary file beside `to`.
     pub(crate) fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
-        if to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir()) {
+        if is_device(to) {
             return Ok(Self { content: Content::Bytes(bytes.to_vec()), to: to.to_owned() });
+        }
+        Self::written(to, |file| file.write_all(bytes).map_err(|e| format!("cannot be written: {e}")))
+    }
+
+    /// Has `write` write a temporary file beside `to`.
+    pub(crate) fn written(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
+        if is_device(to) {
+            return Err(Failure::file(to, "is no file; name one"));
         }
         // A link stays one: what it leads to is replaced.
         let to = &to.canonicalize().unwrap_or_else(|_| to.to_owned());
@@ -35,7 +44,7 @@ impl Pending {
         if !folder.is_dir() {
             return Err(Failure::file(folder, "there is no such folder to write to"));
         }
-        let write = || -> std::io::Result<Self> {
+        let make = || -> std::io::Result<tempfile::NamedTempFile> {
             let mut builder = tempfile::Builder::new();
             builder.prefix(".pathwarp-");
             #[cfg(unix)]
@@ -44,11 +53,11 @@ impl Pending {
                 use std::os::unix::fs::PermissionsExt;
                 builder.permissions(std::fs::Permissions::from_mode(0o666));
             }
-            let mut file = builder.tempfile_in(folder)?;
-            file.write_all(bytes)?;
-            Ok(Self { content: Content::File(file), to: to.to_owned() })
+            builder.tempfile_in(folder)
         };
-        write().map_err(|e| Failure::file(to, format!("cannot be written: {e}")))
+        let mut file = make().map_err(|e| Failure::file(to, format!("cannot be written: {e}")))?;
+        write(file.as_file_mut()).map_err(|e| Failure::file(to, e))?;
+        Ok(Self { content: Content::File(file), to: to.to_owned() })
     }
 
     /// Renames all of them to their names.
@@ -64,6 +73,11 @@ impl Pending {
         }
         Ok(())
     }
+}
+
+/// Whether this is something to write to that is no file: a pipe, a terminal.
+fn is_device(to: &Path) -> bool {
+    to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
 
 /// Writes to standard output; a reader that has had enough is no fault.

@@ -1,10 +1,9 @@
 //! `pathwarp paths FILE`: what paths a file holds.
 
 use crate::failure::Failure;
-use crate::{Outcome, deform, output};
+use crate::gimp::Input;
+use crate::{Outcome, deform, output, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use pathwarp::kurbo::{CubicBez, Point};
-use pathwarp::outline::{Seg, Subpath};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -12,11 +11,17 @@ use std::path::PathBuf;
 pub(crate) fn command() -> Command {
     Command::new("paths")
         .about("List the paths of a file: name, closed, anchors, points")
-        .arg(Arg::new("FILE").required(true).value_parser(value_parser!(PathBuf)).help("An SVG file; - is standard input"))
+        .arg(Arg::new("FILE").required(true).value_parser(value_parser!(PathBuf)).help("An SVG file, or a file of GIMP's (XCF, exported SVG, point list, GIMP 1 text); - is standard input"))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("As JSON, with every point"))
+        .arg(
+            Arg::new("salvage")
+                .long("salvage")
+                .action(ArgAction::SetTrue)
+                .help("Of a damaged file of GIMP's, list the paths before the damage"),
+        )
         .after_help(
             "Points are listed as drawing programs keep them: for every anchor its incoming handle, itself, its outgoing \
-             handle. Arcs are listed as cubics.\n\nExamples:\n  pathwarp paths samples/cages.svg\n  pathwarp paths --json samples/cages.svg",
+             handle. Arcs are listed as cubics. Of GIMP's files every number is listed exactly as it is stored.\n\nExamples:\n  pathwarp paths samples/cages.svg\n  pathwarp paths --json samples/cages.svg\n  pathwarp paths art.xcf",
         )
 }
 
@@ -32,7 +37,12 @@ struct Path {
     label: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     title: Option<String>,
-    element: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    element: Option<String>,
+    /// Whether GIMP shows it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    visible: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     bounds: Option<[f64; 4]>,
     strokes: Vec<Stroke>,
 }
@@ -46,60 +56,62 @@ struct Stroke {
 
 pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
     let Some(file) = m.get_one::<PathBuf>("FILE") else { return Err(Failure::usage("FILE is needed")) };
-    let doc = deform::document(file)?;
-    let paths: Vec<Path> = doc
-        .paths()
-        .into_iter()
-        .map(|p| Path {
-            name: p.id,
-            label: p.label,
-            title: p.title,
-            element: p.element,
-            bounds: p.outline.bounding_box().map(|b| [b.x0, b.y0, b.width(), b.height()]),
-            strokes: p.outline.subpaths.iter().map(stroke).collect(),
-        })
-        .collect();
+    let gimps = Input::open(file, m.get_flag("salvage"))?;
+    let mut paths = match &gimps {
+        Some(input) => input.meant().map(of_gimp).collect(),
+        None => of_drawing(&deform::document(file)?),
+    };
     let text = if m.get_flag("json") {
+        if gimps.is_some() {
+            // The list is what GIMP keeps, and no more.
+            paths.iter_mut().for_each(|p| p.bounds = None);
+        }
         serde_json::to_string_pretty(&List { paths }).map_err(|e| Failure::file(file, e))? + "\n"
     } else {
         table(&paths)
     };
     output::to_stdout(text.as_bytes())?;
-    Ok(Outcome::Done)
+    let Some(damage) = gimps.and_then(|i| i.damage) else { return Ok(Outcome::Done) };
+    terminal::warning(&format!("{}: {damage}", deform::display(file)));
+    Ok(Outcome::Partly)
 }
 
-/// Anchors with their two handles; a line's handles lie on its anchors.
-fn stroke(s: &Subpath) -> Stroke {
-    let cubics: Vec<CubicBez> = s
-        .segs
-        .iter()
-        .flat_map(|g| match g {
-            Seg::Line(l) => vec![CubicBez::new(l.p0, l.p0, l.p1, l.p1)],
-            Seg::Arc(a) => a.to_cubics(a.a.hypot().max(a.b.hypot()) * 1e-3).collect(),
-            other => vec![other.to_cubic()],
+fn of_gimp(p: &pathwarp_gimp::GimpPath) -> Path {
+    Path {
+        name: p.name.clone(),
+        label: None,
+        title: None,
+        element: None,
+        visible: Some(p.visible),
+        bounds: p.bounds().map(|[x0, y0, x1, y1]| [x0, y0, x1 - x0, y1 - y0]),
+        strokes: p.strokes.iter().map(stroke).collect(),
+    }
+}
+
+fn of_drawing(doc: &pathwarp_svg::Document) -> Vec<Path> {
+    doc.paths()
+        .into_iter()
+        .map(|p| Path {
+            name: p.id,
+            label: p.label,
+            title: p.title,
+            element: Some(p.element),
+            visible: None,
+            bounds: p.outline.bounding_box().map(|b| [b.x0, b.y0, b.width(), b.height()]),
+            strokes: p.outline.subpaths.iter().map(|s| stroke(&pathwarp_gimp::Stroke::from_subpath(s))).collect(),
         })
-        .collect();
-    let mut points: Vec<Point> = Vec::with_capacity(3 * cubics.len() + 3);
-    for (i, c) in cubics.iter().enumerate() {
-        let incoming = match i.checked_sub(1) {
-            Some(before) => cubics[before].p2,
-            None if s.closed => cubics.last().map_or(c.p0, |l| l.p2),
-            None => c.p0,
-        };
-        points.extend([incoming, c.p0, c.p1]);
-    }
-    match cubics.last() {
-        None => points.extend([s.start; 3]),
-        Some(l) if !s.closed => points.extend([l.p2, l.p3, l.p3]),
-        Some(_) => {}
-    }
-    Stroke { closed: s.closed, anchors: points.len() / 3, points: points.iter().map(|p| [p.x, p.y]).collect() }
+        .collect()
+}
+
+fn stroke(s: &pathwarp_gimp::Stroke) -> Stroke {
+    Stroke { closed: s.closed, anchors: s.anchors(), points: s.points.clone() }
 }
 
 fn table(paths: &[Path]) -> String {
     let mut out = String::new();
     let width = paths.iter().map(|p| p.name.chars().count()).max().unwrap_or(0).max(4);
-    let _ = writeln!(out, "{:width$}  {:8}  {:7}  {:>7}  x y width height", "name", "element", "closed", "anchors");
+    let what = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
+    let _ = writeln!(out, "{:width$}  {what:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
     for p in paths {
         let closed: Vec<&str> = p.strokes.iter().map(|s| if s.closed { "closed" } else { "open" }).collect();
         let all_same = closed.windows(2).all(|w| w[0] == w[1]);
@@ -119,7 +131,8 @@ fn table(paths: &[Path]) -> String {
         let bounds = p.bounds.map_or(String::new(), |b| {
             b.map(|v| format!("{v:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()).join(" ")
         });
-        let _ = write!(out, "{:width$}  {:8}  {closed:7}  {anchors:>7}  {bounds}", p.name, p.element);
+        let what = p.visible.map(|v| if v { "visible" } else { "hidden" }).or(p.element.as_deref()).unwrap_or_default();
+        let _ = write!(out, "{:width$}  {what:8}  {closed:7}  {anchors:>7}  {bounds}", p.name);
         if let Some(l) = p.label.as_ref().or(p.title.as_ref()) {
             let _ = write!(out, "  ({l})");
         }

@@ -1,6 +1,6 @@
 //! Path references: `FILE#NAME`, `FILE`, `#NAME`.
 
-use crate::data_file;
+use crate::{data_file, gimp};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
 use pathwarp::recipe::Recipe;
@@ -8,15 +8,22 @@ use pathwarp::{Error, Outline};
 use pathwarp_svg::{Document, ReadOptions};
 use std::path::{Path, PathBuf};
 
+/// What an input calls its paths.
+#[derive(Clone, Copy)]
+pub(crate) enum Names<'a> {
+    Svg(&'a Document),
+    Gimp(&'a gimp::Input),
+}
+
 /// Looks references up, in the input document and in files.
 pub(crate) struct References<'a> {
-    input: Option<&'a Document>,
+    input: Option<Names<'a>>,
     /// Names in the input document that were used: guides, not artwork.
     pub(crate) guides: Vec<String>,
 }
 
 impl<'a> References<'a> {
-    pub(crate) fn new(input: Option<&'a Document>) -> Self {
+    pub(crate) fn new(input: Option<Names<'a>>) -> Self {
         Self { input, guides: Vec::new() }
     }
 
@@ -34,11 +41,20 @@ impl<'a> References<'a> {
     fn look_up(&mut self, reference: &str) -> Result<Outline, Error> {
         if let Some(name) = reference.strip_prefix('#') {
             let nowhere = || Error::input(reference, "there is no input document here to find a path in");
-            let path = self.input.ok_or_else(nowhere)?.path(name)?;
+            let outline = match self.input.ok_or_else(nowhere)? {
+                Names::Svg(doc) => doc.path(name)?.outline,
+                Names::Gimp(file) => file.named(name)?.outline(),
+            };
             self.guides.push(name.to_owned());
-            return Ok(path.outline);
+            return Ok(outline);
         }
         let (file, name) = split(reference);
+        if let Some(gimp) = gimp::Input::at(&file, false)? {
+            return Ok(match name {
+                Some(name) => gimp.named(name)?.outline(),
+                None => gimp.only()?.outline(),
+            });
+        }
         let bytes = std::fs::read(&file).map_err(|e| {
             Error::input(
                 file.display().to_string(),
@@ -73,7 +89,7 @@ impl<'a> References<'a> {
 }
 
 /// Splits `FILE#NAME`. Either may hold a `#`: the first one behind which the front is a file decides.
-fn split(reference: &str) -> (PathBuf, Option<&str>) {
+pub(crate) fn split(reference: &str) -> (PathBuf, Option<&str>) {
     if Path::new(reference).is_file() {
         return (reference.into(), None);
     }

@@ -46,6 +46,8 @@ fn property(p: &Param) -> Value {
         Kind::Number | Kind::Length(_) | Kind::Angle => json!({ "type": ["number", "string"] }),
         Kind::Count => json!({ "type": ["integer", "string"] }),
         Kind::Choice(words) => json!({ "enum": words }),
+        // Also a file may be named, so that these are not all there is.
+        Kind::NameOrFile(names) => json!({ "type": "string", "examples": names }),
         _ => json!({ "type": "string" }),
     };
     let mut v = if p.repeat { json!({ "anyOf": [one, { "type": "array", "items": one }] }) } else { one };

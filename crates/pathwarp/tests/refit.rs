@@ -139,6 +139,78 @@ fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
 }
 
 #[test]
+fn merged_pieces_are_proven_too() {
+    // A wave of many smooth segments, with an arc among them.
+    let outline = Outline::from_svg(
+        "M100 500C120 450 140 420 170 420S220 450 240 500 290 580 320 580 390 560 390 500A60 60 0 0 1 450 440
+         C470 440 490 450 510 470S560 510 590 510H700C730 510 760 490 780 470",
+    )
+    .unwrap();
+    for (name, map) in &maps() {
+        for tolerance in [1.0, 0.1, 0.01] {
+            let w = |merge| {
+                let o = Options { merge, certify: true, ..Options::new(tolerance) };
+                warp_path(&outline, map.as_ref(), &o).unwrap()
+            };
+            let (plain, merged) = (w(false), w(true));
+            let (r, out) = (&merged.report, support::cubics(&merged.path));
+            assert!(r.segments_out <= plain.report.segments_out, "{name} {tolerance}");
+            assert!(tolerance < 1.0 || r.segments_out < plain.report.segments_out, "{name}: nothing merged");
+            assert!(r.assurance >= Assurance::Certified && r.max_error <= tolerance, "{name} {tolerance}");
+            let e = support::distance_of_run(&outline.subpaths[0].segs, map.as_ref(), &out, 400, 0.0);
+            assert!(e <= r.max_error * 1.0001 + 1e-9, "{name} {tolerance}: {e} > {}", r.max_error);
+            assert!(support::largest_turn(&out) < 0.5, "{name} {tolerance}");
+        }
+    }
+}
+
+/// Paths are worked on for themselves: who else is at work does not show.
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let paths: Vec<Outline> = support::corpus().0.into_iter().take(24).collect();
+    for options in [Options { merge: true, ..Options::new(0.1) }, Options { certify: true, ..Options::new(0.01) }] {
+        for (name, map) in &maps() {
+            let refit = |o: &Outline| {
+                let w = warp_path(o, map.as_ref(), &options).unwrap();
+                let bits: Vec<[u64; 2]> =
+                    w.path.elements().iter().flat_map(points).map(|p| [p.x.to_bits(), p.y.to_bits()]).collect();
+                (bits, w.report.max_error.to_bits())
+            };
+            let alone: Vec<_> = paths.iter().map(refit).collect();
+            for threads in [2, 7] {
+                let next = AtomicUsize::new(0);
+                let work = || {
+                    let mut done = Vec::new();
+                    loop {
+                        let k = next.fetch_add(1, Ordering::Relaxed);
+                        let Some(o) = paths.get(k) else { return done };
+                        done.push((k, refit(o)));
+                    }
+                };
+                let all: Vec<_> = std::thread::scope(|s| {
+                    let hands: Vec<_> = (0..threads).map(|_| s.spawn(work)).collect();
+                    hands.into_iter().flat_map(|h| h.join().unwrap()).collect()
+                });
+                assert_eq!(all.len(), paths.len());
+                for (k, got) in all {
+                    assert!(got == alone[k], "{name}: path {k} with {threads} threads");
+                }
+            }
+        }
+    }
+}
+
+fn points(el: &kurbo::PathEl) -> Vec<Point> {
+    match *el {
+        kurbo::PathEl::MoveTo(p) | kurbo::PathEl::LineTo(p) => vec![p],
+        kurbo::PathEl::QuadTo(p, q) => vec![p, q],
+        kurbo::PathEl::CurveTo(p, q, r) => vec![p, q, r],
+        kurbo::PathEl::ClosePath => Vec::new(),
+    }
+}
+
+#[test]
 fn failure_modes_stay_within_the_tolerance() {
     let cases = [
         // A near-cusp that sixteen even samples step over.
@@ -220,6 +292,37 @@ fn iso_lines_of_a_bicubic_come_out_as_their_control_points() {
             assert!(kurbo::ParamCurve::eval(&c, t).distance(map.point(p.lerp(q, t))) < 1e-9);
         }
     }
+}
+
+/// A ripple of the given height.
+struct Ripple(f64);
+impl Formula for Ripple {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y + (x / 150.0).sin() * self.0)
+    }
+}
+
+#[test]
+fn what_is_straight_to_rounding_comes_out_as_a_line() {
+    // A line, and a cubic along it, between curves that leave and enter it smoothly.
+    let outline =
+        Outline::from_svg("M0 400C50 350 90 300 150 300H500C600 300 700 300 900 300C950 300 980 320 1000 400");
+    let outline = outline.unwrap();
+    for (height, lines) in [(0.0, 2), (1e-10, 2), (1e-7, 2), (1e-4, 0)] {
+        for certify in [false, true] {
+            let o = Options { certify, ..Options::new(0.1) };
+            let w = warp_path(&outline, &Ripple(height), &o).unwrap();
+            let straight = w.path.elements().iter().filter(|e| matches!(e, kurbo::PathEl::LineTo(_))).count();
+            assert_eq!(straight, lines, "{height}");
+            assert!(support::largest_turn(&support::cubics(&w.path)) < 1e-3, "{height}");
+        }
+    }
+    // Not where that would take a large share of the tolerance, nor where it would make a corner.
+    let w = warp_path(&outline, &Ripple(1e-7), &Options::new(1e-6)).unwrap();
+    assert!(!w.path.elements().iter().any(|e| matches!(e, kurbo::PathEl::LineTo(_))));
+    let hook = cubic([(100.0, 100.0), (100.0, 100.0 + 1e-6), (600.0, 100.0), (900.0, 100.0)]);
+    let w = warp_path(&single(hook), &Ripple(1e-12), &Options::new(0.1)).unwrap();
+    assert!(!w.path.elements().iter().any(|e| matches!(e, kurbo::PathEl::LineTo(_))));
 }
 
 #[test]

@@ -12,6 +12,14 @@ use std::process::Command;
 /// Where the pages lie.
 const PAGES: &str = "docs/deformations";
 
+/// What docs/gimp.md and the README show, and the command that draws it.
+const GIMP_PICTURE: &str = "docs/images/gimp-paper.png";
+const GIMP_EXAMPLE: &str = "shaper samples/paper.xcf --base '#Base' --target '#Target' --shaper '#Shaper'";
+
+/// The sheet of styles that the README shows, and its artwork.
+const SHEET: &str = "docs/images/styles.png";
+const SHEET_OF: &str = "samples/logo.svg";
+
 /// Writes all pages and pictures, drawn by `program` if one is named, else by one built for it.
 pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> {
     let folder = root.join(PAGES);
@@ -29,6 +37,8 @@ pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> 
         let Some(example) = e.info().examples.first() else { continue };
         picture(root, &program, example.command, &folder.join(format!("{}.png", e.info().name)))?;
     }
+    picture(root, &program, GIMP_EXAMPLE, &root.join(GIMP_PICTURE))?;
+    run_program(root, &program, &["gallery", SHEET_OF, "-o", SHEET].map(str::to_owned))?;
     guide::run(root, &program)?;
     let jobs = cookbook::run(root, &program)?;
     Ok(format!(
@@ -58,17 +68,18 @@ pub(crate) fn picture(root: &Path, program: &Path, command: &str, png: &Path) ->
             words.drain(i..(i + 2).min(words.len()));
         }
     }
-    let out = Command::new(program)
-        .args(&words)
-        .args(["--quiet", "-o", "-", "--preview"])
-        .arg(png)
-        .current_dir(root)
-        .output()
-        .map_err(|e| format!("{}: {e}", program.display()))?;
+    words.extend(["--quiet", "-o", "-", "--preview"].map(str::to_owned));
+    words.push(png.display().to_string());
+    run_program(root, program, &words)
+}
+
+fn run_program(root: &Path, program: &Path, words: &[String]) -> Result<(), Fault> {
+    let out = Command::new(program).args(words).current_dir(root).output();
+    let out = out.map_err(|e| format!("{}: {e}", program.display()))?;
     if out.status.success() {
         return Ok(());
     }
-    Err(format!("pathwarp {command}: {}", String::from_utf8_lossy(&out.stderr)))
+    Err(format!("pathwarp {}: {}", words.join(" "), String::from_utf8_lossy(&out.stderr)))
 }
 
 /// Words of a shell command line with single quotes.

@@ -24,8 +24,8 @@
 use super::source::{Lane, Lanes};
 use kurbo::{CubicBez, Point, Vec2};
 
-/// Evaluations of one fit at most; twelve gain less than a third of a percent of segments.
-const MOST_EVALUATIONS: usize = 7;
+/// Evaluations of one fit at most; more gain nothing.
+const MOST_EVALUATIONS: usize = 6;
 /// Damping relative to the diagonal: just enough to keep the two by two system from being singular.
 const DAMPING: f64 = 1e-11;
 /// A step longer than this share of the samples' length is not trusted.
@@ -55,18 +55,29 @@ pub(super) struct State {
     pub(super) s: Lane,
 }
 
-/// Residuals of a state, and their derivatives.
+/// What one evaluation of a state tells. Kept in memory and written by a function of its own: lane after lane is then the only
+/// order the compiler finds, and it stays with vectors.
 #[derive(Debug, Clone, Copy)]
 struct Residuals {
-    /// Normal part.
-    n: Lane,
-    /// Its derivatives.
-    na: Lane,
-    nb: Lane,
+    /// Weighted normal equations (`JᵀJ` and `Jᵀn`) and the weighted sum of squares, each in four parts.
+    parts: [[f64; 4]; 6],
+    /// Squares of the normal residuals.
+    squares: Lane,
     /// Movement of the feet: −ρ·C′/|C′|², and its derivatives.
     ds: Lane,
     sa: Lane,
     sb: Lane,
+}
+
+impl Residuals {
+    const NONE: Self = Self { parts: [[0.0; 4]; 6], squares: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
+
+    /// The normal equations, the sum of squares, and the square of the largest residual.
+    #[inline(always)]
+    fn sums(&self) -> ([f64; 5], f64, f64) {
+        let s = self.parts.map(|v| (v[0] + v[2]) + (v[1] + v[3]));
+        ([s[0], s[1], s[2], s[3], s[4]], s[5], largest(&self.squares))
+    }
 }
 
 impl Frame {
@@ -77,17 +88,14 @@ impl Frame {
         [u, self.q * 3.0 - u * 2.0 - v, self.q * -2.0 + u + v]
     }
 
-    /// One Newton step for the feet.
-    #[inline(always)]
-    fn settle(&self, g: &Lanes, z: &mut State) {
-        let [c1, c2, c3] = self.power(z.a, z.b);
-        for i in 0..8 {
-            let s = z.s[i];
-            let rx = ((c3.x * s + c2.x) * s + c1.x) * s - g.x[i];
-            let ry = ((c3.y * s + c2.y) * s + c1.y) * s - g.y[i];
-            let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
-            let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
-            z.s[i] = unit(s - (rx * dx + ry * dy) / (dx * dx + dy * dy + f64::MIN_POSITIVE));
+    /// One Newton step for the feet. A function of its own for the same reason as [`Frame::residuals`].
+    #[inline(never)]
+    pub(super) fn settle(&self, g: &Lanes, a: f64, b: f64, s: &mut Lane) {
+        let c = self.power(a, b);
+        for foot in 0..8 {
+            let t = s[foot];
+            let (rx, ry, dx, dy) = at(&c, t, g.x[foot], g.y[foot]);
+            s[foot] = unit(t - fma(rx, dx, ry * dy) / square(dx, dy));
         }
     }
 
@@ -102,52 +110,57 @@ impl Frame {
         (sums, squares + self.pull * (da * da + db * db), error)
     }
 
-    #[inline(always)]
-    fn residuals(&self, g: &Lanes, z: &State) -> Residuals {
-        let [c1, c2, c3] = self.power(z.a, z.b);
+    /// The normal part of the residuals is ρ×C′/|C′|; 1/|C′|² makes squares of the products lengths.
+    #[inline(never)]
+    fn residuals(&self, g: &Lanes, z: &State, w: &Lane, out: &mut Residuals) {
+        let c = self.power(z.a, z.b);
         let (t0, t1) = (self.t0, self.t1);
-        let mut r = Residuals { n: [0.0; 8], na: [0.0; 8], nb: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
+        let o = [0.0; 8];
+        let (mut n, mut na, mut nb, mut kn, mut ka, mut kb) = (o, o, o, o, o, o);
         for i in 0..8 {
             let s = z.s[i];
             let u = 1.0 - s;
-            let rx = ((c3.x * s + c2.x) * s + c1.x) * s - g.x[i];
-            let ry = ((c3.y * s + c2.y) * s + c1.y) * s - g.y[i];
-            let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
-            let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
-            let k = 1.0 / (dx * dx + dy * dy + f64::MIN_POSITIVE);
-            let l = k.sqrt();
+            let (rx, ry, dx, dy) = at(&c, s, g.x[i], g.y[i]);
+            let k = 1.0 / square(dx, dy);
             let su = 3.0 * s * u;
             let (b1, b2) = (su * u, su * s);
-            r.n[i] = (rx * dy - ry * dx) * l;
-            r.na[i] = (t0.x * dy - t0.y * dx) * b1 * l;
-            r.nb[i] = (t1.y * dx - t1.x * dy) * b2 * l;
-            r.ds[i] = -(rx * dx + ry * dy) * k;
-            r.sa[i] = -(t0.x * dx + t0.y * dy) * b1 * k;
-            r.sb[i] = (t1.x * dx + t1.y * dy) * b2 * k;
+            n[i] = fma(rx, dy, -(ry * dx));
+            na[i] = fma(t0.x, dy, -(t0.y * dx)) * b1;
+            nb[i] = fma(t1.y, dx, -(t1.x * dy)) * b2;
+            let kw = k * w[i];
+            (kn[i], ka[i], kb[i]) = (n[i] * kw, na[i] * kw, nb[i] * kw);
+            out.squares[i] = n[i] * n[i] * k;
+            out.ds[i] = -fma(rx, dx, ry * dy) * k;
+            out.sa[i] = -fma(t0.x, dx, t0.y * dy) * (b1 * k);
+            out.sb[i] = fma(t1.x, dx, t1.y * dy) * (b2 * k);
         }
-        r
+        for i in 0..4 {
+            let j = i + 4;
+            out.parts[0][i] = fma(ka[i], na[i], ka[j] * na[j]);
+            out.parts[1][i] = fma(ka[i], nb[i], ka[j] * nb[j]);
+            out.parts[2][i] = fma(kb[i], nb[i], kb[j] * nb[j]);
+            out.parts[3][i] = fma(ka[i], n[i], ka[j] * n[j]);
+            out.parts[4][i] = fma(kb[i], n[i], kb[j] * n[j]);
+            out.parts[5][i] = fma(kn[i], n[i], kn[j] * n[j]);
+        }
     }
 
     /// Squared distances of the samples from the cubic, after `steps` Newton steps for the feet. A step that leads away (near
     /// a cusp of the cubic) is not taken.
     #[inline(always)]
     pub(super) fn distances(&self, g: &Lanes, a: f64, b: f64, s: &mut Lane, steps: usize) -> Lane {
-        let [c1, c2, c3] = self.power(a, b);
+        let c = self.power(a, b);
         let mut best = [f64::INFINITY; 8];
         let mut next = *s;
         for _ in 0..=steps {
             for i in 0..8 {
                 let t = next[i];
-                let rx = ((c3.x * t + c2.x) * t + c1.x) * t - g.x[i];
-                let ry = ((c3.y * t + c2.y) * t + c1.y) * t - g.y[i];
-                let dx = (c3.x * 3.0 * t + c2.x * 2.0) * t + c1.x;
-                let dy = (c3.y * 3.0 * t + c2.y * 2.0) * t + c1.y;
-                let k = 1.0 / (dx * dx + dy * dy + f64::MIN_POSITIVE);
-                let d = rx * rx + ry * ry;
+                let (rx, ry, dx, dy) = at(&c, t, g.x[i], g.y[i]);
+                let d = fma(rx, rx, ry * ry);
                 let better = d < best[i];
                 best[i] = if better { d } else { best[i] };
                 s[i] = if better { t } else { s[i] };
-                next[i] = unit(t - (rx * dx + ry * dy) * k);
+                next[i] = unit(t - fma(rx, dx, ry * dy) / square(dx, dy));
             }
         }
         best
@@ -183,20 +196,51 @@ impl Frame {
     fn bent(&self, [mut da, mut db]: [f64; 2], z: &State, most: f64) -> (f64, f64, f64) {
         let longest = da.abs().max(db.abs());
         if longest > most {
-            da *= most / longest;
-            db *= most / longest;
+            // Seldom; the division would hold all the rest up.
+            [da, db] = shortened([da, db], most / longest);
         }
         let k2 = 0.5 * self.t1.cross(self.t0);
         let (ga, gb) = (self.q.cross(self.t0) - k2 * z.b, self.t1.cross(self.q) - k2 * z.a);
         let g2 = ga * ga + gb * gb;
+        let (va, vb) = (ga / g2, gb / g2);
         let e = k2 * da * db;
         // The correction is of second order in the step; where it is not, the valley's floor is not where this says.
         if e * e < 0.25 * (da * da + db * db) * g2 {
-            da += e * ga / g2;
-            db += e * gb / g2;
+            da += e * va;
+            db += e * vb;
         }
         ((z.a + da).max(self.floor[0]) - z.a, (z.b + db).max(self.floor[1]) - z.b, longest.min(most))
     }
+}
+
+#[cold]
+#[inline(never)]
+fn shortened([da, db]: [f64; 2], by: f64) -> [f64; 2] {
+    [da * by, db * by]
+}
+
+/// a·b + c: one instruction where the target has one; elsewhere `mul_add` would be a call.
+#[inline(always)]
+pub(super) fn fma(a: f64, b: f64, c: f64) -> f64 {
+    if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// What the cubic with these power coefficients lacks to (x, y) at `s`, and its derivative.
+#[inline(always)]
+pub(super) fn at(c: &[Vec2; 3], s: f64, x: f64, y: f64) -> (f64, f64, f64, f64) {
+    let [c1, c2, c3] = c;
+    (
+        fma(fma(fma(c3.x, s, c2.x), s, c1.x), s, -x),
+        fma(fma(fma(c3.y, s, c2.y), s, c1.y), s, -y),
+        fma(fma(c3.x * 3.0, s, c2.x * 2.0), s, c1.x),
+        fma(fma(c3.y * 3.0, s, c2.y * 2.0), s, c1.y),
+    )
+}
+
+/// |(x, y)|², never zero.
+#[inline(always)]
+pub(super) fn square(x: f64, y: f64) -> f64 {
+    fma(x, x, fma(y, y, f64::MIN_POSITIVE))
 }
 
 /// Clamped to [0, 1]. Comparisons in this form are one instruction each.
@@ -207,7 +251,7 @@ pub(super) fn unit(s: f64) -> f64 {
 }
 
 #[inline(always)]
-fn sum(v: &Lane) -> f64 {
+pub(super) fn sum(v: &Lane) -> f64 {
     ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
 }
 
@@ -215,23 +259,6 @@ fn sum(v: &Lane) -> f64 {
 pub(super) fn largest(v: &Lane) -> f64 {
     let m = |a: f64, b: f64| if a > b { a } else { b };
     m(m(m(v[0], v[4]), m(v[2], v[6])), m(m(v[1], v[5]), m(v[3], v[7])))
-}
-
-/// The normal equations (`JᵀJ` and `Jᵀn`) of one batch, weighted, the sum of squares, and the largest residual.
-#[inline(always)]
-fn normal_equations(r: &Residuals, w: &Lane) -> ([f64; 5], f64, f64) {
-    let mut v = [[0.0; 8]; 7];
-    for i in 0..8 {
-        let (n, na, nb) = (r.n[i], r.na[i] * w[i], r.nb[i] * w[i]);
-        v[0][i] = na * r.na[i];
-        v[1][i] = na * r.nb[i];
-        v[2][i] = nb * r.nb[i];
-        v[3][i] = na * n;
-        v[4][i] = nb * n;
-        v[5][i] = n * n * w[i];
-        v[6][i] = n.abs();
-    }
-    ([sum(&v[0]), sum(&v[1]), sum(&v[2]), sum(&v[3]), sum(&v[4])], sum(&v[5]), largest(&v[6]))
 }
 
 /// A fit: the state with the smallest sum of squares, and the largest normal residual there.
@@ -247,45 +274,50 @@ pub(super) struct Fit {
 /// rough fit will do: it only tells how many pieces are needed.
 pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64; 2]) -> Fit {
     /// Far above.
-    const FAR: f64 = 3.0;
+    const FAR: f64 = 6.0;
     /// A step that promises less than this share of the sum of squares is not taken.
-    const GAIN: f64 = 0.01;
-    /// The same far above what is wanted.
-    const ROUGH: f64 = 0.1;
+    const GAIN: f64 = 0.1;
     let ones = [1.0; 8];
-    frame.settle(g, &mut z);
-    let mut r = frame.residuals(g, &z);
-    let (mut sums, mut squares, error) = frame.pulled(normal_equations(&r, &ones), &z);
-    let mut best = Fit { z, error, ds: r.ds };
-    let mut trust = TRUST * frame.size;
-    for k in 1..MOST_EVALUATIONS {
-        if best.error <= enough || (k > 4 && best.error > FAR * wanted) {
-            break;
-        }
-        let Some((step, gain)) = Frame::gauss_newton(&sums) else { break };
-        let worth = if best.error > FAR * wanted { ROUGH } else { GAIN };
-        if k > 1 && gain < worth * squares {
-            break;
-        }
-        let (da, db, length) = frame.bent(step, &z, trust);
-        let mut next = State { a: z.a + da, b: z.b + db, s: z.s };
-        for i in 0..8 {
-            next.s[i] = unit(z.s[i] + r.ds[i] + da * r.sa[i] + db * r.sb[i]);
-        }
-        frame.settle(g, &mut next);
-        let rn = frame.residuals(g, &next);
-        let (sn, sq, en) = frame.pulled(normal_equations(&rn, &ones), &next);
+    let (enough, far) = (enough * enough, (FAR * wanted).powi(2));
+    frame.settle(g, z.a, z.b, &mut z.s);
+    // Errors are squared in here.
+    let mut best = Fit { z, error: f64::INFINITY, ds: [0.0; 8] };
+    let (mut sums, mut squares) = ([0.0; 5], f64::INFINITY);
+    let (mut next, mut length) = (z, 0.0);
+    let mut trust = 0.5 * TRUST * frame.size;
+    let mut r = Residuals::NONE;
+    for k in 1.. {
+        frame.residuals(g, &next, &ones, &mut r);
+        let (sn, sq, en) = frame.pulled(r.sums(), &next);
         // The first steps also settle the feet, which may raise the sum a little.
         if sq <= squares {
-            (z, r, sums, squares) = (next, rn, sn, sq);
+            (z, sums, squares) = (next, sn, sq);
             if en < best.error {
                 best = Fit { z, error: en, ds: r.ds };
             }
             trust *= 2.0;
+        } else if k == 1 {
+            // Not a number.
+            break;
         } else {
             trust = 0.25 * length;
+            frame.residuals(g, &z, &ones, &mut r);
+        }
+        if k == MOST_EVALUATIONS || best.error <= enough || (k > 4 && best.error > far) {
+            break;
+        }
+        let Some((step, gain)) = Frame::gauss_newton(&sums) else { break };
+        if k > 1 && gain < GAIN * squares {
+            break;
+        }
+        let (da, db);
+        (da, db, length) = frame.bent(step, &z, trust);
+        (next.a, next.b) = (z.a + da, z.b + db);
+        for i in 0..8 {
+            next.s[i] = unit(z.s[i] + fma(da, r.sa[i], fma(db, r.sb[i], r.ds[i])));
         }
     }
+    best.error = best.error.sqrt();
     best
 }
 
@@ -295,12 +327,15 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
     let mut w = [[1.0; 8]; 2];
     let mut z = start;
     let mut best = (start, f64::INFINITY);
+    let mut r = [Residuals::NONE; 2];
     for k in 0..=steps {
-        let r = [frame.residuals(g[0], &z[0]), frame.residuals(g[1], &z[1])];
+        for h in 0..2 {
+            frame.residuals(g[h], &z[h], &w[h], &mut r[h]);
+        }
         let ([mut sums, more], error) = {
-            let (s0, _, e0) = frame.pulled(normal_equations(&r[0], &w[0]), &z[0]);
-            let (s1, _, e1) = normal_equations(&r[1], &w[1]);
-            ([s0, s1], e0.max(e1))
+            let (s0, _, e0) = frame.pulled(r[0].sums(), &z[0]);
+            let (s1, _, e1) = r[1].sums();
+            ([s0, s1], e0.max(e1).sqrt())
         };
         if error < best.1 {
             best = (z, error);
@@ -318,7 +353,7 @@ pub(super) fn lawson(frame: &Frame, g: [&Lanes; 2], start: [State; 2], steps: us
             z[h].b += db;
             for i in 0..8 {
                 z[h].s[i] = unit(z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]);
-                w[h][i] *= r[h].n[i].abs() / error + 1e-3;
+                w[h][i] *= r[h].squares[i].sqrt() / error + 1e-3;
             }
         }
         let total = sum(&w[0]) + sum(&w[1]);

@@ -3,15 +3,17 @@
 //! A drawing often has more nodes than its shape needs. Where segments follow each other smoothly, their images are one smooth
 //! curve, parametrised here by its own length; one cubic is tried over every stretch between places on a grid (the joints, and
 //! points between them), and dynamic programming finds the fewest cubics that cover the chain. It is taken only if it has fewer
-//! pieces than the segments' own, every piece having passed the dense check.
+//! pieces than the segments' own, every piece having passed the dense check, and where proofs are wanted been proven, segment by
+//! segment.
 
+use super::certify::{self, Algebra};
 use super::source::{Curve, End, Lane, Lanes, Source};
 use super::split::{self, Slow};
 use super::step::{Outcome, Stepper};
-use super::{Assurance, PathReport, Piece, SharedEdges};
+use super::{Assurance, Options, PathReport, Piece};
 use crate::map::Map;
 use crate::outline::Seg;
-use kurbo::{Point, Vec2};
+use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
 
 /// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree).
 const SMOOTH: f64 = 0.0087;
@@ -37,8 +39,9 @@ type Leg = (usize, usize, bool);
 /// Merges the pieces of one subpath.
 pub(super) struct Merger<'a> {
     pub(super) map: &'a dyn Map,
-    pub(super) tolerance: f64,
-    pub(super) shared: &'a SharedEdges,
+    /// What kind of quotient of polynomials the map is.
+    pub(super) algebra: Option<crate::map::Algebra>,
+    pub(super) options: &'a Options,
 }
 
 impl Merger<'_> {
@@ -55,8 +58,8 @@ impl Merger<'_> {
         while i < segs.len() {
             let mut chain = Chain::default();
             let mut j = i;
-            while j < segs.len() && j - i < MOST_IN_CHAIN && !self.shared.has(&segs[j]) {
-                let Some(part) = Part::new(&segs[j], self.map)? else { break };
+            while j < segs.len() && j - i < MOST_IN_CHAIN && !self.options.shared.has(&segs[j]) {
+                let Some(part) = self.part(&segs[j])? else { break };
                 if let Some(last) = chain.parts.last()
                     && last.to.into.cross(part.from.away).atan2(last.to.into.dot(part.from.away)).abs() > SMOOTH
                 {
@@ -72,7 +75,8 @@ impl Merger<'_> {
             match better {
                 Some((merged, error)) => {
                     report.max_error = report.max_error.max(error);
-                    report.assurance = report.assurance.min(Assurance::Checked);
+                    let assurance = if self.options.certify { Assurance::Certified } else { Assurance::Checked };
+                    report.assurance = report.assurance.min(assurance);
                     out.extend_from_slice(&merged);
                 }
                 None => out.extend_from_slice(own),
@@ -99,7 +103,7 @@ impl Merger<'_> {
         let mut stepper = Stepper {
             source: chain,
             slow: &slow,
-            tolerance: SHARE * self.tolerance,
+            tolerance: SHARE * self.options.tolerance,
             algebra: None,
             careful: false,
             attempts: 0,
@@ -118,7 +122,14 @@ impl Merger<'_> {
                     continue;
                 }
                 match stepper.attempt(&ends[from], &ends[to])? {
-                    Outcome::Fits { piece, error } => {
+                    Outcome::Fits { piece, mut error } => {
+                        if self.options.certify {
+                            error = self.proven(chain, &ends[from], &ends[to], piece)?;
+                            if error > self.options.tolerance {
+                                refused.push((from, to));
+                                continue;
+                            }
+                        }
                         worst = worst.max(error);
                         out.push(piece);
                     }
@@ -130,6 +141,45 @@ impl Merger<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// A segment of a chain. `None`: it must stand alone, also because nothing could be proven of it.
+    fn part<'s>(&self, seg: &'s Seg) -> Result<Option<Part<'s>>, Point>
+    where
+        Self: 's,
+    {
+        let certify = self.options.certify;
+        let source = Source::for_proof(seg, self.map, certify);
+        let algebra = if certify { Algebra::of(&source, self.algebra) } else { None };
+        if certify && algebra.is_none() { Ok(None) } else { Part::new(source, algebra) }
+    }
+
+    /// The proven distance of a piece that runs over several segments: each segment's part of it is proven for itself, between
+    /// the feet of the joints.
+    fn proven(&self, chain: &Chain<'_>, from: &End, to: &End, piece: Piece) -> Result<f64, Point> {
+        let cubic = match piece {
+            Piece::Line(l) => CubicBez::new(l.p0, l.p0.lerp(l.p1, 1.0 / 3.0), l.p0.lerp(l.p1, 2.0 / 3.0), l.p1),
+            Piece::Cubic(c) => c,
+        };
+        let (mut s, mut worst) = (0.0, 0.0f64);
+        for (k, part) in chain.parts.iter().enumerate() {
+            let (first, last) = (chain.starts[k], chain.starts[k + 1]);
+            let (a, b) = (from.t.max(first), to.t.min(last));
+            let Some(algebra) = &part.algebra else { return Ok(f64::INFINITY) };
+            if a >= b {
+                continue;
+            }
+            let next = if b == to.t { 1.0 } else { foot(&cubic, part.to.p, s + (1.0 - s) * (b - a) / (to.t - a)) };
+            if next <= s {
+                return Ok(f64::INFINITY);
+            }
+            let t0 = if a == first { 0.0 } else { part.param(a - first).0 };
+            let t1 = if b == last { 1.0 } else { part.param(b - first).0 };
+            let own = cubic.subsegment(s..next);
+            worst = worst.max(certify::stretch(&part.source, algebra, [t0, t1], &own, self.options.tolerance)?);
+            s = next;
+        }
+        Ok(worst)
     }
 
     /// The way through the grid with the fewest pieces: (from, to, whether by one cubic or by a segment's own pieces). `None`: not
@@ -195,9 +245,21 @@ impl Merger<'_> {
     }
 }
 
+/// The parameter of the point of `c` nearest to `p`, by Newton steps from `s`.
+fn foot(c: &CubicBez, p: Point, mut s: f64) -> f64 {
+    let slope = c.deriv();
+    for _ in 0..8 {
+        let (r, v) = (c.eval(s) - p, slope.eval(s).to_vec2());
+        s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    }
+    s
+}
+
 /// One segment of a chain.
 struct Part<'a> {
     source: Source<'a>,
+    /// What proofs need, if there are to be any.
+    algebra: Option<Algebra>,
     from: End,
     to: End,
     /// Lengths of the image up to i/16 of the parameter.
@@ -206,9 +268,8 @@ struct Part<'a> {
 
 impl<'a> Part<'a> {
     /// `None` for a segment that must stand alone: one without length, or with sharp spots.
-    fn new(seg: &'a Seg, map: &'a dyn Map) -> Result<Option<Self>, Point> {
-        let source = Source::new(seg, map);
-        if source.size() == 0.0 || !split::slow(seg).all().is_empty() {
+    fn new(source: Source<'a>, algebra: Option<Algebra>) -> Result<Option<Self>, Point> {
+        if source.size() == 0.0 || !split::slow(source.seg).all().is_empty() {
             return Ok(None);
         }
         let (from, to) = (source.end(0.0)?, source.end(1.0)?);
@@ -226,7 +287,7 @@ impl<'a> Part<'a> {
         }
         // A stretch whose image stands still has no direction to be merged by.
         let moves = table.windows(2).all(|w| w[1] > w[0]);
-        Ok(moves.then_some(Self { source, from, to, table }))
+        Ok(moves.then_some(Self { source, algebra, from, to, table }))
     }
 
     fn length(&self) -> f64 {
@@ -275,17 +336,16 @@ impl<'a> Chain<'a> {
 }
 
 impl Curve for Chain<'_> {
-    fn images(&self, t: &Lane) -> Result<Lanes, Point> {
-        let mut out = Lanes::default();
+    fn images_into(&self, t: &Lane, out: &mut Lanes) -> Result<(), Point> {
         for i in 0..8 {
             let p = self.at(t[i]);
             (out.x[i], out.y[i]) = (p.x, p.y);
         }
-        let Some(first) = self.parts.first() else { return Ok(out) };
+        let Some(first) = self.parts.first() else { return Ok(()) };
         first.source.map.lanes(&mut out.x, &mut out.y);
         match (0..8).find(|&i| !(out.x[i] + out.y[i]).is_finite()) {
             Some(i) => Err(self.at(t[i])),
-            None => Ok(out),
+            None => Ok(()),
         }
     }
 
@@ -319,7 +379,7 @@ impl Curve for Chain<'_> {
     /// Short segments between long ones would fall between even samples.
     fn places(&self, t0: f64, t1: f64) -> Vec<f64> {
         /// In each segment.
-        const PLACES: usize = 24;
+        const PLACES: usize = 64;
         let mut out = Vec::new();
         for (part, start) in self.parts.iter().zip(&self.starts) {
             let spread = (0..PLACES).map(|i| start + part.length() * i as f64 / PLACES as f64);

@@ -2,13 +2,16 @@
 //!
 //! One entry, [`warp_path`]. Affine maps move control points; elsewhere each source segment is taken in its canonical direction,
 //! split where the map is not smooth (`split`), sampled eight places at a time (`source`), fitted by cubics with the right end
-//! tangents and the best handle lengths (`fit`), over as few stretches as the tolerance allows (`step`), each looked at
+//! tangents and the best handle lengths (`fit`, `step`), over as few stretches as the tolerance allows (`breaks`), each looked at
 //! closely where its samples may not tell all (`verify`), and proven where map and segment are quotients of polynomials
 //! (`certify`). Pieces may be merged across smooth joints (`merge`).
 
+mod breaks;
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
 #[allow(clippy::needless_range_loop)]
 mod certify;
+#[allow(clippy::needless_range_loop)]
+mod chebyshev;
 #[allow(clippy::needless_range_loop)]
 mod fit;
 #[allow(clippy::needless_range_loop)]
@@ -227,36 +230,44 @@ fn warp_subpath(
     out: &mut Output,
 ) -> Result<(), GeometryError> {
     let projective = matches!(map.class(), Class::Projective(_));
-    // The jet at the last node, which the next segment starts from.
-    let mut node = (sub.start, map.jet(sub.start));
-    if !creases.defined_at(sub.start) || !node.1.p.is_finite() {
-        return Err(infinity(sub.start));
+    // The jets at the last two nodes; each is the next segment's first.
+    let mut jets = [map.jet(sub.start); 2];
+    let mut at = sub.start;
+    if !creases.defined_at(at) || !jets[0].is_finite() {
+        return Err(infinity(at));
     }
-    let start = node.1.p;
-    let mut pieces = Vec::with_capacity(sub.segs.len());
+    let start = jets[0].p;
+    let mut pieces = Vec::with_capacity(sub.segs.len() + sub.segs.len() / 2);
     // Where each segment's pieces begin.
-    let mut bounds = vec![0];
-    for seg in &sub.segs {
+    let mut bounds = Vec::with_capacity(if options.merge { sub.segs.len() + 1 } else { 0 });
+    bounds.push(0);
+    let job = Job { map, algebra: map.algebra(), creases, options };
+    for (i, seg) in sub.segs.iter().enumerate() {
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
         }
-        let first = if node.0 == seg.start() { node.1 } else { map.jet(seg.start()) };
-        let last = map.jet(seg.end());
-        node = (seg.end(), last);
-        if !last.p.is_finite() {
-            return Err(infinity(seg.end()));
+        let here = i % 2;
+        if seg.start() != at {
+            jets[here] = map.jet(seg.start());
+        }
+        at = seg.end();
+        jets[1 - here] = map.jet(at);
+        let [first, last] = [&jets[here], &jets[1 - here]];
+        if !first.is_finite() || !last.is_finite() {
+            return Err(infinity(if first.is_finite() { at } else { seg.start() }));
         }
         if projective && matches!(seg, Seg::Line(_)) {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
-            bounds.push(pieces.len());
-            continue;
+        } else {
+            job.warp_seg(seg, [first, last], &mut pieces, &mut out.report).map_err(infinity)?;
         }
-        warp_seg(seg, [first, last], map, creases, options, &mut pieces, &mut out.report).map_err(infinity)?;
-        bounds.push(pieces.len());
+        if options.merge {
+            bounds.push(pieces.len());
+        }
     }
     let smooth = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
-    if options.merge && !options.certify && smooth && bounds.len() == sub.segs.len() + 1 {
-        let merger = merge::Merger { map, tolerance: options.tolerance, shared: &options.shared };
+    if options.merge && smooth && bounds.len() == sub.segs.len() + 1 {
+        let merger = merge::Merger { map, algebra: job.algebra, options };
         pieces = merger.merged(&sub.segs, &pieces, &bounds, &mut out.report).map_err(infinity)?;
     }
     out.subpath(start, &pieces, sub.closed);
@@ -283,40 +294,6 @@ fn affine_part(part: &Seg, from: Point, to: Point, tolerance: f64, pieces: &mut 
     }
 }
 
-/// Appends the image of one segment. The jets are those at its ends. `Err`: where the map is not finite.
-fn warp_seg(
-    seg: &Seg,
-    jets: [Jet; 2],
-    map: &dyn Map,
-    creases: &Creases,
-    options: &Options,
-    pieces: &mut Vec<Piece>,
-    report: &mut PathReport,
-) -> Result<(), Point> {
-    let (canonical, flipped) = split::canonical(seg);
-    let [first, last] = if flipped { [jets[1], jets[0]] } else { jets };
-    let start = pieces.len();
-    let job = Job { map, creases, options };
-    match &canonical {
-        Seg::Arc(a) if options.certify && a.sweep.abs() > MOST_RATIONAL && map.algebra().is_some() => {
-            // Only arcs of less than half a turn are quotients of polynomials with positive denominators.
-            let n = (a.sweep.abs() / MOST_RATIONAL).ceil();
-            let mut from = first;
-            for i in 0..n as usize {
-                let part = a.subsegment(i as f64 / n, (i + 1) as f64 / n);
-                let to = if i + 1 == n as usize { last } else { map.jet(part.p1) };
-                job.warp(&Seg::Arc(part), [from, to], pieces, report)?;
-                from = to;
-            }
-        }
-        _ => job.warp(&canonical, [first, last], pieces, report)?,
-    }
-    if flipped {
-        turn(&mut pieces[start..]);
-    }
-    Ok(())
-}
-
 /// The pieces run backwards.
 fn turn(pieces: &mut [Piece]) {
     pieces.reverse();
@@ -334,22 +311,103 @@ const MOST_RATIONAL: f64 = 2.2;
 /// What all segments of a path share.
 struct Job<'a> {
     map: &'a dyn Map,
+    /// What kind of quotient of polynomials the map is.
+    algebra: Option<crate::map::Algebra>,
     creases: &'a Creases,
     options: &'a Options,
 }
 
 impl Job<'_> {
+    /// Appends the image of one segment. The jets are those at its ends. `Err`: where the map is not finite.
+    fn warp_seg(
+        &self,
+        seg: &Seg,
+        jets: [&Jet; 2],
+        pieces: &mut Vec<Piece>,
+        report: &mut PathReport,
+    ) -> Result<(), Point> {
+        let turned;
+        let flipped = split::backwards(seg);
+        let canonical = if flipped {
+            turned = seg.reversed();
+            &turned
+        } else {
+            seg
+        };
+        let [first, last] = if flipped { [jets[1], jets[0]] } else { jets };
+        let start = pieces.len();
+        match canonical {
+            Seg::Arc(a) if self.options.certify && a.sweep.abs() > MOST_RATIONAL && self.algebra.is_some() => {
+                // Only arcs of less than half a turn are quotients of polynomials with positive denominators.
+                let n = (a.sweep.abs() / MOST_RATIONAL).ceil();
+                let mut from = *first;
+                for i in 0..n as usize {
+                    let part = a.subsegment(i as f64 / n, (i + 1) as f64 / n);
+                    let to = if i + 1 == n as usize { *last } else { self.map.jet(part.p1) };
+                    if !to.is_finite() {
+                        return Err(part.p1);
+                    }
+                    self.warp(&Seg::Arc(part), [&from, &to], pieces, report)?;
+                    from = to;
+                }
+            }
+            _ => self.warp(canonical, [first, last], pieces, report)?,
+        }
+        if flipped {
+            turn(&mut pieces[start..]);
+        }
+        Ok(())
+    }
+
     /// Appends the image of a segment in its canonical direction, given the jets at its ends.
-    fn warp(&self, seg: &Seg, jets: [Jet; 2], pieces: &mut Vec<Piece>, report: &mut PathReport) -> Result<(), Point> {
-        let map = self.map;
+    fn warp(&self, seg: &Seg, jets: [&Jet; 2], pieces: &mut Vec<Piece>, report: &mut PathReport) -> Result<(), Point> {
         let certify = self.options.certify;
-        let whole = Source::new(seg, map).rational_if(certify);
+        let whole = Source::for_proof(seg, self.map, certify);
         if whole.size() <= ROUNDING * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
             // A segment that goes nowhere stays one (it carries line caps and markers), and has no direction to keep.
             pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }
-        let slow = split::slow(seg).map(|t| whole.param(t));
+        let mut slow = split::slow(seg);
+        if whole.is_rational() {
+            slow = slow.map(|t| whole.param(t));
+        }
+        if self.creases.items().is_empty() {
+            let from = whole.end_with(0.0, jets[0].p, jets[0]);
+            let to = whole.end_with(1.0, jets[1].p, jets[1]);
+            return self.cover(&whole, self.algebra, &slow, [&from, &to], pieces, report);
+        }
+        self.warp_parts(seg, jets, &whole, &slow, pieces, report)
+    }
+
+    /// Covers a smooth part.
+    #[inline(always)]
+    fn cover(
+        &self,
+        source: &Source<'_>,
+        known: Option<crate::map::Algebra>,
+        slow: &split::Slow,
+        [from, to]: [&End; 2],
+        pieces: &mut Vec<Piece>,
+        report: &mut PathReport,
+    ) -> Result<(), Point> {
+        let algebra = if self.options.certify { Algebra::of(source, known) } else { None };
+        let tolerance = self.options.tolerance;
+        step::Stepper { source, slow, tolerance, algebra, careful: false, attempts: 0 }.cover(from, to, pieces, report)
+    }
+
+    /// As [`Job::warp`], for a map that has creases.
+    #[inline(never)]
+    fn warp_parts(
+        &self,
+        seg: &Seg,
+        jets: [&Jet; 2],
+        whole: &Source<'_>,
+        slow: &split::Slow,
+        pieces: &mut Vec<Piece>,
+        report: &mut PathReport,
+    ) -> Result<(), Point> {
+        let (map, certify) = (self.map, self.options.certify);
         let splits = self.creases.splits(seg);
         let nodes = [jets[0].p, jets[1].p];
         let tolerance = self.options.tolerance;
@@ -362,36 +420,35 @@ impl Job<'_> {
                 None => (1.0, nodes[1]),
             };
             let branch = map.branch(whole.at(0.5 * (from.0 + to.0)));
-            if let (Some(Class::Affine(m)), Some(part)) = (branch.as_ref().map(Map::class), seg.part(from_t, to_t)) {
+            if let Some(Class::Affine(m)) = branch.as_ref().map(Map::class)
+                && let Some(part) = seg.part(from_t, to_t)
+            {
                 affine_part(&part.transformed(m), from.1, to.1, tolerance, pieces);
                 (from, from_t) = (to, to_t);
                 continue;
             }
             let inside;
             let source = match &branch {
-                None => &whole,
+                None => whole,
                 Some(b) => {
-                    inside = Source::new(seg, b).rational_if(certify);
+                    inside = Source::for_proof(seg, b, certify);
                     &inside
                 }
             };
             // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
             let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
                 if branch.is_none() && (t == 0.0 || t == 1.0) {
-                    let at = if t == 0.0 { seg.start() } else { seg.end() };
-                    return Ok((source.end_with(t, Some(p), *jet, at)?, false));
+                    return Ok((source.end_with(t, p, jet), false));
                 }
                 let own = source.end_at(t, None)?;
                 let torn = own.p.distance(p) > TORN * tolerance;
                 Ok((if torn { own } else { End { p, ..own } }, torn))
             };
-            let ((e0, torn0), (e1, torn1)) = (end(from, &jets[0])?, end(to, &jets[1])?);
+            let ((e0, torn0), (e1, torn1)) = (end(from, jets[0])?, end(to, jets[1])?);
             if torn0 {
                 pieces.push(Piece::Line(Line::new(from.1, e0.p)));
             }
-            let algebra = if certify { Algebra::of(source) } else { None };
-            let mut stepper = step::Stepper { source, slow: &slow, tolerance, algebra, careful: false, attempts: 0 };
-            stepper.cover(e0, e1, pieces, report)?;
+            self.cover(source, source.map.algebra(), slow, [&e0, &e1], pieces, report)?;
             if torn1 {
                 pieces.push(Piece::Line(Line::new(e1.p, to.1)));
             }

@@ -1,9 +1,8 @@
 //! The sixteen samples of a piece: which they are, and what they tell at a glance.
 
-use super::Piece;
-use super::fit::{self, Frame, State};
+use super::fit::{self, Frame, State, at, fma, square};
 use super::source::{End, Lane, Lanes};
-use kurbo::{Line, Point, Vec2};
+use kurbo::{Line, Vec2};
 
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
 pub(super) const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
@@ -54,7 +53,7 @@ impl Job<'_> {
     /// infinite where the samples are not [`Job::sound`].
     #[inline(always)]
     pub(super) fn glance(&self, z: &State) -> (f64, f64) {
-        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+        let power = self.frame.power(z.a, z.b);
         let (g, c) = (self.g, self.check);
         let mut worst = [0.0; 8];
         let mut drift = [0.0; 8];
@@ -63,22 +62,20 @@ impl Job<'_> {
         let mut slowness = [0.0; 8];
         for i in 0..8 {
             let residual = |s: f64, x: f64, y: f64| {
-                let rx = ((c3.x * s + c2.x) * s + c1.x) * s - x;
-                let ry = ((c3.y * s + c2.y) * s + c1.y) * s - y;
-                let dx = (c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x;
-                let dy = (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y;
-                let d2 = dx * dx + dy * dy + f64::MIN_POSITIVE;
-                let n = rx * dy - ry * dx;
-                (n * n / d2, ((rx * dx + ry * dy) / d2).abs(), dx, dy, d2)
+                let (rx, ry, dx, dy) = at(&power, s, x, y);
+                let d2 = square(dx, dy);
+                let k = 1.0 / d2;
+                let n = fma(rx, dy, -(ry * dx));
+                (n * n * k, (fma(rx, dx, ry * dy) * k).abs(), dx, dy, d2)
             };
             let (n0, s0, dx, dy, d2) = residual(FITTED[i] * UNIT, g.x[i], g.y[i]);
             let (n1, s1, ..) = residual(CHECKED[i] * UNIT, c.x[i], c.y[i]);
             worst[i] = if n0 > n1 { n0 } else { n1 };
             drift[i] = if s0 > s1 { s0 } else { s1 };
             let (x, y) = (c.x[i] - g.x[i], c.y[i] - g.y[i]);
-            let l2 = x * x + y * y;
-            let along = (dx * x + dy * y) * SIDE[i];
-            let straight = 2.0 * along * along - d2 * l2;
+            let l2 = fma(x, x, y * y);
+            let along = fma(dx, x, dy * y) * SIDE[i];
+            let straight = fma(2.0 * along, along, -(d2 * l2));
             margin[i] = -(if along < straight { along } else { straight });
             pace[i] = l2;
             slowness[i] = -l2;
@@ -186,32 +183,52 @@ impl Shape {
     }
 }
 
-/// The line between the ends, if the image is that line to rounding and runs along it one way.
+/// Farther than this share of its size from its chord nothing is straight.
+const STRAIGHT: f64 = 1e-9;
+/// Nor farther than this share of the tolerance.
+const UNSEEN: f64 = 1e-3;
+/// Rounding of a coordinate after a map's arithmetic, relative to its size.
+const ROUNDING: f64 = 4e-15;
+/// Rounding of the samples' differences, relative to the size.
+const BLUR: f64 = 1e-12;
+
+/// The line between the ends and how far the samples are from it, if the image is that line but for what nobody sees, runs along
+/// it one way and leaves it in no direction.
 #[inline(always)]
-pub(super) fn straight(g: &Lanes, q: Vec2, p0: Point, p1: Point, size: f64) -> Option<Piece> {
-    /// Rounding of a coordinate after a map's arithmetic, relative to its size.
-    const ROUNDING: f64 = 4e-15;
-    let from_origin = (p0.x.abs() + p0.y.abs()).max(p1.x.abs() + p1.y.abs());
-    let most = size * (1e-12 * size + ROUNDING * from_origin);
+pub(super) fn straight(g: &Lanes, from: &End, to: &End, size: f64, tolerance: f64) -> Option<(Line, f64)> {
+    let q = to.p - from.p;
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let from_origin = larger(from.p.x.abs() + from.p.y.abs(), to.p.x.abs() + to.p.y.abs());
+    let rounding = ROUNDING * from_origin;
+    let (far, unseen) = (STRAIGHT * size, UNSEEN * tolerance);
+    let most = larger(if far < unseen { far } else { unseen }, BLUR * size) + rounding;
     // One sample tells nearly all bent pieces.
-    if (g.x[2] * q.y - g.y[2] * q.x).abs() > most {
+    if (g.x[2] * q.y - g.y[2] * q.x).abs() > size * most {
         return None;
     }
-    straight_at_all(g, q, size, most, ROUNDING * from_origin).then_some(Piece::Line(Line::new(p0, p1)))
+    straight_at_all(g, from, to, most, if size <= rounding { rounding } else { 0.0 })
 }
 
+/// `nothing`: what a piece that is a point by rounding may extend to; zero for all others.
 #[inline(never)]
-fn straight_at_all(g: &Lanes, q: Vec2, size: f64, most: f64, rounding: f64) -> bool {
-    if size <= rounding {
-        return g.x.iter().chain(&g.y).all(|v| v.abs() <= rounding);
+fn straight_at_all(g: &Lanes, from: &End, to: &End, most: f64, nothing: f64) -> Option<(Line, f64)> {
+    /// Directions this far apart, in radians, make no corner.
+    const TURN: f64 = 1e-6;
+    let (q, line) = (to.p - from.p, Line::new(from.p, to.p));
+    if nothing > 0.0 {
+        return g.x.iter().chain(&g.y).all(|v| v.abs() <= nothing).then_some((line, 0.0));
     }
-    let mut last = 0.0;
+    let length = q.hypot();
+    let (mut last, mut worst) = (0.0, 0.0);
     for i in 0..8 {
         let along = g.x[i] * q.x + g.y[i] * q.y;
-        if along <= last || (g.x[i] * q.y - g.y[i] * q.x).abs() > most {
-            return false;
+        let off = (g.x[i] * q.y - g.y[i] * q.x).abs();
+        if along <= last || off > length * most {
+            return None;
         }
         last = along;
+        worst = if off > worst { off } else { worst };
     }
-    last < q.hypot2()
+    let turns = |t: Vec2| t.cross(q).abs() > TURN * length || t.dot(q) <= 0.0;
+    (last < q.hypot2() && !turns(from.away) && !turns(to.into)).then(|| (line, worst / length))
 }

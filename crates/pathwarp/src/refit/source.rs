@@ -1,5 +1,6 @@
 //! One smooth source piece and its image: sampled eight parameters at a time, with one-sided tangents at its break points.
 
+use super::fit::{self, fma};
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
@@ -23,8 +24,15 @@ const BESIDE: f64 = 3e-7;
 
 /// A curve that can be fitted: the image of one segment, or of several in a row.
 pub(super) trait Curve {
+    /// Writes the images at eight parameters. `Err`: the source place where the map is not finite.
+    fn images_into(&self, t: &Lane, out: &mut Lanes) -> Result<(), Point>;
     /// Images at eight parameters. `Err`: the source place where the map is not finite.
-    fn images(&self, t: &Lane) -> Result<Lanes, Point>;
+    #[inline(always)]
+    fn images(&self, t: &Lane) -> Result<Lanes, Point> {
+        let mut out = Lanes::default();
+        self.images_into(t, &mut out)?;
+        Ok(out)
+    }
     /// The image's point and derivative at one parameter.
     fn image(&self, t: f64) -> (Point, Vec2);
     /// The break point at `t`.
@@ -68,7 +76,7 @@ pub(super) struct End {
 }
 
 impl<'a> Source<'a> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(seg: &'a Seg, map: &'a dyn Map) -> Self {
         let zero = Vec2::ZERO;
         let (c, last, size) = match seg {
@@ -90,12 +98,21 @@ impl<'a> Source<'a> {
         Self { seg, map, c, last, size, w: None }
     }
 
-    /// For proofs, an arc of less than half a turn as a rational quadratic: the same curve, another parameter.
-    #[inline]
-    pub(super) fn rational_if(mut self, wanted: bool) -> Self {
-        let Seg::Arc(a) = self.seg else { return self };
-        if !wanted || a.sweep.abs() > 3.0 {
-            return self;
+    /// As [`Source::new`]; for proofs, an arc of less than half a turn as a rational quadratic: the same curve, another
+    /// parameter.
+    #[inline(always)]
+    pub(super) fn for_proof(seg: &'a Seg, map: &'a dyn Map, proof: bool) -> Self {
+        let mut out = Self::new(seg, map);
+        if proof {
+            out.make_rational();
+        }
+        out
+    }
+
+    fn make_rational(&mut self) {
+        let Seg::Arc(a) = self.seg else { return };
+        if a.sweep.abs() > 3.0 {
+            return;
         }
         // With h half the sweep and s = sin h, c = cos h, in the axes of the middle angle: (c, −s), (1, 0), (c, s), the middle one
         // of weight c. Power basis of the numerators and the denominator.
@@ -106,7 +123,11 @@ impl<'a> Source<'a> {
         self.c = [u * c - v * s, u * (2.0 * (1.0 - c)) + v * (2.0 * s), u * (2.0 * (c - 1.0)), Vec2::ZERO];
         self.w = Some([1.0, 2.0 * (c - 1.0), 2.0 * (1.0 - c)]);
         self.last = self.deriv_rational(1.0);
-        self
+    }
+
+    /// Whether the source is a quotient of polynomials with a denominator.
+    pub(super) fn is_rational(&self) -> bool {
+        self.w.is_some()
     }
 
     fn deriv_rational(&self, t: f64) -> Vec2 {
@@ -151,7 +172,7 @@ impl<'a> Source<'a> {
     }
 
     /// The source's derivative.
-    #[inline]
+    #[inline(always)]
     pub(super) fn deriv(&self, t: f64) -> Vec2 {
         match self.seg {
             _ if t == 1.0 => self.last,
@@ -193,8 +214,8 @@ impl<'a> Source<'a> {
         let [c0, c1, c2, c3] = self.c;
         for i in 0..8 {
             let t = t[i];
-            out.x[i] = ((c3.x * t + c2.x) * t + c1.x) * t + c0.x;
-            out.y[i] = ((c3.y * t + c2.y) * t + c1.y) * t + c0.y;
+            out.x[i] = fma(fma(fma(c3.x, t, c2.x), t, c1.x), t, c0.x);
+            out.y[i] = fma(fma(fma(c3.y, t, c2.y), t, c1.y), t, c0.y);
         }
         out
     }
@@ -208,34 +229,32 @@ impl<'a> Source<'a> {
     /// The break point at `t`. `node` is the image of a source node or crease, shared with the neighbours bit by bit.
     pub(super) fn end_at(&self, t: f64, node: Option<Point>) -> Result<End, Point> {
         let at = self.at(t);
-        self.end_with(t, node, self.map.jet(at), at)
+        let jet = self.map.jet(at);
+        if jet.is_finite() { Ok(self.end_with(t, node.unwrap_or(jet.p), &jet)) } else { Err(at) }
     }
 
-    /// As [`Source::end_at`], with the map's jet at the place known.
-    pub(super) fn end_with(&self, t: f64, node: Option<Point>, jet: Jet, at: Point) -> Result<End, Point> {
-        if !jet.is_finite() {
-            return Err(at);
-        }
+    /// As [`Source::end_at`], with the place's image and the map's finite jet there known.
+    #[inline(always)]
+    pub(super) fn end_with(&self, t: f64, p: Point, jet: &Jet) -> End {
         let v = self.deriv(t);
         let d = jet.push(v);
-        let p = node.unwrap_or(jet.p);
         let (n2, v2) = (d.hypot2(), v.hypot2());
         let j2 = jet.dx.hypot2() + jet.dy.hypot2();
         if n2 > VANISHING * VANISHING * j2 * v2 && v2 > (VANISHING * self.size).powi(2) {
             let speed = n2.sqrt();
             let u = d / speed;
-            return Ok(End { t, p, speed, into: u, away: u });
+            return End { t, p, speed, into: u, away: u };
         }
         let away = self.beside(t, 1.0, jet);
         let into = self.beside(t, -1.0, jet);
-        Ok(End { t, p, speed: 0.0, into, away })
+        End { t, p, speed: 0.0, into, away }
     }
 
     /// The unit tangent just after (`side` = 1) or just before (−1) a place where the derivative vanishes: the image of the
     /// first derivative of the source that does not (the k-th turns with (±1)^(k−1)); if the map kills that too, the
     /// direction a little beside the place.
     #[cold]
-    fn beside(&self, t: f64, side: f64, jet: Jet) -> Vec2 {
+    fn beside(&self, t: f64, side: f64, jet: &Jet) -> Vec2 {
         if !matches!(self.seg, Seg::Arc(_)) {
             let v = self.deriv(t);
             let a = self.c[2] * 2.0 + self.c[3] * (6.0 * t);
@@ -271,15 +290,15 @@ impl<'a> Source<'a> {
 
 impl Curve for Source<'_> {
     #[inline(always)]
-    fn images(&self, t: &Lane) -> Result<Lanes, Point> {
-        let mut g = self.points(t);
+    fn images_into(&self, t: &Lane, g: &mut Lanes) -> Result<(), Point> {
+        *g = self.points(t);
         self.map.lanes(&mut g.x, &mut g.y);
         // One test for all: the sum is finite only if every term is (terms too large to add up are too large to fit).
         let mut sum = [0.0; 8];
         for i in 0..8 {
             sum[i] = g.x[i] + g.y[i];
         }
-        if sum.iter().sum::<f64>().is_finite() { Ok(g) } else { Err(self.not_finite(t, &g)) }
+        if fit::sum(&sum).is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
     }
 
     fn image(&self, t: f64) -> (Point, Vec2) {

@@ -8,16 +8,24 @@ use std::cmp::Ordering;
 ///
 /// Two shapes that share an edge run along it in opposite directions. Working on one of them and mirroring the result gives
 /// both the same curves to the last bit.
+#[inline]
 pub(super) fn canonical(seg: &Seg) -> (Seg, bool) {
+    if backwards(seg) { (seg.reversed(), true) } else { (*seg, false) }
+}
+
+/// Whether [`canonical`] turns the segment round.
+#[inline]
+pub(super) fn backwards(seg: &Seg) -> bool {
     let order = match seg {
         Seg::Line(s) => compare(s.p0, s.p1),
         Seg::Quad(s) => compare(s.p0, s.p2),
         Seg::Cubic(s) => compare(s.p0, s.p3).then_with(|| compare(s.p1, s.p2)),
         Seg::Arc(s) => compare(s.p0, s.p1).then_with(|| 0.0f64.total_cmp(&s.sweep)),
     };
-    if order == Ordering::Greater { (seg.reversed(), true) } else { (*seg, false) }
+    order == Ordering::Greater
 }
 
+#[inline]
 fn compare(a: Point, b: Point) -> Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
 }
@@ -68,6 +76,7 @@ impl Slow {
 const SLOW: f64 = 0.3;
 
 /// The slow spots of `seg`.
+#[inline]
 pub(super) fn slow(seg: &Seg) -> Slow {
     match seg {
         Seg::Line(_) => Slow::default(),
@@ -91,6 +100,7 @@ pub(super) fn slow(seg: &Seg) -> Slow {
 }
 
 /// Interior minima of |v|² for v = v₀ + v₁t + v₂t² that are small against its mean: roots of the cubic v·v′ = 0.
+#[inline(never)]
 fn minima(v: &[Vec2; 3]) -> Slow {
     let [v0, v1, v2] = *v;
     let speed2 = |t: f64| (v0 + (v1 + v2 * t) * t).hypot2();

@@ -1,34 +1,26 @@
-//! Where the pieces end: as few as the tolerance allows, of equal difficulty.
-//!
-//! The error of a piece goes with the sixth power of its length, so a piece with error e uses the share (e/tolerance)^(1/6)
-//! of what one piece can do: its difficulty. Difficulties add up along the curve. One attempt on the whole tells how many
-//! pieces are needed; the breaks then go to the quantiles of the difficulty measured so far, until every piece fits.
+//! One piece over one stretch of a curve: samples, fit, checks, and what else can be tried where the first fit does not do.
 
+use super::Piece;
 use super::certify::{self, Algebra};
-use super::fit::{self, Fit, Frame, State};
+use super::fit::{self, Fit, Frame, State, fma};
 use super::samples::{CHECKED, FITTED, Job, Shape, UNIT, between, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate};
-use super::{Assurance, PathReport, Piece};
-use kurbo::{Point, Vec2};
+use kurbo::{Line, Point, Vec2};
 
-/// Attempts on one smooth part at most.
-const MOST_ATTEMPTS: usize = 2000;
-/// Shorter stretches of the parameter than this are not split any more.
-const SHORTEST: f64 = 1e-8;
-/// Pieces planned at once.
-const MOST_PLANNED: usize = 8;
 /// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
 /// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
 const PLAIN: f64 = 0.9;
-/// The same for the dense check, whose samples are four times as many: enough also for the sharp spots it is made for.
-const DENSE: f64 = 0.98;
+/// The same for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
+const DENSE: f64 = 0.995;
+/// What errors of pieces over several segments grow by between the samples.
+const CORNERS: f64 = 1.015;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
 /// is let pass (κ about the inverse of the piece's size, δ a share of that size).
 const FLAT: f64 = 0.02;
 /// A fit this good is not improved further.
-const ENOUGH: f64 = 0.77;
+const ENOUGH: f64 = 0.85;
 
 /// A handle longer or shorter than Hermite's by the piece's size counts like a residual of this share of the tolerance.
 const PULL: f64 = 0.05;
@@ -50,16 +42,6 @@ pub(super) enum Outcome {
     },
 }
 
-impl Outcome {
-    /// The share of one piece's capacity that the stretch takes.
-    fn difficulty(&self, tolerance: f64) -> f64 {
-        /// Eight pieces; also where nothing is known.
-        const MOST: f64 = 2.6e5;
-        let (Self::Fits { error, .. } | Self::Misses { error, .. }) = self;
-        (error / tolerance).clamp(1e-3, MOST).powf(1.0 / 6.0)
-    }
-}
-
 /// Fits one smooth part of a segment.
 pub(super) struct Stepper<'a, C> {
     pub(super) source: &'a C,
@@ -73,142 +55,23 @@ pub(super) struct Stepper<'a, C> {
 }
 
 impl<C: Curve> Stepper<'_, C> {
-    /// Appends pieces for the stretch between two break points. `Err`: a source place where the map is not finite.
-    pub(super) fn cover(
-        &mut self,
-        from: End,
-        to: End,
-        out: &mut Vec<Piece>,
-        report: &mut PathReport,
-    ) -> Result<(), Point> {
-        let first = self.attempt(&from, &to)?;
-        if let Outcome::Fits { piece, error } = first {
-            self.accept(piece, error, out, report);
-            return Ok(());
-        }
-        let mut stack = vec![(from, to, Some(first))];
-        while let Some((from, to, known)) = stack.pop() {
-            let outcome = match known {
-                Some(o) => o,
-                None => self.attempt(&from, &to)?,
-            };
-            let (piece, error, sharp) = match outcome {
-                Outcome::Fits { piece, error } => {
-                    self.accept(piece, error, out, report);
-                    continue;
-                }
-                Outcome::Misses { piece, error, sharp } => (piece, error, sharp),
-            };
-            let h = to.t - from.t;
-            if self.attempts >= MOST_ATTEMPTS || h < SHORTEST {
-                report.over_budget.push(self.source.at(0.5 * (from.t + to.t)));
-                report.max_error = report.max_error.max(error);
-                report.assurance = report.assurance.min(Assurance::Checked);
-                out.push(piece);
-                continue;
-            }
-            let split = self.slow.inside(from.t, to.t).or(sharp);
-            if let Some(t) = split {
-                let mid = self.source.end(t)?;
-                stack.push((mid, to, None));
-                stack.push((from, mid, None));
-                continue;
-            }
-            self.plan(from, to, &outcome, &mut stack)?;
-        }
-        Ok(())
-    }
-
-    fn accept(&self, piece: Piece, error: f64, out: &mut Vec<Piece>, report: &mut PathReport) {
-        if self.algebra.is_some() {
-            report.max_error = report.max_error.max(error);
-            report.assurance = report.assurance.min(Assurance::Certified);
-        } else {
-            // What may hide between the samples, see PLAIN.
-            let bound = (error * 1.05).min(self.tolerance).max(error);
-            report.max_error = report.max_error.max(bound);
-            report.assurance = report.assurance.min(Assurance::Checked);
-        }
-        out.push(piece);
-    }
-
-    /// Covers a stretch that one piece does not fit by several of equal difficulty, and puts them on the stack.
-    fn plan(
-        &mut self,
-        from: End,
-        to: End,
-        whole: &Outcome,
-        stack: &mut Vec<(End, End, Option<Outcome>)>,
-    ) -> Result<(), Point> {
-        /// Placements tried with one number of pieces.
-        const ROUNDS: usize = 3;
-        let tol = self.tolerance;
-        let d = whole.difficulty(tol);
-        let mut n = (d.ceil() as usize).clamp(2, MOST_PLANNED);
-        let mut ends = [from; MOST_PLANNED + 1];
-        let mut got: [Option<Outcome>; MOST_PLANNED] = [None; MOST_PLANNED];
-        ends[n] = to;
-        for i in 1..n {
-            ends[i] = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64)?;
-        }
-        let mut round = 0;
-        loop {
-            let mut total = 0.0;
-            let mut good = true;
-            let mut sums = [0.0; MOST_PLANNED + 1];
-            for i in 0..n {
-                let o = match got[i] {
-                    Some(o) => o,
-                    None => self.attempt(&ends[i], &ends[i + 1])?,
-                };
-                got[i] = Some(o);
-                total += o.difficulty(tol);
-                sums[i + 1] = total;
-                good &= matches!(o, Outcome::Fits { .. });
-            }
-            round += 1;
-            let stuck = got[..n].iter().flatten().any(|o| matches!(o, Outcome::Misses { sharp: Some(_), .. }));
-            if good || stuck || self.attempts >= MOST_ATTEMPTS {
-                break;
-            }
-            let mut next = n;
-            if total > n as f64 * 0.995 || round >= ROUNDS {
-                next = (n + 1).max(total.ceil() as usize);
-                round = 0;
-            }
-            if next > MOST_PLANNED {
-                break;
-            }
-            // Break points at the quantiles of the difficulty.
-            let old = ends;
-            let mut at = 0;
-            for i in 1..next {
-                let want = total * i as f64 / next as f64;
-                while at + 1 < n && sums[at + 1] < want {
-                    at += 1;
-                }
-                let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
-                ends[i] = self.source.end(old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0))?;
-            }
-            ends[next] = to;
-            got = [None; MOST_PLANNED];
-            n = next;
-        }
-        for i in (0..n).rev() {
-            stack.push((ends[i], ends[i + 1], got[i]));
-        }
-        Ok(())
-    }
-
+    /// Fits one piece to a stretch.
+    #[inline(never)]
     pub(super) fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
+        self.try_stretch(from, to)
+    }
+
+    #[inline(always)]
+    pub(super) fn try_stretch(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
         let tol = self.tolerance;
-        let g = self.samples(from, h, &FITTED)?;
+        let (mut g, mut check) = (Lanes::default(), Lanes::default());
+        self.samples(from, h, &FITTED, &mut g)?;
         let q = to.p - from.p;
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
         let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
-        if let Some(line) = straight(&g, q, from.p, to.p, size) {
+        if let Some(line) = straight(&g, from, to, size, tol) {
             return self.line(from, to, line, size);
         }
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
@@ -223,7 +86,7 @@ impl<C: Curve> Stepper<'_, C> {
             z.s[i] = FITTED[i] * UNIT;
         }
         let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
-        let check = self.samples(from, h, &CHECKED)?;
+        self.samples(from, h, &CHECKED, &mut check)?;
         let job = Job { from, to, frame, g: &g, check: &check, careful };
         // Most pieces end here: the Hermite cubic does.
         let (first, drift) = job.glance(&z);
@@ -243,9 +106,10 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// A stretch whose image is straight to rounding.
     #[cold]
-    fn line(&self, from: &End, to: &End, line: Piece, size: f64) -> Result<Outcome, Point> {
+    fn line(&self, from: &End, to: &End, (line, off): (Line, f64), size: f64) -> Result<Outcome, Point> {
+        let line = Piece::Line(line);
         if self.algebra.is_none() || size == 0.0 {
-            return Ok(Outcome::Fits { piece: line, error: 0.0 });
+            return Ok(Outcome::Fits { piece: line, error: off });
         }
         let q = to.p - from.p;
         let length = q.hypot();
@@ -255,7 +119,7 @@ impl<C: Curve> Stepper<'_, C> {
             (None, _) | (_, None) => 0.0,
             (Some(algebra), Some(source)) => {
                 let c = Candidate { t0: from.t, t1: to.t, p0: from.p, frame, a: length / 3.0, b: length / 3.0 };
-                certify::line(source, algebra, &c)?
+                certify::line(source, algebra, &c, self.tolerance)?
             }
         };
         if error <= self.tolerance {
@@ -269,17 +133,26 @@ impl<C: Curve> Stepper<'_, C> {
     #[inline(never)]
     fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
         let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
-        let mut s0 = z.s;
-        job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
-        let mut s1 = between(&s0);
-        job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
-        let mut feet = [0.0; 16];
-        for i in 0..8 {
-            feet[FITTED[i] as usize - 1] = s0[i];
-            feet[CHECKED[i] as usize - 1] = s1[i];
-        }
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        certify::bound(source, algebra, &c, &feet)
+        let feet = |s0: &Lane, s1: &Lane| {
+            let mut feet = [0.0; 16];
+            for i in 0..8 {
+                feet[FITTED[i] as usize - 1] = s0[i];
+                feet[CHECKED[i] as usize - 1] = s1[i];
+            }
+            feet
+        };
+        let mut s0 = z.s;
+        job.frame.settle(job.g, z.a, z.b, &mut s0);
+        let mut s1 = between(&s0);
+        job.frame.settle(job.check, z.a, z.b, &mut s1);
+        let quick = certify::quick(source, algebra, &c, &feet(&s0, &s1))?;
+        if quick <= self.tolerance {
+            return Ok(quick);
+        }
+        job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
+        job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
+        certify::bound(source, algebra, &c, &feet(&s0, &s1))
     }
 
     /// The measured error, and if that will do, the proven one.
@@ -290,17 +163,17 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// Images at the given samples of the stretch, relative to its first point.
     #[inline(always)]
-    fn samples(&self, from: &End, h: f64, set: &Lane) -> Result<Lanes, Point> {
+    fn samples(&self, from: &End, h: f64, set: &Lane, g: &mut Lanes) -> Result<(), Point> {
         let mut t = [0.0; 8];
         for i in 0..8 {
-            t[i] = from.t + h * (set[i] * UNIT);
+            t[i] = fma(h, set[i] * UNIT, from.t);
         }
-        let mut g = self.source.images(&t)?;
+        self.source.images_into(&t, g)?;
         for i in 0..8 {
             g.x[i] -= from.p.x;
             g.y[i] -= from.p.y;
         }
-        Ok(g)
+        Ok(())
     }
 
     /// What else can be done where the first fit does not do.
@@ -332,7 +205,7 @@ impl<C: Curve> Stepper<'_, C> {
         // does, two others are tried.
         const NEARLY: f64 = 5.0;
         if error > tol && error < NEARLY * tol {
-            for k in [1.6, 0.625] {
+            for k in [1.45, 0.69] {
                 let a = f.z.a * k;
                 let b = frame.slide(&f.z, a);
                 if !(b > frame.floor[1] && b < frame.size) {
@@ -408,7 +281,11 @@ impl<C: Curve> Stepper<'_, C> {
             feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
             feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
         }
-        let e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
+        let mut e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
+        if self.source.single().is_none() && self.careful {
+            // Joints have corners in their curvature, which no parabola follows.
+            e = (e * CORNERS).max(verify::thorough(self.source, &c, self.slow, self.tolerance)?);
+        }
         Ok(if e > DENSE * self.tolerance { e / DENSE } else { e })
     }
 

@@ -63,14 +63,18 @@ pub(super) fn dense(
     let mut worst = 0.0f64;
     let mut last = Foot { tau: 0.0, s: 0.0, slope: c.frame.t0 };
     let mut sound = true;
-    let walk = |tau: &Lane, worst: &mut f64, last: &mut Foot, depth: u32| -> Result<bool, Point> {
+    let walk = |tau: &Lane, worst: &mut f64, last: &mut Foot, depth: u32| -> Result<(bool, Lane), Point> {
         walk(source, c, feet, tau, worst, last, depth)
     };
-    for k in 0..BATCHES {
+    let mut even = [[0.0; 8]; BATCHES];
+    for (k, squares) in even.iter_mut().enumerate() {
         let tau: Lane = std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (BATCHES * 8) as f64);
-        sound &= walk(&tau, &mut worst, &mut last, 0)?;
+        let (good, d) = walk(&tau, &mut worst, &mut last, 0)?;
+        sound &= good;
+        *squares = d;
     }
-    sound &= turns_little(last.slope, c.frame.t1) || walk(&spread(last.tau, 1.0), &mut worst, &mut last, 1)?;
+    sound &= turns_little(last.slope, c.frame.t1) || walk(&spread(last.tau, 1.0), &mut worst, &mut last, 1)?.0;
+    let peak = peak(even.as_flattened(), worst);
     for t in slow.all() {
         let at = (t - c.t0) / (c.t1 - c.t0);
         if at > 0.0 && at < 1.0 {
@@ -92,8 +96,27 @@ pub(super) fn dense(
         let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
         worst = d.iter().copied().fold(worst, f64::max);
     }
-    let worst = worst.sqrt();
+    let worst = worst.sqrt().max(peak);
     if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
+}
+
+/// The largest distance between evenly spaced samples: parabolas through three neighbours, where the middle one is the largest
+/// of them. Squares are given, of samples none larger than `most`.
+fn peak(squares: &[f64], most: f64) -> f64 {
+    /// A sample this far below the largest is on no parabola that reaches higher.
+    const NEAR: f64 = 0.8;
+    let mut best = 0.0f64;
+    for w in squares.windows(3) {
+        if w[1] < NEAR * most || w[1] < w[0] || w[1] < w[2] {
+            continue;
+        }
+        let [a, b, c] = [w[0], w[1], w[2]].map(f64::sqrt);
+        let bend = 2.0 * b - a - c;
+        if bend > 0.0 {
+            best = best.max(b + (c - a).powi(2) / (8.0 * bend));
+        }
+    }
+    best
 }
 
 /// A sample's foot on the cubic.
@@ -110,7 +133,7 @@ fn spread(a: f64, b: f64) -> Lane {
 }
 
 /// Measures the next eight samples; between two whose feet see the cubic turn much, eight more. Returns whether the feet
-/// advance, and the cubic between them is known.
+/// advance, and the cubic between them is known; and the eight distances, squared.
 fn walk(
     source: &impl Curve,
     c: &Candidate,
@@ -119,7 +142,7 @@ fn walk(
     worst: &mut f64,
     last: &mut Foot,
     depth: u32,
-) -> Result<bool, Point> {
+) -> Result<(bool, Lane), Point> {
     /// Sixty-four samples, eight and eight more in between.
     const DEPTH: u32 = 2;
     /// Feet this close are in order.
@@ -132,14 +155,14 @@ fn walk(
     for i in 0..8 {
         let next = Foot { tau: tau[i], s: s[i], slope: c.slope(s[i]) };
         if next.s < last.s - ROUNDING {
-            return Ok(false);
+            return Ok((false, d));
         }
         if !turns_little(last.slope, next.slope) {
-            sound &= depth < DEPTH && walk(source, c, feet, &spread(last.tau, next.tau), worst, last, depth + 1)?;
+            sound &= depth < DEPTH && walk(source, c, feet, &spread(last.tau, next.tau), worst, last, depth + 1)?.0;
         }
         *last = next;
     }
-    Ok(sound)
+    Ok((sound, d))
 }
 
 /// Whether two directions are less than 60° apart.

@@ -1,0 +1,34 @@
+//! Coordinates as text.
+
+/// The shortest text that gives the number back: to single precision where it is no finer, for that is what GIMP's files
+/// hold; else to double.
+pub(crate) fn shortest(v: f64) -> String {
+    let single = v as f32;
+    // `+ 0.0` makes -0 plain.
+    if f64::from(single) == v { (single + 0.0).to_string() } else { (v + 0.0).to_string() }
+}
+
+/// Rounded to `decimals`, without trailing zeros.
+pub(crate) fn rounded(v: f64, decimals: u8) -> String {
+    let text = format!("{v:.0$}", usize::from(decimals));
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back() {
+        for v in [0.0, 112.277_374_267_578_12, 1e7, -0.1, f64::from(f32::MIN_POSITIVE), 1.0 / 3.0, 34_002_432.0] {
+            let back: f64 = shortest(v).parse().unwrap();
+            assert_eq!(back as f32, v as f32);
+            assert!(back == v || f64::from(v as f32) == v, "{v}");
+        }
+        assert_eq!(
+            (shortest(f64::from(12.55f32)), rounded(2.50, 2), rounded(-0.001, 2)),
+            ("12.55".into(), "2.5".into(), "0".into())
+        );
+    }
+}

@@ -1,0 +1,180 @@
+//! SVG as GIMP exports it, and as it imports it without scaling.
+//!
+//! GIMP writes the canvas as viewBox, in pixels, and width and height in inches rounded to six digits; the viewBox is what
+//! counts. On import it scales by width and height over the viewBox, at the image's resolution: sizes in px equal to the viewBox
+//! leave everything where it is.
+
+use crate::error::Error;
+use crate::number::{rounded, shortest};
+use crate::open::{File, Kind};
+use crate::path::{GimpPath, Stroke};
+use pathwarp::Outline;
+use pathwarp::kurbo::Point;
+use pathwarp::outline::{Seg, Subpath};
+use roxmltree::{Document, Node, ParsingOptions};
+use std::fmt::Write as _;
+
+const NAMESPACE: &str = "http://www.w3.org/2000/svg";
+const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
+const DOCTYPE: &str = "-//W3C//DTD SVG 20010904//EN";
+/// More elements than this are no paths of GIMP's.
+const MOST_NODES: u32 = 4_000_000;
+
+/// The attributes by which GIMP's exports are told from other SVG files.
+const ATTRIBUTES: [(&str, &str); 3] = [("fill", "none"), ("stroke", "black"), ("stroke-width", "1")];
+
+/// Whether a file that starts so can be one of GIMP's exports.
+pub(crate) fn may_be_gimps(head: &[u8]) -> bool {
+    head.windows(DOCTYPE.len()).any(|w| w == DOCTYPE.as_bytes())
+}
+
+fn parse(text: &str) -> Result<Document<'_>, Error> {
+    let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|e| {
+        let pos = e.pos();
+        let lines = text.split_inclusive('\n').take((pos.row as usize).saturating_sub(1));
+        let at = lines.map(str::len).sum::<usize>() + (pos.col as usize).saturating_sub(1);
+        Error::at(at as u64, format!("this is no XML: {e}"))
+    })
+}
+
+/// Whether an SVG is as GIMP writes it: paths, at least one, with nothing but a name and GIMP's own stroke.
+pub(crate) fn is_gimps(text: &str) -> bool {
+    let Ok(doc) = parse(text) else { return false };
+    let mut paths = doc.root_element().children().filter(Node::is_element).peekable();
+    paths.peek().is_some()
+        && paths.all(|p| {
+            p.has_tag_name((NAMESPACE, "path"))
+                && p.attribute("d").is_some()
+                && ATTRIBUTES.iter().all(|(name, value)| p.attribute(*name) == Some(value))
+                && p.attributes().all(|a| {
+                    a.namespace() == Some(INKSCAPE)
+                        || matches!(a.name(), "id" | "d" | "fill" | "stroke" | "stroke-width")
+                })
+        })
+}
+
+pub(crate) fn read(text: &str) -> Result<File, Error> {
+    let doc = parse(text)?;
+    let root = doc.root_element();
+    if !root.has_tag_name((NAMESPACE, "svg")) {
+        return Err(Error::at(root.range().start as u64, "this XML is no SVG"));
+    }
+    let numbers = |text: &str| -> Vec<f64> {
+        text.split([' ', ',']).filter(|w| !w.is_empty()).filter_map(|w| w.parse().ok()).collect()
+    };
+    let size = match root.attribute("viewBox").map(numbers).as_deref() {
+        Some([_, _, w, h]) if [w, h].iter().all(|v| v.is_finite() && **v > 0.0) => Some([*w, *h]),
+        _ => None,
+    };
+    let mut paths = Vec::new();
+    for p in root.children().filter(|n| n.has_tag_name((NAMESPACE, "path"))) {
+        let data = p.attribute("d").unwrap_or_default();
+        let at = |e: String| Error::at(p.range().start as u64, format!("a path's data: {e}"));
+        let outline = if data.trim().is_empty() { Outline::default() } else { Outline::from_svg(data).map_err(at)? };
+        if outline.segs().any(|s| !s.is_finite()) {
+            return Err(at("a coordinate is too large to be a number".to_owned()));
+        }
+        let strokes =
+            outline.subpaths.iter().map(|s| lone_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
+        let name = p.attribute("id").unwrap_or_default().to_owned();
+        // What is not said is invisible: so GIMP imports it.
+        paths.push(GimpPath { name, visible: false, strokes });
+    }
+    Ok(File { kind: Kind::Svg, size, paths })
+}
+
+/// A closed stroke of a single anchor: GIMP writes its four points without the C, so that they read as three lines.
+fn lone_loop(s: &Subpath) -> Option<Stroke> {
+    let lines: Option<Vec<Point>> =
+        s.segs.iter().map(|g| if let Seg::Line(l) = g { Some(l.p1) } else { None }).collect();
+    match lines?.as_slice() {
+        [outgoing, incoming, end] if !s.closed && *end == s.start => {
+            let points = [*incoming, s.start, *outgoing].map(|p| [p.x, p.y]).to_vec();
+            Some(Stroke { closed: true, points })
+        }
+        _ => None,
+    }
+}
+
+/// The paths as SVG that GIMP imports without scaling: sizes in pixels, a matching viewBox, one `path` each with its name as id.
+/// `decimals` rounds coordinates; without it they come back to the single precision that GIMP keeps.
+///
+/// Handles at the two ends of open strokes carry no geometry and have no place in SVG.
+#[must_use]
+pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> String {
+    let [w, h] = size.map(shortest);
+    let labelled = paths.iter().any(|p| !is_id(&p.name));
+    let inkscape = if labelled { format!("\n     xmlns:inkscape=\"{INKSCAPE}\"") } else { String::new() };
+    let mut out = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"no\"?>\n<!DOCTYPE svg PUBLIC \"{DOCTYPE}\"\n              \
+         \"http://www.w3.org/TR/2001/REC-SVG-20010904/DTD/svg10.dtd\">\n\n<svg xmlns=\"{NAMESPACE}\"{inkscape}\n     \
+         width=\"{w}px\" height=\"{h}px\"\n     viewBox=\"0 0 {w} {h}\">\n"
+    );
+    for p in paths {
+        let name = escaped(&p.name);
+        // Writing to a String cannot fail.
+        let _ = write!(out, "  <path id=\"{name}\"");
+        if !is_id(&p.name) {
+            let _ = write!(out, " inkscape:label=\"{name}\"");
+        }
+        for (name, value) in ATTRIBUTES {
+            let _ = write!(out, " {name}=\"{value}\"");
+        }
+        let strokes: Vec<String> = p.strokes.iter().map(|s| data(s, decimals)).collect();
+        let _ = writeln!(out, "\n        d=\"{}\" />", strokes.join("\n           "));
+    }
+    out + "</svg>\n"
+}
+
+fn data(s: &Stroke, decimals: Option<u8>) -> String {
+    let number = |v: f64| decimals.map_or_else(|| shortest(v), |d| rounded(v, d));
+    let point = |p: Point| format!("{},{}", number(p.x), number(p.y));
+    let triples: Vec<[Point; 3]> = s.triples().collect();
+    let Some((first, last)) = triples.first().zip(triples.last()) else { return String::new() };
+    let mut out = format!("M {}", point(first[1]));
+    let mut segment = |from: &[Point; 3], to: &[Point; 3]| {
+        // GIMP gives the ends of a line handles on their anchors, which is how it keeps lines itself.
+        let _ = if from[2] == from[1] && to[0] == to[1] {
+            write!(out, " L {}", point(to[1]))
+        } else {
+            write!(out, " C {} {} {}", point(from[2]), point(to[0]), point(to[1]))
+        };
+    };
+    triples.windows(2).for_each(|w| segment(&w[0], &w[1]));
+    if s.closed {
+        // A line back is what Z itself draws.
+        if last[2] != last[1] || first[0] != first[1] {
+            segment(last, first);
+        }
+        out += " Z";
+    }
+    out
+}
+
+/// Whether a name may stand as an id for every reader of XML.
+fn is_id(name: &str) -> bool {
+    let mut chars = name.chars();
+    chars.next().is_some_and(|c| c.is_alphabetic() || c == '_')
+        && chars.all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'))
+}
+
+/// As an attribute's value. Characters that XML cannot hold become the replacement character.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            // As such they would be read as blanks.
+            '\t' | '\n' | '\r' => {
+                let _ = write!(out, "&#{};", u32::from(c));
+            }
+            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
