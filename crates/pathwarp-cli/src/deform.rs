@@ -215,7 +215,7 @@ fn warp(
         copies: built.copies.clone(),
         letters: LetterPlaces { places: built.letters.clone(), after: built.after.clone() },
         images: if common.images {
-            Images::Warp(Arc::new(Bender::new(&built.map, common.image_dpi)))
+            Images::Warp(Arc::new(Bender::new(Arc::new(built.map.clone()), common.image_dpi)))
         } else {
             Images::Keep
         },

@@ -37,6 +37,8 @@ mod terminal;
 mod text;
 mod unwarp;
 
+pub use picture::Bender;
+
 use failure::Failure;
 use pathwarp::deform::Registry;
 use std::ffi::OsString;

@@ -9,7 +9,7 @@ use crate::report;
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::map::{Chain, Map, NewtonInverse};
+use pathwarp::map::{Map, NewtonInverse};
 use pathwarp::param::Frame;
 use pathwarp::recipe::Recipe;
 use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, shown, warp_image};
@@ -142,15 +142,17 @@ fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>) -> Result<(Rect, (u32,
 }
 
 /// Bends the bitmaps in drawings.
-pub(crate) struct Bender {
+pub struct Bender {
     map: Arc<dyn Map>,
     /// Pixels per inch; `None`: as many as keep every detail.
     dpi: Option<f64>,
 }
 
 impl Bender {
-    pub(crate) fn new(map: &Chain, dpi: Option<f64>) -> Self {
-        Self { map: Arc::new(map.clone()), dpi }
+    /// For one map, at so many pixels per inch; `None`: as many as keep every detail.
+    #[must_use]
+    pub fn new(map: Arc<dyn Map>, dpi: Option<f64>) -> Self {
+        Self { map, dpi }
     }
 }
 

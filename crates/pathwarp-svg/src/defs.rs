@@ -3,7 +3,7 @@
 use crate::number::{MOST_DECIMALS, escape, matrix, path_data, short};
 use crate::scene::{Group, Node};
 use crate::warp::{self, StrokeDone};
-use crate::write::{FILTERS, Properties, Writer, part_data, part_path, stroke_scale};
+use crate::write::{FILTERS, Properties, Writer, part_box, part_data, stroke_scale};
 use pathwarp::kurbo::{Affine, Rect, Shape as _};
 use pathwarp::refit;
 use std::fmt::Write as _;
@@ -167,7 +167,7 @@ impl Writer<'_> {
                     }
                     let transform =
                         if t == Affine::IDENTITY { String::new() } else { format!(" transform=\"{}\"", matrix(t)) };
-                    let d = part_data(p, job.outcomes[*i].done());
+                    let d = part_data(p, job.outcomes[*i].done(), &job.document.source);
                     out.push_str(&self.path(&d, &transform, &properties));
                 }
             }
@@ -225,9 +225,9 @@ impl Writer<'_> {
                     (_, Some(StrokeDone::Outlined(o))) => Rect::bounding_box(&o.bounding_box()),
                     (Some(s), _) => {
                         let reach = f64::from(s.width().get()) * stroke_scale(done) * f64::from(s.miterlimit().get());
-                        part_path(p, done).bounding_box().inflate(reach, reach)
+                        part_box(p, done).inflate(reach, reach)
                     }
-                    (None, _) => part_path(p, done).bounding_box(),
+                    (None, _) => part_box(p, done),
                 };
                 area = area.union(to_frame.transform_rect_bbox(wide));
             }

@@ -1,6 +1,7 @@
 //! An SVG file: what it paints, what it calls things, and its text.
 
 use crate::geometry::Reader;
+use crate::letters;
 use crate::read::{self, ReadOptions};
 use crate::resolve;
 use crate::scene::{self, Role, Scene};
@@ -8,7 +9,7 @@ use crate::select::{self, Selection};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::{Error, Outline};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// An SVG file.
 #[derive(Debug)]
@@ -17,7 +18,7 @@ pub struct Document {
     pub(crate) bytes: Vec<u8>,
     pub(crate) source: Source,
     pub(crate) scene: Scene,
-    pub(crate) shapes: Vec<Shape>,
+    shapes: OnceLock<Vec<Shape>>,
     pub(crate) missing_fonts: Vec<String>,
     pub(crate) page: Size,
     /// Whether walking it takes little stack.
@@ -78,19 +79,18 @@ impl Document {
             // Where positions are not to be trusted, the text must not be touched.
             let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
             let (tree, missing_fonts) = read::tree(text, name, options)?;
-            let scene = resolve::build(&tree, &source, &ids, dpi);
-            let shapes = shapes(&scene, &source);
+            let letters = letters::owners(&source, &ids, name, options)?;
+            let scene = resolve::build(&tree, &source, &ids, &letters, dpi);
             let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
-            Ok((tree, missing_fonts, scene, shapes, page))
+            Ok((tree, missing_fonts, scene, page))
         };
-        let (tree, missing_fonts, scene, shapes, page) =
-            if shallow { resolve()? } else { read::with_stack(name, resolve)? };
+        let (tree, missing_fonts, scene, page) = if shallow { resolve()? } else { read::with_stack(name, resolve)? };
         Ok(Self {
             name: name.to_owned(),
             bytes,
             source,
             scene,
-            shapes,
+            shapes: OnceLock::new(),
             missing_fonts,
             page,
             shallow,
@@ -148,21 +148,21 @@ impl Document {
     /// Everything that is painted, clips or masks, in painting order. Texts and `use` copies count once per path.
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
-        &self.shapes
+        self.shapes.get_or_init(|| shapes(&self.scene, &self.source))
     }
 
     /// The tight box of what is painted and meant by `selection`: the filled geometry, without stroke widths.
     #[must_use]
     pub fn artwork_box(&self, selection: &Selection) -> Option<Rect> {
         let meant = self.meant(selection);
-        let boxes = self.shapes.iter().zip(&meant).filter(|(s, m)| **m && s.painted);
+        let boxes = self.shapes().iter().zip(&meant).filter(|(s, m)| **m && s.painted);
         boxes.filter_map(|(s, _)| s.outline.bounding_box()).filter(Rect::is_finite).reduce(|a, b| a.union(b))
     }
 
     /// The painted shapes that `selection` means.
     pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
         let meant = self.meant(selection);
-        self.shapes.iter().zip(meant).filter(|(s, meant)| *meant && s.painted).map(|(s, _)| s)
+        self.shapes().iter().zip(meant).filter(|(s, meant)| *meant && s.painted).map(|(s, _)| s)
     }
 
     /// For every shape whether `selection` means it.

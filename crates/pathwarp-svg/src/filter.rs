@@ -65,6 +65,19 @@ fn channel(c: ColorChannel) -> &'static str {
     }
 }
 
+/// The matrix of `saturate`, by the Filter Effects Module Level 1, §9.6: what keeps the luminance and stretches the rest.
+fn saturate(s: f32) -> [f32; 20] {
+    const LUMINANCE: [f32; 3] = [0.213, 0.715, 0.072];
+    let mut out = [0.0; 20];
+    for (row, values) in out.chunks_mut(5).enumerate().take(3) {
+        for (column, (v, l)) in values.iter_mut().zip(LUMINANCE).enumerate() {
+            *v = l - l * s + if row == column { s } else { 0.0 };
+        }
+    }
+    out[18] = 1.0;
+    out
+}
+
 impl Writer<'_> {
     fn light(&self, l: LightSource) -> String {
         match l {
@@ -186,6 +199,10 @@ impl Writer<'_> {
             Kind::ColorMatrix(m) => {
                 let kind = match m.kind() {
                     ColorMatrixKind::Matrix(v) => word("type", "matrix") + &list("values", v),
+                    // The function takes more than the primitive does.
+                    ColorMatrixKind::Saturate(v) if v.get() > 1.0 => {
+                        word("type", "matrix") + &list("values", &saturate(v.get()))
+                    }
                     ColorMatrixKind::Saturate(v) => word("type", "saturate") + &number("values", v.get()),
                     ColorMatrixKind::HueRotate(v) => word("type", "hueRotate") + &number("values", *v),
                     ColorMatrixKind::LuminanceToAlpha => word("type", "luminanceToAlpha"),

@@ -18,11 +18,14 @@ const GEOMETRY: [&str; 14] = ["d", "x", "y", "width", "height", "rx", "ry", "cx"
 const LETTERING: [&str; 6] =
     ["data-glyph", "data-baseline", "data-ascent", "data-descent", "data-cap-height", "data-x-height"];
 
-struct Keeper<'a, 'w> {
-    edits: Edits<'a>,
-    source: &'a Source,
+/// A style without what a class may have said and the groups inside say for themselves.
+pub(crate) const NO_EFFECTS: &str = " style=\"opacity:1;clip-path:none;mask:none;filter:none;mix-blend-mode:normal\"";
+
+pub(crate) struct Keeper<'a, 'w> {
+    pub(crate) edits: Edits<'a>,
+    pub(crate) source: &'a Source,
     job: Job<'a>,
-    writer: &'w mut Writer<'a>,
+    pub(crate) writer: &'w mut Writer<'a>,
 }
 
 /// The patched text, or why there is none.
@@ -238,7 +241,7 @@ impl<'a> Keeper<'a, '_> {
                     Some(e) if is_shape(self.tag(e)) => marked.entry(e).or_default().push(n),
                     _ => self.group(c),
                 },
-                Node::Text { element: Some(e), content } => self.text(*e, content),
+                Node::Text { element: Some(e), content, owners } => self.text(*e, content, owners),
                 Node::Text { element: None, .. } => {}
                 Node::Image(i) => self.image(g, *i),
                 Node::Part(i) => match (scene.parts[*i].owner, scene.parts[*i].source) {
@@ -259,7 +262,7 @@ impl<'a> Keeper<'a, '_> {
         }
     }
 
-    fn changed(&self, n: &Node) -> bool {
+    pub(crate) fn changed(&self, n: &Node) -> bool {
         match n {
             Node::Part(i) => self.done(*i),
             Node::Group(g) => g.children.iter().any(|n| self.changed(n)),
@@ -299,7 +302,8 @@ impl<'a> Keeper<'a, '_> {
         let job = self.job;
         let p = &job.document.scene.parts[i];
         let Some(done) = job.outcomes[i].done() else { return };
-        if let (StrokeDone::Outlined(_), Some(_)) = (&done.stroke, &p.stroke) {
+        let outlined = p.stroke.is_some() && matches!(done.stroke, StrokeDone::Outlined(_));
+        if outlined || done.fill.as_ref().is_some_and(|f| !f.elements().is_empty()) {
             let content = self.writer.part(i);
             self.fragment(e, content);
             return;
@@ -317,7 +321,7 @@ impl<'a> Keeper<'a, '_> {
                 }
             }
         }
-        self.edits.set_attr(e, "d", part_data(p, Some(done)));
+        self.edits.set_attr(e, "d", part_data(p, Some(done), self.source));
         self.forget_lettering(e);
         self.animated(e);
         let fit = done.fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
@@ -337,6 +341,9 @@ impl<'a> Keeper<'a, '_> {
                     self.edits.set_property(e, name, value);
                 }
             }
+        }
+        if done.fill.is_some() {
+            self.edits.set_property(e, "fill", "none".into());
         }
         let scale = stroke_scale(Some(done));
         if let Some(s) = p.stroke.as_ref().filter(|_| (scale - 1.0).abs() > 1e-9) {
@@ -392,43 +399,6 @@ impl<'a> Keeper<'a, '_> {
         self.edits.wrap_content(e, String::new(), content);
     }
 
-    fn text(&mut self, e: ElementId, content: &Group) {
-        if !content.children.iter().any(|n| self.changed(n)) {
-            return;
-        }
-        let said = self.said(e);
-        let inner = self.writer.group(content, "");
-        let title = self.writer.tag("title");
-        let title = if said.is_empty() { String::new() } else { format!("<{title}>{}</{title}>", escape(&said)) };
-        self.edits.rename(e, "g");
-        for name in ["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"] {
-            self.edits.remove_attr(e, name);
-        }
-        if !said.is_empty() && self.source.attr(e, "aria-label").is_none() {
-            self.edits.set_attr(e, "aria-label", said);
-        }
-        self.edits.set_content(e, format!("{title}{inner}"));
-    }
-
-    /// The words of a text, tags taken out.
-    fn said(&self, e: ElementId) -> String {
-        let el = &self.source.elements[e];
-        let Some(close) = &el.close else { return String::new() };
-        let mut out = String::new();
-        let mut tag = false;
-        for c in self.source.text[el.open_end..close.start].chars() {
-            match c {
-                '<' => tag = true,
-                '>' => tag = false,
-                c if !tag => out.push(c),
-                _ => {}
-            }
-        }
-        let plain = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
-        let out = plain.iter().fold(out, |o, (from, to)| o.replace(from, to));
-        out.split_whitespace().collect::<Vec<_>>().join(" ")
-    }
-
     /// A `use` whose copy no longer is one: a group with the same name, written from what it showed.
     fn copy(&mut self, e: ElementId, g: &Group) {
         if !g.children.iter().any(|n| self.changed(n)) && self.job.options.selection.is_everything() {
@@ -448,7 +418,7 @@ impl<'a> Keeper<'a, '_> {
         let title = el.title.as_ref().map_or(String::new(), |t| format!("<{title}>{}</{title}>", escape(t)));
         let text = if styled && self.source.attr(e, "class").or(self.source.attr(e, "id")).is_some() {
             // What its class says is in the resolved group already and must not count twice.
-            head.push_str(" style=\"opacity:1;clip-path:none;mask:none;filter:none;mix-blend-mode:normal\"");
+            head.push_str(NO_EFFECTS);
             let inner = self.writer.group(g, "");
             format!("<{0}{head}>{title}{inner}</{0}>", self.writer.tag("g"))
         } else {

@@ -31,6 +31,7 @@ mod geometry;
 mod image;
 mod keep;
 mod lettering;
+mod letters;
 mod number;
 mod options;
 mod paint;

@@ -1,6 +1,8 @@
 //! Numbers and path data as text: rounded once, shortest form.
 
 use pathwarp::kurbo::{Affine, BezPath, PathEl, Point};
+use pathwarp::outline::EllipticArc;
+use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 
 /// More decimals than this say nothing in an f64.
@@ -141,6 +143,65 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
     out
 }
 
+/// Appends `v` to the last bit: as f32 where it came from one.
+fn push_exact(out: &mut String, v: f64) {
+    let single = v as f32;
+    // Writing to a String cannot fail.
+    let _ = if f64::from(single) == v { write!(out, "{single}") } else { write!(out, "{v}") };
+}
+
+/// The `d` attribute of an outline as it was drawn: no number rounded, arcs as arcs.
+pub(crate) fn outline_data(outline: &Outline) -> String {
+    let mut out = String::new();
+    let mut add = |command: &str, numbers: &[f64]| {
+        out.push_str(command);
+        for (i, v) in numbers.iter().enumerate() {
+            if i > 0 {
+                out.push(' ');
+            }
+            push_exact(&mut out, *v);
+        }
+    };
+    for s in &outline.subpaths {
+        add("M", &[s.start.x, s.start.y]);
+        let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));
+        for g in s.segs.iter().take(s.segs.len() - usize::from(closing)) {
+            match g {
+                Seg::Line(l) => add("L", &[l.p1.x, l.p1.y]),
+                Seg::Quad(q) => add("Q", &[q.p1.x, q.p1.y, q.p2.x, q.p2.y]),
+                Seg::Cubic(c) => add("C", &[c.p1.x, c.p1.y, c.p2.x, c.p2.y, c.p3.x, c.p3.y]),
+                Seg::Arc(a) => match radii(a) {
+                    Some([rx, ry, turn]) => {
+                        let flag = |yes| if yes { 1.0 } else { 0.0 };
+                        let large = a.sweep.abs() > std::f64::consts::PI;
+                        add("A", &[rx, ry, turn, flag(large), flag(a.sweep > 0.0), a.p1.x, a.p1.y]);
+                    }
+                    None => {
+                        for c in a.to_cubics(a.major() * FINE) {
+                            add("C", &[c.p1.x, c.p1.y, c.p2.x, c.p2.y, c.p3.x, c.p3.y]);
+                        }
+                    }
+                },
+            }
+        }
+        if s.closed {
+            add("Z", &[]);
+        }
+    }
+    out
+}
+
+/// Against any pixel, of an ellipse that has no axes to be named by.
+const FINE: f64 = 1e-5;
+
+/// The radii of an arc and the turn of its ellipse in degrees, as the `A` command wants them; `None` for one that has been
+/// sheared or mirrored, or that comes back to its start.
+fn radii(a: &EllipticArc) -> Option<[f64; 3]> {
+    let (rx, ry) = (a.a.hypot(), a.b.hypot());
+    let right = a.a.dot(a.b).abs() <= 1e-12 * rx * ry && a.a.cross(a.b) > 0.0;
+    (right && a.p0 != a.p1).then(|| [rx, ry, a.a.y.atan2(a.a.x).to_degrees()])
+}
+
 /// The quadratic nearest to a cubic, and how far its handle is off; `None` for a handle that would not be finite.
 fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)> {
     let from_start = p0 + (p1 - p0) * 1.5;
@@ -151,7 +212,7 @@ fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)>
 
 /// Text made safe for an attribute value in double quotes, and for element content.
 pub(crate) fn escape(text: &str) -> String {
-    if !text.contains(['&', '<', '>', '"', '\n', '\r', '\t']) {
+    if !text.bytes().any(|b| matches!(b, b'&' | b'<' | b'>' | b'"' | b'\n' | b'\r' | b'\t')) {
         return text.to_owned();
     }
     let mut out = String::with_capacity(text.len());
@@ -193,6 +254,35 @@ mod tests {
         assert_eq!(short(0.000_012_345), "0.000012345");
         assert_eq!(short(1234.5), "1234.5");
         assert_eq!(short(-1e-40), "0");
+    }
+
+    #[test]
+    fn outlines_are_written_to_the_last_bit() {
+        let d = "M0.1 0.30000000000000004Q1 2 3 4C5 6 7 8 9 10A50 30 0 1 0 -4 0.0000001L8 8ZM1 1A2 2 0 0 1 3 1";
+        let o = Outline::from_svg(d).unwrap();
+        assert_eq!(outline_data(&o), d);
+        // What a renderer keeps is written as short as that.
+        let mut p = BezPath::new();
+        p.move_to((f64::from(0.1_f32), 2.0));
+        assert_eq!(outline_data(&(&p).into()), "M0.1 2");
+    }
+
+    #[test]
+    fn arcs_stay_where_they_are_whatever_their_axes() {
+        let o = Outline::from_svg("M0 0A50 30 25 0 1 40 10A9 9 0 1 1 41 10").unwrap();
+        for m in [Affine::IDENTITY, Affine::rotate(2.0), Affine::new([1.0, 0.2, 0.5, 0.8, 3.0, 4.0]), Affine::FLIP_Y] {
+            let o = o.transformed(m);
+            let again = Outline::from_svg(&outline_data(&o)).unwrap();
+            let far = |a: &Outline, b: &Outline| {
+                let near = |p: Point| {
+                    let d = b.segs().flat_map(|s| (0..=2000).map(move |i| s.eval(f64::from(i) / 2000.0).distance(p)));
+                    d.fold(f64::INFINITY, f64::min)
+                };
+                a.segs().flat_map(|s| [0.0, 0.3, 0.5, 0.8, 1.0].map(|t| near(s.eval(t)))).fold(0.0, f64::max)
+            };
+            // Half the distance between two of the places that are looked at, on the longer arc.
+            assert!(far(&o, &again) < 0.05 && far(&again, &o) < 0.05, "{}", outline_data(&o));
+        }
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use crate::geometry::{self, Reader};
 use crate::lettering::{self, Line};
-use crate::scene::{Bitmap, Clip, Group, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
+use crate::letters::Owners;
+use crate::scene::{Bitmap, Clip, Group, Local, Mask, Node, Part, Referrer, Role, Scene, Slot, Tile};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point, Rect, Size};
@@ -13,6 +14,7 @@ use usvg::{Fill, Stroke};
 struct Builder<'a> {
     reader: Reader<'a>,
     ids: &'a HashMap<String, Vec<ElementId>>,
+    letters: &'a Owners,
     /// The source's transforms by what they are in f32; `None` where two different ones round to the same.
     exact: HashMap<[u32; 6], Option<Affine>>,
     /// The source's shapes by roughly where they start: for copies, which carry no id. Filled when first needed.
@@ -48,12 +50,19 @@ struct Context {
 }
 
 /// Resolves the drawing. `ids` says what the tree's ids stand for.
-pub(crate) fn build(tree: &usvg::Tree, source: &Source, ids: &HashMap<String, Vec<ElementId>>, dpi: f64) -> Scene {
+pub(crate) fn build(
+    tree: &usvg::Tree,
+    source: &Source,
+    ids: &HashMap<String, Vec<ElementId>>,
+    letters: &Owners,
+    dpi: f64,
+) -> Scene {
     let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
     let reader = Reader { source, dpi, page };
     let mut b = Builder {
         reader,
         ids,
+        letters,
         exact: exact_transforms(&reader),
         starts: None,
         outlines: HashMap::new(),
@@ -338,7 +347,8 @@ impl Builder<'_> {
             let lines = lettering::shaped_lines(t, self.fonts, frame, &self.parts, first);
             self.lines.extend(lines.into_iter().map(|l| Line { owner: context.owner, ..l }));
         }
-        Node::Text { element, content: Box::new(content) }
+        let owners = element.and_then(|e| self.letters.get(&e)).cloned().unwrap_or_default();
+        Node::Text { element, content: Box::new(content), owners }
     }
 
     fn unkept(&mut self, why: &str) {
@@ -350,7 +360,12 @@ impl Builder<'_> {
         let mut outline = None;
         let candidates = self.ids.get(p.id()).map_or(&[][..], Vec::as_slice);
         let shared = candidates.len() > 1;
-        for &e in candidates {
+        let only = self.element(p.id()).filter(|&e| self.tag(e) == "path");
+        let later = only.and_then(|e| self.path_later(e, p.data()));
+        if later.is_some() {
+            source = only;
+        }
+        for &e in candidates.iter().filter(|_| later.is_none()) {
             if !is_shape(self.tag(e)) || (shared && self.taken.contains(&e)) {
                 continue;
             }
@@ -364,8 +379,9 @@ impl Builder<'_> {
                 break;
             }
         }
+        let mut drawn = source.filter(|_| outline.is_some() || later.is_some());
         if source.is_none() {
-            outline = self.copy_of(p.data());
+            (drawn, outline) = self.copy_of(p.data()).unzip();
             // The page's own background is no artwork; it is the first thing of all.
             let background = self.parts.is_empty() && self.backed;
             if context.owner.is_none() && p.is_visible() && !background {
@@ -385,7 +401,8 @@ impl Builder<'_> {
             source,
             owner: context.owner,
             role: context.role,
-            local: outline.unwrap_or_else(|| geometry::from_usvg(p.data())),
+            drawn,
+            local: later.unwrap_or_else(|| outline.unwrap_or_else(|| geometry::from_usvg(p.data())).into()),
             frame,
             fill: p.fill().cloned(),
             stroke: p.stroke().cloned(),
@@ -398,8 +415,18 @@ impl Builder<'_> {
         self.parts.len() - 1
     }
 
-    /// The source's own outline of a copied path (in a `use`, in a marker).
-    fn copy_of(&mut self, path: &usvg::tiny_skia_path::Path) -> Option<Outline> {
+    /// The outline of a `path` element that usvg has made `path` of: not worked out before it is asked for.
+    fn path_later(&self, e: ElementId, path: &usvg::tiny_skia_path::Path) -> Option<Local> {
+        let d = self.reader.source.attr(e, "d")?.into_owned();
+        let path = path.clone();
+        Some(Local::later(move || {
+            let exact = Outline::from_svg_lossy(&d);
+            if geometry::same_path(&exact, &path) { exact } else { geometry::from_usvg(&path) }
+        }))
+    }
+
+    /// The element that a path (in a `use`, in a marker) is a copy of, and its own outline.
+    fn copy_of(&mut self, path: &usvg::tiny_skia_path::Path) -> Option<(ElementId, Outline)> {
         /// Cells of the size of f32's rounding would miss neighbours; these are coarse enough, and three by three are asked.
         fn cell(p: Point) -> [i64; 2] {
             [p.x, p.y].map(|v| (v * 16.0).floor() as i64)
@@ -427,9 +454,9 @@ impl Builder<'_> {
             .filter_map(|c| starts.get(&c))
             .flatten()
             .take(TRIES)
-            .filter_map(|e| self.outlines.get(e))
-            .find(|o| geometry::same_path(o, path))
-            .cloned()
+            .filter_map(|e| Some((*e, self.outlines.get(e)?)))
+            .find(|(_, o)| geometry::same_path(o, path))
+            .map(|(e, o)| (e, o.clone()))
     }
 
     fn clip(&mut self, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, slot: Option<usize>) -> usize {

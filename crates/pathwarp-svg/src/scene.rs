@@ -8,8 +8,9 @@ use crate::source::ElementId;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Rect};
 use std::collections::HashMap;
-use std::ops::Range;
-use std::sync::Arc;
+use std::fmt;
+use std::ops::{Deref, Range};
+use std::sync::{Arc, LazyLock};
 use usvg::{BlendMode, Fill, PaintOrder, ShapeRendering, Stroke};
 
 /// What a shape does for the picture.
@@ -30,8 +31,10 @@ pub(crate) struct Part {
     /// The element that is replaced as a whole if this part changes: a `use`, a text, a shape with markers.
     pub(crate) owner: Option<ElementId>,
     pub(crate) role: Role,
+    /// The element whose geometry `local` is, read from the source itself: its own, or the one it is a copy of.
+    pub(crate) drawn: Option<ElementId>,
     /// In its own user space.
-    pub(crate) local: Outline,
+    pub(crate) local: Local,
     /// From there to root user space.
     pub(crate) frame: Affine,
     pub(crate) fill: Option<Fill>,
@@ -44,6 +47,35 @@ pub(crate) struct Part {
     pub(crate) slot: Option<usize>,
 }
 
+/// An outline that is worked out when it is first looked at: what is only read and written again never is.
+pub(crate) struct Local(LazyLock<Outline, Box<dyn FnOnce() -> Outline + Send>>);
+
+impl Local {
+    pub(crate) fn later(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
+        Self(LazyLock::new(Box::new(f)))
+    }
+}
+
+impl From<Outline> for Local {
+    fn from(o: Outline) -> Self {
+        Self::later(move || o)
+    }
+}
+
+impl Deref for Local {
+    type Target = Outline;
+
+    fn deref(&self) -> &Outline {
+        &self.0
+    }
+}
+
+impl fmt::Debug for Local {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        (**self).fmt(f)
+    }
+}
+
 #[derive(Debug)]
 pub(crate) enum Node {
     Group(Box<Group>),
@@ -53,6 +85,8 @@ pub(crate) enum Node {
     Text {
         element: Option<ElementId>,
         content: Box<Group>,
+        /// Of each node of the content the element it comes from; empty where nothing inside has a name.
+        owners: Vec<ElementId>,
     },
 }
 

@@ -211,6 +211,14 @@ impl Source {
     /// The text with a temporary id on every element that has none of its own, so that usvg's tree can be told apart; and
     /// what each id stands for.
     pub(crate) fn instrumented(&self) -> (String, HashMap<String, Vec<ElementId>>) {
+        self.instrumented_with(std::iter::empty())
+    }
+
+    /// The same with declarations added to elements' style attributes.
+    pub(crate) fn instrumented_with(
+        &self,
+        styles: impl Iterator<Item = (ElementId, String)>,
+    ) -> (String, HashMap<String, Vec<ElementId>>) {
         let mut stem = "warp-".to_owned();
         while self.text.contains(&stem) {
             stem.push('x');
@@ -224,9 +232,8 @@ impl Source {
                 &rest[..rest.find(|c: char| !(c.is_alphanumeric() || "-_.:".contains(c))).unwrap_or(rest.len())]
             })
             .collect();
-        let mut out = String::with_capacity(self.text.len() + self.elements.len() * 12);
         let mut ids: HashMap<String, Vec<ElementId>> = HashMap::new();
-        let mut done = 0;
+        let mut patches: Vec<(Range<usize>, String)> = Vec::new();
         for (i, e) in self.elements.iter().enumerate() {
             if !is_tracked(&e.tag) {
                 continue;
@@ -242,18 +249,30 @@ impl Source {
                 }
                 (own, _) => {
                     let id = format!("{stem}{i}");
-                    let (at, end, new) = match own {
-                        Some(a) => (a.value_range.start, a.value_range.end, id.clone()),
-                        None => (e.qname.end, e.qname.end, format!(" id=\"{id}\"")),
-                    };
-                    if at < done {
-                        continue;
-                    }
-                    out.push_str(&self.text[done..at]);
-                    out.push_str(&new);
-                    done = end;
+                    patches.push(match own {
+                        Some(a) => (a.value_range.clone(), id.clone()),
+                        None => (e.qname.end..e.qname.end, format!(" id=\"{id}\"")),
+                    });
                     ids.insert(id, vec![i]);
                 }
+            }
+        }
+        patches.extend(styles.filter_map(|(e, style)| {
+            let e = self.elements.get(e)?;
+            Some(match e.find("style") {
+                Some(a) => (a.value_range.end..a.value_range.end, format!(";{style}")),
+                None => (e.qname.end..e.qname.end, format!(" style=\"{style}\"")),
+            })
+        }));
+        patches.sort_by_key(|(at, _)| at.start);
+        let mut out = String::with_capacity(self.text.len() + patches.len() * 16);
+        let mut done = 0;
+        for (at, new) in patches {
+            // Of elements from one entity only the first is told.
+            if at.start >= done {
+                out.push_str(&self.text[done..at.start]);
+                out.push_str(&new);
+                done = at.end;
             }
         }
         out.push_str(&self.text[done..]);

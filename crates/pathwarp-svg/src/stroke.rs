@@ -1,5 +1,6 @@
 //! What a map does to a stroke: the width it should have, how wrong one width is, and the stroke's outline.
 
+use crate::warp::stretch;
 use pathwarp::Outline;
 use pathwarp::kurbo::{self, Affine, Cap, Circle, Join, Point, Rect, Shape as _, StrokeOpts, Vec2};
 use pathwarp::map::Map;
@@ -27,6 +28,7 @@ pub(crate) fn width(outline: &Outline, read: Affine, write: Affine, map: &dyn Ma
     let frames = (after.determinant() / before.determinant()).abs();
     let (mut across, mut along) = (Vec::new(), Vec::new());
     let (mut area, mut length) = (0.0, 0.0);
+    let mut dots: Vec<f64> = Vec::new();
     let segments = outline.segs().count().max(1);
     // Long paths tell enough with fewer samples on each segment.
     let samples: &[f64] = match segments {
@@ -41,6 +43,13 @@ pub(crate) fn width(outline: &Outline, read: Affine, write: Affine, map: &dyn Ma
             let here = linear(before, v).hypot();
             let there = linear(after, jet.push(v)).hypot();
             if here <= 0.0 {
+                // A dot shows its caps, which reach every way.
+                let column = |e| linear(after, jet.push(linear(read, e)));
+                let (x, y) = (column(Vec2::new(1.0, 0.0)), column(Vec2::new(0.0, 1.0)));
+                let long = stretch(Affine::new([x.x, x.y, y.x, y.y, 0.0, 0.0]));
+                if is_point(s, s.start()) && stroke.linecap() != LineCap::Butt && long > 0.0 {
+                    dots.extend([long, x.cross(y).abs() / long]);
+                }
                 continue;
             }
             let det = jet.det().abs() * frames;
@@ -53,14 +62,16 @@ pub(crate) fn width(outline: &Outline, read: Affine, write: Affine, map: &dyn Ma
             length += here;
         }
     }
-    if length <= 0.0 {
-        return Some(Width { scale: 1.0, error: 0.0 });
-    }
-    let scale = area / length;
+    let scale = match dots.as_slice() {
+        _ if length > 0.0 => area / length,
+        [long, short, ..] => (long * short).sqrt(),
+        _ => return Some(Width { scale: 1.0, error: 0.0 }),
+    };
+    along.extend(&dots);
     let worst = |all: &[f64]| all.iter().fold(0.0_f64, |m, r| m.max((r / scale - 1.0).abs()));
     let mut error = worst(&across);
     // Caps, joins and dashes reach along the path as well.
-    if segments > 1 || stroke.linecap() != LineCap::Butt || stroke.dasharray().is_some() {
+    if segments > 1 || !dots.is_empty() || stroke.linecap() != LineCap::Butt || stroke.dasharray().is_some() {
         error = error.max(worst(&along));
     }
     Some(Width { scale, error })

@@ -9,10 +9,11 @@ use crate::paint::{self, Fit};
 use crate::scene::{Bitmap, Part, Role, Scene};
 use crate::select::Selection;
 use crate::{keep, read, stroke, write};
-use pathwarp::kurbo::{Affine, BezPath, Point, Shape as _};
+use pathwarp::kurbo::{Affine, BezPath, Line, ParamCurveNearest as _, Point, Shape as _};
 use pathwarp::map::{AffineMap, Chain, Class, Map};
+use pathwarp::outline::Subpath;
 use pathwarp::refit::{self, Assurance};
-use pathwarp::{Error, GeometryError, Outline};
+use pathwarp::{Error, GeometryError, Outline, Seg};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -94,6 +95,9 @@ pub(crate) enum Outcome {
 pub(crate) struct Done {
     /// In the part's own user space.
     pub(crate) path: BezPath,
+    /// What is filled, where that is not `path`: an open path is filled as if it were closed by a line, and that line bends
+    /// as well. Without elements where there is nothing to fill.
+    pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
     pub(crate) stroke: StrokeDone,
     /// How gradients and patterns follow; `None`: they stay.
@@ -132,19 +136,18 @@ impl Document {
     /// structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
-        let identity = map.class() == Class::Affine(Affine::IDENTITY);
-        if identity
+        // What nothing moves is left in the source's own words.
+        let identity = map.class() == Class::Affine(Affine::IDENTITY)
             && options.copies.is_empty()
-            && options.letters.places.is_empty()
-            && options.structure != Structure::Flatten
-        {
+            && options.letters.places.is_empty();
+        if identity && options.structure != Structure::Flatten {
             self.source.text.clone_into(&mut out.svg);
             return Ok(out);
         }
         let meant = self.chosen(options);
         let mut options = options.clone();
-        if options.refit.merge {
-            options.refit.shared = Arc::new(refit::SharedEdges::among(self.shapes.iter().map(|s| &s.outline)));
+        if options.refit.merge && !identity {
+            options.refit.shared = Arc::new(refit::SharedEdges::among(self.shapes().iter().map(|s| &s.outline)));
         }
         let options = &options;
         let parts = &self.scene.parts;
@@ -152,12 +155,13 @@ impl Document {
         let pieces = self.pieces(options);
         let one = |((p, meant), pieces): ((&Part, &bool), &Vec<Piece>)| {
             let write = written(&self.scene, &slots, p.slot, p.frame);
-            (*meant && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options, pieces))
+            (*meant && !identity && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options, pieces))
         };
         /// Below so many segments the work is done before another thread has woken up.
         const WORTH_IT: usize = 100;
-        let segments: usize = parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * options.copies.len().max(1);
-        let results: Vec<Option<Result<Done, GeometryError>>> = if segments < WORTH_IT {
+        let segments =
+            || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * options.copies.len().max(1) };
+        let results: Vec<Option<Result<Done, GeometryError>>> = if identity || segments() < WORTH_IT {
             parts.iter().zip(&meant).zip(&pieces).map(one).collect()
         } else {
             parts.par_iter().zip(&meant).zip(&pieces).map(one).collect()
@@ -165,22 +169,27 @@ impl Document {
         let mut outcomes = Vec::with_capacity(parts.len());
         let mut last = None;
         for (i, r) in results.into_iter().enumerate() {
-            let shape = &self.shapes[i];
             outcomes.push(match r {
                 None => Outcome::Kept,
                 Some(Ok(done)) => {
                     let owner = parts[i].owner.or(parts[i].source);
-                    out.report(shape.id.clone(), &done, options.copies.len().max(1), owner.is_some() && owner == last);
+                    out.report(
+                        self.shapes()[i].id.clone(),
+                        &done,
+                        options.copies.len().max(1),
+                        owner.is_some() && owner == last,
+                    );
                     last = owner;
                     Outcome::Warped(Box::new(done))
                 }
                 Some(Err(e)) => {
-                    let e = e.on_shape(&shape.id);
+                    let id = &self.shapes()[i].id;
+                    let e = e.on_shape(id);
                     let seen = parts[i].painted();
                     if options.on_error == OnError::Stop && seen {
                         return Err(Error::Geometry(e));
                     }
-                    out.skipped.push(Skipped { id: shape.id.clone(), why: e.to_string() });
+                    out.skipped.push(Skipped { id: id.clone(), why: e.to_string() });
                     Outcome::Kept
                 }
             });
@@ -360,6 +369,7 @@ fn warp_part(
     let warped = refit::warp_path(&outline, last, &refit::Options { tolerance: left, ..options.refit.clone() })?;
     let mut done = Done {
         path: local(warped.path, back),
+        fill: None,
         decimals,
         stroke: StrokeDone::Scaled(1.0),
         fit: None,
@@ -379,6 +389,17 @@ fn warp_part(
             _ => paint::fit_copies(b, p.frame, write, map, &options.copies, result),
         };
         done.fit = p.local.bounding_box().and_then(fit);
+    }
+    let stroked = p.stroke.is_some() && p.role != Role::Clip;
+    // Who wants centre lines wants each of them once: there, only a fill without a stroke is closed.
+    let wanted = !(stroked && options.strokes == Strokes::Keep);
+    if let Some(area) = filled_area(p, &outline, last, tolerance).filter(|a| wanted || a.is_empty()) {
+        if area.is_empty() {
+            done.fill = Some(BezPath::new());
+        } else {
+            let area = refit::warp_path(&area, last, &refit::Options { tolerance: left, ..options.refit.clone() })?;
+            *(if stroked { done.fill.insert(BezPath::new()) } else { &mut done.path }) = local(area.path, back);
+        }
     }
     if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
         let width = || {
@@ -411,6 +432,38 @@ fn warp_part(
         }
     }
     Ok(done)
+}
+
+/// What a part fills, if its fill ends at a line that is not drawn and that the map bends: `outline` with these lines, without
+/// the lines that enclose nothing.
+fn filled_area(p: &Part, outline: &Outline, map: &dyn Map, tolerance: f64) -> Option<Outline> {
+    /// Places along the line that are looked at.
+    const LOOKS: u32 = 16;
+    let bends = |a: Point, b: Point| {
+        let (from, to) = (map.point(a), map.point(b));
+        (1..LOOKS).any(|i| {
+            let q = map.point(a.lerp(b, f64::from(i) / f64::from(LOOKS)));
+            let off = Line::new(from, to).nearest(q, tolerance).distance_sq.sqrt();
+            off > tolerance && q.is_finite()
+        })
+    };
+    let open = |s: &Subpath| !s.closed && s.start != s.end();
+    if p.fill.is_none() && p.role != Role::Clip
+        || matches!(map.class(), Class::Affine(_))
+        || !outline.subpaths.iter().any(|s| open(s) && bends(s.end(), s.start))
+    {
+        return None;
+    }
+    let closed = |s: &Subpath| {
+        let mut s = s.clone();
+        if open(&s) {
+            s.segs.push(Seg::Line(Line::new(s.end(), s.start)));
+            s.closed = true;
+        }
+        s
+    };
+    let encloses = |s: &&Subpath| !open(s) || !matches!(s.segs.as_slice(), [] | [Seg::Line(_)]);
+    Some(Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() })
 }
 
 fn outline_stroke(

@@ -5,12 +5,12 @@
 
 use crate::document::Document;
 use crate::image::{BentImage, Picture};
-use crate::number::{escape, matrix, path_data, short};
+use crate::number::{escape, matrix, outline_data, path_data, short};
 use crate::options::WarpOptions;
 use crate::scene::{Group, Node, Part};
-use crate::source::ElementId;
+use crate::source::{ElementId, Source};
 use crate::warp::{Done, Notes, Outcome, Placed, Skipped, StrokeDone};
-use pathwarp::kurbo::{Affine, BezPath, Shape as _};
+use pathwarp::kurbo::{Affine, Rect, Shape as _};
 use pathwarp::map::Map;
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
@@ -128,7 +128,7 @@ impl<'a> Writer<'a> {
             Node::Group(g) => self.group(g, ""),
             Node::Part(i) => self.part(*i),
             Node::Image(i) => self.image(*i),
-            Node::Text { element, content } => {
+            Node::Text { element, content, .. } => {
                 let id = element.filter(|_| !self.in_source).map_or(String::new(), |e| self.id_attribute(e));
                 let inner = self.group(content, "");
                 if id.is_empty() { inner } else { format!("<{0}{id}>{inner}</{0}>", self.tag("g")) }
@@ -149,6 +149,23 @@ impl<'a> Writer<'a> {
 
     /// A group with `lead` as the first of its content.
     pub(crate) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
+        let head = self.head(g, extra);
+        let inner = self.nodes(&g.children);
+        self.wrapped(&head, &format!("{lead}{inner}"))
+    }
+
+    /// What a group does, around content that is written already.
+    pub(crate) fn group_around(&mut self, g: &Group, content: &str) -> String {
+        let head = self.head(g, "");
+        self.wrapped(&head, content)
+    }
+
+    fn wrapped(&self, head: &str, content: &str) -> String {
+        if head.is_empty() { content.to_owned() } else { format!("<{0}{head}>{content}</{0}>", self.tag("g")) }
+    }
+
+    /// A group's attributes.
+    fn head(&mut self, g: &Group, extra: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
             properties.push(("opacity", short(f64::from(g.opacity))));
@@ -182,11 +199,7 @@ impl<'a> Writer<'a> {
             let _ = write!(head, " transform=\"{}\"", matrix(transform));
         }
         head.push_str(&self.attributes(&properties));
-        let inner = self.nodes(&g.children);
-        if head.is_empty() {
-            return format!("{lead}{inner}");
-        }
-        format!("<{0}{head}>{lead}{inner}</{0}>", self.tag("g"))
+        head
     }
 
     pub(crate) fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
@@ -198,28 +211,42 @@ impl<'a> Writer<'a> {
         let job = self.job;
         let p = &job.document.scene.parts[i];
         let done = job.outcomes[i].done();
-        let d = part_data(p, done);
+        let d = part_data(p, done, &job.document.source);
         let id = if self.in_source { String::new() } else { p.source.map_or(String::new(), |e| self.id_attribute(e)) };
         let mut properties = self.properties(i);
-        let Some(StrokeDone::Outlined(outline)) = done.map(|d| &d.stroke) else {
+        let outlined = match (done.map(|d| &d.stroke), &p.stroke) {
+            (Some(StrokeDone::Outlined(o)), Some(s)) => Some((o, s)),
+            _ => None,
+        };
+        let area = done.and_then(|d| d.fill.as_ref());
+        let Some(done) = done.filter(|_| outlined.is_some() || area.is_some()) else {
             return self.path(&d, &id, &properties);
         };
-        let (Some(stroke), Some(done)) = (&p.stroke, done) else { return String::new() };
-        let o = path_data(outline, done.decimals);
-        let mut over = self.shared(p);
-        let paint = self.paint(stroke.paint(), p, Some(done));
-        over.push(("fill", paint));
-        over.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
-        over.push(("fill-rule", "nonzero".into()));
-        over.push(("stroke", "none".into()));
-        over.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || self.may_inherit(n));
+        let (top, over) = match outlined {
+            Some((outline, stroke)) => {
+                let mut over = self.shared(p);
+                let paint = self.paint(stroke.paint(), p, Some(done));
+                over.push(("fill", paint));
+                over.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
+                over.push(("fill-rule", "nonzero".into()));
+                over.push(("stroke", "none".into()));
+                over.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || self.may_inherit(n));
+                (path_data(outline, done.decimals), over)
+            }
+            None => {
+                let mut over = properties.clone();
+                over.retain(|p| !p.0.starts_with("fill"));
+                over.push(("fill", "none".into()));
+                (d.clone(), over)
+            }
+        };
+        if p.fill.is_none() || area.is_some_and(|a| a.elements().is_empty()) {
+            return self.path(&top, &id, &over);
+        }
+        let top = self.path(&top, "", &over);
         properties.retain(|p| p.0 == "fill" || !p.0.starts_with("stroke") && p.0 != "paint-order");
         properties.push(("stroke", "none".into()));
-        let top = self.path(&o, "", &over);
-        if p.fill.is_none() {
-            return if id.is_empty() { top } else { self.path(&o, &id, &over) };
-        }
-        let base = self.path(&d, "", &properties);
+        let base = self.path(&area.map_or(d, |a| path_data(a, done.decimals)), "", &properties);
         let both =
             if p.paint_order == PaintOrder::StrokeAndFill { format!("{top}{base}") } else { format!("{base}{top}") };
         if id.is_empty() { both } else { format!("<{0}{id}>{both}</{0}>", self.tag("g")) }
@@ -413,31 +440,21 @@ pub(crate) fn data_uri(bent: &BentImage) -> String {
     format!("data:image/png;base64,{}", base64(&bent.png))
 }
 
-/// A part's path in its own user space.
-pub(crate) fn part_path(p: &Part, done: Option<&Done>) -> BezPath {
-    /// Fine against any stroke or pixel, for parts that are written but not warped.
-    const FINE: f64 = 1e-4;
+/// The box around a part's path in its own user space.
+pub(crate) fn part_box(p: &Part, done: Option<&Done>) -> Rect {
     match done {
-        Some(d) => d.path.clone(),
-        None => {
-            let size = p.local.bounding_box().map_or(1.0, |b| b.width().max(b.height()));
-            p.local.to_bez_path((size * FINE).max(1e-12))
-        }
+        Some(d) => d.fill.iter().fold(d.path.bounding_box(), |b, f| b.union(f.bounding_box())),
+        None => p.local.bounding_box().unwrap_or_default(),
     }
 }
 
-pub(crate) fn part_data(p: &Part, done: Option<&Done>) -> String {
-    /// f32's digits and some more.
-    const DIGITS: i32 = 10;
-    match done {
-        Some(d) => path_data(&d.path, d.decimals),
-        None => {
-            let path = part_path(p, None);
-            let b = path.bounding_box();
-            let size = b.x0.abs().max(b.x1.abs()).max(b.y0.abs()).max(b.y1.abs());
-            let decimals = if size > 0.0 { DIGITS - size.log10().ceil() as i32 } else { DIGITS };
-            path_data(&path, decimals.clamp(0, 14) as u8)
-        }
+/// A part's path data; what is not warped in the source's own words, as far as it has any.
+pub(crate) fn part_data(p: &Part, done: Option<&Done>, source: &Source) -> String {
+    let own = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
+    match (done, p.drawn.and_then(own)) {
+        (Some(d), _) => path_data(&d.path, d.decimals),
+        (None, Some(d)) => escape(&d),
+        (None, None) => outline_data(&p.local),
     }
 }
 

@@ -122,3 +122,30 @@ fn an_animation_of_the_geometry_is_named() {
     let w = warp(&drawing(body), oblique());
     assert!(w.warnings.iter().any(|w| w.contains("animations") && w.ends_with(": c")), "{:?}", w.warnings);
 }
+
+#[test]
+fn filters_written_anew_saturate_beyond_one() {
+    let svg = drawing("<rect width='90' height='90' fill='seagreen' filter='saturate(2)'/>");
+    let flat = WarpOptions { structure: Structure::Flatten, ..warp_options() };
+    let out = read(&svg).warp(&AffineMap(Affine::IDENTITY), &flat).unwrap().svg;
+    let middle = |svg: &str| {
+        let tree = pathwarp_svg::parse_tree(svg.as_bytes(), "test", &common::options()).unwrap();
+        let mut p = resvg::tiny_skia::Pixmap::new(100, 100).unwrap();
+        resvg::render(&tree, resvg::tiny_skia::Transform::identity(), &mut p.as_mut());
+        let c = p.pixel(45, 45).unwrap();
+        [c.red(), c.green(), c.blue()]
+    };
+    let (expected, found) = (middle(&svg), middle(&out));
+    assert_ne!(expected, [46, 139, 87], "the filter does nothing");
+    assert!(expected.iter().zip(found).all(|(a, b)| a.abs_diff(b) <= 1), "{expected:?} {found:?}");
+}
+
+#[test]
+fn the_caps_of_dots_follow_the_map() {
+    for cap in ["square", "round"] {
+        let d = "M50 50h0M20 20l0 0l0 0M80 30l0 0";
+        let svg =
+            drawing(&format!("<path d='{d}' fill='none' stroke='red' stroke-width='16' stroke-linecap='{cap}'/>"));
+        common::check(cap, &svg, oblique(), &warp_options());
+    }
+}

@@ -7,8 +7,9 @@ mod guide;
 mod lettering;
 mod new_deformation;
 mod refit_report;
+mod svg_corpus;
 
-use clap::{Arg, Command, value_parser};
+use clap::{Arg, ArgAction, Command, value_parser};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -33,7 +34,44 @@ fn main() -> ExitCode {
                         .help("The workspace to write to [default: this one]"),
                 ),
         )
-        .subcommand(Command::new("corpus").about("Fetch the icons that the refitting is measured on (needs npm)"))
+        .subcommand(
+            Command::new("corpus")
+                .about(
+                    "Fetch the icons that the refitting is measured on (needs npm); with --svg, measure whole drawings \
+                     (cargo run --release -p xtask -- corpus --svg FOLDER)",
+                )
+                .arg(
+                    Arg::new("svg")
+                        .long("svg")
+                        .value_name("FOLDER")
+                        .action(ArgAction::Append)
+                        .value_parser(value_parser!(PathBuf))
+                        .help("A folder of SVG files, for instance resvg's tests"),
+                )
+                .arg(
+                    Arg::new("fonts")
+                        .long("fonts")
+                        .value_name("FOLDER")
+                        .value_parser(value_parser!(PathBuf))
+                        .help("Fonts for their text, instead of the machine's"),
+                )
+                .arg(
+                    Arg::new("every")
+                        .long("every")
+                        .value_name("N")
+                        .value_parser(value_parser!(usize))
+                        .default_value("1")
+                        .help("Take one file of N"),
+                )
+                .arg(
+                    Arg::new("pictures")
+                        .long("pictures")
+                        .value_name("FOLDER")
+                        .value_parser(value_parser!(PathBuf))
+                        .help("Where to put pictures of what misses: as it should be, as it is, the difference"),
+                )
+                .arg(Arg::new("times").long("times").action(ArgAction::SetTrue).help("Only time reading and writing")),
+        )
         .subcommand(
             Command::new("refit-report")
                 .about("Draw the pieces, nodes and error of a refitted path")
@@ -76,6 +114,13 @@ fn main() -> ExitCode {
             let name = m.get_one::<String>("NAME").map_or("", String::as_str);
             new_deformation::run(m.get_one::<PathBuf>("root").unwrap_or(&root), name)
         }
+        Some(("corpus", m)) if m.contains_id("svg") => svg_corpus::run(&svg_corpus::Job {
+            folders: m.get_many("svg").unwrap_or_default().cloned().collect(),
+            fonts: m.get_one("fonts").cloned(),
+            every: m.get_one("every").copied().unwrap_or(1),
+            pictures: m.get_one("pictures").cloned(),
+            times: m.get_flag("times"),
+        }),
         Some(("corpus", _)) => corpus::run().map(|()| "wrote corpus/icons.txt".to_owned()).map_err(|e| e.to_string()),
         Some(("docs", m)) => docs::run(&root, m.get_one::<PathBuf>("program").map(PathBuf::as_path)),
         Some(("refit-report", m)) => {

@@ -183,7 +183,7 @@ impl Document {
         let meant = self.meant(selection);
         let lines = self.meant_lines(&meant);
         let outline = |l: &Letter| {
-            let pieces = l.owns.iter().flat_map(|(i, r)| self.shapes[*i].outline.subpaths.get(r.clone()));
+            let pieces = l.owns.iter().flat_map(|(i, r)| self.shapes()[*i].outline.subpaths.get(r.clone()));
             Outline { subpaths: pieces.flatten().cloned().collect() }
         };
         let letters = lines.iter().flat_map(|l| &l.letters);
@@ -194,13 +194,13 @@ impl Document {
             outline: outline(l),
         });
         let letters = letters.collect();
-        let mut lettered = vec![false; self.shapes.len()];
+        let mut lettered = vec![false; self.shapes().len()];
         for (i, _) in lines.iter().flat_map(|l| &l.letters).flat_map(|l| &l.owns) {
             lettered[*i] = true;
         }
         let owners: Vec<ElementId> = lines.iter().filter_map(|l| l.owner).collect();
         let belongs = |i: usize| lettered[i] || self.scene.parts[i].owner.is_some_and(|o| owners.contains(&o));
-        let only = (0..lettered.len()).all(|i| belongs(i) || !meant[i] || !self.shapes[i].painted)
+        let only = (0..lettered.len()).all(|i| belongs(i) || !meant[i] || !self.shapes()[i].painted)
             && self.scene.bitmaps.is_empty()
             && !lines.is_empty();
         Lettering { lines, letters, only, file: self.name.clone() }
@@ -208,7 +208,7 @@ impl Document {
 
     /// The lines, with the letters whose parts are all painted and meant.
     fn meant_lines(&self, meant: &[bool]) -> Vec<Line> {
-        let whole = |l: &Letter| l.owns.iter().all(|(i, _)| meant[*i] && self.shapes[*i].painted);
+        let whole = |l: &Letter| l.owns.iter().all(|(i, _)| meant[*i] && self.shapes()[*i].painted);
         let lines = self
             .scene
             .lines

@@ -72,7 +72,7 @@ impl Document {
     pub fn placed(&self, options: &WarpOptions) -> Vec<Option<Outline>> {
         let meant = self.meant(&options.selection);
         let chosen =
-            self.shapes.iter().zip(meant).zip(self.pieces(options)).filter(|((s, meant), _)| *meant && s.painted);
+            self.shapes().iter().zip(meant).zip(self.pieces(options)).filter(|((s, meant), _)| *meant && s.painted);
         chosen.map(|((s, _), pieces)| (!pieces.is_empty()).then(|| placed(&s.outline, &pieces))).collect()
     }
 }
