@@ -24,7 +24,7 @@ impl Outcome {
     fn difficulty(&self, tolerance: f64) -> f64 {
         /// Eight pieces; also where nothing is known.
         const MOST: f64 = 2.6e5;
-        let (Self::Fits { error, .. } | Self::Misses { error, .. }) = self;
+        let (Self::Fits { error, .. } | Self::Misses { reach: error, .. }) = self;
         sixth_root((error / tolerance).clamp(1e-3, MOST))
     }
 }
@@ -80,7 +80,7 @@ impl<C: Curve> Stepper<'_, C> {
                     self.accept(piece, error, out, report);
                     continue;
                 }
-                Outcome::Misses { piece, error, sharp } => (piece, error, sharp),
+                Outcome::Misses { piece, error, sharp, .. } => (piece, error, sharp),
             };
             let h = to.t - from.t;
             if self.attempts >= MOST_ATTEMPTS || h < SHORTEST {

@@ -266,6 +266,8 @@ pub(super) fn largest(v: &Lane) -> f64 {
 pub(super) struct Fit {
     pub(super) z: State,
     pub(super) error: f64,
+    /// What the residual would have come down to, where the fit was given up; else the same.
+    pub(super) reach: f64,
     /// The Newton step that is still to be taken by the feet.
     pub(super) ds: Lane,
 }
@@ -277,15 +279,20 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
     const FAR: f64 = 6.0;
     /// A step that promises less than this share of the sum of squares is not taken.
     const GAIN: f64 = 0.1;
+    /// Steps after which the next one's promise tells what there is to reach.
+    const TELLS: usize = 3;
+    /// Where what there is to reach is this many times what is wanted, it is not gone for.
+    const BEYOND: f64 = 2.0;
     let ones = [1.0; 8];
-    let (enough, far) = (enough * enough, (FAR * wanted).powi(2));
+    let (enough, far, beyond) = (enough * enough, (FAR * wanted).powi(2), (BEYOND * wanted).powi(2));
     frame.settle(g, z.a, z.b, &mut z.s);
     // Errors are squared in here.
-    let mut best = Fit { z, error: f64::INFINITY, ds: [0.0; 8] };
+    let mut best = Fit { z, error: f64::INFINITY, reach: f64::INFINITY, ds: [0.0; 8] };
     let (mut sums, mut squares) = ([0.0; 5], f64::INFINITY);
     let (mut next, mut length) = (z, 0.0);
     let mut trust = 0.5 * TRUST * frame.size;
     let mut r = Residuals::NONE;
+    let mut left = 1.0;
     for k in 1.. {
         frame.residuals(g, &next, &ones, &mut r);
         let (sn, sq, en) = frame.pulled(r.sums(), &next);
@@ -293,7 +300,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
         if sq <= squares {
             (z, sums, squares) = (next, sn, sq);
             if en < best.error {
-                best = Fit { z, error: en, ds: r.ds };
+                best = Fit { z, error: en, reach: en, ds: r.ds };
             }
             trust *= 2.0;
         } else if k == 1 {
@@ -310,6 +317,10 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
         if k > 1 && gain < GAIN * squares {
             break;
         }
+        if k >= TELLS && best.error * (squares - gain) > beyond * squares {
+            left = 1.0 - gain / squares;
+            break;
+        }
         let (da, db);
         (da, db, length) = frame.bent(step, &z, trust);
         (next.a, next.b) = (z.a + da, z.b + db);
@@ -317,6 +328,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
             next.s[i] = unit(z.s[i] + fma(da, r.sa[i], fma(db, r.sb[i], r.ds[i])));
         }
     }
+    best.reach = (best.error * left).sqrt();
     best.error = best.error.sqrt();
     best
 }

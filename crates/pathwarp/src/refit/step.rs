@@ -37,6 +37,8 @@ pub(super) enum Outcome {
         /// The best try, if the budget ends here.
         piece: Piece,
         error: f64,
+        /// The error there would be with more work, as it was estimated: what tells how many pieces are needed.
+        reach: f64,
         /// A place where the image nearly stops.
         sharp: Option<f64>,
     },
@@ -125,7 +127,7 @@ impl<C: Curve> Stepper<'_, C> {
         if error <= self.tolerance {
             return Ok(Outcome::Fits { piece: line, error });
         }
-        Ok(Outcome::Misses { piece: line, error, sharp: None })
+        Ok(Outcome::Misses { piece: line, error, reach: error, sharp: None })
     }
 
     /// The proven error of a state that was measured to have `error`; what it was measured at where there is nothing to prove
@@ -190,12 +192,13 @@ impl<C: Curve> Stepper<'_, C> {
             }
         }
         let mut f = fit::fit(frame, job.g, z, [ENOUGH * tol, tol]);
-        let mut error = f.error;
+        // Of fits that miss, what they would reach.
+        let mut error = f.reach;
         if error <= tol {
             error = self.judge(job, &f)?;
             if error > tol && f.error <= ENOUGH * tol {
                 f = fit::fit(frame, job.g, f.z, [0.0, tol]);
-                error = f.error;
+                error = f.reach;
                 if error <= tol {
                     error = self.judge(job, &f)?;
                 }
@@ -212,22 +215,25 @@ impl<C: Curve> Stepper<'_, C> {
                     continue;
                 }
                 let g = fit::fit(frame, job.g, State { a, b, s: f.z.s }, [ENOUGH * tol, tol]);
-                if g.error < 0.98 * error {
-                    let e = if g.error <= tol { self.judge(job, &g)? } else { g.error };
+                if g.reach < 0.98 * error {
+                    let e = if g.reach <= tol { self.judge(job, &g)? } else { g.reach };
                     if e < error {
                         error = e;
                         f = g;
+                    }
+                    if error <= tol {
+                        break;
                     }
                 }
             }
         }
         // Minimax: worth it only where it can bring the error below the tolerance.
-        const REACH: f64 = 1.9;
+        const REACH: f64 = 1.4;
         if error > tol && error <= REACH * tol {
             let other = State { s: between(&f.z.s), ..f.z };
             let (z, e) = fit::lawson(frame, [job.g, job.check], [f.z, other], 4);
             if e < error {
-                f = Fit { z: z[0], error: e, ds: [1.0; 8] };
+                f = Fit { z: z[0], error: e, reach: e, ds: [1.0; 8] };
                 error = e;
                 if e <= tol {
                     error = self.judge(job, &f)?;
@@ -240,7 +246,7 @@ impl<C: Curve> Stepper<'_, C> {
         }
         let shape = Shape::of(job.g, frame.q);
         let sharp = if shape.sharp { self.sharpest(from, to, shape.length) } else { None };
-        Ok(Outcome::Misses { piece, error, sharp })
+        Ok(Outcome::Misses { piece, error: error.max(f.error), reach: error, sharp })
     }
 
     /// The error of a fit: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
@@ -275,11 +281,11 @@ impl<C: Curve> Stepper<'_, C> {
     #[inline(never)]
     fn dense(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane, error: f64) -> Result<f64, Point> {
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        let mut feet = [(0.0, 0.0); 18];
-        feet[17] = (1.0, 1.0);
+        let mut feet = [0.0; 18];
+        feet[17] = 1.0;
         for i in 0..8 {
-            feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
-            feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
+            feet[FITTED[i] as usize] = s0[i];
+            feet[CHECKED[i] as usize] = s1[i];
         }
         let mut e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
         if self.source.single().is_none() && self.careful {
