@@ -279,8 +279,9 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
     const FAR: f64 = 6.0;
     /// A step that promises less than this share of the sum of squares is not taken.
     const GAIN: f64 = 0.1;
-    /// Steps after which the next one's promise tells what there is to reach.
-    const TELLS: usize = 3;
+    /// After so many evaluations the next step's promise tells what there is to reach, if it is less than this share of the sum
+    /// of squares; after more of them whatever it is.
+    const TELLS: (usize, f64) = (3, 0.5);
     /// Where what there is to reach is this many times what is wanted, it is not gone for.
     const BEYOND: f64 = 2.0;
     let ones = [1.0; 8];
@@ -317,7 +318,8 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64
         if k > 1 && gain < GAIN * squares {
             break;
         }
-        if k >= TELLS && best.error * (squares - gain) > beyond * squares {
+        let told = k > TELLS.0 || k == TELLS.0 && gain < TELLS.1 * squares;
+        if told && best.error * (squares - gain) > beyond * squares {
             left = 1.0 - gain / squares;
             break;
         }
