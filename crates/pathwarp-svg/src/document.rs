@@ -2,20 +2,21 @@
 
 use crate::geometry::Reader;
 use crate::read::{self, ReadOptions};
-use crate::resolve;
+use crate::resolve::{self, Tiling};
 use crate::scene::{self, Role, Scene};
 use crate::select::{self, Selection};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::{Error, Outline};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// An SVG file.
 #[derive(Debug)]
 pub struct Document {
     pub(crate) name: String,
-    pub(crate) bytes: Vec<u8>,
-    pub(crate) source: Source,
+    pub(crate) bytes: Arc<[u8]>,
+    pub(crate) source: Arc<Source>,
     pub(crate) scene: Scene,
     pub(crate) shapes: Vec<Shape>,
     pub(crate) missing_fonts: Vec<String>,
@@ -23,6 +24,8 @@ pub struct Document {
     /// Whether walking it takes little stack.
     pub(crate) shallow: bool,
     tree: Arc<usvg::Tree>,
+    /// What the tree's ids stand for.
+    ids: Arc<HashMap<String, Vec<ElementId>>>,
     dpi: f64,
 }
 
@@ -69,7 +72,7 @@ impl Document {
     /// [`Error::Input`] with the place, if it is not UTF-8, not XML, not SVG, or too large.
     pub fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
         let text = read::text(data, name, options)?;
-        let bytes = data.to_vec();
+        let bytes = Arc::from(data);
         let dpi = f64::from(options.dpi);
         let source = Source::parse(text, name)?;
         let shallow = read::is_shallow(&source);
@@ -78,23 +81,24 @@ impl Document {
             // Where positions are not to be trusted, the text must not be touched.
             let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
             let (tree, missing_fonts) = read::tree(text, name, options)?;
-            let scene = resolve::build(&tree, &source, &ids, dpi);
+            let scene = resolve::build(&tree, &source, &ids, dpi, None);
             let shapes = shapes(&scene, &source);
             let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
-            Ok((tree, missing_fonts, scene, shapes, page))
+            Ok((tree, ids, missing_fonts, scene, shapes, page))
         };
-        let (tree, missing_fonts, scene, shapes, page) =
+        let (tree, ids, missing_fonts, scene, shapes, page) =
             if shallow { resolve()? } else { read::with_stack(name, resolve)? };
         Ok(Self {
             name: name.to_owned(),
             bytes,
-            source,
+            source: Arc::new(source),
             scene,
             shapes,
             missing_fonts,
             page,
             shallow,
             tree: Arc::new(tree),
+            ids: Arc::new(ids),
             dpi,
         })
     }
@@ -138,6 +142,30 @@ impl Document {
 
     fn reader(&self) -> Reader<'_> {
         Reader { source: &self.source, dpi: self.dpi, page: self.page }
+    }
+
+    /// The document with its patterns' tiles laid out as geometry.
+    pub(crate) fn tiled(&self, tiling: Tiling<'_>) -> Result<Self, Error> {
+        // `Map`s may be used by any thread, so the tiling may go to one.
+        let resolve = || {
+            let scene = resolve::build(&self.tree, &self.source, &self.ids, self.dpi, Some(tiling));
+            let shapes = shapes(&scene, &self.source);
+            Ok((scene, shapes))
+        };
+        let (scene, shapes) = if self.shallow { resolve()? } else { read::with_stack(&self.name, resolve)? };
+        Ok(Self {
+            name: self.name.clone(),
+            bytes: self.bytes.clone(),
+            source: self.source.clone(),
+            scene,
+            shapes,
+            missing_fonts: self.missing_fonts.clone(),
+            page: self.page,
+            shallow: self.shallow,
+            tree: self.tree.clone(),
+            ids: self.ids.clone(),
+            dpi: self.dpi,
+        })
     }
 
     /// What an element's `transform` says.

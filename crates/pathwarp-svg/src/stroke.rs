@@ -1,6 +1,5 @@
 //! What a map does to a stroke: the width it should have, how wrong one width is, and the stroke's outline.
 
-use crate::scene::Part;
 use pathwarp::Outline;
 use pathwarp::kurbo::{self, Affine, Cap, Circle, Join, Point, Rect, Shape as _, StrokeOpts, Vec2};
 use pathwarp::map::Map;
@@ -67,8 +66,8 @@ pub(crate) fn width(outline: &Outline, read: Affine, write: Affine, map: &dyn Ma
     Some(Width { scale, error })
 }
 
-/// The stroke as a filled outline in the part's own user space, within `tolerance` there.
-pub(crate) fn outline(part: &Part, stroke: &Stroke, tolerance: f64) -> Outline {
+/// The stroke of `path` as a filled outline in its own user space, within `tolerance` there.
+pub(crate) fn outline(path: &Outline, stroke: &Stroke, tolerance: f64) -> Outline {
     let cap = match stroke.linecap() {
         LineCap::Butt => Cap::Butt,
         LineCap::Round => Cap::Round,
@@ -90,13 +89,13 @@ pub(crate) fn outline(part: &Part, stroke: &Stroke, tolerance: f64) -> Outline {
         /// Dashes finer than this many on one path would be a grey line and no end of work.
         const MOST_DASHES: f64 = 20_000.0;
         let period: f64 = dashes.iter().sum();
-        if period > 0.0 && rough_length(&part.local) / period * (dashes.len() as f64) < 2.0 * MOST_DASHES {
+        if period > 0.0 && rough_length(path) / period * (dashes.len() as f64) < 2.0 * MOST_DASHES {
             style = style.with_dashes(f64::from(stroke.dashoffset()), dashes);
         }
     }
     // Subpaths of no length show their caps alone.
     let (points, lines): (Vec<_>, Vec<_>) =
-        part.local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
+        path.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
     let path = Outline { subpaths: lines }.to_bez_path(tolerance);
     let mut out: Outline = (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into();
     let reach = f64::from(stroke.width().get()) / 2.0;
