@@ -23,8 +23,8 @@ pub(crate) fn values(source: &Source, property: &'static str) -> Vec<Option<Stri
             None => (None, false),
         };
         let sheets = |important| {
-            let last = said(important).filter(|(s, _)| s.matches(&node)).last();
-            last.map(|(_, d)| d.value.to_owned())
+            let mut matching = said(important).filter(|(s, _)| s.matches(&node));
+            matching.next_back().map(|(_, d)| d.value.to_owned())
         };
         own.clone()
             .filter(|_| strong)
