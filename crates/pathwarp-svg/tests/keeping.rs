@@ -1,5 +1,6 @@
 //! What stands beside the geometry of a warped file: strokes that never scale, animations, links, choices, compressed files and
 //! fonts of the file's own.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
 

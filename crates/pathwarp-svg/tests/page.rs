@@ -1,4 +1,5 @@
 //! The page made to fit the warped artwork. Truth is where the renderer leaves a mark.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
 

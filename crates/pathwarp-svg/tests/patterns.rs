@@ -1,4 +1,5 @@
 //! Patterns as geometry. Truth is the original's rendering resampled through the inverse of a curved map.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
 

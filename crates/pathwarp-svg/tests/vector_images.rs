@@ -1,5 +1,6 @@
 //! Drawings shown as images, warped as geometry. Truth is the renderer's own transform of the original, and its rendering bent
 //! pixel by pixel.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
 

@@ -116,10 +116,10 @@ impl Painter<'_> {
 }
 
 /// Pixels from nowhere take a neighbour's colour, so that no edge that cuts the picture to shape shows what lies beyond.
-fn go_on(out: &mut Pixmap, known: &mut Vec<bool>) {
+fn go_on(out: &mut Pixmap, known: &mut [bool]) {
     let (width, height) = (out.width() as usize, out.height() as usize);
     for _ in 0..BEYOND {
-        let before = known.clone();
+        let before = known.to_vec();
         let pixels = out.pixels_mut();
         for at in (0..width * height).filter(|at| !before[*at]) {
             let (i, j) = (at % width, at / width);
