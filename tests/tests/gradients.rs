@@ -35,7 +35,7 @@ const GRADIENTS: &[(&str, &str, u64)] = &[
          d='M10 10h30v20z' fill='url(#a)'/></defs><path d='M15 45C50 20 60 80 90 40L70 60z' fill='url(#a)' stroke='url(#a)' \
          stroke-width='9' fill-opacity='.4' stroke-linejoin='round'/><use href='#p' x='30'/><text x='8' y='95' \
          font-size='38' font-family='Noto Sans' fill='url(#a)'>Sea</text>",
-        6,
+        4,
     ),
 ];
 
