@@ -35,6 +35,7 @@ impl Writer<'_> {
         place: &str,
         fit: Affine,
     ) -> String {
+        let address = key;
         let key = (key, fit.as_coeffs().map(f64::to_bits));
         if let Some(id) = self.servers.get(&key) {
             return format!("url(#{id})");
@@ -50,7 +51,7 @@ impl Writer<'_> {
             SpreadMethod::Reflect => out.push_str(" spreadMethod=\"reflect\""),
             SpreadMethod::Repeat => out.push_str(" spreadMethod=\"repeat\""),
         }
-        if self.in_source && self.can_lean_on(g.id()) {
+        if self.in_source && self.can_lean_on(g.id()) && !self.job.document.scene.foreign.contains(&address) {
             // The stops stay with the original.
             let _ = write!(out, " {}=\"#{}\"/>", self.link(), escape(g.id()));
         } else {
@@ -275,7 +276,8 @@ impl Writer<'_> {
         let source = &self.job.document.source;
         self.notes.add(FILTERS, f.id());
         let own = source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
-        if self.in_source && own {
+        let foreign = self.job.document.scene.foreign.contains(&(std::sync::Arc::as_ptr(f) as usize));
+        if self.in_source && own && !foreign {
             return format!("url(#{})", f.id());
         }
         format!("url(#{})", self.filter_id(f))

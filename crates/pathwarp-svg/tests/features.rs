@@ -121,6 +121,11 @@ const FEATURES: &[(&str, &str)] = &[
          fill='none'>edge</text></g>",
     ),
     (
+        "text along a path",
+        "<path id='p' d='M10 70Q50 10 90 70' fill='none'/><text font-size='18' fill='darkred'><textPath href='#p'>along \
+         it</textPath></text>",
+    ),
+    (
         "type selectors",
         "<style>rect{fill:green;stroke:black;stroke-width:4} path{fill:orange} .k{opacity:.5}</style><rect x='10' y='10' \
          width='40' height='30'/><circle class='k' cx='70' cy='60' r='20'/><path d='M10 60h20v30z'/>",
