@@ -237,6 +237,12 @@ impl<'a> Keeper<'a, '_> {
             // Box units meant the box of the letters' places, which outlines do not have.
             let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
             self.edits.set_property(*e, "filter", list.join(" "));
+        } else if g.filters.iter().any(|f| self.writer.shows_warped(f))
+            && let Some(slot) = g.slot.map(|s| &self.job.document.scene.slots[s])
+            && let (None, Some(e)) = (slot.owner, slot.element)
+        {
+            let list: Vec<String> = g.filters.iter().map(|f| self.writer.filter(f)).collect();
+            self.edits.set_property(e, "filter", list.join(" "));
         }
         let scene = &self.job.document.scene;
         for f in &g.filters {
