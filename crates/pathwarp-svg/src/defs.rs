@@ -166,10 +166,12 @@ impl Writer<'_> {
                         let id = self.clip_id(i);
                         properties.push(("clip-path", format!("url(#{id})")));
                     }
-                    let transform =
-                        if t == Affine::IDENTITY { String::new() } else { format!(" transform=\"{}\"", matrix(t)) };
+                    let mut head = p.source.map_or(String::new(), |e| self.id_attribute(e));
+                    if t != Affine::IDENTITY {
+                        let _ = write!(head, " transform=\"{}\"", matrix(t));
+                    }
                     let d = part_data(p, job.outcomes[*i].done(), &job.document.source);
-                    out.push_str(&self.path(&d, &transform, &properties));
+                    out.push_str(&self.path(&d, &head, &properties));
                 }
             }
         }
