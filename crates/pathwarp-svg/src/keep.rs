@@ -99,7 +99,7 @@ impl<'a> Keeper<'a, '_> {
                         self.group(&c.root);
                     } else {
                         let head = self.kept_attributes(def, &["clipPathUnits", "transform", "clip-path"]);
-                        let text = self.writer.clip(i, &head);
+                        let text = self.replacing(def, |w| w.clip(i, &head));
                         self.edits.replace(def, text);
                     }
                 }
@@ -134,7 +134,7 @@ impl<'a> Keeper<'a, '_> {
                     } else {
                         let gone = ["maskUnits", "maskContentUnits", "x", "y", "width", "height", "mask", "mask-type"];
                         let head = self.kept_attributes(def, &gone);
-                        let text = self.writer.mask(i, &head);
+                        let text = self.replacing(def, |w| w.mask(i, &head));
                         self.edits.replace(def, text);
                     }
                 }
@@ -145,6 +145,16 @@ impl<'a> Keeper<'a, '_> {
             }
         }
         Ok(())
+    }
+
+    /// What is written in the place of an element, whose ids are free again, unless style sheets or animations lie in wait for
+    /// them: what is written says all of its look and place itself.
+    fn replacing(&mut self, e: ElementId, write: impl FnOnce(&mut Writer<'a>) -> String) -> String {
+        let free = !self.source.has_css() && !self.source.animated;
+        self.writer.replaced = free.then(|| (self.source.elements[e].range.clone(), BTreeSet::new()));
+        let text = write(self.writer);
+        self.writer.replaced = None;
+        text
     }
 
     /// Filtered elements and images move along with their transforms.
@@ -237,6 +247,12 @@ impl<'a> Keeper<'a, '_> {
             // Box units meant the box of the letters' places, which outlines do not have.
             let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
             self.edits.set_property(*e, "filter", list.join(" "));
+        } else if g.filters.iter().any(|f| self.writer.shows_warped(f))
+            && let Some(slot) = g.slot.map(|s| &self.job.document.scene.slots[s])
+            && let (None, Some(e)) = (slot.owner, slot.element)
+        {
+            let list: Vec<String> = g.filters.iter().map(|f| self.writer.filter(f)).collect();
+            self.edits.set_property(e, "filter", list.join(" "));
         }
         let scene = &self.job.document.scene;
         for f in &g.filters {

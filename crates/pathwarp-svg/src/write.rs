@@ -15,8 +15,9 @@ use pathwarp::kurbo::{Affine, Rect, Shape as _};
 use pathwarp::map::Map;
 use std::borrow::Cow;
 use std::cell::RefCell;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
+use std::ops::Range;
 use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRendering};
 
 /// Everything a writer needs to know.
@@ -52,6 +53,8 @@ pub(crate) struct Writer<'a> {
     pub(crate) mask_ids: Vec<Option<String>>,
     pub(crate) servers: HashMap<(usize, [u64; 6]), String>,
     pub(crate) filters: HashMap<usize, String>,
+    /// The place of the source's element that is being replaced, and the elements in it whose ids have been written.
+    pub(crate) replaced: Option<(Range<usize>, BTreeSet<ElementId>)>,
     /// Which properties the source speaks of at all.
     mentioned: RefCell<HashMap<&'static str, bool>>,
     pub(crate) skipped: &'a mut Vec<Skipped>,
@@ -74,6 +77,7 @@ impl<'a> Writer<'a> {
             mask_ids: vec![None; scene.masks.len()],
             servers: HashMap::new(),
             filters: HashMap::new(),
+            replaced: None,
             mentioned: RefCell::default(),
             skipped,
             notes,
@@ -131,17 +135,22 @@ impl<'a> Writer<'a> {
             Node::Part(i) => self.part(*i),
             Node::Image(i) => self.image(*i),
             Node::Text { element, content, .. } => {
-                let id = element.filter(|_| !self.in_source).map_or(String::new(), |e| self.id_attribute(e));
+                let id = element.map_or(String::new(), |e| self.id_attribute(e));
                 let inner = self.group(content, "");
                 if id.is_empty() { inner } else { format!("<{0}{id}>{inner}</{0}>", self.tag("g")) }
             }
         }
     }
 
-    /// The source's id, for a file that is written anew.
-    fn id_attribute(&mut self, e: ElementId) -> String {
-        let Some(id) = self.job.document.source.attr(e, "id").filter(|i| !i.is_empty()) else { return String::new() };
-        if self.taken.insert(id.to_string()) { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
+    /// The source's id, for what takes the element's place.
+    pub(crate) fn id_attribute(&mut self, e: ElementId) -> String {
+        let source = &self.job.document.source;
+        let Some(id) = source.attr(e, "id").filter(|i| !i.is_empty()) else { return String::new() };
+        let free = match &mut self.replaced {
+            Some((range, named)) => range.contains(&source.elements[e].range.start) && named.insert(e),
+            None => !self.in_source && self.taken.insert(id.to_string()),
+        };
+        if free { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
     }
 
     /// A group; `extra` attributes make it stay even where it does nothing.
@@ -193,7 +202,7 @@ impl<'a> Writer<'a> {
         if g.isolate {
             properties.push(("isolation", "isolate".into()));
         }
-        let own = if self.in_source { String::new() } else { g.source.map_or(String::new(), |e| self.id_attribute(e)) };
+        let own = g.source.map_or(String::new(), |e| self.id_attribute(e));
         let mut head = format!("{own}{extra}");
         let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene.slots[s].before)) {
             Some((fit, true)) => fit * g.transform,
@@ -225,7 +234,7 @@ impl<'a> Writer<'a> {
         let p = &job.document.scene.parts[i];
         let done = job.outcomes[i].done();
         let d = part_data(p, done, &job.document.source);
-        let id = if self.in_source { String::new() } else { p.source.map_or(String::new(), |e| self.id_attribute(e)) };
+        let id = p.source.map_or(String::new(), |e| self.id_attribute(e));
         if let Some(done) = done.filter(|_| self.pieced(i)) {
             let both = self.pieces(i, done, &d);
             return if id.is_empty() { both } else { format!("<{0}{id}>{both}</{0}>", self.tag("g")) };

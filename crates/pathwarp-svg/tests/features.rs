@@ -109,6 +109,11 @@ const FEATURES: &[(&str, &str)] = &[
          height='40' fill='blue'/></g><circle cx='70' cy='70' r='15' style='filter:drop-shadow(4px 4px 2px red)'/>",
     ),
     (
+        "a filter that shows what is drawn as well",
+        "<filter id='f' x='0' y='0' width='1' height='1'><feImage xlink:href='#s'/></filter><rect x='10' y='10' width='80' \
+         height='80' fill='red' filter='url(#f)'/><path id='s' d='M30 20h40l10 50z' fill='green' opacity='.5'/>",
+    ),
+    (
         "markers",
         "<marker id='m' markerWidth='4' markerHeight='4' refX='2' refY='2' orient='auto'><path d='M0 0L4 2L0 4z' \
          fill='red'/></marker><path id='p' d='M20 80L50 30L80 70' fill='none' stroke='black' stroke-width='4' \
