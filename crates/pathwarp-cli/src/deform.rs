@@ -190,6 +190,10 @@ fn warp(
         let what = "point lists and XCF are written of GIMP's files; `pathwarp convert` makes them of an SVG";
         return Err(Failure::usage(format!("{}: {what}", t.display())));
     }
+    if let Some(t) = target.filter(|t| picture::is_named_as_one(t)) {
+        let what = "a drawing is written as SVG; --preview and `pathwarp render` make pictures of it";
+        return Err(Failure::usage(format!("{}: {what}", t.display())));
+    }
     let doc = Document::read(&bytes, &display(input), &read_options(input))?;
     let mut references = References::new(Some(Names::Svg(&doc)));
     let mut recipe = recipe.clone();

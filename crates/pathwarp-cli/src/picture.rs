@@ -103,6 +103,11 @@ pub(crate) fn warp(
     Ok(Job { report, output, to_stdout, notes, partly: undefined.is_some() })
 }
 
+/// Whether a file of this name would hold pixels.
+pub(crate) fn is_named_as_one(path: &Path) -> bool {
+    path.extension().is_some() && format(Some(path)).is_ok()
+}
+
 /// What a file of this name holds.
 fn format(target: Option<&Path>) -> Result<PictureFormat, Failure> {
     let Some(extension) = target.and_then(Path::extension) else { return Ok(PictureFormat::Png) };

@@ -118,6 +118,25 @@ pub(crate) struct Group {
     pub(crate) children: Vec<Node>,
 }
 
+impl Group {
+    /// One that does nothing to what is in it but move it.
+    pub(crate) fn plain(owner: Option<ElementId>, transform: Affine, children: Vec<Node>) -> Self {
+        Self {
+            source: None,
+            owner,
+            transform,
+            opacity: 1.0,
+            blend: BlendMode::Normal,
+            isolate: false,
+            clip: None,
+            mask: None,
+            filters: Vec::new(),
+            slot: None,
+            children,
+        }
+    }
+}
+
 /// A place in the tree of groups where an affine fit of the map goes into the transforms, so that what cannot be bent (filters
 /// with their regions and lengths, images) is moved along. What is inside is written in the moved frame.
 #[derive(Debug)]

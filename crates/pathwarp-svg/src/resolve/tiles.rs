@@ -80,19 +80,7 @@ impl Layout<'_> {
     }
 
     fn group(&self, transform: Affine, children: Vec<Node>) -> Group {
-        Group {
-            source: None,
-            owner: self.context.owner,
-            transform,
-            opacity: 1.0,
-            blend: BlendMode::Normal,
-            isolate: false,
-            clip: None,
-            mask: None,
-            filters: Vec::new(),
-            slot: None,
-            children,
-        }
+        Group::plain(self.context.owner, transform, children)
     }
 }
 

@@ -5,7 +5,7 @@ use super::{Builder, Context};
 use crate::scene::{Clip, Group, Node, Part, Referrer, Role};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point};
-use usvg::{BlendMode, PaintOrder, ShapeRendering};
+use usvg::{PaintOrder, ShapeRendering};
 
 /// Whether a group's only content is a drawing shown as an image.
 pub(super) fn holds_vector(g: &usvg::Group) -> bool {
@@ -28,20 +28,9 @@ impl Builder<'_> {
         if context.owner.is_none() {
             self.unkept("an image cannot be told from another with the same id");
         }
-        let mut out = Group {
-            source: None,
-            owner: context.owner,
-            transform: Affine::IDENTITY,
-            opacity: 1.0,
-            blend: BlendMode::Normal,
-            // It is a picture of its own, and blends with nothing below it.
-            isolate: blends(tree.root()),
-            clip: None,
-            mask: None,
-            filters: Vec::new(),
-            slot: None,
-            children: Vec::new(),
-        };
+        // It is a picture of its own, and blends with nothing below it.
+        let isolate = blends(tree.root());
+        let mut out = Group { isolate, ..Group::plain(context.owner, Affine::IDENTITY, Vec::new()) };
         if !image.is_visible() {
             return out;
         }
@@ -90,19 +79,7 @@ impl Builder<'_> {
             stroke_tiles: None,
         });
         let edge = Node::Part(first);
-        let root = Group {
-            source: None,
-            owner: None,
-            transform: Affine::IDENTITY,
-            opacity: 1.0,
-            blend: BlendMode::Normal,
-            isolate: false,
-            clip: None,
-            mask: None,
-            filters: Vec::new(),
-            slot: None,
-            children: vec![edge],
-        };
+        let root = Group::plain(None, Affine::IDENTITY, vec![edge]);
         self.clips.push(Clip {
             id: "image-edge".to_owned(),
             transform: Affine::IDENTITY,
