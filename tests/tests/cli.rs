@@ -83,6 +83,15 @@ fn standard_input_to_standard_output() {
 }
 
 #[test]
+fn a_drawing_is_not_written_under_a_pictures_name() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = pathwarp_in(dir.path(), &["affine", "-o", "out.png", "--rotate", "30"], SQUARE.as_bytes());
+    assert_eq!(out.status.code(), Some(2), "{}", text(&out.stderr));
+    assert!(text(&out.stderr).contains("out.png: a drawing is written as SVG"), "{}", text(&out.stderr));
+    assert!(!dir.path().join("out.png").exists());
+}
+
+#[test]
 fn wrong_usage_is_2_and_names_the_fault() {
     for (args, part) in [
         (&["wobble"][..], "wobble"),

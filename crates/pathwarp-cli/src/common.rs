@@ -22,6 +22,14 @@ pub(crate) enum FrameChoice {
     Rect(Rect),
 }
 
+/// What becomes of gradients.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum GradientChoice {
+    Fit,
+    Exact,
+    Keep,
+}
+
 /// The common options, read.
 #[derive(Debug, Clone)]
 pub(crate) struct Common {
@@ -41,7 +49,9 @@ pub(crate) struct Common {
     pub(crate) precision: Option<u8>,
     pub(crate) strokes: pathwarp_svg::Strokes,
     pub(crate) text: pathwarp_svg::TextMode,
-    pub(crate) gradients: pathwarp_svg::Gradients,
+    pub(crate) gradients: GradientChoice,
+    pub(crate) patterns: pathwarp_svg::Patterns,
+    pub(crate) page: pathwarp_svg::PageFit,
     pub(crate) structure: pathwarp_svg::Structure,
     /// Whether bitmaps in drawings are bent.
     pub(crate) images: bool,
@@ -124,7 +134,17 @@ pub(crate) fn args() -> Vec<Arg> {
              where that looks right and outlines elsewhere [default: auto]",
         ),
         choice("text", &["outline", "skip"]).help("Text: warp its outlines, or leave it as it is [default: outline]"),
-        choice("gradients", &["fit", "keep"]).help("Gradients: follow the artwork as an affine map can, or stay [default: fit]"),
+        choice("gradients", &["fit", "exact", "keep"]).help(
+            "Gradients: follow the artwork as an affine map can, become a picture cut to the shape where that would be seen to be \
+             wrong, or stay [default: fit]",
+        ),
+        choice("patterns", &["auto", "instantiate", "fit", "keep"]).help(
+            "Patterns: warp their tiles one by one, follow the artwork as an affine map can, or stay; auto warps tiles where \
+             the difference is seen and they are not too many [default: auto]",
+        ),
+        choice("fit", &["none", "grow", "page"]).help(
+            "The page: leave it, grow it to hold the warped artwork, or make it the artwork's box [default: none]",
+        ),
         choice("structure", &["auto", "keep", "flatten"]).help(
             "The document: keep its text and structure wherever possible, insist on it, or write a flat new one [default: auto]",
         ),
@@ -221,10 +241,21 @@ impl Common {
                 _ => pathwarp_svg::Strokes::Auto,
             },
             text: if word("text") == "skip" { pathwarp_svg::TextMode::Skip } else { pathwarp_svg::TextMode::Outline },
-            gradients: if word("gradients") == "keep" {
-                pathwarp_svg::Gradients::Keep
-            } else {
-                pathwarp_svg::Gradients::Fit
+            gradients: match word("gradients") {
+                "exact" => GradientChoice::Exact,
+                "keep" => GradientChoice::Keep,
+                _ => GradientChoice::Fit,
+            },
+            patterns: match word("patterns") {
+                "instantiate" => pathwarp_svg::Patterns::Instantiate,
+                "fit" => pathwarp_svg::Patterns::Fit,
+                "keep" => pathwarp_svg::Patterns::Keep,
+                _ => pathwarp_svg::Patterns::Auto,
+            },
+            page: match word("fit") {
+                "grow" => pathwarp_svg::PageFit::Grow,
+                "page" => pathwarp_svg::PageFit::Page,
+                _ => pathwarp_svg::PageFit::None,
             },
             structure: match word("structure") {
                 "keep" => pathwarp_svg::Structure::Keep,

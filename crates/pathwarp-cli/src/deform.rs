@@ -1,6 +1,6 @@
 //! Running deformations over files: read, build, warp, write, report.
 
-use crate::common::{Common, FrameChoice};
+use crate::common::{Common, FrameChoice, GradientChoice};
 use crate::failure::Failure;
 use crate::output::{self, Pending};
 use crate::picture::Bender;
@@ -17,7 +17,8 @@ use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::refit;
 use pathwarp_raster::Picture;
 use pathwarp_svg::{
-    Document, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions, Warped,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions, Warped,
+    compressed,
 };
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -114,8 +115,6 @@ fn targets(common: &Common, inputs: &[PathBuf]) -> Result<Vec<Option<PathBuf>>, 
         let mut to = dir.join(name.ok_or_else(|| Failure::usage("--out-dir needs named inputs"))?);
         if let Some(name) = gimp::svg_name(i) {
             to.set_file_name(name);
-        } else if to.extension().is_some_and(|e| e.eq_ignore_ascii_case("svgz")) {
-            to.set_extension("svg");
         }
         if out.contains(&Some(to.clone())) {
             return Err(Failure::usage(format!("two inputs would both be written to {}", to.display())));
@@ -191,6 +190,10 @@ fn warp(
         let what = "point lists and XCF are written of GIMP's files; `pathwarp convert` makes them of an SVG";
         return Err(Failure::usage(format!("{}: {what}", t.display())));
     }
+    if let Some(t) = target.filter(|t| picture::is_named_as_one(t)) {
+        let what = "a drawing is written as SVG; --preview and `pathwarp render` make pictures of it";
+        return Err(Failure::usage(format!("{}: {what}", t.display())));
+    }
     let doc = Document::read(&bytes, &display(input), &read_options(input))?;
     let mut references = References::new(Some(Names::Svg(&doc)));
     let mut recipe = recipe.clone();
@@ -204,6 +207,7 @@ fn warp(
     let built = recipe.build(registry, frame, &artwork.iter().copied())?;
 
     let tolerance = common.tolerance_for(artwork_box);
+    let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), common.image_dpi));
     let options = WarpOptions {
         precision: common.precision,
         strokes: common.strokes,
@@ -211,14 +215,16 @@ fn warp(
         structure: common.structure,
         selection,
         on_error: common.on_error,
-        gradients: common.gradients,
+        gradients: match common.gradients {
+            GradientChoice::Fit => Gradients::Fit,
+            GradientChoice::Exact => Gradients::Exact(bender.clone()),
+            GradientChoice::Keep => Gradients::Keep,
+        },
+        patterns: common.patterns,
+        page: common.page,
         copies: built.copies.clone(),
         letters: LetterPlaces { places: built.letters.clone(), after: built.after.clone() },
-        images: if common.images {
-            Images::Warp(Arc::new(Bender::new(Arc::new(built.map.clone()), common.image_dpi)))
-        } else {
-            Images::Keep
-        },
+        images: if common.images { Images::Warp(bender) } else { Images::Keep },
         ..WarpOptions::new(refit::Options {
             certify: common.certify,
             merge: common.merge,
@@ -234,7 +240,10 @@ fn warp(
 
     let mut output = Vec::new();
     if let Some(t) = target {
-        output.push(Pending::new(t, warped.svg.as_bytes())?);
+        let packed = t.extension().is_some_and(|e| e.eq_ignore_ascii_case("svgz"));
+        let packed =
+            packed.then(|| compressed(&warped.svg)).transpose().map_err(|e| Failure::file(t, e.to_string()))?;
+        output.push(Pending::new(t, packed.as_deref().unwrap_or(warped.svg.as_bytes()))?);
     }
     for (file, text) in space::files(&doc, &recipe, &built, &options)? {
         output.push(Pending::new(&file, text.as_bytes())?);
@@ -329,6 +338,8 @@ fn report(
             folds: if at.is_some() { o.changes.max(1) } else { 0 },
             folded_at: at.map(|p| [p.x, p.y]),
             over_budget: s.over_budget.iter().map(|p| [p.x, p.y]).collect(),
+            paint_residual: s.paint_residual,
+            pictures: s.pictures,
         });
     }
     report::Input {

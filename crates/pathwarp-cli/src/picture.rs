@@ -12,8 +12,8 @@ use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Map, NewtonInverse};
 use pathwarp::param::Frame;
 use pathwarp::recipe::Recipe;
-use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, shown, warp_image};
-use pathwarp_svg::{BentImage, ImageRequest, ImageWarper, OnError};
+use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, Shade, extent, shade, shown, warp_image};
+use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, OnError};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -103,6 +103,11 @@ pub(crate) fn warp(
     Ok(Job { report, output, to_stdout, notes, partly: undefined.is_some() })
 }
 
+/// Whether a file of this name would hold pixels.
+pub(crate) fn is_named_as_one(path: &Path) -> bool {
+    path.extension().is_some() && format(Some(path)).is_ok()
+}
+
 /// What a file of this name holds.
 fn format(target: Option<&Path>) -> Result<PictureFormat, Failure> {
     let Some(extension) = target.and_then(Path::extension) else { return Ok(PictureFormat::Png) };
@@ -170,8 +175,6 @@ impl ImageWarper for Bender {
         if !(width > 0.0 && height > 0.0) {
             return Err("nothing is left of its area".to_owned());
         }
-        /// Pixels per inch of a drawing at 100 %.
-        const PX_PER_INCH: f64 = 96.0;
         let most = (GROWTH * area.area()).clamp(1.0, MOST);
         let finest = (most / (width * height)).sqrt();
         let wanted = match self.dpi {
@@ -197,6 +200,49 @@ impl ImageWarper for Bender {
         Ok(BentImage { png, area: e.bounds })
     }
 }
+
+impl GradientPainter for Bender {
+    fn paint(&self, r: &GradientRequest<'_>) -> Result<BentImage, String> {
+        /// Samples per pixel of the drawing, each way: what a screen of twice the density shows.
+        const DENSITY: f64 = 2.0;
+        /// At least so many along the longer side: small drawings are made to be shown larger.
+        const LEAST: f64 = 256.0;
+        /// And never more than this in all: the file holds them as text.
+        const MOST: f64 = 2e6;
+        /// Nor in all pictures of a drawing.
+        const MOST_TOGETHER: f64 = 64e6;
+        /// Pixels around the shape, for renderers that interpolate.
+        const AROUND: f64 = 2.0;
+        let (width, height) = (r.target.width(), r.target.height());
+        if !(width > 0.0 && height > 0.0 && (width + height).is_finite()) {
+            return Err("nothing is left of the shape's area".to_owned());
+        }
+        let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+        let wanted = match self.dpi {
+            Some(dpi) => dpi / PX_PER_INCH * unit,
+            None => (DENSITY * unit).max(LEAST / width.max(height)),
+        };
+        let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64);
+        let wanted = wanted.min((most / (width * height)).sqrt()).min(most / width.max(height));
+        let pixels = |length: f64| (length * wanted + 2.0 * AROUND).ceil().clamp(1.0, MOST);
+        let size = (pixels(width), pixels(height));
+        let target = Rect::from_center_size(r.target.center(), (size.0 / wanted, size.1 / wanted));
+        let size = (size.0 as u32, size.1 as u32);
+        let inverse = inverse(&self.map, r.placed.transform_rect_bbox(r.area));
+        let pixmap = shade(&Shade {
+            color: r.color,
+            placed: r.placed,
+            inverse: &*inverse,
+            shown: r.after.inverse() * shown(target, size),
+            size,
+        });
+        let picture = Picture { pixmap: pixmap.map_err(|e| e.to_string())?, profile: None };
+        Ok(BentImage { png: picture.write(PictureFormat::Png).map_err(|e| e.to_string())?, area: target })
+    }
+}
+
+/// Pixels per inch of a drawing at 100 %.
+const PX_PER_INCH: f64 = 96.0;
 
 /// The map's own inverse if it knows all of `area`, or Newton's method over it.
 fn inverse(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {

@@ -48,6 +48,13 @@ pub(crate) struct Shape {
     /// Places where the work budget ended before the tolerance was met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) over_budget: Vec<[f64; 2]>,
+    /// The largest distance between the map and the affine fit that gradients or patterns follow, in user units; null where no
+    /// fit comes near, left out where there is nothing to follow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) paint_residual: Option<f64>,
+    /// How many gradients became pictures; left out where none did.
+    #[serde(skip_serializing_if = "is_none")]
+    pub(crate) pictures: usize,
 }
 
 /// Something that stayed as it was.
@@ -72,6 +79,11 @@ pub(crate) struct Totals {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants it so")]
 fn is_once(copies: &usize) -> bool {
     *copies == 1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants it so")]
+fn is_none(count: &usize) -> bool {
+    *count == 0
 }
 
 pub(crate) fn assurance_word(a: Assurance) -> &'static str {

@@ -5,7 +5,7 @@
 //! * [`encode_png`] and [`decode_png`] carry pictures to and from files.
 //! * [`compare()`] measures by how much two pictures differ; [`diff_image`] shows where.
 //! * [`Picture`] reads and writes photographs, with orientation and colour profile.
-//! * [`warp_image()`] bends a bitmap by a map.
+//! * [`warp_image()`] bends a bitmap by a map, [`shade()`] a paint.
 //! * [`Preview`] sets a drawing and its warped result side by side, with cages, bases and targets drawn on top.
 //!
 //! All pictures are [`Pixmap`]s: 8 bits per channel, RGBA, sRGB, alpha premultiplied.
@@ -42,4 +42,4 @@ pub use png::{decode_png, encode_png};
 pub use preview::{Overlay, OverlayKind, Panel, Preview};
 pub use render::{MAX_PIXELS, RenderOptions, Size, render};
 pub use tiny_skia::{Color, Pixmap};
-pub use warp_image::{Extent, ImageWarp, extent, shown, warp_image};
+pub use warp_image::{Extent, ImageWarp, Shade, extent, shade, shown, warp_image};

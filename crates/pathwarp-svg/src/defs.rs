@@ -35,6 +35,7 @@ impl Writer<'_> {
         place: &str,
         fit: Affine,
     ) -> String {
+        let address = key;
         let key = (key, fit.as_coeffs().map(f64::to_bits));
         if let Some(id) = self.servers.get(&key) {
             return format!("url(#{id})");
@@ -50,7 +51,7 @@ impl Writer<'_> {
             SpreadMethod::Reflect => out.push_str(" spreadMethod=\"reflect\""),
             SpreadMethod::Repeat => out.push_str(" spreadMethod=\"repeat\""),
         }
-        if self.in_source && self.can_lean_on(g.id()) {
+        if self.in_source && self.can_lean_on(g.id()) && !self.job.document.scene.foreign.contains(&address) {
             // The stops stay with the original.
             let _ = write!(out, " {}=\"#{}\"/>", self.link(), escape(g.id()));
         } else {
@@ -165,10 +166,12 @@ impl Writer<'_> {
                         let id = self.clip_id(i);
                         properties.push(("clip-path", format!("url(#{id})")));
                     }
-                    let transform =
-                        if t == Affine::IDENTITY { String::new() } else { format!(" transform=\"{}\"", matrix(t)) };
+                    let mut head = p.source.map_or(String::new(), |e| self.id_attribute(e));
+                    if t != Affine::IDENTITY {
+                        let _ = write!(head, " transform=\"{}\"", matrix(t));
+                    }
                     let d = part_data(p, job.outcomes[*i].done(), &job.document.source);
-                    out.push_str(&self.path(&d, &transform, &properties));
+                    out.push_str(&self.path(&d, &head, &properties));
                 }
             }
         }
@@ -275,10 +278,31 @@ impl Writer<'_> {
         let source = &self.job.document.source;
         self.notes.add(FILTERS, f.id());
         let own = source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
-        if self.in_source && own {
+        let foreign = self.job.document.scene.foreign.contains(&(std::sync::Arc::as_ptr(f) as usize));
+        if self.in_source && own && !foreign && !self.shows_warped(f) {
             return format!("url(#{})", f.id());
         }
         format!("url(#{})", self.filter_id(f))
+    }
+
+    /// Whether a filter of the source shows, by `feImage`, what is warped where it stands. The filter moves along with the
+    /// group it is applied to, and would move that a second time.
+    pub(crate) fn shows_warped(&self, f: &usvg::filter::Filter) -> bool {
+        if !f.primitives().iter().any(|p| matches!(p.kind(), usvg::filter::Kind::Image(_))) {
+            return false;
+        }
+        let (scene, source) = (&self.job.document.scene, &self.job.document.source);
+        let inside = |range: &std::ops::Range<usize>, e: usize| range.contains(&source.elements[e].range.start);
+        let own = source.by_id.get(f.id()).into_iter().flatten();
+        let images = own.flat_map(|&e| {
+            let range = &source.elements[e].range;
+            (e + 1..source.elements.len()).take_while(move |&c| inside(range, c))
+        });
+        let shown = images.filter_map(|e| source.by_id.get(&source.href(e)?)).flatten();
+        shown.map(|&e| &source.elements[e].range).any(|range| {
+            let of = |p: &crate::scene::Part| p.owner.or(p.source).is_some_and(|e| inside(range, e));
+            scene.parts.iter().zip(self.job.outcomes).any(|(p, o)| o.done().is_some() && of(p))
+        })
     }
 
     /// The id of a filter written here, in user space.

@@ -3,20 +3,21 @@
 use crate::geometry::Reader;
 use crate::letters;
 use crate::read::{self, ReadOptions};
-use crate::resolve;
+use crate::resolve::{self, Tiling};
 use crate::scene::{self, Role, Scene};
 use crate::select::{self, Selection};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::{Error, Outline};
+use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 /// An SVG file.
 #[derive(Debug)]
 pub struct Document {
     pub(crate) name: String,
-    pub(crate) bytes: Vec<u8>,
-    pub(crate) source: Source,
+    pub(crate) bytes: Arc<[u8]>,
+    pub(crate) source: Arc<Source>,
     pub(crate) scene: Scene,
     shapes: OnceLock<Vec<Shape>>,
     pub(crate) missing_fonts: Vec<String>,
@@ -24,6 +25,10 @@ pub struct Document {
     /// Whether walking it takes little stack.
     pub(crate) shallow: bool,
     tree: Arc<usvg::Tree>,
+    /// What the tree's ids stand for.
+    ids: Arc<HashMap<String, Vec<ElementId>>>,
+    /// Which element each letter of a text with names inside comes from.
+    letters: Arc<letters::Owners>,
     dpi: f64,
 }
 
@@ -70,7 +75,7 @@ impl Document {
     /// [`Error::Input`] with the place, if it is not UTF-8, not XML, not SVG, or too large.
     pub fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
         let text = read::text(data, name, options)?;
-        let bytes = data.to_vec();
+        let bytes = Arc::from(data);
         let dpi = f64::from(options.dpi);
         let source = Source::parse(text, name)?;
         let shallow = read::is_shallow(&source);
@@ -80,21 +85,24 @@ impl Document {
             let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
             let (tree, missing_fonts) = read::tree(text, name, options)?;
             let letters = letters::owners(&source, &ids, name, options)?;
-            let scene = resolve::build(&tree, &source, &ids, &letters, dpi);
+            let scene = resolve::build(&tree, &source, &ids, &letters, dpi, None);
             let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
-            Ok((tree, missing_fonts, scene, page))
+            Ok((tree, ids, letters, missing_fonts, scene, page))
         };
-        let (tree, missing_fonts, scene, page) = if shallow { resolve()? } else { read::with_stack(name, resolve)? };
+        let (tree, ids, letters, missing_fonts, scene, page) =
+            if shallow { resolve()? } else { read::with_stack(name, resolve)? };
         Ok(Self {
             name: name.to_owned(),
             bytes,
-            source,
+            source: Arc::new(source),
             scene,
             shapes: OnceLock::new(),
             missing_fonts,
             page,
             shallow,
             tree: Arc::new(tree),
+            ids: Arc::new(ids),
+            letters: Arc::new(letters),
             dpi,
         })
     }
@@ -138,6 +146,27 @@ impl Document {
 
     fn reader(&self) -> Reader<'_> {
         Reader { source: &self.source, dpi: self.dpi, page: self.page }
+    }
+
+    /// The document with its patterns' tiles laid out as geometry.
+    pub(crate) fn tiled(&self, tiling: Tiling<'_>) -> Result<Self, Error> {
+        // `Map`s may be used by any thread, so the tiling may go to one.
+        let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.ids, &self.letters, self.dpi, Some(tiling)));
+        let scene = if self.shallow { resolve()? } else { read::with_stack(&self.name, resolve)? };
+        Ok(Self {
+            name: self.name.clone(),
+            bytes: self.bytes.clone(),
+            source: self.source.clone(),
+            scene,
+            shapes: OnceLock::new(),
+            missing_fonts: self.missing_fonts.clone(),
+            page: self.page,
+            shallow: self.shallow,
+            tree: self.tree.clone(),
+            ids: self.ids.clone(),
+            letters: self.letters.clone(),
+            dpi: self.dpi,
+        })
     }
 
     /// What an element's `transform` says.

@@ -210,7 +210,7 @@ fn quoted(value: &str, quote: u8) -> String {
 }
 
 /// The declarations of a style attribute.
-fn declarations(style: &str) -> impl Iterator<Item = (&str, &str)> {
+pub(crate) fn declarations(style: &str) -> impl Iterator<Item = (&str, &str)> {
     // Semicolons may stand in quotes and in url(data:…;base64,…).
     let mut parts = Vec::new();
     let (mut depth, mut quote, mut start) = (0_i32, None, 0);
@@ -232,7 +232,12 @@ fn declarations(style: &str) -> impl Iterator<Item = (&str, &str)> {
 }
 
 pub(crate) fn declares(style: &str, name: &str) -> bool {
-    declarations(style).any(|(n, _)| n.eq_ignore_ascii_case(name))
+    declared(style, name).is_some()
+}
+
+/// The value that a style attribute gives a property.
+pub(crate) fn declared<'a>(style: &'a str, name: &str) -> Option<&'a str> {
+    declarations(style).filter(|(n, _)| n.eq_ignore_ascii_case(name)).last().map(|d| d.1)
 }
 
 /// `style` with `name: value` in it, in the old one's place if there was one.

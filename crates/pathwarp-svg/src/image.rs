@@ -103,7 +103,8 @@ pub(crate) fn bend(
     let Images::Warp(warper) = images else { return nearly("images are kept") };
     let data = match b.image.kind() {
         usvg::ImageKind::JPEG(d) | usvg::ImageKind::PNG(d) | usvg::ImageKind::GIF(d) | usvg::ImageKind::WEBP(d) => d,
-        usvg::ImageKind::SVG(_) => return nearly("SVG images are not bent yet"),
+        // These are no bitmaps.
+        usvg::ImageKind::SVG(_) => return Picture::Placed,
     };
     if b.sliced {
         return nearly("images that are cut to their place (slice) are not bent yet");

@@ -1,5 +1,9 @@
 //! Patches the source text in place: whatever can stay an element stays that element, with all its owner gave it.
 
+mod animations;
+
+pub(crate) use animations::is_animation;
+
 use crate::edit::Edits;
 use crate::image::Picture;
 use crate::number::{escape, matrix, short};
@@ -9,7 +13,6 @@ use crate::warp::{Notes, Skipped, StrokeDone};
 use crate::write::{Job, Writer, bent_attributes, dashes, data_uri, part_data, stroke_scale};
 use pathwarp::kurbo::Affine;
 use std::collections::{BTreeMap, BTreeSet};
-use usvg::Paint;
 
 /// The attributes that say where a shape is, and are gone when it has become a path.
 const GEOMETRY: [&str; 14] = ["d", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r", "x1", "y1", "x2", "y2"];
@@ -26,17 +29,24 @@ pub(crate) struct Keeper<'a, 'w> {
     pub(crate) source: &'a Source,
     job: Job<'a>,
     pub(crate) writer: &'w mut Writer<'a>,
+    /// Elements that have become groups.
+    pub(crate) fragments: BTreeSet<ElementId>,
 }
 
 /// The patched text, or why there is none.
 pub(crate) fn write(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes) -> Result<String, String> {
     let source = &job.document.source;
     let mut writer = Writer::new(*job, true, skipped, notes);
-    let mut k = Keeper { edits: Edits::new(source), source, job: *job, writer: &mut writer };
+    let mut k =
+        Keeper { edits: Edits::new(source), source, job: *job, writer: &mut writer, fragments: BTreeSet::new() };
     k.clips()?;
     k.masks()?;
     k.group(&job.document.scene.root);
     k.slots();
+    k.animations();
+    for (name, value) in job.page().into_iter().flatten() {
+        k.edits.set_attr(0, name, value);
+    }
     let edits = k.edits;
     let defs = std::mem::take(&mut writer.defs);
     finish(source, edits, &defs, &writer.tag("defs"))
@@ -71,7 +81,7 @@ impl<'a> Keeper<'a, '_> {
     fn clips(&mut self) -> Result<(), String> {
         let scene = &self.job.document.scene;
         let mut placed = BTreeSet::new();
-        for (i, c) in scene.clips.iter().enumerate() {
+        for (i, c) in scene.clips.iter().enumerate().filter(|c| !c.1.foreign) {
             let def = self.def(&c.id, "clipPath");
             if !self.writer.changes(c.parts.clone()) {
                 // A viewport's edge has no definition; everything else is where it was.
@@ -89,7 +99,7 @@ impl<'a> Keeper<'a, '_> {
                         self.group(&c.root);
                     } else {
                         let head = self.kept_attributes(def, &["clipPathUnits", "transform", "clip-path"]);
-                        let text = self.writer.clip(i, &head);
+                        let text = self.replacing(def, |w| w.clip(i, &head));
                         self.edits.replace(def, text);
                     }
                 }
@@ -105,7 +115,7 @@ impl<'a> Keeper<'a, '_> {
     fn masks(&mut self) -> Result<(), String> {
         let scene = &self.job.document.scene;
         let mut placed = BTreeSet::new();
-        for (i, m) in scene.masks.iter().enumerate() {
+        for (i, m) in scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
             let def = self.def(&m.id, "mask");
             if !self.writer.changes(m.parts.clone()) {
                 self.writer.mask_ids[i] = def.map(|_| m.id.clone());
@@ -124,7 +134,7 @@ impl<'a> Keeper<'a, '_> {
                     } else {
                         let gone = ["maskUnits", "maskContentUnits", "x", "y", "width", "height", "mask", "mask-type"];
                         let head = self.kept_attributes(def, &gone);
-                        let text = self.writer.mask(i, &head);
+                        let text = self.replacing(def, |w| w.mask(i, &head));
                         self.edits.replace(def, text);
                     }
                 }
@@ -135,6 +145,16 @@ impl<'a> Keeper<'a, '_> {
             }
         }
         Ok(())
+    }
+
+    /// What is written in the place of an element, whose ids are free again, unless style sheets or animations lie in wait for
+    /// them: what is written says all of its look and place itself.
+    fn replacing(&mut self, e: ElementId, write: impl FnOnce(&mut Writer<'a>) -> String) -> String {
+        let free = !self.source.has_css() && !self.source.animated;
+        self.writer.replaced = free.then(|| (self.source.elements[e].range.clone(), BTreeSet::new()));
+        let text = write(self.writer);
+        self.writer.replaced = None;
+        text
     }
 
     /// Filtered elements and images move along with their transforms.
@@ -205,7 +225,7 @@ impl<'a> Keeper<'a, '_> {
         let scene = &self.job.document.scene;
         let Some(edge) = scene.parts.get(edge.start).and_then(|p| p.outline().bounding_box()) else { return false };
         let inside = self.source.elements[e].range.clone();
-        scene.parts.iter().all(|p| {
+        scene.parts.iter().filter(|p| !p.in_tile).all(|p| {
             let of = p.owner.or(p.source).is_some_and(|s| inside.contains(&self.source.elements[s].range.start));
             let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get() * s.miterlimit().get()));
             let reach = reach * crate::warp::stretch(p.frame);
@@ -227,6 +247,12 @@ impl<'a> Keeper<'a, '_> {
             // Box units meant the box of the letters' places, which outlines do not have.
             let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
             self.edits.set_property(*e, "filter", list.join(" "));
+        } else if g.filters.iter().any(|f| self.writer.shows_warped(f))
+            && let Some(slot) = g.slot.map(|s| &self.job.document.scene.slots[s])
+            && let (None, Some(e)) = (slot.owner, slot.element)
+        {
+            let list: Vec<String> = g.filters.iter().map(|f| self.writer.filter(f)).collect();
+            self.edits.set_property(e, "filter", list.join(" "));
         }
         let scene = &self.job.document.scene;
         for f in &g.filters {
@@ -238,6 +264,7 @@ impl<'a> Keeper<'a, '_> {
             match n {
                 Node::Group(c) => match c.owner {
                     Some(e) if self.tag(e) == "use" => self.copy(e, c),
+                    Some(e) if self.tag(e) == "image" => self.vector_image(e, n, c),
                     Some(e) if is_shape(self.tag(e)) => marked.entry(e).or_default().push(n),
                     _ => self.group(c),
                 },
@@ -303,7 +330,8 @@ impl<'a> Keeper<'a, '_> {
         let p = &job.document.scene.parts[i];
         let Some(done) = job.outcomes[i].done() else { return };
         let outlined = p.stroke.is_some() && matches!(done.stroke, StrokeDone::Outlined(_));
-        if outlined || done.fill.as_ref().is_some_and(|f| !f.elements().is_empty()) {
+        let filled = done.fill.as_ref().is_some_and(|f| !f.elements().is_empty());
+        if self.writer.pieced(i) || outlined || filled {
             let content = self.writer.part(i);
             self.fragment(e, content);
             return;
@@ -323,12 +351,10 @@ impl<'a> Keeper<'a, '_> {
         }
         self.edits.set_attr(e, "d", part_data(p, Some(done), self.source));
         self.forget_lettering(e);
-        self.animated(e);
-        let fit = done.fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
         for (name, paint) in
             [("fill", p.fill.as_ref().map(usvg::Fill::paint)), ("stroke", p.stroke.as_ref().map(usvg::Stroke::paint))]
         {
-            if let (Some(_), Some(paint)) = (fit, paint.filter(|p| !matches!(p, Paint::Color(_)))) {
+            if let Some(paint) = paint.filter(|paint| self.writer.fit(paint, p, Some(done)).is_some()) {
                 let paint = self.writer.paint(paint, p, Some(done));
                 self.edits.set_property(e, name, paint);
             }
@@ -357,24 +383,6 @@ impl<'a> Keeper<'a, '_> {
         }
     }
 
-    /// An animation of a shape's own geometry still knows the old one.
-    fn animated(&mut self, e: ElementId) {
-        if !self.source.animated {
-            return;
-        }
-        let end = self.source.elements[e].range.end;
-        let inside = (e + 1..self.source.elements.len()).take_while(|&c| self.source.elements[c].range.start < end);
-        let moves = |c: ElementId| {
-            self.source.attr(c, "attributeName").is_some_and(|n| n == "points" || GEOMETRY.contains(&&*n))
-        };
-        if inside.into_iter().any(moves) {
-            self.writer.notes.add(
-                "animations of a shape's geometry were left as they are and no longer fit",
-                &self.source.display_name(e),
-            );
-        }
-    }
-
     /// What a letter said of where it stands holds no longer, nor what its line and text said.
     fn forget_lettering(&mut self, e: ElementId) {
         if self.source.attr(e, "data-glyph").is_none() {
@@ -392,6 +400,7 @@ impl<'a> Keeper<'a, '_> {
     /// A shape element as a group: its attributes and children stay, its geometry becomes `content`.
     fn fragment(&mut self, e: ElementId, content: String) {
         self.forget_lettering(e);
+        self.fragments.insert(e);
         self.edits.rename(e, "g");
         for name in GEOMETRY.into_iter().chain(["points"]) {
             self.edits.remove_attr(e, name);
@@ -399,9 +408,23 @@ impl<'a> Keeper<'a, '_> {
         self.edits.wrap_content(e, String::new(), content);
     }
 
+    /// An image that is a drawing: a group of the same name, with what it showed.
+    fn vector_image(&mut self, e: ElementId, n: &Node, g: &Group) {
+        if self.changed(n) {
+            let content = self.writer.group(g, "");
+            for name in ["href", "preserveAspectRatio"] {
+                self.edits.remove_attr(e, name);
+            }
+            self.fragment(e, content);
+        }
+    }
+
     /// A `use` whose copy no longer is one: a group with the same name, written from what it showed.
     fn copy(&mut self, e: ElementId, g: &Group) {
-        if !g.children.iter().any(|n| self.changed(n)) && self.job.options.selection.is_everything() {
+        // What it shows may have been warped in its own place.
+        let untouched =
+            || self.job.options.selection.is_everything() || self.job.outcomes.iter().all(|o| o.done().is_none());
+        if !g.children.iter().any(|n| self.changed(n)) && untouched() {
             return;
         }
         let styled = self.source.has_css();
@@ -416,6 +439,8 @@ impl<'a> Keeper<'a, '_> {
             .collect();
         let title = self.writer.tag("title");
         let title = el.title.as_ref().map_or(String::new(), |t| format!("<{title}>{}</{title}>", escape(t)));
+        self.fragments.insert(e);
+        let title = title + &self.kept_animations(e);
         let text = if styled && self.source.attr(e, "class").or(self.source.attr(e, "id")).is_some() {
             // What its class says is in the resolved group already and must not count twice.
             head.push_str(NO_EFFECTS);

@@ -175,7 +175,9 @@ impl Keeper<'_, '_> {
         if !said.is_empty() && self.source.attr(e, "aria-label").is_none() {
             self.edits.set_attr(e, "aria-label", said);
         }
-        self.edits.set_content(e, format!("{title}{inner}"));
+        self.fragments.insert(e);
+        let animations = self.kept_animations(e);
+        self.edits.set_content(e, format!("{title}{inner}{animations}"));
     }
 
     /// What a span holds.

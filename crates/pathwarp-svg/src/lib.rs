@@ -21,20 +21,26 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 
+mod cascade;
+mod cut;
 mod defs;
 mod document;
 mod edit;
 mod embed;
 mod filter;
+mod fontface;
 mod fonts;
 mod geometry;
+mod gradient;
 mod image;
 mod keep;
 mod lettering;
 mod letters;
 mod number;
 mod options;
+mod page;
 mod paint;
+mod pieces;
 mod read;
 mod resolve;
 mod scene;
@@ -48,9 +54,10 @@ mod write;
 pub use document::{Document, NamedPath, Shape};
 pub use embed::Origin;
 pub use fonts::{FontFile, GenericFamilies, bundled_font, system_font};
+pub use gradient::{GradientPainter, GradientRequest};
 pub use image::{BentImage, ImageRequest, ImageWarper, Images};
 pub use lettering::{LetterPlaces, Lettering, LetteringFrame, LetteringOptions, write_lettering};
-pub use options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
-pub use read::{ReadOptions, parse_tree};
+pub use options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
+pub use read::{ReadOptions, compressed, parse_tree};
 pub use select::Selection;
 pub use warp::{ShapeReport, Skipped, Warped};

@@ -1,10 +1,13 @@
 //! How a document is warped.
 
+use crate::gradient::GradientPainter;
 use crate::image::Images;
 use crate::lettering::LetterPlaces;
 use crate::select::Selection;
 use pathwarp::kurbo::Affine;
 use pathwarp::refit;
+use std::fmt;
+use std::sync::Arc;
 
 /// What becomes of strokes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -53,10 +56,59 @@ pub enum OnError {
 }
 
 /// What becomes of gradients.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Clone, Default)]
 pub enum Gradients {
     /// They follow the map's best affine fit over the shape they paint.
     #[default]
+    Fit,
+    /// Where that fit would be seen to be none, the shape shows a picture of the gradient, bent pixel by pixel.
+    Exact(Arc<dyn GradientPainter>),
+    /// They stay as they are.
+    Keep,
+}
+
+impl fmt::Debug for Gradients {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Fit => "Fit",
+            Self::Exact(_) => "Exact",
+            Self::Keep => "Keep",
+        })
+    }
+}
+
+impl PartialEq for Gradients {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Fit, Self::Fit) | (Self::Keep, Self::Keep) => true,
+            (Self::Exact(a), Self::Exact(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+/// What becomes of the page.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum PageFit {
+    /// It stays.
+    #[default]
+    None,
+    /// It grows to hold all of the warped artwork.
+    Grow,
+    /// It becomes the warped artwork's box.
+    Page,
+}
+
+/// What becomes of patterns.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Patterns {
+    /// Their tiles are warped one by one where an affine fit would be seen to be none and the tiles are not too many; elsewhere
+    /// they follow that fit.
+    #[default]
+    Auto,
+    /// Their tiles are warped one by one unless they are too many.
+    Instantiate,
+    /// They follow the map's best affine fit over the shape they paint.
     Fit,
     /// They stay as they are.
     Keep,
@@ -81,6 +133,10 @@ pub struct WarpOptions {
     pub on_error: OnError,
     /// What becomes of gradients.
     pub gradients: Gradients,
+    /// What becomes of patterns.
+    pub patterns: Patterns,
+    /// What becomes of the page: viewBox, width and height. Lengths in per cent that stand in the file then mean the new one.
+    pub page: PageFit,
     /// Where copies of every shape stand before the warp, in root user space, the original included; a shape and its copies
     /// become one path, clip paths and masks alike. Empty: the shape alone.
     pub copies: Vec<Affine>,
@@ -103,6 +159,8 @@ impl WarpOptions {
             selection: Selection::default(),
             on_error: OnError::default(),
             gradients: Gradients::default(),
+            patterns: Patterns::default(),
+            page: PageFit::default(),
             copies: Vec::new(),
             letters: LetterPlaces::default(),
             images: Images::default(),

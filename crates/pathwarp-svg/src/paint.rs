@@ -10,6 +10,8 @@ pub(crate) struct Fit {
     pub(crate) affine: Affine,
     /// The largest distance between it and the map over the samples, relative to the box's image.
     pub(crate) residual: f64,
+    /// That distance in the units of the space fitted into.
+    pub(crate) miss: f64,
 }
 
 /// The best affine fit of `map` over `area`, from a user space that `read` takes to root user space to one that `write` does.
@@ -54,7 +56,7 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
     let affine = Affine::new([cx.x, cx.y, cy.x, cy.y, shift.x, shift.y]);
     let miss = pairs.iter().map(|(p, q)| (affine * *p).distance(*q)).fold(0.0, f64::max);
     let size = (cx * area.width()).hypot() + (cy * area.height()).hypot();
-    affine.is_finite().then_some(Fit { affine, residual: if size > 0.0 { miss / size } else { 0.0 } })
+    affine.is_finite().then_some(Fit { affine, residual: if size > 0.0 { miss / size } else { 0.0 }, miss })
 }
 
 /// As [`fit`], over the box of all copies: what was laid over one of them is stretched over the row. Where no affine map
@@ -84,7 +86,7 @@ pub(crate) fn fit_copies(
     let over = fit(whole, read, write, map).filter(|f| f.residual <= LOST);
     Some(match over {
         Some(over) => Fit { affine: over.affine * onto(whole), ..over },
-        None => Fit { affine: onto(result), residual: 1.0 },
+        None => Fit { affine: onto(result), residual: 1.0, miss: f64::INFINITY },
     })
 }
 

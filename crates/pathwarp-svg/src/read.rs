@@ -1,10 +1,11 @@
 //! From bytes to text and to usvg's tree: unpacking, bounds, fonts, and a stack that is deep enough.
 
+use crate::fontface;
 use crate::fonts::{self, GenericFamilies, Missing};
 use crate::source::Source;
 use pathwarp::Error;
 use std::borrow::Cow;
-use std::io::Read as _;
+use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -66,7 +67,17 @@ pub(crate) fn text(data: &[u8], name: &str, options: &ReadOptions) -> Result<Str
     })
 }
 
-/// Whether a drawing nests so little that any stack holds it. What is referred to may hold references in turn.
+/// The text of an SVG file as an svgz file: gzip, without time and name, so that equal texts give equal files.
+///
+/// # Errors
+/// Whatever the compressor says; it writes to memory.
+pub fn compressed(text: &str) -> std::io::Result<Vec<u8>> {
+    let mut out = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    out.write_all(text.as_bytes())?;
+    out.finish()
+}
+
+/// Whether a drawing nests so little that any stack holds it, and holds nothing that may break its readers. What is referred to may hold references in turn.
 pub(crate) fn is_shallow(source: &Source) -> bool {
     /// Elements deep, references followed. A level takes a few kilobytes.
     const SHALLOW: usize = 80;
@@ -77,7 +88,10 @@ pub(crate) fn is_shallow(source: &Source) -> bool {
         let refers = matches!(e.tag.as_str(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
         references += usize::from(refers);
     }
-    source.unpatchable.is_none() && depths.iter().max().is_none_or(|d| d * references <= SHALLOW)
+    // Fonts that came with a file may be made to break what reads them; that is caught where the stack is deep.
+    source.unpatchable.is_none()
+        && !source.css.contains("@font-face")
+        && depths.iter().max().is_none_or(|d| d * references <= SHALLOW)
 }
 
 /// Runs `f` with a stack for the deepest nesting that the parsers let through (1024 elements). A panic inside, which no known
@@ -105,7 +119,7 @@ pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usv
     };
     // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
     if ["<text", ":text", "ENTITY", "image/svg", ".svg"].iter().any(|t| text.contains(t)) {
-        usvg.fontdb = fonts::database(options.system_fonts, &options.fonts);
+        usvg.fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), text);
     }
     if options.base_dir.is_none() {
         // Relative links would otherwise be looked for in the current folder.

@@ -1,5 +1,11 @@
 //! Builds the scene: walks usvg's tree, finds the source element, the true outline and the exact transform of everything in it.
 
+mod tiles;
+mod vector_image;
+
+pub(crate) use tiles::Tiling;
+
+use crate::cascade;
 use crate::geometry::{self, Reader};
 use crate::lettering::{self, Line};
 use crate::letters::Owners;
@@ -10,6 +16,7 @@ use pathwarp::kurbo::{Affine, Point, Rect, Size};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use usvg::{Fill, Stroke};
+use vector_image::holds_vector;
 
 struct Builder<'a> {
     reader: Reader<'a>,
@@ -37,6 +44,13 @@ struct Builder<'a> {
     backed: bool,
     /// The group that holds root user space; its own transform leads out of it.
     top: Option<*const usvg::Group>,
+    /// Which patterns become geometry.
+    tiling: Option<Tiling<'a>>,
+    /// How deep in drawings shown as images; ids are none of the source's there.
+    abroad: usize,
+    foreign: HashSet<usize>,
+    /// Elements whose strokes never scale.
+    fixed_widths: HashSet<ElementId>,
 }
 
 /// A definition as one frame sees it: which, from where, in which slot.
@@ -47,15 +61,18 @@ struct Context {
     owner: Option<ElementId>,
     role: Role,
     slot: Option<usize>,
+    /// The `image` element around.
+    image: Option<ElementId>,
 }
 
-/// Resolves the drawing. `ids` says what the tree's ids stand for.
+/// Resolves the drawing. `ids` says what the tree's ids stand for; `tiling` which patterns become geometry.
 pub(crate) fn build(
     tree: &usvg::Tree,
     source: &Source,
     ids: &HashMap<String, Vec<ElementId>>,
     letters: &Owners,
     dpi: f64,
+    tiling: Option<Tiling<'_>>,
 ) -> Scene {
     let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
     let reader = Reader { source, dpi, page };
@@ -81,11 +98,18 @@ pub(crate) fn build(
         fonts: tree.fontdb(),
         backed: source.text.contains("background-color"),
         top: None,
+        tiling,
+        abroad: 0,
+        foreign: HashSet::new(),
+        fixed_widths: fixed_widths(source),
     };
     let (top, to_px) = b.root_group(tree, page);
     b.top = Some(std::ptr::from_ref(top));
-    let root = b.group(top, Affine::IDENTITY, Context { owner: None, role: Role::Paint, slot: None });
-    let Builder { parts, clips, masks, tiles, pictures, slots, bitmaps, mut lines, unkeepable, .. } = b;
+    let root = b.group(top, Affine::IDENTITY, Context { owner: None, role: Role::Paint, slot: None, image: None });
+    let Builder {
+        parts, clips, masks, tiles, pictures, slots, bitmaps, mut lines, unkeepable, tiling, foreign, ..
+    } = b;
+    let notes = tiling.map(Tiling::notes).unwrap_or_default();
     let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
     for (i, p) in parts.iter().enumerate() {
         if let Some(e) = p.source {
@@ -93,7 +117,32 @@ pub(crate) fn build(
         }
     }
     lines.extend(lettering::marked_lines(&reader, &parts, &by_source));
-    Scene { root, parts, clips, masks, tiles, pictures, slots, bitmaps, lines, by_source, to_px, unkeepable }
+    Scene {
+        root,
+        parts,
+        clips,
+        masks,
+        tiles,
+        pictures,
+        slots,
+        bitmaps,
+        lines,
+        by_source,
+        to_px,
+        unkeepable,
+        notes,
+        foreign,
+    }
+}
+
+/// The elements with `vector-effect: non-scaling-stroke`.
+fn fixed_widths(source: &Source) -> HashSet<ElementId> {
+    const FIXED: &str = "non-scaling-stroke";
+    if !source.text.contains(FIXED) {
+        return HashSet::new();
+    }
+    let values = cascade::values(source, "vector-effect").into_iter().enumerate();
+    values.filter(|(_, v)| v.as_deref() == Some(FIXED)).map(|(e, _)| e).collect()
 }
 
 fn bits(m: Affine) -> [u64; 6] {
@@ -147,12 +196,20 @@ impl Builder<'_> {
         let agree =
             near(Affine::new([a[0], a[1], a[2], a[3], 0.0, 0.0]), Affine::new([b[0], b[1], b[2], b[3], 0.0, 0.0]));
         let agree = agree && (a[4] - b[4]).abs() <= slack && (a[5] - b[5]).abs() <= slack;
+        // A page as large as its viewBox up to rounding has no such group.
+        let [.., x, y] = a;
+        let rounding = near(Affine::new([a[0], a[1], a[2], a[3], 0.0, 0.0]), Affine::IDENTITY)
+            && x.abs().max(y.abs()) <= slack
+            && self.reader.source.attr(0, "transform").is_none();
+        if rounding && !agree && !backed {
+            return (tree.root(), by_source);
+        }
         (g, if agree { by_source } else { t })
     }
 
     /// The one element that an id stands for.
     fn element(&self, id: &str) -> Option<ElementId> {
-        match self.ids.get(id)?.as_slice() {
+        match self.ids.get(id).filter(|_| self.abroad == 0)?.as_slice() {
             [one] => Some(*one),
             _ => None,
         }
@@ -200,13 +257,15 @@ impl Builder<'_> {
         let top = self.top.is_some_and(|t| std::ptr::eq(t, g));
         let transform = if top { Affine::IDENTITY } else { self.refine(g.transform(), element) };
         let frame = parent * transform;
-        let owner = context.owner.or(source.filter(|&e| self.tag(e) == "use"));
+        let vector = holds_vector(g);
+        let owner = context.owner.or(source.filter(|&e| self.tag(e) == "use" || vector && self.tag(e) == "image"));
         let slot = self.slot(g, source, element, parent, frame, Context { owner, ..context });
         context.slot = slot.or(context.slot);
         let referrer = Referrer { element, owner: context.owner };
         let clip = g.clip_path().map(|c| self.clip(c, frame, referrer, context.slot));
         let mask = g.mask().map(|m| self.mask(m, frame, referrer, context.slot));
         context.owner = owner;
+        context.image = source.filter(|&e| self.tag(e) == "image").or(context.image);
         for p in g.filters().iter().flat_map(|f| f.primitives()) {
             if let usvg::filter::Kind::Image(image) = p.kind() {
                 self.picture(image.root());
@@ -220,8 +279,14 @@ impl Builder<'_> {
             children.push(match c {
                 usvg::Node::Group(c) => Node::Group(Box::new(self.group(c, frame, context))),
                 usvg::Node::Path(p) => Node::Part(self.part(p, frame, context)),
-                usvg::Node::Image(image) => {
+                usvg::Node::Image(image) if matches!(image.kind(), usvg::ImageKind::SVG(_)) => {
+                    let usvg::ImageKind::SVG(tree) = image.kind() else { continue };
                     let own = source.or(element).filter(|&e| self.tag(e) == "image");
+                    let context = Context { owner: context.owner.or(own), ..context };
+                    Node::Group(Box::new(self.vector_image(image, tree, frame, context)))
+                }
+                usvg::Node::Image(image) => {
+                    let own = source.or(element).filter(|&e| self.tag(e) == "image").or(context.image);
                     let aspect = own.or(context.owner).and_then(|e| self.reader.source.attr(e, "preserveAspectRatio"));
                     self.bitmaps.push(Bitmap {
                         image: image.clone(),
@@ -267,10 +332,11 @@ impl Builder<'_> {
         context: Context,
     ) -> Option<usize> {
         let image = element.filter(|&e| self.tag(e) == "image");
-        let raster = g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
+        let vector = holds_vector(g);
+        let raster = !vector && g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
         // The root has no transform of its own to take a slot up; an only image in it has.
         let top = self.top.is_some_and(|t| std::ptr::eq(t, g));
-        if g.filters().is_empty() && (top || image.is_none() && !raster)
+        if g.filters().is_empty() && (top || vector || image.is_none() && !raster)
             || matches!(context.role, Role::Clip | Role::Pattern)
             || context.slot.is_some_and(|s| image.is_some() && self.slots[s].element == element)
         {
@@ -357,8 +423,9 @@ impl Builder<'_> {
 
     fn part(&mut self, p: &usvg::Path, frame: Affine, context: Context) -> usize {
         let mut source = None;
+        let mut copied = None;
         let mut outline = None;
-        let candidates = self.ids.get(p.id()).map_or(&[][..], Vec::as_slice);
+        let candidates = self.ids.get(p.id()).filter(|_| self.abroad == 0).map_or(&[][..], Vec::as_slice);
         let shared = candidates.len() > 1;
         let only = self.element(p.id()).filter(|&e| self.tag(e) == "path");
         let later = only.and_then(|e| self.path_later(e, p.data()));
@@ -381,7 +448,8 @@ impl Builder<'_> {
         }
         let mut drawn = source.filter(|_| outline.is_some() || later.is_some());
         if source.is_none() {
-            (drawn, outline) = self.copy_of(p.data()).unzip();
+            (copied, outline) = self.copy_of(p.data()).unzip();
+            drawn = copied;
             // The page's own background is no artwork; it is the first thing of all.
             let background = self.parts.is_empty() && self.backed;
             if context.owner.is_none() && p.is_visible() && !background {
@@ -393,10 +461,9 @@ impl Builder<'_> {
                 self.tile(pattern);
             }
         }
-        let fixed_width = source.is_some_and(|e| {
-            let fixed = |name| self.reader.source.attr(e, name).is_some_and(|v| v.contains("non-scaling-stroke"));
-            fixed("vector-effect") || fixed("style")
-        });
+        let fixed_width = source.or(copied).is_some_and(|e| self.fixed_widths.contains(&e));
+        let fill_tiles = self.tiles(p, false, frame, context, source);
+        let stroke_tiles = if fixed_width { None } else { self.tiles(p, true, frame, context, source) };
         self.parts.push(Part {
             source,
             owner: context.owner,
@@ -411,6 +478,9 @@ impl Builder<'_> {
             visible: p.is_visible(),
             fixed_width,
             slot: context.slot,
+            in_tile: false,
+            fill_tiles,
+            stroke_tiles,
         });
         self.parts.len() - 1
     }
@@ -426,6 +496,14 @@ impl Builder<'_> {
     }
 
     /// The element that a path (in a `use`, in a marker) is a copy of, and its own outline.
+    /// A path's outline, the source's own where it is known.
+    fn known_outline(&mut self, p: &usvg::Path) -> Outline {
+        let own = self.element(p.id()).filter(|&e| is_shape(self.tag(e))).and_then(|e| self.reader.outline(e));
+        let own = own.filter(|o| geometry::same_path(o, p.data()));
+        own.or_else(|| self.copy_of(p.data()).map(|c| c.1)).unwrap_or_else(|| geometry::from_usvg(p.data()))
+    }
+
+    /// The source's own element and outline of a copied path (in a `use`, in a marker).
     fn copy_of(&mut self, path: &usvg::tiny_skia_path::Path) -> Option<(ElementId, Outline)> {
         /// Cells of the size of f32's rounding would miss neighbours; these are coarse enough, and three by three are asked.
         fn cell(p: Point) -> [i64; 2] {
@@ -471,7 +549,7 @@ impl Builder<'_> {
         let chained = Referrer { element: def, owner: None };
         let clip = c.clip_path().map(|c| self.clip(c, frame, chained, slot));
         // What is inside replaces nothing of the drawing's own tree.
-        let inside = Context { owner: None, role: Role::Clip, slot };
+        let inside = Context { owner: None, role: Role::Clip, slot, image: None };
         let kept = self.unkeepable.take();
         let root = self.group(c.root(), frame * transform, inside);
         self.unkeepable = kept;
@@ -482,6 +560,7 @@ impl Builder<'_> {
             root,
             referrers: vec![referrer],
             parts: first..self.parts.len(),
+            foreign: self.abroad > 0,
         });
         self.clip_index.insert(key, self.clips.len() - 1);
         self.clips.len() - 1
@@ -497,7 +576,7 @@ impl Builder<'_> {
         let chained = Referrer { element: self.element_of_def(m.id(), "mask"), owner: None };
         let mask = m.mask().map(|m| self.mask(m, frame, chained, slot));
         let kept = self.unkeepable.take();
-        let root = self.group(m.root(), frame, Context { owner: None, role: Role::Mask, slot });
+        let root = self.group(m.root(), frame, Context { owner: None, role: Role::Mask, slot, image: None });
         self.unkeepable = kept;
         let (r, c) = (m.rect(), m.root().stroke_bounding_box());
         let rect = |l, t, r, b| Rect::new(f64::from(l), f64::from(t), f64::from(r), f64::from(b));
@@ -511,6 +590,7 @@ impl Builder<'_> {
             slot,
             referrers: vec![referrer],
             parts: first..self.parts.len(),
+            foreign: self.abroad > 0,
             content: rect(c.left(), c.top(), c.right(), c.bottom()),
         });
         self.mask_index.insert(key, self.masks.len() - 1);
@@ -522,8 +602,11 @@ impl Builder<'_> {
             return;
         }
         let kept = self.unkeepable.take();
-        let root =
-            self.group(pattern.root(), Affine::IDENTITY, Context { owner: None, role: Role::Pattern, slot: None });
+        let root = self.group(
+            pattern.root(),
+            Affine::IDENTITY,
+            Context { owner: None, role: Role::Pattern, slot: None, image: None },
+        );
         self.unkeepable = kept;
         self.tiles.push(Tile { pattern: pattern.clone(), root });
     }
@@ -532,14 +615,18 @@ impl Builder<'_> {
         let key = std::ptr::from_ref(root) as usize;
         if !self.pictures.contains_key(&key) {
             let kept = self.unkeepable.take();
-            let group = self.group(root, Affine::IDENTITY, Context { owner: None, role: Role::Pattern, slot: None });
+            let group = self.group(
+                root,
+                Affine::IDENTITY,
+                Context { owner: None, role: Role::Pattern, slot: None, image: None },
+            );
             self.unkeepable = kept;
             self.pictures.insert(key, group);
         }
     }
 
     fn element_of_def(&self, id: &str, tag: &str) -> Option<ElementId> {
-        let all = self.reader.source.by_id.get(id)?;
+        let all = self.reader.source.by_id.get(id).filter(|_| self.abroad == 0)?;
         all.iter().copied().rfind(|&e| self.tag(e) == tag)
     }
 }

@@ -7,7 +7,7 @@ use crate::lettering::Line;
 use crate::source::ElementId;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Rect};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::{Deref, Range};
 use std::sync::{Arc, LazyLock};
@@ -45,6 +45,18 @@ pub(crate) struct Part {
     /// The stroke's width is in px whatever the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
     pub(crate) slot: Option<usize>,
+    /// Whether it is part of a pattern's tiles that are laid out; if it has a stroke, `local` is that stroke's outline.
+    pub(crate) in_tile: bool,
+    /// What its fill's pattern shows, and its stroke's, where that is geometry.
+    pub(crate) fill_tiles: Option<Tiles>,
+    pub(crate) stroke_tiles: Option<Tiles>,
+}
+
+/// The tiles that a pattern lays over a shape, in the shape's user space. They reach beyond the shape.
+#[derive(Debug)]
+pub(crate) struct Tiles {
+    pub(crate) opacity: f32,
+    pub(crate) content: Group,
 }
 
 /// An outline that is worked out when it is first looked at: what is only read and written again never is.
@@ -106,6 +118,25 @@ pub(crate) struct Group {
     pub(crate) children: Vec<Node>,
 }
 
+impl Group {
+    /// One that does nothing to what is in it but move it.
+    pub(crate) fn plain(owner: Option<ElementId>, transform: Affine, children: Vec<Node>) -> Self {
+        Self {
+            source: None,
+            owner,
+            transform,
+            opacity: 1.0,
+            blend: BlendMode::Normal,
+            isolate: false,
+            clip: None,
+            mask: None,
+            filters: Vec::new(),
+            slot: None,
+            children,
+        }
+    }
+}
+
 /// A place in the tree of groups where an affine fit of the map goes into the transforms, so that what cannot be bent (filters
 /// with their regions and lengths, images) is moved along. What is inside is written in the moved frame.
 #[derive(Debug)]
@@ -152,6 +183,8 @@ pub(crate) struct Clip {
     pub(crate) referrers: Vec<Referrer>,
     /// The parts that belong to it.
     pub(crate) parts: Range<usize>,
+    /// Whether it is none of the source's own definitions: in tiles that are laid out, in a drawing shown as an image.
+    pub(crate) foreign: bool,
 }
 
 /// A mask as one frame sees it.
@@ -168,6 +201,8 @@ pub(crate) struct Mask {
     pub(crate) referrers: Vec<Referrer>,
     /// The parts that belong to it.
     pub(crate) parts: Range<usize>,
+    /// Whether it is none of the source's own definitions.
+    pub(crate) foreign: bool,
     /// What its content covers, in the frame's coordinates.
     pub(crate) content: Rect,
 }
@@ -198,6 +233,8 @@ pub(crate) struct Scene {
     /// What filters show by `feImage`, by the address of usvg's group (which the document keeps alive).
     pub(crate) pictures: HashMap<usize, Group>,
     pub(crate) bitmaps: Vec<Bitmap>,
+    /// Gradients and filters that are none of the source's own, by address.
+    pub(crate) foreign: HashSet<usize>,
     pub(crate) slots: Vec<Slot>,
     /// Lines of lettering.
     pub(crate) lines: Vec<Line>,
@@ -207,6 +244,8 @@ pub(crate) struct Scene {
     pub(crate) to_px: Affine,
     /// Why the source cannot be patched in place, whatever the map.
     pub(crate) unkeepable: Option<String>,
+    /// What could not be resolved as asked, and where.
+    pub(crate) notes: Vec<(&'static str, String)>,
 }
 
 impl Part {

@@ -1,5 +1,6 @@
 //! The source text as a table of elements with their places in it: what the writer patches and what names are looked up in.
 
+use crate::keep::is_animation;
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -139,7 +140,7 @@ impl Source {
         let css_words = words(&css);
         let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
         drop(doc);
-        let animated = elements.iter().any(|e| e.tag == "animate");
+        let animated = elements.iter().any(|e| is_animation(&e.tag));
         Ok(Self { animated, text, elements, by_id, css, css_words, unpatchable, line_starts })
     }
 
@@ -162,8 +163,12 @@ impl Source {
 
     /// The target of `href` or `xlink:href`, without the `#`.
     pub(crate) fn href(&self, e: ElementId) -> Option<String> {
-        let link = self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))?;
-        link.trim().strip_prefix('#').map(ToOwned::to_owned)
+        self.link(e)?.trim().strip_prefix('#').map(ToOwned::to_owned)
+    }
+
+    /// What `href` or `xlink:href` says.
+    pub(crate) fn link(&self, e: ElementId) -> Option<Cow<'_, str>> {
+        self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))
     }
 
     /// The element and its ancestors, innermost first.

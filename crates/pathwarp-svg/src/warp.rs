@@ -1,15 +1,17 @@
 //! A document under a map: every part's image, in parallel, and what to say about it.
 
 use crate::document::Document;
-use crate::image::{self, Picture};
+use crate::gradient::{GradientRequest, Shading};
+use crate::image::{self, BentImage, Picture};
 use crate::lettering::{Piece, placed};
 use crate::number::MOST_DECIMALS;
-use crate::options::{Gradients, OnError, Strokes, Structure, TextMode, WarpOptions};
+use crate::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
 use crate::paint::{self, Fit};
+use crate::resolve::Tiling;
 use crate::scene::{Bitmap, Part, Role, Scene};
 use crate::select::Selection;
 use crate::{keep, read, stroke, write};
-use pathwarp::kurbo::{Affine, BezPath, Line, ParamCurveNearest as _, Point, Shape as _};
+use pathwarp::kurbo::{Affine, BezPath, Line, ParamCurveNearest as _, Point, Rect, Shape as _};
 use pathwarp::map::{AffineMap, Chain, Class, Map};
 use pathwarp::outline::Subpath;
 use pathwarp::refit::{self, Assurance};
@@ -48,6 +50,11 @@ pub struct ShapeReport {
     pub assurance: Assurance,
     /// Places in the source where the work budget ended before the tolerance was met.
     pub over_budget: Vec<Point>,
+    /// The largest distance between the map and the affine fit that the shape's gradients or patterns follow; root user units,
+    /// infinite where no affine map comes near. `None` where it has neither, or they stay or became pictures or geometry.
+    pub paint_residual: Option<f64>,
+    /// How many of its gradients became pictures.
+    pub pictures: usize,
 }
 
 /// Something that was left as it was.
@@ -102,6 +109,13 @@ pub(crate) struct Done {
     pub(crate) stroke: StrokeDone,
     /// How gradients and patterns follow; `None`: they stay.
     pub(crate) fit: Option<Fit>,
+    /// What fill and stroke show, where a gradient had to become a picture.
+    pub(crate) fill_image: Option<BentImage>,
+    pub(crate) stroke_image: Option<BentImage>,
+    /// Why it could not become one.
+    unpainted: Option<String>,
+    /// How far the fit is off for paints that follow it, in root user units.
+    residual: Option<f64>,
     report: refit::PathReport,
     rounding: f64,
 }
@@ -137,13 +151,37 @@ impl Document {
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
         let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
         // What nothing moves is left in the source's own words.
-        let identity = map.class() == Class::Affine(Affine::IDENTITY)
-            && options.copies.is_empty()
-            && options.letters.places.is_empty();
-        if identity && options.structure != Structure::Flatten {
+        if unmoved(map, options) && options.structure != Structure::Flatten && options.page == PageFit::None {
             self.source.text.clone_into(&mut out.svg);
             return Ok(out);
         }
+        match self.laid_out(map, options)? {
+            Some(tiled) => tiled.warp_resolved(map, options, out),
+            None => self.warp_resolved(map, options, out),
+        }
+    }
+
+    /// The document with those patterns' tiles as geometry that are to be warped one by one.
+    fn laid_out(&self, map: &dyn Map, options: &WarpOptions) -> Result<Option<Self>, Error> {
+        /// Half a pixel where the page is drawn a thousand pixels across.
+        const VISIBLE: f64 = 5e-4;
+        let view = self.view_box();
+        let visible = match options.patterns {
+            Patterns::Fit | Patterns::Keep => return Ok(None),
+            Patterns::Auto if options.copies.len() <= 1 => Some(VISIBLE * view.width().hypot(view.height())),
+            Patterns::Auto | Patterns::Instantiate => None,
+        };
+        if self.scene.tiles.is_empty() {
+            return Ok(None);
+        }
+        let strokes = matches!(options.strokes, Strokes::Auto | Strokes::Outline);
+        let chosen = options.selection.resolve(&self.source);
+        let tiling = Tiling::new(map, visible, strokes, chosen, options.selection.is_everything());
+        self.tiled(tiling).map(Some)
+    }
+
+    fn warp_resolved(&self, map: &dyn Map, options: &WarpOptions, mut out: Warped) -> Result<Warped, Error> {
+        let identity = unmoved(map, options);
         let meant = self.chosen(options);
         let mut options = options.clone();
         if options.refit.merge && !identity {
@@ -152,10 +190,17 @@ impl Document {
         let options = &options;
         let parts = &self.scene.parts;
         let slots = self.place_slots(map, &meant, &options.selection);
+        let shaded = |p: &usvg::Paint| usize::from(Shading::of(p).is_some());
+        let on = |p: &Part| {
+            p.fill.as_ref().map_or(0, |f| shaded(f.paint())) + p.stroke.as_ref().map_or(0, |s| shaded(s.paint()))
+        };
+        let exact = matches!(options.gradients, Gradients::Exact(_));
+        let among = if exact { parts.iter().map(on).sum() } else { 0 };
         let pieces = self.pieces(options);
         let one = |((p, meant), pieces): ((&Part, &bool), &Vec<Piece>)| {
             let write = written(&self.scene, &slots, p.slot, p.frame);
-            (*meant && !identity && usable(p.frame) && usable(write)).then(|| warp_part(p, write, map, options, pieces))
+            (*meant && !identity && usable(p.frame) && usable(write))
+                .then(|| warp_part(p, write, map, options, pieces, (self.scene.to_px, among)))
         };
         /// Below so many segments the work is done before another thread has woken up.
         const WORTH_IT: usize = 100;
@@ -173,15 +218,16 @@ impl Document {
                 None => Outcome::Kept,
                 Some(Ok(done)) => {
                     let owner = parts[i].owner.or(parts[i].source);
-                    out.report(
-                        self.shapes()[i].id.clone(),
-                        &done,
-                        options.copies.len().max(1),
-                        owner.is_some() && owner == last,
-                    );
+                    let id = &self.shapes()[i].id;
+                    if let Some(why) = &done.unpainted {
+                        out.warnings.push(format!("a gradient of {id} only follows the best affine fit: {why}"));
+                    }
+                    out.report(id.clone(), &done, options.copies.len().max(1), owner.is_some() && owner == last);
                     last = owner;
                     Outcome::Warped(Box::new(done))
                 }
+                // Tiles reach beyond their shape, perhaps to where the map does not; the pattern follows as a whole then.
+                Some(Err(_)) if parts[i].in_tile => Outcome::Kept,
                 Some(Err(e)) => {
                     let id = &self.shapes()[i].id;
                     let e = e.on_shape(id);
@@ -224,6 +270,9 @@ impl Document {
     fn write(&self, job: &write::Job<'_>, out: &mut Warped) -> Result<(), Error> {
         let structure = job.options.structure;
         let mut notes = Notes::default();
+        for (what, whom) in &self.scene.notes {
+            notes.add(what, whom);
+        }
         let kept = match (structure, &self.scene.unkeepable) {
             (Structure::Flatten, _) => None,
             (_, Some(why)) => Some(Err(why.clone())),
@@ -291,6 +340,7 @@ impl Warped {
     fn report(&mut self, id: String, done: &Done, copies: usize, same_as_last: bool) {
         let r = &done.report;
         let error = r.max_error + done.rounding;
+        let pictures = usize::from(done.fill_image.is_some()) + usize::from(done.stroke_image.is_some());
         match self.shapes.last_mut() {
             Some(last) if same_as_last => {
                 last.segments_in += r.segments_in;
@@ -298,6 +348,8 @@ impl Warped {
                 last.max_error = last.max_error.max(error);
                 last.assurance = last.assurance.min(r.assurance);
                 last.over_budget.extend(&r.over_budget);
+                last.pictures += pictures;
+                last.paint_residual = [last.paint_residual, done.residual].into_iter().flatten().reduce(f64::max);
             }
             _ => self.shapes.push(ShapeReport {
                 id,
@@ -307,9 +359,16 @@ impl Warped {
                 max_error: error,
                 assurance: r.assurance,
                 over_budget: r.over_budget.clone(),
+                paint_residual: done.residual,
+                pictures,
             }),
         }
     }
+}
+
+/// Whether everything stays where it is.
+fn unmoved(map: &dyn Map, options: &WarpOptions) -> bool {
+    map.class() == Class::Affine(Affine::IDENTITY) && options.copies.is_empty() && options.letters.places.is_empty()
 }
 
 /// A slot under the map.
@@ -348,6 +407,7 @@ fn warp_part(
     map: &dyn Map,
     options: &WarpOptions,
     pieces: &[Piece],
+    (to_px, among): (Affine, usize),
 ) -> Result<Done, GeometryError> {
     let whole = p.outline();
     // Letters that are placed go on from there; everything else goes through the map.
@@ -373,13 +433,17 @@ fn warp_part(
         decimals,
         stroke: StrokeDone::Scaled(1.0),
         fit: None,
+        fill_image: None,
+        stroke_image: None,
+        unpainted: None,
+        residual: None,
         report: warped.report,
         rounding,
     };
     let painted_by_server = |p: &usvg::Paint| !matches!(p, usvg::Paint::Color(_));
     let served = p.fill.as_ref().is_some_and(|f| painted_by_server(f.paint()))
         || p.stroke.as_ref().is_some_and(|s| painted_by_server(s.paint()));
-    if served && options.gradients == Gradients::Fit {
+    if served {
         let result = done.path.bounding_box();
         let fit = |b| match pieces {
             // A gradient follows a letter that has a path of its own.
@@ -401,7 +465,13 @@ fn warp_part(
             *(if stroked { done.fill.insert(BezPath::new()) } else { &mut done.path }) = local(area.path, back);
         }
     }
-    if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
+    // A gradient on a stroke can only be a picture where the stroke is an outline.
+    let outlines = matches!(options.strokes, Strokes::Auto | Strokes::Outline) && !p.fixed_width;
+    let stroke_shading = p.stroke.as_ref().filter(|_| outlines);
+    let stroke_shading = stroke_shading.and_then(|s| exact(p, s.paint(), write, map, &done, options));
+    if p.in_tile && p.stroke.is_some() {
+        done.stroke = StrokeDone::Outlined(done.path.clone());
+    } else if let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) {
         let width = || {
             if pieces.is_empty() {
                 return stroke::width(&outline, p.frame, write, map, s);
@@ -419,7 +489,7 @@ fn warp_part(
             Strokes::Keep => {}
             Strokes::Scale => done.stroke = StrokeDone::Scaled(width().map_or(1.0, |w| w.scale)),
             Strokes::Outline => done.stroke = StrokeDone::Outlined(outlined()?),
-            Strokes::Auto => match width() {
+            Strokes::Auto => match width().filter(|_| p.stroke_tiles.is_none() && stroke_shading.is_none()) {
                 Some(w) if w.error <= WIDTH_ERROR => done.stroke = StrokeDone::Scaled(w.scale),
                 w => {
                     // An outline may reach where the map does not; one width then is better than none.
@@ -431,6 +501,29 @@ fn warp_part(
             },
         }
     }
+    let fill_shading = p.fill.as_ref().and_then(|f| exact(p, f.paint(), write, map, &done, options));
+    if let Gradients::Exact(painter) = &options.gradients {
+        let mut paint = |shading: Shading, target: &BezPath| {
+            let request = GradientRequest {
+                color: &|q| shading.color(q),
+                area: reached(p),
+                placed: p.frame,
+                map,
+                after: back,
+                target: target.bounding_box(),
+                to_px,
+                among,
+            };
+            painter.paint(&request).map_err(|why| done.unpainted = Some(why)).ok()
+        };
+        let fill = fill_shading.and_then(|s| paint(s, &done.path));
+        let stroke = match (stroke_shading, &done.stroke) {
+            (Some(s), StrokeDone::Outlined(o)) => paint(s, o),
+            _ => None,
+        };
+        (done.fill_image, done.stroke_image) = (fill, stroke);
+    }
+    done.residual = done.fit.filter(|_| follows(p, &done, options)).map(|f| f.miss * stretch(write));
     Ok(done)
 }
 
@@ -464,6 +557,45 @@ fn filled_area(p: &Part, outline: &Outline, map: &dyn Map, tolerance: f64) -> Op
     };
     let encloses = |s: &&Subpath| !open(s) || !matches!(s.segs.as_slice(), [] | [Seg::Line(_)]);
     Some(Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() })
+}
+
+/// Whether a paint of a part follows the affine fit.
+fn follows(p: &Part, done: &Done, options: &WarpOptions) -> bool {
+    let follows = |paint: &usvg::Paint, picture: bool, tiles: bool| match paint {
+        usvg::Paint::Color(_) => false,
+        usvg::Paint::Pattern(_) => options.patterns != Patterns::Keep && !tiles,
+        usvg::Paint::LinearGradient(_) | usvg::Paint::RadialGradient(_) => {
+            options.gradients != Gradients::Keep && !picture
+        }
+    };
+    let fill = p.fill.as_ref().map(|f| follows(f.paint(), done.fill_image.is_some(), p.fill_tiles.is_some()));
+    let stroke = p.stroke.as_ref().map(|s| follows(s.paint(), done.stroke_image.is_some(), p.stroke_tiles.is_some()));
+    fill.unwrap_or(false) || stroke.unwrap_or(false)
+}
+
+/// The gradient of a part that has to become a picture to look right.
+fn exact(
+    p: &Part,
+    paint: &usvg::Paint,
+    write: Affine,
+    map: &dyn Map,
+    done: &Done,
+    options: &WarpOptions,
+) -> Option<Shading> {
+    // Over copies a gradient runs as over one shape, which the map knows nothing of; in tiles it is too small to tell.
+    let repeated = options.copies.len() > 1 || !options.letters.places.is_empty();
+    if !matches!(options.gradients, Gradients::Exact(_)) || repeated || p.in_tile || !p.painted() {
+        return None;
+    }
+    let shading = Shading::of(paint)?;
+    let shows = done.fit.is_none_or(|f| shading.shows(reached(p), p.frame, write.inverse(), map, &f));
+    shows.then_some(shading)
+}
+
+/// What a part paints, in its own user space.
+fn reached(p: &Part) -> Rect {
+    let reach = p.stroke.as_ref().map_or(0.0, |s| 0.5 * f64::from(s.width().get()));
+    p.local.bounding_box().unwrap_or_default().inflate(reach, reach)
 }
 
 fn outline_stroke(

@@ -6,15 +6,18 @@
 use crate::document::Document;
 use crate::image::{BentImage, Picture};
 use crate::number::{escape, matrix, outline_data, path_data, short};
-use crate::options::WarpOptions;
+use crate::options::{Gradients, Patterns, WarpOptions};
+use crate::paint::Fit;
 use crate::scene::{Group, Node, Part};
 use crate::source::{ElementId, Source};
 use crate::warp::{Done, Notes, Outcome, Placed, Skipped, StrokeDone};
 use pathwarp::kurbo::{Affine, Rect, Shape as _};
 use pathwarp::map::Map;
+use std::borrow::Cow;
 use std::cell::RefCell;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
+use std::ops::Range;
 use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRendering};
 
 /// Everything a writer needs to know.
@@ -50,6 +53,8 @@ pub(crate) struct Writer<'a> {
     pub(crate) mask_ids: Vec<Option<String>>,
     pub(crate) servers: HashMap<(usize, [u64; 6]), String>,
     pub(crate) filters: HashMap<usize, String>,
+    /// The place of the source's element that is being replaced, and the elements in it whose ids have been written.
+    pub(crate) replaced: Option<(Range<usize>, BTreeSet<ElementId>)>,
     /// Which properties the source speaks of at all.
     mentioned: RefCell<HashMap<&'static str, bool>>,
     pub(crate) skipped: &'a mut Vec<Skipped>,
@@ -72,6 +77,7 @@ impl<'a> Writer<'a> {
             mask_ids: vec![None; scene.masks.len()],
             servers: HashMap::new(),
             filters: HashMap::new(),
+            replaced: None,
             mentioned: RefCell::default(),
             skipped,
             notes,
@@ -129,17 +135,22 @@ impl<'a> Writer<'a> {
             Node::Part(i) => self.part(*i),
             Node::Image(i) => self.image(*i),
             Node::Text { element, content, .. } => {
-                let id = element.filter(|_| !self.in_source).map_or(String::new(), |e| self.id_attribute(e));
+                let id = element.map_or(String::new(), |e| self.id_attribute(e));
                 let inner = self.group(content, "");
                 if id.is_empty() { inner } else { format!("<{0}{id}>{inner}</{0}>", self.tag("g")) }
             }
         }
     }
 
-    /// The source's id, for a file that is written anew.
-    fn id_attribute(&mut self, e: ElementId) -> String {
-        let Some(id) = self.job.document.source.attr(e, "id").filter(|i| !i.is_empty()) else { return String::new() };
-        if self.taken.insert(id.to_string()) { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
+    /// The source's id, for what takes the element's place.
+    pub(crate) fn id_attribute(&mut self, e: ElementId) -> String {
+        let source = &self.job.document.source;
+        let Some(id) = source.attr(e, "id").filter(|i| !i.is_empty()) else { return String::new() };
+        let free = match &mut self.replaced {
+            Some((range, named)) => range.contains(&source.elements[e].range.start) && named.insert(e),
+            None => !self.in_source && self.taken.insert(id.to_string()),
+        };
+        if free { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
     }
 
     /// A group; `extra` attributes make it stay even where it does nothing.
@@ -151,17 +162,20 @@ impl<'a> Writer<'a> {
     pub(crate) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
         let head = self.head(g, extra);
         let inner = self.nodes(&g.children);
-        self.wrapped(&head, &format!("{lead}{inner}"))
+        self.wrapped(g, &head, &format!("{lead}{inner}"))
     }
 
     /// What a group does, around content that is written already.
     pub(crate) fn group_around(&mut self, g: &Group, content: &str) -> String {
         let head = self.head(g, "");
-        self.wrapped(&head, content)
+        self.wrapped(g, &head, content)
     }
 
-    fn wrapped(&self, head: &str, content: &str) -> String {
-        if head.is_empty() { content.to_owned() } else { format!("<{0}{head}>{content}</{0}>", self.tag("g")) }
+    fn wrapped(&self, g: &Group, head: &str, content: &str) -> String {
+        if head.is_empty() {
+            return content.to_owned();
+        }
+        format!("<{0}{head}>{content}</{0}>", self.tag(if self.link_of(g).is_empty() { "g" } else { "a" }))
     }
 
     /// A group's attributes.
@@ -188,7 +202,7 @@ impl<'a> Writer<'a> {
         if g.isolate {
             properties.push(("isolation", "isolate".into()));
         }
-        let own = if self.in_source { String::new() } else { g.source.map_or(String::new(), |e| self.id_attribute(e)) };
+        let own = g.source.map_or(String::new(), |e| self.id_attribute(e));
         let mut head = format!("{own}{extra}");
         let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene.slots[s].before)) {
             Some((fit, true)) => fit * g.transform,
@@ -199,7 +213,15 @@ impl<'a> Writer<'a> {
             let _ = write!(head, " transform=\"{}\"", matrix(transform));
         }
         head.push_str(&self.attributes(&properties));
+        head.push_str(&self.link_of(g));
         head
+    }
+
+    /// Where a group leads to that was a link, for a file that is written anew.
+    fn link_of(&self, g: &Group) -> String {
+        let source = &self.job.document.source;
+        let link = g.source.filter(|&e| !self.in_source && source.elements[e].tag == "a").and_then(|e| source.link(e));
+        link.map_or(String::new(), |to| format!(" {}=\"{}\"", self.link(), escape(&to)))
     }
 
     pub(crate) fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
@@ -212,7 +234,11 @@ impl<'a> Writer<'a> {
         let p = &job.document.scene.parts[i];
         let done = job.outcomes[i].done();
         let d = part_data(p, done, &job.document.source);
-        let id = if self.in_source { String::new() } else { p.source.map_or(String::new(), |e| self.id_attribute(e)) };
+        let id = p.source.map_or(String::new(), |e| self.id_attribute(e));
+        if let Some(done) = done.filter(|_| self.pieced(i)) {
+            let both = self.pieces(i, done, &d);
+            return if id.is_empty() { both } else { format!("<{0}{id}>{both}</{0}>", self.tag("g")) };
+        }
         let mut properties = self.properties(i);
         let outlined = match (done.map(|d| &d.stroke), &p.stroke) {
             (Some(StrokeDone::Outlined(o)), Some(s)) => Some((o, s)),
@@ -223,16 +249,7 @@ impl<'a> Writer<'a> {
             return self.path(&d, &id, &properties);
         };
         let (top, over) = match outlined {
-            Some((outline, stroke)) => {
-                let mut over = self.shared(p);
-                let paint = self.paint(stroke.paint(), p, Some(done));
-                over.push(("fill", paint));
-                over.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
-                over.push(("fill-rule", "nonzero".into()));
-                over.push(("stroke", "none".into()));
-                over.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || self.may_inherit(n));
-                (path_data(outline, done.decimals), over)
-            }
+            Some((outline, stroke)) => (path_data(outline, done.decimals), self.outlined(p, stroke, done)),
             None => {
                 let mut over = properties.clone();
                 over.retain(|p| !p.0.starts_with("fill"));
@@ -250,6 +267,18 @@ impl<'a> Writer<'a> {
         let both =
             if p.paint_order == PaintOrder::StrokeAndFill { format!("{top}{base}") } else { format!("{base}{top}") };
         if id.is_empty() { both } else { format!("<{0}{id}>{both}</{0}>", self.tag("g")) }
+    }
+
+    /// The presentation of a stroke's outline.
+    pub(crate) fn outlined(&mut self, p: &Part, stroke: &usvg::Stroke, done: &Done) -> Properties {
+        let mut over = self.shared(p);
+        let paint = self.paint(stroke.paint(), p, Some(done));
+        over.push(("fill", paint));
+        over.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
+        over.push(("fill-rule", "nonzero".into()));
+        over.push(("stroke", "none".into()));
+        over.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || self.may_inherit(n));
+        over
     }
 
     /// What fill and stroke outline have in common.
@@ -277,11 +306,16 @@ impl<'a> Writer<'a> {
 
     /// The presentation of a part, resolved.
     pub(crate) fn properties(&mut self, i: usize) -> Properties {
+        self.properties_of(i, true, true)
+    }
+
+    /// The presentation of a part's fill, its stroke, or both.
+    pub(crate) fn properties_of(&mut self, i: usize, fill: bool, stroke: bool) -> Properties {
         let job = self.job;
         let p = &job.document.scene.parts[i];
         let done = job.outcomes[i].done();
         let mut all = self.shared(p);
-        match &p.fill {
+        match p.fill.as_ref().filter(|_| fill) {
             None => all.push(("fill", "none".into())),
             Some(f) => {
                 let paint = self.paint(f.paint(), p, done);
@@ -290,7 +324,7 @@ impl<'a> Writer<'a> {
                 all.push(("fill-rule", if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" }.into()));
             }
         }
-        match &p.stroke {
+        match p.stroke.as_ref().filter(|_| stroke) {
             None => all.push(("stroke", "none".into())),
             Some(s) => {
                 let paint = self.paint(s.paint(), p, done);
@@ -316,6 +350,9 @@ impl<'a> Writer<'a> {
                 all.push(("stroke-dashoffset", short(f64::from(s.dashoffset()) * scale)));
             }
         }
+        if p.fixed_width && stroke && p.stroke.is_some() {
+            all.push(("vector-effect", "non-scaling-stroke".into()));
+        }
         let order = match p.paint_order {
             PaintOrder::FillAndStroke => "normal",
             PaintOrder::StrokeAndFill => "stroke",
@@ -338,10 +375,20 @@ impl<'a> Writer<'a> {
         all
     }
 
+    /// How a paint server follows the map, unless it stays.
+    pub(crate) fn fit(&self, paint: &Paint, p: &Part, done: Option<&Done>) -> Option<Fit> {
+        let follows = match paint {
+            Paint::Color(_) => false,
+            Paint::Pattern(_) => self.job.options.patterns != Patterns::Keep,
+            Paint::LinearGradient(_) | Paint::RadialGradient(_) => self.job.options.gradients != Gradients::Keep,
+        };
+        let fit = done.and_then(|d| d.fit).filter(|_| follows);
+        fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)))
+    }
+
     /// A paint as CSS says it.
     pub(crate) fn paint(&mut self, paint: &Paint, p: &Part, done: Option<&Done>) -> String {
-        let fit = done.and_then(|d| d.fit).filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)));
-        let fit = fit.map_or(Affine::IDENTITY, |f| f.affine);
+        let fit = self.fit(paint, p, done).map_or(Affine::IDENTITY, |f| f.affine);
         match paint {
             Paint::Color(c) => format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue),
             Paint::LinearGradient(g) => {
@@ -372,6 +419,14 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// A bent bitmap as an element.
+    pub(crate) fn bent(&self, bent: &BentImage, to: Affine) -> String {
+        let mut all = bent_attributes(bent, to).to_vec();
+        all.push((self.link(), data_uri(bent)));
+        let all: String = all.iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
+        format!("<{}{all}/>", self.tag("image"))
+    }
+
     fn image(&mut self, i: usize) -> String {
         let bitmap = &self.job.document.scene.bitmaps[i];
         let image = &bitmap.image;
@@ -386,10 +441,7 @@ impl<'a> Writer<'a> {
             }
             Picture::Bent(bent) => {
                 // Back into the group's own coordinates, the bitmap's pixels: the placing has no turn in it.
-                let mut all = bent_attributes(bent, bitmap.placing.inverse()).to_vec();
-                all.push((self.link(), data_uri(bent)));
-                let all: String = all.iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
-                return format!("<{}{all}/>", self.tag("image"));
+                return self.bent(bent, bitmap.placing.inverse());
             }
         }
         let (kind, data) = match image.kind() {
@@ -488,10 +540,15 @@ fn base64(data: &[u8]) -> String {
 pub(crate) fn flat(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes) -> String {
     let source = &job.document.source;
     let mut w = Writer::new(*job, false, skipped, notes);
+    if source.animated {
+        w.notes.add("animations are dropped where the file is written anew", "");
+    }
     let mut out =
         String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"");
+    let page = job.page().unwrap_or_default();
     for name in ["id", "class", "width", "height", "viewBox", "preserveAspectRatio"] {
-        if let Some(v) = source.attr(0, name) {
+        let new = page.iter().find(|p| p.0 == name).map(|p| Cow::Borrowed(p.1.as_str()));
+        if let Some(v) = new.or_else(|| source.attr(0, name)) {
             let _ = write!(out, " {name}=\"{}\"", escape(&v));
             if name == "id" {
                 w.taken.insert(v.into_owned());

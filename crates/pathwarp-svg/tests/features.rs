@@ -109,6 +109,11 @@ const FEATURES: &[(&str, &str)] = &[
          height='40' fill='blue'/></g><circle cx='70' cy='70' r='15' style='filter:drop-shadow(4px 4px 2px red)'/>",
     ),
     (
+        "a filter that shows what is drawn as well",
+        "<filter id='f' x='0' y='0' width='1' height='1'><feImage xlink:href='#s'/></filter><rect x='10' y='10' width='80' \
+         height='80' fill='red' filter='url(#f)'/><path id='s' d='M30 20h40l10 50z' fill='green' opacity='.5'/>",
+    ),
+    (
         "markers",
         "<marker id='m' markerWidth='4' markerHeight='4' refX='2' refY='2' orient='auto'><path d='M0 0L4 2L0 4z' \
          fill='red'/></marker><path id='p' d='M20 80L50 30L80 70' fill='none' stroke='black' stroke-width='4' \
@@ -119,6 +124,11 @@ const FEATURES: &[(&str, &str)] = &[
         "<text id='t' x='10' y='40' font-size='30' fill='navy' font-family='No Such Font, sans-serif'>Cat <tspan \
          fill='red' dy='20'>b&amp;c</tspan></text><g transform='rotate(-20)'><text x='5' y='90' font-size='20' stroke='red' \
          fill='none'>edge</text></g>",
+    ),
+    (
+        "text along a path",
+        "<path id='p' d='M10 70Q50 10 90 70' fill='none'/><text font-size='18' fill='darkred'><textPath href='#p'>along \
+         it</textPath></text>",
     ),
     (
         "type selectors",

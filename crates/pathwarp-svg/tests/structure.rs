@@ -149,3 +149,17 @@ fn the_caps_of_dots_follow_the_map() {
         common::check(cap, &svg, oblique(), &warp_options());
     }
 }
+
+#[test]
+fn names_inside_clip_paths_and_masks_stay() {
+    let body = "<mask id='m' maskContentUnits='objectBoundingBox'><g id='g'><rect id='r' width='.5' height='1' \
+                fill='white'/></g><circle id='c' cx='.7' cy='.5' r='.2' fill='white' stroke='gray' stroke-width='.1' \
+                opacity='.5'/></mask><clipPath id='k' clipPathUnits='objectBoundingBox'><path id='p' d='M0 0h1L.5 \
+                1z'/></clipPath><rect width='80' height='60' mask='url(#m)'/><rect y='50' width='80' height='40' fill='red' \
+                mask='url(#m)' clip-path='url(#k)'/>";
+    let w = common::check("names", &drawing(body), oblique(), &warp_options());
+    for id in ["m", "r", "c", "k", "p"] {
+        let found = w.svg.matches(&format!(" id='{id}'")).count() + w.svg.matches(&format!(" id=\"{id}\"")).count();
+        assert_eq!(found, 1, "{id}: {}", w.svg);
+    }
+}

@@ -223,6 +223,8 @@ impl Done {
             folds: if folded_at.is_some() { turned.changes.max(1) } else { 0 },
             folded_at: folded_at.map(|p| [p.x, p.y]),
             over_budget: self.over_budget.iter().map(|p| [p.x, p.y]).collect(),
+            paint_residual: None,
+            pictures: 0,
         }
     }
 }

@@ -23,6 +23,7 @@ mod pyramid;
 mod reach;
 mod rows;
 mod sample;
+mod shade;
 mod trace;
 
 use crate::{Error, render::new_pixmap};
@@ -37,6 +38,7 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 use trace::{ASKED, Basis, Trace};
 
 pub use reach::{Extent, extent};
+pub use shade::{Shade, shade};
 
 /// Pixels along the side of a tile: its part of the source stays in the cache.
 const TILE: usize = 32;

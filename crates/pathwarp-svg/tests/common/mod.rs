@@ -1,11 +1,12 @@
 //! What the tests share: maps that look nonlinear and are not, drawings as text, and pictures to compare.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
-use pathwarp::kurbo::Affine;
+use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Formula, Real};
 use pathwarp::refit;
 use pathwarp_svg::{Document, ReadOptions, WarpOptions, Warped, parse_tree};
 use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::Tree;
 
 /// An affine map that does not say it is one, and so takes the way of any smooth map.
 pub struct Hidden(pub Affine);
@@ -56,13 +57,18 @@ pub fn warp(svg: &str, map: Affine) -> Warped {
     read(svg).warp(&Hidden(map), &warp_options()).unwrap()
 }
 
+pub fn rendered(tree: &Tree, size: u32, t: Affine) -> Pixmap {
+    let mut out = Pixmap::new(size, size).unwrap();
+    let [a, b, c, d, e, f] = t.as_coeffs().map(|v| v as f32);
+    resvg::render(tree, Transform::from_row(a, b, c, d, e, f), &mut out.as_mut());
+    out
+}
+
 /// Drawn four times as large and averaged: the renderer's own edges come in four shades only, and an edge that lies on the
 /// border of two flips between them at a hair's breadth (the renderer's arcs are good to a tenth of a unit).
-fn picture(tree: &usvg::Tree, size: u32, t: Affine) -> Pixmap {
+fn picture(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     const OVER: u32 = 4;
-    let mut large = Pixmap::new(size * OVER, size * OVER).unwrap();
-    let [a, b, c, d, e, f] = (Affine::scale(f64::from(OVER)) * t).as_coeffs().map(|v| v as f32);
-    resvg::render(tree, Transform::from_row(a, b, c, d, e, f), &mut large.as_mut());
+    let large = rendered(tree, size * OVER, Affine::scale(f64::from(OVER)) * t);
     let mut out = Pixmap::new(size, size).unwrap();
     let (n, wide) = (size as usize, (size * OVER) as usize);
     for (i, v) in out.data_mut().iter_mut().enumerate() {
@@ -99,4 +105,87 @@ pub fn check(what: &str, svg: &str, map: Affine, options: &WarpOptions) -> Warpe
     let share = difference(&expected, &found);
     assert!(share <= 0.001, "{what}: {:.3} % of pixels differ\n{}", share * 100.0, warped.svg);
     warped
+}
+
+/// Pixels per unit of an original that is bent pixel by pixel.
+pub const FINE: u32 = 16;
+
+/// A drawing under [`Bend`] beside its own rendering bent pixel by pixel.
+#[derive(Debug, Clone, Copy)]
+pub struct Gap {
+    /// The mean difference of channels, of 255, over all pixels that show anything.
+    pub mean: f64,
+    /// The share of those pixels that differ by more than 16 of 255.
+    pub share: f64,
+}
+
+/// Warps `svg` by [`Bend`], and how far the result is from the original bent pixel by pixel.
+pub fn curved(svg: &str, options: &WarpOptions) -> (Warped, Gap) {
+    let warped = read(svg).warp(&Bend, options).unwrap();
+    let gap = gap(svg, &warped.svg);
+    (warped, gap)
+}
+
+/// Compares a drawing warped by [`Bend`] with the original's rendering, read at four times the resolution where the inverse map
+/// says. The inverse is a fixed-point iteration of its own, which contracts by 0.2 · 0.32. (The renderer makes a pattern's tile
+/// a whole number of pixels and so moves the tiles apart; here, tiles must be whole at [`FINE`] pixels per unit.)
+pub fn gap(svg: &str, warped: &str) -> Gap {
+    /// Pixels per unit of the comparison.
+    const SCALE: u32 = 4;
+    /// What is shown: from here, so many units.
+    const FROM: f64 = -20.0;
+    const SIDE: u32 = 140;
+    let document = read(svg);
+    let window = |scale: u32| Affine::scale(f64::from(scale)) * Affine::translate((-FROM, -FROM));
+    let px = document.user_to_px();
+    let original = rendered(document.tree(), SIDE * FINE, window(FINE) * px.inverse());
+    let tree = parse_tree(warped.as_bytes(), "warped", &options()).unwrap();
+    let found = picture(&tree, SIDE * SCALE, window(SCALE) * px.inverse());
+    let wide = (SIDE * FINE) as usize;
+    let data = original.data();
+    let at = |p: Point, k: usize| {
+        let q = window(FINE) * p - Vec2::new(0.5, 0.5);
+        let (i, j) = (q.x.floor().clamp(0.0, wide as f64 - 2.0), q.y.floor().clamp(0.0, wide as f64 - 2.0));
+        let (u, v) = ((q.x - i).clamp(0.0, 1.0), (q.y - j).clamp(0.0, 1.0));
+        let read = |di: usize, dj: usize| f64::from(data[((j as usize + dj) * wide + i as usize + di) * 4 + k]);
+        let row = |dj: usize| read(0, dj) * (1.0 - u) + read(1, dj) * u;
+        row(0) * (1.0 - v) + row(1) * v
+    };
+    const OVER: u32 = 4;
+    let (mut sum, mut off, mut count) = (0.0, 0, 0);
+    for n in 0..(SIDE * SCALE).pow(2) {
+        let (i, j) = (n % (SIDE * SCALE), n / (SIDE * SCALE));
+        let mut wanted = [0.0; 4];
+        for k in 0..OVER * OVER {
+            let sub = |c: u32, k: u32| f64::from(c) + (f64::from(k) + 0.5) / f64::from(OVER);
+            let to = window(SCALE).inverse() * Point::new(sub(i, k % OVER), sub(j, k / OVER));
+            let mut p = to;
+            for _ in 0..12 {
+                p = Point::new(to.x - (p.y / 30.0).sin() * 6.0, to.y - (p.x / 25.0).sin() * 8.0);
+            }
+            for (c, w) in wanted.iter_mut().enumerate() {
+                *w += at(p, c) / f64::from(OVER * OVER);
+            }
+        }
+        let found = &found.data()[n as usize * 4..][..4];
+        let differences: Vec<f64> = wanted.iter().zip(found).map(|(w, f)| (w - f64::from(*f)).abs()).collect();
+        if wanted[3] > 0.0 || found[3] > 0 {
+            sum += differences.iter().sum::<f64>() / 4.0;
+            off += u32::from(differences.iter().any(|d| *d > 16.0));
+            count += 1;
+        }
+    }
+    assert!(count > 1000, "nothing to compare");
+    Gap { mean: sum / f64::from(count), share: f64::from(off) / f64::from(count) }
+}
+
+/// Two drawings look the same.
+pub fn same(what: &str, a: &str, b: &str) {
+    const SIZE: u32 = 300;
+    let pictures = [a, b].map(|svg| {
+        let tree = parse_tree(svg.as_bytes(), what, &options()).unwrap();
+        picture(&tree, SIZE, Affine::scale(f64::from(SIZE) / f64::from(tree.size().width())))
+    });
+    let share = difference(&pictures[0], &pictures[1]);
+    assert!(share <= 0.001, "{what}: {:.3} % of pixels differ\n{a}", share * 100.0);
 }

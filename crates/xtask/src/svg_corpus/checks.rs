@@ -6,7 +6,7 @@ use pathwarp::map::{Class, Jet, Map};
 use pathwarp::refit;
 use pathwarp_cli::Bender;
 use pathwarp_raster::{Pixmap, compare};
-use pathwarp_svg::{Document, Images, ReadOptions, Structure, WarpOptions, Warped};
+use pathwarp_svg::{Document, Gradients, Images, ReadOptions, Structure, WarpOptions, Warped};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -257,9 +257,11 @@ impl Case<'_> {
     }
 }
 
-/// With bitmaps bent, as the program does it.
+/// With bitmaps and gradients bent, as the program does it.
 fn bending(map: &Arc<dyn Map>, mut options: WarpOptions) -> WarpOptions {
-    options.images = Images::Warp(Arc::new(Bender::new(Arc::clone(map), None)));
+    let bender = Arc::new(Bender::new(Arc::clone(map), None));
+    options.gradients = Gradients::Exact(bender.clone());
+    options.images = Images::Warp(bender);
     options
 }
 

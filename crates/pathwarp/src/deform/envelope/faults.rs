@@ -6,6 +6,8 @@ use kurbo::{Affine, Line, Point};
 
 /// Chords of a side.
 const CHORDS: u32 = 400;
+/// How far outside a chord, in its lengths, still counts as its end.
+const ROUNDING: f64 = 1e-9;
 /// Places along an axis at which the map's determinant is looked at.
 const GRID: u32 = 64;
 
@@ -29,9 +31,7 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
     let mut out = Vec::new();
     for i in 0..4 {
         for j in i..4 {
-            let meets = |p: Point| {
-                i != j && sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size)
-            };
+            let meets = |p: Point| sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size);
             let pairs = chords[i].iter().enumerate().flat_map(|(k, a)| {
                 // A side against itself: each pair once, neighbours never.
                 let from = if i == j { k + 2 } else { 0 };
@@ -54,7 +54,7 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
     out
 }
 
-/// Where two chords cross inside both.
+/// Where two chords cross or touch, their ends included: sides may well cross in the joint of two chords.
 fn crossing(a: &Line, b: &Line) -> Option<Point> {
     let (v, w, d) = (a.p1 - a.p0, b.p1 - b.p0, b.p0 - a.p0);
     let det = v.cross(w);
@@ -63,7 +63,7 @@ fn crossing(a: &Line, b: &Line) -> Option<Point> {
         return None;
     }
     let (t, u) = (d.cross(w) / det, d.cross(v) / det);
-    let inside = |t: f64| t > 0.0 && t < 1.0;
+    let inside = |t: f64| (-ROUNDING..=1.0 + ROUNDING).contains(&t);
     (inside(t) && inside(u)).then(|| a.p0 + v * t)
 }
 

@@ -338,6 +338,11 @@ fn crossings_and_folds_are_named() {
         &[("bottom", "0,100 100,20"), ("top", "0,50 100,60")],
         &["the bottom and the top side cross near 55.5", "folds over"],
     );
+    // They cross in the middle of both, where chords meet.
+    warned(
+        &[("bottom", "0,100 100,0"), ("top", "0,0 100,100")],
+        &["the bottom and the top side cross near 50,50", "folds over"],
+    );
     // The bottom doubles back without crossing anything.
     let hook = [("bottom", "0,100 80,90 20,60 100,40"), ("top", "0,0 100,0")];
     warned(&hook, &["folds over near", "nearest to the bottom side"]);

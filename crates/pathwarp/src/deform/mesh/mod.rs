@@ -25,14 +25,16 @@ static INFO: Info = Info {
 they meet. Give it as a path with one line of curves per row of control points (--net: a path of 4 lines with one curve each is one \
 patch, of 7 lines with two curves each four), or as a file (--mesh, JSON or TOML): {\"region\": [x,y,w,h], \"points\": [[[x,y], …], \
 …]}, rows from the top, and optionally \"x\" and \"y\", where patches meet, as shares of the region.\n\n--psd takes the warp of a \
-layer of a Photoshop file: a style with its bend and distortions, sixteen points, or a quilt; it is laid onto the artwork's box.\n\n\
+layer of a Photoshop file: a style with its bend and distortions, sixteen points, or a quilt; it is laid onto the artwork's box. JSON of \
+your own will do: {\"style\": \"warpFlag\", \"value\": 50, \"perspective\": 0, \"perspective_other\": 0, \"vertical\": false} (value \
+and perspectives in percent), or {\"style\": \"warpCustom\", \"mesh\": {\"region\": …, \"points\": …}} with a mesh as above.\n\n\
 --smooth evens out the joints, so that lines cross them without a kink.",
     source: "Tensor product Bézier patches: G. Farin, Curves and Surfaces for CAGD, chapter 15; Adobe Photoshop File Formats \
 Specification, descriptor structure and placed layer data",
     params: &[
         Param::path("net", "A path with 3·rows+1 subpaths of as many cubics as there are columns of patches."),
         Param::new("mesh", Kind::File, "A file of control points (JSON or TOML)."),
-        Param::new("psd", Kind::File, "A Photoshop file with a warped layer."),
+        Param::new("psd", Kind::File, "A Photoshop file with a warped layer, or JSON of such a warp."),
         Param::new("layer", Kind::Text("NAME"), "Which layer of the Photoshop file; needed if several are warped."),
         Param::new(
             "region",
@@ -71,6 +73,9 @@ Specification, descriptor structure and placed layer data",
         Case { args: &[("net", DEMO)], at: (25.0, 0.0), to: (25.0, 5.0), tolerance: 1e-12 },
     ],
 };
+
+/// How far artwork may reach beyond the mesh's box, in shares of it, before that is taken for a mistake.
+const BEYOND: f64 = 0.5;
 
 /// Two patches that rise in the middle: 3/8·(−0 …) is left to the cases.
 const DEMO: &str = "M0,10 C20,10 30,0 50,0 C70,0 80,10 100,10 M0,40 C20,40 35,30 50,33 C65,36 80,40 100,40 \
@@ -136,6 +141,14 @@ fn built(s: &Settings<'_>, mut quilt: Quilt, mut notes: Vec<String>) -> Result<B
         Class::Projective(_) | Class::Smooth => map,
     };
     let mut built = Built { notes, ..Built::new(map) };
+    let (f, beyond) = (s.frame().rect, r.inflate(BEYOND * r.width(), BEYOND * r.height()));
+    if !matches!(built.map.class(), Class::Affine(_)) && f.union(beyond) != beyond {
+        built.warnings.push(format!(
+            "mesh: its box {} {} to {} {} does not hold the artwork, which runs far beyond it, where a mesh says little: --region \
+artwork lays it onto the artwork",
+            r.x0, r.y0, r.x1, r.y1
+        ));
+    }
     if kinks > 0 {
         built.warnings.push(format!(
             "mesh: {kinks} pairs of control points beside joints make kinks (by up to {:.0} % of the slope); --smooth evens them out",

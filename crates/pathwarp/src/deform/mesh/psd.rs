@@ -10,19 +10,30 @@ use serde::Deserialize;
 
 /// What the file holds.
 #[derive(Deserialize)]
-struct Warps {
-    warps: Vec<Warp>,
+#[serde(untagged)]
+enum Warps {
+    All {
+        warps: Vec<Warp>,
+    },
+    /// A file written by hand needs no list.
+    One(Warp),
 }
 
 /// A layer's warp: the fields of its descriptor.
 #[derive(Deserialize)]
 struct Warp {
+    #[serde(default)]
     layer: String,
+    #[serde(alias = "warpStyle")]
     style: String,
     /// Percent.
+    #[serde(default, alias = "warpValue")]
     value: f64,
+    #[serde(default, alias = "warpPerspective")]
     perspective: f64,
+    #[serde(default, alias = "warpPerspectiveOther")]
     perspective_other: f64,
+    #[serde(default)]
     vertical: bool,
     /// Its points, of a custom warp.
     mesh: Option<File>,
@@ -40,12 +51,20 @@ pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
     let Some(file) = s.file_if("psd")? else {
         return Err(Error::Missing { param: "--psd".into(), hint: "a Photoshop file".into() });
     };
-    let parsed: Warps = serde_json::from_str(&file.text)
-        .map_err(|e| Error::input(&file.name, format!("its warps cannot be understood: {e}")))?;
+    let parsed: Warps = serde_json::from_str(&file.text).map_err(|_| {
+        Error::input(
+            &file.name,
+            "is neither a Photoshop file nor JSON of a warp: {\"style\": \"warpArc\", \"value\": 50}",
+        )
+    })?;
+    let warps = match parsed {
+        Warps::All { warps } => warps,
+        Warps::One(warp) => vec![warp],
+    };
     let wrong = |what: String| Error::input(&file.name, what);
     let wanted = s.texts("layer").last().copied();
-    let listed = parsed.warps.iter().map(|w| format!("`{}` ({})", w.layer, w.style)).collect::<Vec<_>>().join(", ");
-    let mut fits = parsed.warps.into_iter().filter(|w| wanted.map_or(w.style != "warpNone", |l| w.layer == l));
+    let listed = warps.iter().map(|w| format!("`{}` ({})", w.layer, w.style)).collect::<Vec<_>>().join(", ");
+    let mut fits = warps.into_iter().filter(|w| wanted.map_or(w.style != "warpNone", |l| w.layer == l));
     let warp = match (fits.next(), fits.next()) {
         (Some(one), None) => one,
         (None, _) if listed.is_empty() => return Err(wrong("has no layer with a warp".into())),
@@ -55,7 +74,7 @@ pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
         }
     };
     if let Some(mesh) = warp.mesh {
-        return Ok(Found::Quilt(Quilt::from_file(&file.name, mesh, region)?, warp.layer));
+        return Ok(Found::Quilt(Quilt::from_file(&file.name, mesh, region)?.on(region), warp.layer));
     }
     let style = style::builtin().into_iter().find(|k| k.is_called(&warp.style)).ok_or_else(|| {
         wrong(format!("layer `{}` has the warp {}, which has no known formula", warp.layer, warp.style))

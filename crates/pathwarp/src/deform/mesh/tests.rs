@@ -125,6 +125,40 @@ fn photoshops_warps_are_the_styles_and_nets() {
     assert!(fault(with("psd", "{ \"warps\": [] }", &[])).contains("no layer"));
 }
 
+/// As people write them by hand: one warp, with the keys of Photoshop's descriptors, and what is zero left away.
+#[test]
+fn warps_written_by_hand() {
+    let flag = with("psd", "{ \"warpStyle\": \"warpFlag\", \"warpValue\": 50 }", &[]).unwrap();
+    // The flag's own formula on this box: y + 2·b·h·(3u(1-u)² - 3u²(1-u)).
+    for p in [(25.0, 30.0), (60.0, 70.0)].map(Point::from) {
+        let u = (p.x - 10.0) / 100.0;
+        let rise = 60.0 * 3.0 * u * (1.0 - u) * (1.0 - 2.0 * u);
+        assert!(flag.map.point(p).distance(p + kurbo::Vec2::new(0.0, rise)) < 1e-10, "{p:?}");
+    }
+    // A mesh on a box of its own is laid onto the artwork.
+    let points: Vec<Vec<(f64, f64)>> =
+        (0..4).map(|j| (0..4).map(|i| (f64::from(i), f64::from(j) + f64::from(i))).collect()).collect();
+    let mesh = format!("{{ \"style\": \"warpCustom\", \"mesh\": {} }}", json(&points, "\"region\": [0,0,3,3],"));
+    let custom = with("psd", &mesh, &[]).unwrap();
+    for p in [(10.0, 20.0), (60.0, 70.0)].map(Point::from) {
+        let to = p + kurbo::Vec2::new(0.0, 60.0 * (p.x - 10.0) / 100.0);
+        assert!(custom.map.point(p).distance(to) < 1e-10, "{p:?}");
+    }
+    let fault = with("psd", "{ \"value\": 3 }", &[]).map(|_| ()).unwrap_err().to_string();
+    assert!(fault.contains("\"style\": \"warpArc\""), "{fault}");
+}
+
+#[test]
+fn a_mesh_far_from_the_artwork_is_told() {
+    let warned = |region: &str, more: &[(&str, &str)]| {
+        let b = with("mesh", &json(&points(), region), more).unwrap();
+        b.warnings.iter().any(|w| w.contains("--region artwork"))
+    };
+    assert!(warned("\"region\": [0,0,1,1],", &[]));
+    assert!(!warned("\"region\": [0,0,1,1],", &[("region", "artwork")]));
+    assert!(!warned("\"region\": [20,30,100,60],", &[]));
+}
+
 #[test]
 fn faults_are_named() {
     let p = points();

@@ -145,7 +145,7 @@ impl Deformation for Warp {
         let wrong = |what: String| Error::usage("style", s.texts("style").join(" "), what);
         let net = style.net(rect.width(), rect.height(), &bent).map_err(wrong)?;
         let keep = s.choice("keep")?;
-        let mut built = if keep == "nothing" { over(rect, &net)? } else { kept(s, keep, &net, &bent)? };
+        let mut built = if keep == "nothing" { over(rect, &net)? } else { kept(s, &style, keep, &net, &bent)? };
         built.notes.push(format!(
             "style {}: bend {}%, {}{}",
             style.name,
@@ -159,21 +159,39 @@ impl Deformation for Warp {
 
 /// The sides of the style's net, and the map between them that keeps lines of one kind; where there is none, the styles that
 /// have one are named.
-fn kept(s: &Settings<'_>, keep: &str, net: &Net, bent: &Bent) -> Result<Built, Error> {
+fn kept(s: &Settings<'_>, style: &Style, keep: &str, net: &Net, bent: &Bent) -> Result<Built, Error> {
     let frame = s.frame().rect;
     let ring = |net: &Net| sides(&net.map(|row| row.map(|p| p + frame.origin().to_vec2())));
-    envelope::over(&ring(net), s, keep, None).map_err(|e| {
+    let put = |style: &Style, net: &Net| -> Result<Built, Error> {
+        // Sides that do not bend hold nothing of a style that moves the inside alone.
+        let flat = style.net(frame.width(), frame.height(), &Bent { bend: 0.0, ..*bent });
+        if bent.bend != 0.0 && flat.is_ok_and(|flat| same_sides(&flat, net)) {
+            return Err(Error::usage("keep", keep, "its sides do not bend, only what is inside"));
+        }
+        envelope::over(&ring(net), s, keep, None)
+    };
+    put(style, net).map_err(|e| {
         let possible = |style: &Style| {
             let net = style.net(frame.width(), frame.height(), bent).ok();
-            net.is_some_and(|n| envelope::over(&ring(&n), s, keep, None).is_ok())
+            net.is_some_and(|n| put(style, &n).is_ok())
         };
         let names: Vec<String> = style::builtin().into_iter().filter(possible).map(|style| style.name).collect();
-        let others = if names.is_empty() { "no style at this bend".to_owned() } else { names.join(", ") };
+        let others = if names.is_empty() {
+            "no style can at this bend".into()
+        } else {
+            format!("it can with {}", names.join(", "))
+        };
         let Error::Usage { problem, .. } = e else { return e };
         // What the envelope advises is for drawn curves.
         let what = problem.split(". No map").next().unwrap_or_default();
-        Error::usage("keep", keep, format!("cannot be had with this style ({what}); it can with {others}"))
+        Error::usage("keep", keep, format!("cannot be had with this style ({what}); {others}"))
     })
+}
+
+/// Whether two nets have the same outermost rows and columns.
+fn same_sides(a: &Net, b: &Net) -> bool {
+    let outer = |j: usize, c: usize| j == 0 || j == 3 || c == 0 || c == 3;
+    (0..16).all(|k| !outer(k / 4, k % 4) || a[k / 4][k % 4] == b[k / 4][k % 4])
 }
 
 /// A net's four sides, as an envelope has them: bottom to the right, right side upwards, top to the left, left side downwards.

@@ -224,10 +224,10 @@ fn the_vertical_axis_is_transposition() {
     }
 }
 
-/// Columns, then rows, about the middles of their ends; what is scaled depends on the family.
-fn distorted(style: &str, b: f64, h: f64, v: f64) -> N {
+/// Columns, then rows (or the other way round), about the middles of their ends; what is scaled depends on the family.
+fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], columns_first: bool) -> N {
     let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
-    let scale = |n: &N| {
+    let columns = |n: &N| {
         let mut out = *n;
         for c in 0..4 {
             let m = ((n[0][c].0 + n[3][c].0) / 2.0, (n[0][c].1 + n[3][c].1) / 2.0);
@@ -236,7 +236,10 @@ fn distorted(style: &str, b: f64, h: f64, v: f64) -> N {
                 out[j][c] = (m.0 + (n[j][c].0 - m.0) * f, m.1 + (n[j][c].1 - m.1) * f);
             }
         }
-        let n = out;
+        out
+    };
+    let rows = |n: &N| {
+        let mut out = *n;
         for j in 0..4 {
             let m = ((n[j][0].0 + n[j][3].0) / 2.0, (n[j][0].1 + n[j][3].1) / 2.0);
             let f = 1.0 + v * (2.0 * t[j] - 1.0);
@@ -246,11 +249,12 @@ fn distorted(style: &str, b: f64, h: f64, v: f64) -> N {
         }
         out
     };
-    let n = table(style, b, W, H);
+    let scale = |n: &N| if columns_first { rows(&columns(n)) } else { columns(&rows(n)) };
+    let n = table(style, b, wide, high);
     match style {
         "twist" | "fisheye" | "shell-upper" | "shell-lower" => scale(&n),
         "wave" | "inflate" | "squeeze" => {
-            let (zero, mut out) = (rest(W, H), scale(&rest(W, H)));
+            let (zero, mut out) = (rest(wide, high), scale(&rest(wide, high)));
             for j in 0..4 {
                 for c in 0..4 {
                     let f = (1.0 + h * (2.0 * t[c] - 1.0)) * (1.0 + v * (2.0 * t[j] - 1.0));
@@ -270,8 +274,16 @@ fn distortions_come_in_order() {
         for b in BENDS {
             for (h, v) in [(0.3, 0.0), (0.0, -0.4), (0.25, -0.6), (-1.0, 0.5)] {
                 let net = style.net(W, H, &Bent { distortion: [h, v], ..plain(b) }).unwrap();
-                let d = off(&net, &distorted(&style.name, b, h, v));
+                let d = off(&net, &distorted(&style.name, b, [W, H], [h, v], true));
                 assert!(d < 1e-9, "{} {b} {h} {v}: {d:e}", style.name);
+                // Sideways the two change places; what is horizontal still comes first.
+                let net = style.net(W, H, &Bent { bend: b, distortion: [h, v], vertical: true }).unwrap();
+                let across = distorted(&style.name, b, [H, W], [v, h], false);
+                let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
+                let expected: N =
+                    std::array::from_fn(|j| std::array::from_fn(|c| (across[c][j].1 + shift, across[c][j].0)));
+                let d = off(&net, &expected);
+                assert!(d < 1e-9, "{} {b} {h} {v} sideways: {d:e}", style.name);
             }
         }
     }
@@ -409,4 +421,12 @@ fn kept_verticals_are_upright() {
     }
     let e = build(&[("style", "inflate"), ("bend", "50%"), ("keep", "verticals")]).err().unwrap().to_string();
     assert!(e.contains("cannot be had with this style") && e.contains("arch") && !e.contains("inflate,"), "{e}");
+    // Styles that leave the sides as they are have nothing to keep: they say so, rather than vanish.
+    for style in ["wave", "fisheye", "twist"] {
+        for keep in ["verticals", "horizontals", "lines"] {
+            let e = build(&[("style", style), ("bend", "50%"), ("keep", keep)]).err().unwrap().to_string();
+            assert!(e.contains("sides do not bend") && !e.contains("fisheye, "), "{style} {keep}: {e}");
+        }
+        assert!(build(&[("style", style), ("bend", "0"), ("keep", "lines")]).is_ok());
+    }
 }

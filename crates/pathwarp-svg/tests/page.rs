@@ -1,0 +1,145 @@
+//! The page made to fit the warped artwork. Truth is where the renderer leaves a mark.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
+
+mod common;
+
+use common::{Hidden, read, rendered, warp_options};
+use pathwarp::kurbo::{Affine, Rect};
+use pathwarp_svg::{Document, PageFit, Selection, WarpOptions};
+
+/// Pixels per unit of a rendering.
+const FINE: f64 = 8.0;
+
+fn fitted(svg: &str, map: Affine, page: PageFit) -> Document {
+    let w = read(svg).warp(&Hidden(map), &WarpOptions { page, ..warp_options() }).unwrap();
+    read(&w.svg)
+}
+
+/// The box of all that a document paints between -60 and 200, in user units, to a pixel.
+fn marks(d: &Document) -> Rect {
+    let (from, side) = (-60.0, 260.0);
+    let window = Affine::scale(FINE) * Affine::translate((-from, -from)) * d.user_to_px().inverse();
+    let picture = rendered(d.tree(), (side * FINE) as u32, window);
+    let wide = picture.width() as usize;
+    let marked = picture.pixels().iter().enumerate().filter(|p| p.1.alpha() > 0).map(|p| p.0);
+    let boxes = marked.map(|i| Rect::from_origin_size(((i % wide) as f64, (i / wide) as f64), (1.0, 1.0)));
+    let all = boxes.reduce(|a, b| a.union(b)).unwrap();
+    (Affine::translate((from, from)) * Affine::scale(1.0 / FINE)).transform_rect_bbox(all)
+}
+
+fn near(a: Rect, b: Rect) -> bool {
+    let d = [a.x0 - b.x0, a.y0 - b.y0, a.x1 - b.x1, a.y1 - b.y1];
+    d.iter().all(|d| d.abs() <= 1.5 / FINE)
+}
+
+/// Name, drawing.
+const DRAWINGS: &[(&str, &str)] = &[
+    ("a fill", "<path d='M20 20C90 0 80 70 30 60z'/>"),
+    ("a stroke with miters", "<path d='M20 70L50 20L60 75' fill='none' stroke='red' stroke-width='8'/>"),
+    (
+        "markers and a copy",
+        "<marker id='m' markerWidth='4' markerHeight='4' refX='2' refY='2'><circle cx='2' cy='2' r='2'/></marker><path id='p' \
+         d='M20 70L50 40' stroke='black' stroke-width='5' marker-end='url(#m)'/><use href='#p' x='20' y='-12'/>",
+    ),
+    (
+        "clipped, and nested frames",
+        "<clipPath id='c'><circle cx='50' cy='50' r='20'/></clipPath><g transform='translate(5) rotate(12)'><rect \
+         width='100' height='100' clip-path='url(#c)'/></g>",
+    ),
+    ("text", "<text x='20' y='60' font-size='30' stroke='red'>Wig</text>"),
+    (
+        "an image",
+        "<image x='10' y='20' width='60' height='30' preserveAspectRatio='none' xlink:href='data:image/png;base64,\
+         iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=='/>",
+    ),
+];
+
+#[test]
+fn the_page_becomes_the_marks_box() {
+    for (name, body) in DRAWINGS {
+        for map in [common::oblique(), Affine::translate((40.0, -30.0)) * Affine::scale(1.3)] {
+            let d = fitted(&common::drawing(body), map, PageFit::Page);
+            let (page, marks) = (d.view_box(), marks(&d));
+            assert!(near(page, marks), "{name}: {page:?} is not {marks:?}");
+            assert!(!near(page, Rect::new(0.0, 0.0, 100.0, 100.0)), "{name}");
+        }
+    }
+}
+
+#[test]
+fn it_grows_to_hold_them_and_no_further() {
+    let whole = Rect::new(0.0, 0.0, 100.0, 100.0);
+    for (name, body) in DRAWINGS {
+        let d = fitted(&common::drawing(body), Affine::translate((45.0, -35.0)), PageFit::Grow);
+        let (page, marks) = (d.view_box(), marks(&d));
+        assert!(near(page, whole.union(marks)) && !near(page, whole), "{name}: {page:?} for {marks:?}");
+        let svg = common::drawing(body);
+        let d = fitted(&svg, Affine::rotate_about(0.1, (50.0, 50.0)), PageFit::Grow);
+        assert_eq!(d.view_box(), whole, "{name}");
+    }
+}
+
+/// Filters may paint anywhere in their region, of which only the renderer's marks are known to be needed.
+#[test]
+fn what_a_filter_paints_is_held() {
+    let body = "<filter id='f'><feGaussianBlur stdDeviation='3'/></filter><rect x='30' y='30' width='30' height='30' \
+                filter='url(#f)'/>";
+    let d = fitted(&common::drawing(body), common::oblique(), PageFit::Page);
+    let (page, marks) = (d.view_box(), marks(&d));
+    assert!(near(page.union(marks), page), "{page:?} does not hold {marks:?}");
+}
+
+#[test]
+fn lengths_follow_and_the_scale_stays() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='50mm' height='100mm' viewBox='0 0 100 200'><rect x='20' y='30' \
+               width='60' height='40'/></svg>";
+    let page = |svg: &str, page| {
+        read(svg).warp(&Hidden(Affine::scale(2.0)), &WarpOptions { page, ..warp_options() }).unwrap().svg
+    };
+    let out = page(svg, PageFit::Page);
+    assert!(out.contains("width='60mm' height='40mm' viewBox='40 60 120 80'"), "{out}");
+    let out = page(svg, PageFit::Grow);
+    assert!(out.contains("width='80mm' height='100mm' viewBox='0 0 160 200'"), "{out}");
+    assert!(page(svg, PageFit::None).contains("width='50mm' height='100mm' viewBox='0 0 100 200'"));
+    let out = page(&svg.replace("50mm", "100%").replace("100mm", "100%"), PageFit::Page);
+    assert!(out.contains("width='100%' height='100%' viewBox='40 60 120 80'"), "{out}");
+    // A page without viewBox is its width and height.
+    let plain =
+        "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='2in'><rect x='20' width='60' height='40'/></svg>";
+    let out = page(plain, PageFit::Page);
+    assert!(out.contains("width='120'") && out.contains("viewBox=\"40 0 120 80\""), "{out}");
+    let d = read(&out);
+    assert!((d.size_px().width - 120.0).abs() < 1e-3 && (d.size_px().height - 80.0).abs() < 1e-3, "{:?}", d.size_px());
+}
+
+#[test]
+fn guides_and_what_is_hidden_do_not_count() {
+    let body = "<rect x='20' y='30' width='60' height='40'/><path id='cage' d='M-50 0H150'/><rect x='-90' width='9' \
+                height='9' visibility='hidden'/><path d='M-80 0h9v9z' fill='none'/>";
+    let selection = Selection { guides: vec!["cage".into()], ..Selection::default() };
+    let options = WarpOptions { page: PageFit::Page, selection, ..warp_options() };
+    let w = read(&common::drawing(body)).warp(&Hidden(Affine::translate((5.0, 0.0))), &options).unwrap();
+    assert!(w.svg.contains("viewBox=\"25 30 60 40\""), "{}", w.svg);
+}
+
+/// Nothing bends, and still the page is wanted.
+#[test]
+fn the_identity_fits_the_page() {
+    let svg = common::drawing("<rect x='20' y='30' width='60' height='40'/>");
+    let map = pathwarp::map::AffineMap(Affine::IDENTITY);
+    let options = WarpOptions { page: PageFit::Page, ..warp_options() };
+    let w = read(&svg).warp(&map, &options).unwrap();
+    assert!(w.svg.contains("viewBox=\"20 30 60 40\""), "{}", w.svg);
+}
+
+/// A page whose viewBox and size are one but for rounding has no transform of its own to be mistaken for a group's.
+#[test]
+fn a_page_of_odd_size_is_no_group() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 108.51184 100'><g transform='translate(5) rotate(12)'>\
+               <rect x='20' y='10' width='50' height='40'/></g></svg>";
+    let d = read(svg);
+    let b = d.artwork_box(&Selection::default()).unwrap();
+    let (sin, cos) = 12_f64.to_radians().sin_cos();
+    assert!((b.x0 - (5.0 + 20.0 * cos - 50.0 * sin)).abs() < 1e-9, "{b:?}");
+    assert!((b.y1 - (70.0 * sin + 50.0 * cos)).abs() < 1e-9, "{b:?}");
+}
