@@ -147,6 +147,15 @@ pub struct WarpOptions {
 }
 
 impl WarpOptions {
+    /// Whether paint servers of this kind follow the map.
+    pub(crate) fn moves(&self, paint: &usvg::Paint) -> bool {
+        match paint {
+            usvg::Paint::Color(_) => false,
+            usvg::Paint::Pattern(_) => self.patterns != Patterns::Keep,
+            usvg::Paint::LinearGradient(_) | usvg::Paint::RadialGradient(_) => self.gradients != Gradients::Keep,
+        }
+    }
+
     /// Everything as it is by default.
     #[must_use]
     pub fn new(refit: refit::Options) -> Self {

@@ -561,13 +561,8 @@ fn filled_area(p: &Part, outline: &Outline, map: &dyn Map, tolerance: f64) -> Op
 
 /// Whether a paint of a part follows the affine fit.
 fn follows(p: &Part, done: &Done, options: &WarpOptions) -> bool {
-    let follows = |paint: &usvg::Paint, picture: bool, tiles: bool| match paint {
-        usvg::Paint::Color(_) => false,
-        usvg::Paint::Pattern(_) => options.patterns != Patterns::Keep && !tiles,
-        usvg::Paint::LinearGradient(_) | usvg::Paint::RadialGradient(_) => {
-            options.gradients != Gradients::Keep && !picture
-        }
-    };
+    // Gradients become pictures and patterns tiles, never the other way round.
+    let follows = |paint: &usvg::Paint, picture: bool, tiles: bool| options.moves(paint) && !picture && !tiles;
     let fill = p.fill.as_ref().map(|f| follows(f.paint(), done.fill_image.is_some(), p.fill_tiles.is_some()));
     let stroke = p.stroke.as_ref().map(|s| follows(s.paint(), done.stroke_image.is_some(), p.stroke_tiles.is_some()));
     fill.unwrap_or(false) || stroke.unwrap_or(false)

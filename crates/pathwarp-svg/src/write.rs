@@ -6,7 +6,7 @@
 use crate::document::Document;
 use crate::image::{BentImage, Picture};
 use crate::number::{escape, matrix, outline_data, path_data, short};
-use crate::options::{Gradients, Patterns, WarpOptions};
+use crate::options::WarpOptions;
 use crate::paint::Fit;
 use crate::scene::{Group, Node, Part};
 use crate::source::{ElementId, Source};
@@ -377,12 +377,7 @@ impl<'a> Writer<'a> {
 
     /// How a paint server follows the map, unless it stays.
     pub(crate) fn fit(&self, paint: &Paint, p: &Part, done: Option<&Done>) -> Option<Fit> {
-        let follows = match paint {
-            Paint::Color(_) => false,
-            Paint::Pattern(_) => self.job.options.patterns != Patterns::Keep,
-            Paint::LinearGradient(_) | Paint::RadialGradient(_) => self.job.options.gradients != Gradients::Keep,
-        };
-        let fit = done.and_then(|d| d.fit).filter(|_| follows);
+        let fit = done.and_then(|d| d.fit).filter(|_| self.job.options.moves(paint));
         fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)))
     }
 

@@ -81,3 +81,30 @@ proptest! {
         }
     }
 }
+
+/// The image stops at a cusp, and a cubic that runs past it and turns back meets every sample but the last stretch.
+#[test]
+fn a_hook_at_a_cusp_is_seen() {
+    let map = Bicubic {
+        x: [
+            [-322.3224338070777, -478.69664182941847, 1924.36058508007, -1123.3415094435738],
+            [1966.967301421233, 1436.0899254882552, -5773.0817552402095, 3370.0245283307213],
+            [-966.9673014212331, -4013.696819529014, 10928.295543321728, -5947.63142237148],
+            [322.3224338070777, 3056.3035358701773, -7079.574373161588, 3700.9484034843326],
+        ],
+        y: [
+            [38.55855123088574, 301.48822140307516, 195.9295482593658, 464.0236791066733],
+            [1250.7485473168463, -5352.421176486294, 10208.851776747528, -6107.179147578079],
+            [-3424.360304701362, 11053.601325077854, -15090.3768017771, 7461.13578140061],
+            [2135.05320615363, -5002.668369994637, 4685.595476770208, -1817.9803129292031],
+        ],
+    };
+    let ends = [(500.0, 750.0), (875.0, 250.0), (250.0, 125.0), (416.386_665_057_781_16, 125.0)].map(Point::from);
+    let seg = Seg::Cubic(CubicBez::new(ends[0], ends[1], ends[2], ends[3]));
+    let path = Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] };
+    for tolerance in [1.0, 0.1, 0.01, 0.001] {
+        let w = warp_path(&path, &map, &Options::new(tolerance)).unwrap();
+        let e = support::distance(&seg, &map, &support::cubics(&w.path), 1000, 0.9 * tolerance);
+        assert!(w.report.over_budget.is_empty() && e <= tolerance, "{tolerance}: {e}");
+    }
+}

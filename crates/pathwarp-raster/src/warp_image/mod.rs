@@ -120,6 +120,24 @@ impl Area {
         };
         (0..4).map(quarter).filter(|a| a.width > 0 && a.height > 0)
     }
+
+    /// Where its pixels come from as a polynomial, if that is one: from the pixels by `shown` to the plane, through `inverse`,
+    /// and by `last` to where it is wanted.
+    fn trace(self, basis: &Basis, shown: Affine, inverse: &dyn Map, last: Affine) -> Option<Trace> {
+        // A single column has a width, too, so that there is a derivative.
+        let size = ((self.width - 1).max(1) as f64, (self.height - 1).max(1) as f64);
+        let (left, top) = (self.left as f64 + 0.5, self.top as f64 + 0.5);
+        let mut places = [Point::ORIGIN; ASKED];
+        for (place, (u, v)) in places.iter_mut().zip(basis.places()) {
+            *place = shown * Point::new(left + u * size.0, top + v * size.1);
+        }
+        let mut answers = [Point::ORIGIN; ASKED];
+        inverse.points(&places, &mut answers);
+        for answer in &mut answers {
+            *answer = last * *answer;
+        }
+        basis.trace(&answers, size)
+    }
 }
 
 /// Whole rows of the result.
@@ -151,30 +169,13 @@ struct Painter<'a> {
 
 impl Painter<'_> {
     fn tile(&self, band: &mut Band<'_>, area: Area) {
-        match self.trace(area) {
+        match area.trace(&self.basis, self.warp.shown, self.warp.inverse, self.to_source) {
             Some(trace) => self.arch.dispatch(Traced { painter: self, band, area, trace }),
             None if area.width.max(area.height) > SMALLEST => {
                 area.quarters().for_each(|quarter| self.tile(band, quarter));
             }
             None => self.asked(band, area),
         }
-    }
-
-    /// The area's places in the source as a polynomial, if they are one.
-    fn trace(&self, area: Area) -> Option<Trace> {
-        // A single column has a width, too, so that there is a derivative.
-        let size = ((area.width - 1).max(1) as f64, (area.height - 1).max(1) as f64);
-        let (left, top) = (area.left as f64 + 0.5, area.top as f64 + 0.5);
-        let mut places = [Point::ORIGIN; ASKED];
-        for (place, (u, v)) in places.iter_mut().zip(self.basis.places()) {
-            *place = self.warp.shown * Point::new(left + u * size.0, top + v * size.1);
-        }
-        let mut answers = [Point::ORIGIN; ASKED];
-        self.warp.inverse.points(&places, &mut answers);
-        for answer in &mut answers {
-            *answer = self.to_source * *answer;
-        }
-        self.basis.trace(&answers, size)
     }
 
     /// Pixels that ask the inverse, each by itself.

@@ -1,7 +1,7 @@
 //! A paint bent by a map: every pixel of the result asks the inverse map where it comes from, and the paint what colour that
 //! place has.
 
-use super::trace::{ASKED, Basis, Trace};
+use super::trace::Basis;
 use super::{Area, SMALLEST, TILE};
 use crate::{Error, render::new_pixmap};
 use kurbo::{Affine, Point};
@@ -71,7 +71,7 @@ struct Painter<'a> {
 
 impl Painter<'_> {
     fn tile(&self, band: &mut Band<'_>, area: Area) {
-        match self.trace(area) {
+        match area.trace(&self.basis, self.shade.shown, self.shade.inverse, self.to_pixels) {
             Some(trace) => self.paint(band, area, |i, j| trace.pixel(i, j).p),
             None if area.width.max(area.height) > SMALLEST => {
                 area.quarters().for_each(|quarter| self.tile(band, quarter));
@@ -81,22 +81,6 @@ impl Painter<'_> {
                 self.to_pixels * self.shade.inverse.point(self.shade.shown * at)
             }),
         }
-    }
-
-    /// The area's places in the plane, scaled to pixels, as a polynomial, if they are one.
-    fn trace(&self, area: Area) -> Option<Trace> {
-        let size = ((area.width - 1).max(1) as f64, (area.height - 1).max(1) as f64);
-        let (left, top) = (area.left as f64 + 0.5, area.top as f64 + 0.5);
-        let mut places = [Point::ORIGIN; ASKED];
-        for (place, (u, v)) in places.iter_mut().zip(self.basis.places()) {
-            *place = self.shade.shown * Point::new(left + u * size.0, top + v * size.1);
-        }
-        let mut answers = [Point::ORIGIN; ASKED];
-        self.shade.inverse.points(&places, &mut answers);
-        for answer in &mut answers {
-            *answer = self.to_pixels * *answer;
-        }
-        self.basis.trace(&answers, size)
     }
 
     fn paint(&self, band: &mut Band<'_>, area: Area, from: impl Fn(usize, usize) -> Point) {

@@ -2,6 +2,7 @@
 
 use super::fit::{self, Frame, State, at, fma, square};
 use super::source::{End, Lane, Lanes};
+use super::verify::turns_little;
 use kurbo::{Line, Vec2};
 
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
@@ -116,7 +117,12 @@ impl Job<'_> {
             pace[i] = l2;
             slowness[i] = -l2;
         }
-        fit::largest(&margin) < 0.0 && fit::largest(&pace) < -PACE * fit::largest(&slowness)
+        // Nor may the cubic turn back between the outermost feet and its ends.
+        let slope = |s: f64| c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
+        fit::largest(&margin) < 0.0
+            && fit::largest(&pace) < -PACE * fit::largest(&slowness)
+            && turns_little(self.frame.t0, slope(s0[0]))
+            && turns_little(slope(s0[7]), self.frame.t1)
     }
 }
 

@@ -196,7 +196,7 @@ fn walk(
 }
 
 /// Whether two directions are less than 60° apart.
-fn turns_little(a: Vec2, b: Vec2) -> bool {
+pub(super) fn turns_little(a: Vec2, b: Vec2) -> bool {
     let d = a.dot(b);
     d > 0.0 && 4.0 * d * d >= a.hypot2() * b.hypot2()
 }
