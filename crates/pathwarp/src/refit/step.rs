@@ -12,9 +12,13 @@ use kurbo::{Line, Point, Vec2};
 /// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
 /// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
 const PLAIN: f64 = 0.9;
-/// The errors at 2/17 and 15/17 of a piece are at most this share of the largest, or it is looked at closer. The leading form
-/// has an eighth.
+/// Where the errors at 2/17 or 15/17 of a piece are more than this share of the largest, a residual may swing between an end and
+/// its neighbours: eight more samples there tell.
 const OUTER: f64 = 0.6;
+/// Below this share of the tolerance they need not be asked.
+const SURE: f64 = 0.7;
+/// Where those are, in seventeenths.
+const NEAR_ENDS: Lane = [0.5, 1.5, 2.5, 3.5, 13.5, 14.5, 15.5, 16.5];
 /// PLAIN for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
 /// What errors of pieces over several segments grow by between the samples.
@@ -275,12 +279,31 @@ impl<C: Curve> Stepper<'_, C> {
         if error > self.tolerance {
             return Ok(error);
         }
-        // Of the leading form, little is left that near the ends; more of it swings faster than the samples follow.
-        let regular = d1[0].max(d1[7]) <= (OUTER * error).powi(2);
-        if regular && job.sound(z, &s0, &s1) && !job.careful && error <= PLAIN * self.tolerance {
-            return Ok(error);
+        if !job.careful && error <= PLAIN * self.tolerance && job.sound(z, &s0, &s1) {
+            let regular = error <= SURE * self.tolerance || d1[0].max(d1[7]) <= (OUTER * error).powi(2);
+            if regular {
+                return Ok(error);
+            }
+            let closer = self.near_ends(job, z, &s0, &s1)?.max(error);
+            if closer <= PLAIN * self.tolerance {
+                return Ok(closer);
+            }
         }
         self.dense(job, z, &s0, &s1, error)
+    }
+
+    /// The largest distance of samples near both ends.
+    #[inline(never)]
+    fn near_ends(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane) -> Result<f64, Point> {
+        let mut g = Lanes::default();
+        self.samples(job.from, job.to.t - job.from.t, &NEAR_ENDS, &mut g)?;
+        let feet = [0.0, s0[0], s1[0], s0[1], s1[1], s1[6], s0[6], s1[7], s0[7], 1.0];
+        let mut s = [0.0; 8];
+        for i in 0..8 {
+            let k = i + i / 4;
+            s[i] = 0.5 * (feet[k] + feet[k + 1]);
+        }
+        Ok(fit::largest(&job.frame.distances(&g, z.a, z.b, &mut s, 1)).sqrt())
     }
 
     #[inline(never)]
