@@ -105,6 +105,7 @@ impl Merger<'_> {
             slow: &slow,
             tolerance: SHARE * self.options.tolerance,
             algebra: None,
+            opaque: true,
             careful: false,
             attempts: 0,
         };

@@ -393,7 +393,7 @@ impl Job<'_> {
     ) -> Result<(), Point> {
         let algebra = if self.options.certify { Algebra::of(source, known) } else { None };
         let tolerance = self.options.tolerance;
-        step::Stepper { source, slow, tolerance, algebra, careful: false, attempts: 0 }.cover(from, to, pieces, report)
+        step::Stepper { source, slow, tolerance, algebra, opaque: known.is_none(), careful: false, attempts: 0 }.cover(from, to, pieces, report)
     }
 
     /// As [`Job::warp`], for a map that has creases.

@@ -19,11 +19,11 @@ pub(super) const UNIT: f64 = 1.0 / 17.0;
 /// The Hermite cubic, if the image is that to rounding: so maps that change little give cusps and coincident handles back as
 /// they were.
 #[cold]
-pub(super) fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> bool {
+pub(super) fn hermite_exact(job: &Job<'_>, check: &Lanes, hermite: [f64; 2]) -> bool {
     /// Exact to rounding.
     const EXACT: f64 = 1e-11;
     let [c1, c2, c3] = job.frame.power(hermite[0], hermite[1]);
-    for (g, set) in [(job.g, &FITTED), (job.check, &CHECKED)] {
+    for (g, set) in [(job.g, &FITTED), (check, &CHECKED)] {
         for i in 0..8 {
             let s = set[i] * UNIT;
             let c = (c1 + (c2 + c3 * s) * s) * s;
@@ -41,8 +41,79 @@ pub(super) struct Job<'a> {
     pub(super) to: &'a End,
     pub(super) frame: Frame,
     pub(super) g: &'a Lanes,
-    pub(super) check: &'a Lanes,
+    /// The checked samples, once they are wanted.
+    pub(super) check: Option<Lanes>,
     pub(super) careful: bool,
+}
+
+/// What eight samples tell of a cubic at the feet that go with an even pace.
+pub(super) struct Glance {
+    /// The largest normal residual, squared.
+    pub(super) worst: f64,
+    /// The Newton step of each foot, and the longest.
+    pub(super) ds: Lane,
+    pub(super) drift: f64,
+    /// Least and largest distance between neighbours, squared.
+    paces: [f64; 2],
+    /// Whether the cubic runs from neighbour to neighbour as the samples do.
+    along: bool,
+}
+
+impl Glance {
+    /// Whether eight samples, or with `other` sixteen, have seen all of the cubic and the image.
+    #[inline(always)]
+    pub(super) fn sound(&self, other: Option<&Self>) -> bool {
+        let mut paces = self.paces;
+        let (mut along, mut drift) = (self.along, self.drift);
+        if let Some(o) = other {
+            paces = [if o.paces[0] < paces[0] { o.paces[0] } else { paces[0] }, if o.paces[1] > paces[1] { o.paces[1] } else { paces[1] }];
+            along &= o.along;
+            drift = if o.drift > drift { o.drift } else { drift };
+        }
+        // Half the spacing each: feet cannot change order.
+        along && drift < 0.5 * UNIT && paces[1] < PACE * paces[0]
+    }
+}
+
+/// Looks at the samples `g`, `set` in seventeenths, beside their neighbours, which follow (`side` = 1) in the first half and precede
+/// in the second, or the other way round (−1).
+#[inline(always)]
+fn glance(power: &[Vec2; 3], set: &Lane, g: &Lanes, next: &Lanes, side: f64) -> Glance {
+    let mut worst = [0.0; 8];
+    let mut drift = [0.0; 8];
+    let mut ds = [0.0; 8];
+    let mut margin = [0.0; 8];
+    let mut pace = [0.0; 8];
+    let mut slowness = [0.0; 8];
+    for i in 0..8 {
+        let (rx, ry, dx, dy) = at(power, set[i] * UNIT, g.x[i], g.y[i]);
+        let d2 = square(dx, dy);
+        let k = 1.0 / d2;
+        let n = fma(rx, dy, -(ry * dx));
+        worst[i] = n * n * k;
+        ds[i] = -fma(rx, dx, ry * dy) * k;
+        drift[i] = ds[i].abs();
+        let (x, y) = (next.x[i] - g.x[i], next.y[i] - g.y[i]);
+        let l2 = fma(x, x, y * y);
+        let along = fma(dx, x, dy * y) * (SIDE[i] * side);
+        let straight = fma(2.0 * along, along, -(d2 * l2));
+        margin[i] = -(if along < straight { along } else { straight });
+        pace[i] = l2;
+        slowness[i] = -l2;
+    }
+    Glance {
+        worst: fit::largest(&worst),
+        ds,
+        drift: fit::largest(&drift),
+        paces: [-fit::largest(&slowness), fit::largest(&pace)],
+        along: fit::largest(&margin) < 0.0,
+    }
+}
+
+/// Each fitted sample's neighbour towards the middle, and past it for the two beside it.
+#[inline(always)]
+fn neighbours(v: &Lane) -> Lane {
+    [v[1], v[2], v[3], v[4], v[3], v[4], v[5], v[6]]
 }
 
 impl Job<'_> {
@@ -50,48 +121,23 @@ impl Job<'_> {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
     }
 
-    /// The largest normal residual of all samples at the feet that go with an even pace, and how far the feet have to move;
-    /// infinite where the samples are not [`Job::sound`].
+    /// The fitted samples with these handles.
     #[inline(always)]
-    pub(super) fn glance(&self, z: &State) -> (f64, f64) {
-        let power = self.frame.power(z.a, z.b);
-        let (g, c) = (self.g, self.check);
-        let mut worst = [0.0; 8];
-        let mut drift = [0.0; 8];
-        let mut margin = [0.0; 8];
-        let mut pace = [0.0; 8];
-        let mut slowness = [0.0; 8];
-        for i in 0..8 {
-            let residual = |s: f64, x: f64, y: f64| {
-                let (rx, ry, dx, dy) = at(&power, s, x, y);
-                let d2 = square(dx, dy);
-                let k = 1.0 / d2;
-                let n = fma(rx, dy, -(ry * dx));
-                (n * n * k, (fma(rx, dx, ry * dy) * k).abs(), dx, dy, d2)
-            };
-            let (n0, s0, dx, dy, d2) = residual(FITTED[i] * UNIT, g.x[i], g.y[i]);
-            let (n1, s1, ..) = residual(CHECKED[i] * UNIT, c.x[i], c.y[i]);
-            worst[i] = if n0 > n1 { n0 } else { n1 };
-            drift[i] = if s0 > s1 { s0 } else { s1 };
-            let (x, y) = (c.x[i] - g.x[i], c.y[i] - g.y[i]);
-            let l2 = fma(x, x, y * y);
-            let along = fma(dx, x, dy * y) * SIDE[i];
-            let straight = fma(2.0 * along, along, -(d2 * l2));
-            margin[i] = -(if along < straight { along } else { straight });
-            pace[i] = l2;
-            slowness[i] = -l2;
-        }
-        // Half the spacing each: feet cannot change order.
-        let drift = fit::largest(&drift);
-        let sound =
-            fit::largest(&margin) < 0.0 && drift < 0.5 * UNIT && fit::largest(&pace) < -PACE * fit::largest(&slowness);
-        if sound { (fit::largest(&worst).sqrt(), drift) } else { (f64::INFINITY, drift) }
+    pub(super) fn glance(&self, handles: [f64; 2]) -> Glance {
+        let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
+        glance(&self.frame.power(handles[0], handles[1]), &FITTED, self.g, &next, 1.0)
+    }
+
+    /// The checked ones.
+    #[inline(always)]
+    pub(super) fn second_glance(&self, check: &Lanes, handles: [f64; 2]) -> Glance {
+        glance(&self.frame.power(handles[0], handles[1]), &CHECKED, check, self.g, -1.0)
     }
 
     /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
     /// that of the image there, and the image's pace varies little enough for the samples to have seen all of that.
     #[inline(always)]
-    pub(super) fn sound(&self, z: &State, s0: &Lane, s1: &Lane) -> bool {
+    pub(super) fn sound(&self, check: &Lanes, z: &State, s0: &Lane, s1: &Lane) -> bool {
         /// Feet may be this far from where an even pace would put them.
         const UNEVEN: f64 = 0.18;
         let [c1, c2, c3] = self.frame.power(z.a, z.b);
@@ -103,7 +149,7 @@ impl Job<'_> {
             let b = UNEVEN - (s1[i] - CHECKED[i] * UNIT).abs();
             let s = s0[i];
             let (dx, dy) = ((c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x, (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y);
-            let (x, y) = (self.check.x[i] - self.g.x[i], self.check.y[i] - self.g.y[i]);
+            let (x, y) = (check.x[i] - self.g.x[i], check.y[i] - self.g.y[i]);
             let (d2, l2) = (dx * dx + dy * dy, x * x + y * y);
             // The checked sample follows the fitted one in the first half and precedes it in the second.
             let along = (dx * x + dy * y) * SIDE[i];

@@ -26,6 +26,11 @@ const CORNERS: f64 = 1.015;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
 /// is let pass (κ about the inverse of the piece's size, δ a share of that size).
 const FLAT: f64 = 0.02;
+/// With fewer samples, where the map is a quotient of polynomials of low degree and nothing swings faster than eight samples see:
+/// Hermite cubics up to this share of the tolerance are taken by the fitted ones alone.
+const EASY: f64 = 0.6;
+/// What their errors grow by in between.
+const EIGHT: f64 = 1.1;
 /// A fit this good is not improved further.
 const ENOUGH: f64 = 0.85;
 
@@ -58,6 +63,8 @@ pub(super) struct Stepper<'a, C> {
     pub(super) tolerance: f64,
     /// What proofs need, if there are to be any.
     pub(super) algebra: Option<Algebra>,
+    /// Nothing is known of the map's degree.
+    pub(super) opaque: bool,
     /// Whether to look at every piece closely.
     pub(super) careful: bool,
     pub(super) attempts: usize,
@@ -75,7 +82,7 @@ impl<C: Curve> Stepper<'_, C> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
         let tol = self.tolerance;
-        let (mut g, mut check) = (Lanes::default(), Lanes::default());
+        let mut g = Lanes::default();
         self.samples(from, h, &FITTED, &mut g)?;
         let q = to.p - from.p;
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
@@ -90,27 +97,47 @@ impl<C: Curve> Stepper<'_, C> {
         let floor = [least(hermite[0]), least(hermite[1])];
         let pull = (PULL * tol / size).powi(2);
         let frame = Frame { q, t0: from.away, t1: to.into, floor, size, home: hermite, pull };
-        let mut z = State { a: hermite[0].max(floor[0]), b: hermite[1].max(floor[1]), s: [0.0; 8] };
-        for i in 0..8 {
-            z.s[i] = FITTED[i] * UNIT;
-        }
         let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
-        self.samples(from, h, &CHECKED, &mut check)?;
-        let job = Job { from, to, frame, g: &g, check: &check, careful };
+        let mut job = Job { from, to, frame, g: &g, check: None, careful };
         // Most pieces end here: the Hermite cubic does.
-        let (first, drift) = job.glance(&z);
-        if first <= PLAIN * tol
-            && !careful
-            && drift * drift * size <= FLAT * tol
-            && hermite[0] > 0.0
-            && hermite[1] > 0.0
-        {
-            let error = if self.algebra.is_some() { self.proven(&job, &z, first)? } else { first };
-            if error <= tol {
+        let start = [hermite[0].max(floor[0]), hermite[1].max(floor[1])];
+        let first = job.glance(start);
+        let mut z = State { a: start[0], b: start[1], s: [0.0; 8] };
+        let may = |worst: f64, share: f64| worst <= (share * tol).powi(2) && hermite[0] > 0.0 && hermite[1] > 0.0 && !careful;
+        let still = |drift: f64| drift * drift * size <= FLAT * tol;
+        if may(first.worst, PLAIN) && still(first.drift) && first.sound(None) {
+            if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque {
+                let error = EIGHT * first.worst.sqrt();
                 return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
             }
+            let check = *self.checked(&mut job)?;
+            let second = job.second_glance(&check, start);
+            let worst = first.worst.max(second.worst);
+            if may(worst, PLAIN) && still(second.drift) && first.sound(Some(&second)) {
+                for i in 0..8 {
+                    z.s[i] = FITTED[i] * UNIT;
+                }
+                let error = if self.algebra.is_some() { self.proven(&mut job, &z, worst.sqrt())? } else { worst.sqrt() };
+                if error <= tol {
+                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+                }
+            }
         }
-        self.improve(&job, z, hermite)
+        for i in 0..8 {
+            z.s[i] = fit::unit(FITTED[i] * UNIT + first.ds[i]);
+        }
+        self.improve(&mut job, z, hermite)
+    }
+
+    /// The checked samples, taken when first wanted.
+    #[inline(always)]
+    fn checked<'j>(&self, job: &'j mut Job<'_>) -> Result<&'j Lanes, Point> {
+        if job.check.is_none() {
+            let mut check = Lanes::default();
+            self.samples(job.from, job.to.t - job.from.t, &CHECKED, &mut check)?;
+            job.check = Some(check);
+        }
+        Ok(job.check.get_or_insert_default())
     }
 
     /// A stretch whose image is straight to rounding.
@@ -140,8 +167,9 @@ impl<C: Curve> Stepper<'_, C> {
     /// The proven error of a state that was measured to have `error`; what it was measured at where there is nothing to prove
     /// it with.
     #[inline(never)]
-    fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
+    fn proven(&self, job: &mut Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
         let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
+        let check = *self.checked(job)?;
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
         let feet = |s0: &Lane, s1: &Lane| {
             let mut feet = [0.0; 16];
@@ -154,18 +182,18 @@ impl<C: Curve> Stepper<'_, C> {
         let mut s0 = z.s;
         job.frame.settle(job.g, z.a, z.b, &mut s0);
         let mut s1 = between(&s0);
-        job.frame.settle(job.check, z.a, z.b, &mut s1);
+        job.frame.settle(&check, z.a, z.b, &mut s1);
         let quick = certify::quick(source, algebra, &c, &feet(&s0, &s1))?;
         if quick <= self.tolerance {
             return Ok(quick);
         }
         job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
-        job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
+        job.frame.distances(&check, z.a, z.b, &mut s1, 2);
         certify::bound(source, algebra, &c, &feet(&s0, &s1))
     }
 
     /// The measured error, and if that will do, the proven one.
-    fn judge(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
+    fn judge(&self, job: &mut Job<'_>, f: &Fit) -> Result<f64, Point> {
         let error = self.check(job, f)?;
         if error <= self.tolerance { self.proven(job, &f.z, error) } else { Ok(error) }
     }
@@ -187,11 +215,14 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// What else can be done where the first fit does not do.
     #[inline(never)]
-    fn improve(&mut self, job: &Job<'_>, z: State, hermite: [f64; 2]) -> Result<Outcome, Point> {
+    fn improve(&mut self, job: &mut Job<'_>, z: State, hermite: [f64; 2]) -> Result<Outcome, Point> {
         let tol = self.tolerance;
-        let frame = &job.frame;
+        let frame = &{ job.frame };
         let (from, to) = (job.from, job.to);
-        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0) && hermite_exact(job, hermite) {
+        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0) && {
+            let check = *self.checked(job)?;
+            hermite_exact(job, &check, hermite)
+        } {
             let error = self.proven(job, &State { a: hermite[0], b: hermite[1], s: z.s }, 0.0)?;
             let z = State { a: hermite[0], b: hermite[1], ..z };
             if error <= tol {
@@ -204,7 +235,9 @@ impl<C: Curve> Stepper<'_, C> {
         if error <= tol {
             error = self.judge(job, &f)?;
             if error > tol && f.error <= ENOUGH * tol {
-                f = fit::fit(frame, job.g, f.z, [0.0, tol]);
+                let mut start = f.z;
+                frame.settle(job.g, start.a, start.b, &mut start.s);
+                f = fit::fit(frame, job.g, start, [0.0, tol]);
                 error = f.reach;
                 if error <= tol {
                     error = self.judge(job, &f)?;
@@ -221,7 +254,9 @@ impl<C: Curve> Stepper<'_, C> {
                 if !(b > frame.floor[1] && b < frame.size) {
                     continue;
                 }
-                let g = fit::fit(frame, job.g, State { a, b, s: f.z.s }, [ENOUGH * tol, tol]);
+                let mut start = State { a, b, s: f.z.s };
+                frame.settle(job.g, a, b, &mut start.s);
+                let g = fit::fit(frame, job.g, start, [ENOUGH * tol, tol]);
                 if g.reach < 0.98 * error {
                     let e = if g.reach <= tol { self.judge(job, &g)? } else { g.reach };
                     if e < error {
@@ -238,7 +273,8 @@ impl<C: Curve> Stepper<'_, C> {
         const REACH: f64 = 1.4;
         if error > tol && error <= REACH * tol {
             let other = State { s: between(&f.z.s), ..f.z };
-            let (z, e) = fit::lawson(frame, [job.g, job.check], [f.z, other], 4);
+            let check = *self.checked(job)?;
+            let (z, e) = fit::lawson(frame, [job.g, &check], [f.z, other], 4);
             if e < error {
                 f = Fit { z: z[0], error: e, reach: e, ds: [1.0; 8] };
                 error = e;
@@ -258,7 +294,8 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// The error of a fit: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
     #[inline(always)]
-    fn check(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
+    fn check(&self, job: &mut Job<'_>, f: &Fit) -> Result<f64, Point> {
+        let check = *self.checked(job)?;
         let frame = &job.frame;
         let z = &f.z;
         let mut s0 = [0.0; 8];
@@ -274,12 +311,12 @@ impl<C: Curve> Stepper<'_, C> {
             error = fit::largest(&frame.distances(job.g, z.a, z.b, &mut s0, 2)).sqrt();
         }
         let mut s1 = between(&s0);
-        let d1 = frame.distances(job.check, z.a, z.b, &mut s1, 1);
+        let d1 = frame.distances(&check, z.a, z.b, &mut s1, 1);
         let error = error.max(fit::largest(&d1).sqrt());
         if error > self.tolerance {
             return Ok(error);
         }
-        if !job.careful && error <= PLAIN * self.tolerance && job.sound(z, &s0, &s1) {
+        if !job.careful && error <= PLAIN * self.tolerance && job.sound(&check, z, &s0, &s1) {
             let regular = error <= SURE * self.tolerance || d1[0].max(d1[7]) <= (OUTER * error).powi(2);
             if regular {
                 return Ok(error);
