@@ -362,7 +362,10 @@ impl Job<'_> {
     /// Appends the image of a segment in its canonical direction, given the jets at its ends.
     fn warp(&self, seg: &Seg, jets: [&Jet; 2], pieces: &mut Vec<Piece>, report: &mut PathReport) -> Result<(), Point> {
         let certify = self.options.certify;
-        let whole = Source::for_proof(seg, self.map, certify);
+        let mut whole = Source::new(seg, self.map);
+        if certify {
+            whole.make_rational();
+        }
         if whole.size() <= ROUNDING * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
             // A segment that goes nowhere stays one (it carries line caps and markers), and has no direction to keep.
             pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
@@ -393,7 +396,8 @@ impl Job<'_> {
     ) -> Result<(), Point> {
         let algebra = if self.options.certify { Algebra::of(source, known) } else { None };
         let tolerance = self.options.tolerance;
-        step::Stepper { source, slow, tolerance, algebra, opaque: known.is_none(), careful: false, attempts: 0 }.cover(from, to, pieces, report)
+        step::Stepper { source, slow, tolerance, algebra, opaque: known.is_none(), careful: false, attempts: 0 }
+            .cover(from, to, pieces, report)
     }
 
     /// As [`Job::warp`], for a map that has creases.

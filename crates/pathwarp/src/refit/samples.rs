@@ -19,10 +19,10 @@ pub(super) const UNIT: f64 = 1.0 / 17.0;
 /// The Hermite cubic, if the image is that to rounding: so maps that change little give cusps and coincident handles back as
 /// they were.
 #[cold]
-pub(super) fn hermite_exact(job: &Job<'_>, check: &Lanes, hermite: [f64; 2]) -> bool {
+pub(super) fn hermite_exact(job: &Job<'_>, check: &Lanes) -> bool {
     /// Exact to rounding.
     const EXACT: f64 = 1e-11;
-    let [c1, c2, c3] = job.frame.power(hermite[0], hermite[1]);
+    let [c1, c2, c3] = job.frame.power(job.frame.home[0], job.frame.home[1]);
     for (g, set) in [(job.g, &FITTED), (check, &CHECKED)] {
         for i in 0..8 {
             let s = set[i] * UNIT;
@@ -43,6 +43,8 @@ pub(super) struct Job<'a> {
     pub(super) g: &'a Lanes,
     /// The checked samples, once they are wanted.
     pub(super) check: Option<Lanes>,
+    /// The Newton steps of the feet at a glance.
+    pub(super) ds: Lane,
     pub(super) careful: bool,
 }
 
@@ -66,9 +68,9 @@ impl Glance {
         let mut paces = self.paces;
         let (mut along, mut drift) = (self.along, self.drift);
         if let Some(o) = other {
-            paces = [if o.paces[0] < paces[0] { o.paces[0] } else { paces[0] }, if o.paces[1] > paces[1] { o.paces[1] } else { paces[1] }];
+            paces = [-fit::larger(-paces[0], -o.paces[0]), fit::larger(paces[1], o.paces[1])];
             along &= o.along;
-            drift = if o.drift > drift { o.drift } else { drift };
+            drift = fit::larger(drift, o.drift);
         }
         // Half the spacing each: feet cannot change order.
         along && drift < 0.5 * UNIT && paces[1] < PACE * paces[0]
@@ -121,17 +123,26 @@ impl Job<'_> {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
     }
 
-    /// The fitted samples with these handles.
+    /// The Hermite cubic.
     #[inline(always)]
-    pub(super) fn glance(&self, handles: [f64; 2]) -> Glance {
+    pub(super) fn hermite(&self) -> kurbo::CubicBez {
+        let [a, b] = self.frame.home;
+        self.frame.cubic(self.from.p, self.to.p, a, b)
+    }
+
+    /// The fitted samples beside the Hermite cubic.
+    #[inline(always)]
+    pub(super) fn glance(&self) -> Glance {
+        let [a, b] = self.frame.home;
         let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
-        glance(&self.frame.power(handles[0], handles[1]), &FITTED, self.g, &next, 1.0)
+        glance(&self.frame.power(a, b), &FITTED, self.g, &next, 1.0)
     }
 
     /// The checked ones.
     #[inline(always)]
-    pub(super) fn second_glance(&self, check: &Lanes, handles: [f64; 2]) -> Glance {
-        glance(&self.frame.power(handles[0], handles[1]), &CHECKED, check, self.g, -1.0)
+    pub(super) fn second_glance(&self, check: &Lanes) -> Glance {
+        let [a, b] = self.frame.home;
+        glance(&self.frame.power(a, b), &CHECKED, check, self.g, -1.0)
     }
 
     /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
@@ -249,11 +260,10 @@ const BLUR: f64 = 1e-12;
 #[inline(always)]
 pub(super) fn straight(g: &Lanes, from: &End, to: &End, size: f64, tolerance: f64) -> Option<(Line, f64)> {
     let q = to.p - from.p;
-    let larger = |a: f64, b: f64| if a > b { a } else { b };
-    let from_origin = larger(from.p.x.abs() + from.p.y.abs(), to.p.x.abs() + to.p.y.abs());
+    let from_origin = fit::larger(from.p.x.abs() + from.p.y.abs(), to.p.x.abs() + to.p.y.abs());
     let rounding = ROUNDING * from_origin;
     let (far, unseen) = (STRAIGHT * size, UNSEEN * tolerance);
-    let most = larger(if far < unseen { far } else { unseen }, BLUR * size) + rounding;
+    let most = fit::larger(if far < unseen { far } else { unseen }, BLUR * size) + rounding;
     // One sample tells nearly all bent pieces.
     if (g.x[2] * q.y - g.y[2] * q.x).abs() > size * most {
         return None;

@@ -3,7 +3,7 @@
 use super::Piece;
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
-use super::samples::{CHECKED, FITTED, Job, Shape, UNIT, between, hermite_exact, straight};
+use super::samples::{CHECKED, FITTED, Glance, Job, Shape, UNIT, between, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate};
@@ -74,22 +74,27 @@ impl<C: Curve> Stepper<'_, C> {
     /// Fits one piece to a stretch.
     #[inline(never)]
     pub(super) fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
-        self.try_stretch(from, to)
+        let mut g = Lanes::default();
+        let mut job = self.start(from, to, &mut g)?;
+        if let Some(outcome) = self.straight(&job)? {
+            return Ok(outcome);
+        }
+        if let Some(error) = self.glance(&mut job)? {
+            return Ok(Outcome::Fits { piece: Piece::Cubic(job.hermite()), error });
+        }
+        self.improve(&mut job)
     }
 
+    /// What an attempt starts from.
     #[inline(always)]
-    pub(super) fn try_stretch(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
+    pub(super) fn start<'j>(&mut self, from: &'j End, to: &'j End, g: &'j mut Lanes) -> Result<Job<'j>, Point> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
         let tol = self.tolerance;
-        let mut g = Lanes::default();
-        self.samples(from, h, &FITTED, &mut g)?;
+        self.samples(from, h, &FITTED, g)?;
         let q = to.p - from.p;
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
-        let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
-        if let Some(line) = straight(&g, from, to, size, tol) {
-            return self.line(from, to, line, size);
-        }
+        let size = fit::larger(fit::larger(q.hypot2(), far(3)), far(6)).sqrt();
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
         let third = h * (1.0 / 3.0);
         let hermite = [from.speed * third, to.speed * third];
@@ -98,35 +103,57 @@ impl<C: Curve> Stepper<'_, C> {
         let pull = (PULL * tol / size).powi(2);
         let frame = Frame { q, t0: from.away, t1: to.into, floor, size, home: hermite, pull };
         let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
-        let mut job = Job { from, to, frame, g: &g, check: None, careful };
-        // Most pieces end here: the Hermite cubic does.
-        let start = [hermite[0].max(floor[0]), hermite[1].max(floor[1])];
-        let first = job.glance(start);
-        let mut z = State { a: start[0], b: start[1], s: [0.0; 8] };
-        let may = |worst: f64, share: f64| worst <= (share * tol).powi(2) && hermite[0] > 0.0 && hermite[1] > 0.0 && !careful;
+        Ok(Job { from, to, frame, g, check: None, ds: [0.0; 8], careful })
+    }
+
+    /// The Hermite cubic, which most pieces end with: its error, if it does.
+    #[inline(always)]
+    pub(super) fn glance(&self, job: &mut Job<'_>) -> Result<Option<f64>, Point> {
+        let (tol, size) = (self.tolerance, job.frame.size);
+        let first = job.glance();
+        job.ds = first.ds;
+        let [a, b] = job.frame.home;
+        let may = |worst: f64, share: f64| worst <= (share * tol).powi(2) && a > 0.0 && b > 0.0 && !job.careful;
         let still = |drift: f64| drift * drift * size <= FLAT * tol;
-        if may(first.worst, PLAIN) && still(first.drift) && first.sound(None) {
-            if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque {
-                let error = EIGHT * first.worst.sqrt();
-                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
-            }
-            let check = *self.checked(&mut job)?;
-            let second = job.second_glance(&check, start);
-            let worst = first.worst.max(second.worst);
-            if may(worst, PLAIN) && still(second.drift) && first.sound(Some(&second)) {
-                for i in 0..8 {
-                    z.s[i] = FITTED[i] * UNIT;
-                }
-                let error = if self.algebra.is_some() { self.proven(&mut job, &z, worst.sqrt())? } else { worst.sqrt() };
-                if error <= tol {
-                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
-                }
-            }
+        if !(may(first.worst, PLAIN) && still(first.drift) && first.sound(None)) {
+            return Ok(None);
         }
+        if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque {
+            return Ok(Some(EIGHT * first.worst.sqrt()));
+        }
+        self.second_glance(job, &first)
+    }
+
+    /// As [`Stepper::glance`], with all samples.
+    #[inline(never)]
+    fn second_glance(&self, job: &mut Job<'_>, first: &Glance) -> Result<Option<f64>, Point> {
+        let (tol, size) = (self.tolerance, job.frame.size);
+        let check = *self.checked(job)?;
+        let second = job.second_glance(&check);
+        let worst = fit::larger(first.worst, second.worst).sqrt();
+        if !(worst <= PLAIN * tol && second.drift * second.drift * size <= FLAT * tol && first.sound(Some(&second))) {
+            return Ok(None);
+        }
+        if self.algebra.is_none() {
+            return Ok(Some(worst));
+        }
+        let [a, b] = job.frame.home;
+        let mut z = State { a, b, s: [0.0; 8] };
         for i in 0..8 {
-            z.s[i] = fit::unit(FITTED[i] * UNIT + first.ds[i]);
+            z.s[i] = FITTED[i] * UNIT;
         }
-        self.improve(&mut job, z, hermite)
+        let error = self.proven(job, &z, worst)?;
+        Ok((error <= tol).then_some(error))
+    }
+
+    /// The outcome, if the image is straight to rounding.
+    #[inline(always)]
+    pub(super) fn straight(&self, job: &Job<'_>) -> Result<Option<Outcome>, Point> {
+        let size = job.frame.size;
+        match straight(job.g, job.from, job.to, size, self.tolerance) {
+            None => Ok(None),
+            Some(line) => self.line(job.from, job.to, line, size).map(Some),
+        }
     }
 
     /// The checked samples, taken when first wanted.
@@ -215,19 +242,27 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// What else can be done where the first fit does not do.
     #[inline(never)]
-    fn improve(&mut self, job: &mut Job<'_>, z: State, hermite: [f64; 2]) -> Result<Outcome, Point> {
+    pub(super) fn improve(&mut self, job: &mut Job<'_>) -> Result<Outcome, Point> {
         let tol = self.tolerance;
         let frame = &{ job.frame };
         let (from, to) = (job.from, job.to);
-        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0) && {
+        let [a, b] = frame.home;
+        if job.careful || a == 0.0 || b == 0.0 {
             let check = *self.checked(job)?;
-            hermite_exact(job, &check, hermite)
-        } {
-            let error = self.proven(job, &State { a: hermite[0], b: hermite[1], s: z.s }, 0.0)?;
-            let z = State { a: hermite[0], b: hermite[1], ..z };
-            if error <= tol {
-                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+            if hermite_exact(job, &check) {
+                let mut z = State { a, b, s: [0.0; 8] };
+                for i in 0..8 {
+                    z.s[i] = FITTED[i] * UNIT;
+                }
+                let error = self.proven(job, &z, 0.0)?;
+                if error <= tol {
+                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+                }
             }
+        }
+        let mut z = State { a: fit::larger(a, frame.floor[0]), b: fit::larger(b, frame.floor[1]), s: [0.0; 8] };
+        for i in 0..8 {
+            z.s[i] = fit::unit(FITTED[i] * UNIT + job.ds[i]);
         }
         let mut f = fit::fit(frame, job.g, z, [ENOUGH * tol, tol]);
         // Of fits that miss, what they would reach.
