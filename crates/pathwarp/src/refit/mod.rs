@@ -115,11 +115,9 @@ pub struct Warped {
 /// assert!(warped.report.max_error <= 0.01);
 /// ```
 pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<Warped, GeometryError> {
-    if let Some(bad) = outline.segs().find(|s| !s.is_finite()) {
-        return Err(GeometryError::NotFinite { shape: PATH.into(), at: bad.start() });
-    }
     let mut out = Output::default();
     if let Class::Affine(m) = map.class() {
+        outline.segs().try_for_each(finite)?;
         affine(outline, m, options, &mut out);
     } else {
         let mut creases = Creases::default();
@@ -218,6 +216,10 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
     }
 }
 
+fn finite(seg: &Seg) -> Result<(), GeometryError> {
+    if seg.is_finite() { Ok(()) } else { Err(GeometryError::NotFinite { shape: PATH.into(), at: seg.start() }) }
+}
+
 fn infinity(at: Point) -> GeometryError {
     GeometryError::Infinity { shape: PATH.into(), at }
 }
@@ -230,6 +232,7 @@ fn warp_subpath(
     out: &mut Output,
 ) -> Result<(), GeometryError> {
     let projective = matches!(map.class(), Class::Projective(_));
+    sub.segs.first().map_or(Ok(()), finite)?;
     // The jets at the last two nodes; each is the next segment's first.
     let mut jets = [map.jet(sub.start); 2];
     let mut at = sub.start;
@@ -243,6 +246,7 @@ fn warp_subpath(
     bounds.push(0);
     let job = Job { map, algebra: map.algebra(), creases, options };
     for (i, seg) in sub.segs.iter().enumerate() {
+        finite(seg)?;
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
         }
