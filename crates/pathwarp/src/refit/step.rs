@@ -409,6 +409,12 @@ impl<C: Curve> Stepper<'_, C> {
                 best = (i, v);
             }
         }
+        /// Faster than this share of the mean is no cusp.
+        const STOPS: f64 = 0.1;
+        // Towards a cusp the speed falls linearly: half a sample off it is far below this.
+        if best.1 > 2.0 * STOPS * length {
+            return None;
+        }
         let (mut lo, mut hi) = ((best.0 as f64 - 1.0) / SAMPLES as f64, (best.0 as f64 + 1.0) / SAMPLES as f64);
         const GOLD: f64 = 0.381_966_011_250_105;
         for _ in 0..60 {
@@ -416,8 +422,6 @@ impl<C: Curve> Stepper<'_, C> {
             if speed(a) <= speed(b) { hi = b } else { lo = a }
         }
         let tau = 0.5 * (lo + hi);
-        /// Faster than this share of the mean is no cusp.
-        const STOPS: f64 = 0.1;
         /// Nearer to an end it is that end's own.
         const INSIDE: f64 = 1e-4;
         (speed(tau) < STOPS * length && tau > INSIDE && tau < 1.0 - INSIDE).then_some(from.t + h * tau)
