@@ -3,6 +3,7 @@
 use super::Piece;
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
+use super::sampled;
 use super::samples::{CHECKED, FITTED, Job, Shape, UNIT, between, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
@@ -139,6 +140,13 @@ impl<C: Curve> Stepper<'_, C> {
     fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
         let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
+        let (g, hermite) = ([job.g, job.check], job.frame.home);
+        if hermite == [z.a, z.b] {
+            let even = sampled::bound(source, algebra, &c, hermite, g, None, self.tolerance)?;
+            if even <= self.tolerance {
+                return Ok(even);
+            }
+        }
         let feet = |s0: &Lane, s1: &Lane| {
             let mut feet = [0.0; 16];
             for i in 0..8 {
@@ -151,6 +159,10 @@ impl<C: Curve> Stepper<'_, C> {
         job.frame.settle(job.g, z.a, z.b, &mut s0);
         let mut s1 = between(&s0);
         job.frame.settle(job.check, z.a, z.b, &mut s1);
+        let sampled = sampled::bound(source, algebra, &c, hermite, g, Some([&s0, &s1]), self.tolerance)?;
+        if sampled <= self.tolerance {
+            return Ok(sampled);
+        }
         let quick = certify::quick(source, algebra, &c, &feet(&s0, &s1))?;
         if quick <= self.tolerance {
             return Ok(quick);

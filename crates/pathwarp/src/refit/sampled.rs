@@ -1,0 +1,556 @@
+//! Proofs from the samples that an attempt has taken anyway.
+//!
+//! As in [`super::certify`], D(τ) = g(τ) − C(φ(τ)) bounds the distance of image and cubic both ways if φ maps [0, 1] onto itself.
+//! Here φ has the slopes at the ends that make D's first derivatives vanish there, |g′| / |C′| = Hermite's handle over the
+//! actual one, and up to three more coefficients through the feet:
+//!
+//! > φ = τ + v·(p₀(1−τ) + p₁τ + v·r(u)),  v = τ(1−τ), u = 2τ−1, p₀ = φ′(0)−1, p₁ = 1−φ′(1), r of degree two or less
+//!
+//! It stays in [0, 1] if its Bernstein coefficients do. With double zeros at both ends D = v²·q, and as D is of a known degree n,
+//! q is of degree n−4: sixteen samples determine it up to n = 19 (a cubic under a bicubic map has n = 18), thirty-two up to
+//! n = 35.
+//!
+//! **Basis.** D = Σ cₖBₖ, where Bₖ is v² times the Gegenbauer polynomial of degree k and index 4, divided by its largest value. A
+//! Gegenbauer polynomial of index λ oscillates about evenly under the weight (1−u²)^(λ/2), so the Bₖ do, and the tail beyond k
+//! is little more than it must be if it is bounded by the sum of its coefficients.
+//!
+//! **Bound.** With L the part of D up to k = d, T = Σ |cₖ| over k > d, M the largest sample,
+//!
+//! > sup |D| ≤ sup |L| + T ≤ K(d)·(M + T) + T
+//!
+//! where K(d) is what a polynomial v²·(degree d) can exceed its largest sample by: [`GROWTH`]. The best d is taken. Where that is
+//! close, L is looked at on a grid of three times as many places ([`FINE_GROWTH`]). All that holds for the component of D in
+//! any direction, hence for its length.
+//!
+//! **Denominators.** Where g = G/W, V is a polynomial close to 1/W, and VW·D takes the place of D; |VW − 1| is a polynomial known
+//! at twenty-four places.
+//!
+//! **Rounding.** Samples, ends and end slopes are known up to some 1e-14 of the coordinates. What of that reaches the bound is
+//! at most the sum of the coefficients' sensitivities (240 for sixteen samples, 52 for thirty-two) times that; it is added.
+
+use super::certify::Algebra;
+use super::fit::{fma, largest, sum};
+use super::samples::{CHECKED, FITTED, UNIT};
+use super::source::{Curve, Lane, Lanes, Source};
+use super::verify::Candidate;
+use kurbo::Point;
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Half of the further samples of the longer proof, in seventeenths; the others mirror them. With the sixteen even ones they have
+/// nearly the largest determinant in the basis that sixteen more can have.
+const EXTRA: [[f64; 4]; 2] = [[0.15, 0.35, 0.62, 1.4], [2.4, 3.44, 4.54, 7.47]];
+
+/// Degrees of L that are tried.
+const TRIED: [usize; 4] = [2, 4, 6, 8];
+/// K(d): the largest value on [0, 1] of v²·(polynomial of degree d) that is at most one at j/17.
+pub(super) const GROWTH: [f64; 9] = [1.0070, 1.0150, 1.0391, 1.0731, 1.0912, 1.2207, 1.2269, 1.3280, 1.3910];
+/// K of the fine grid j/51 from 2 to 49, for d = 5.
+const FINE_GROWTH: f64 = 1.0212;
+/// Coefficients of L on the fine grid, of either parity.
+const FINE: usize = 3;
+/// What a polynomial of degree sixteen exceeds its largest value at the first twenty-four samples by.
+const BELOW_GROWTH: f64 = 12.0;
+/// Its degree.
+const BELOW: usize = 16;
+/// Degrees of D that sixteen and thirty-two samples determine.
+const MOST: [usize; 2] = [19, 35];
+/// Degree of V.
+const V: usize = 4;
+
+/// A basis function's values are exact to rounding, and so is what is summed from them.
+const ARITHMETIC: f64 = 1.0 + 1e-9;
+
+/// Samples in a batch are mirror images: the i-th and the (7−i)-th.
+struct Expansion<const H: usize> {
+    /// Row i: what the sum (the difference) of the i-th sample and its mirror image contributes to the coefficients 0, 2, 4…
+    /// (1, 3, 5…).
+    even: [[f64; H]; H],
+    odd: [[f64; H]; H],
+    /// How much the first k+1 coefficients together change at most if no sample changes by more than one.
+    noise: [[f64; 2]; H],
+}
+
+struct Tables {
+    /// τ, v and u of the batches.
+    places: [[Lane; 3]; 4],
+    few: Expansion<8>,
+    many: Expansion<16>,
+    /// Basis functions 0, 2, 4 and 1, 3, 5 in the left half of the fine grid.
+    fine: [[[f64; 16]; FINE]; 2],
+    /// Rows: the coefficients of r (in 1, u, u² − κ) from the feet.
+    feet: [[Lane; 2]; 3],
+    /// What they are for φ = τ, and for p₀ + p₁ = 1, p₁ − p₀ = 1.
+    offset: [[f64; 3]; 3],
+    kappa: f64,
+    /// Rows: the power coefficients of V from the values at the sixteen samples.
+    inverse: [[Lane; 2]; V + 1],
+}
+
+impl Tables {
+    fn shared() -> &'static Self {
+        static TABLES: OnceLock<Box<Tables>> = OnceLock::new();
+        TABLES.get_or_init(|| Box::new(Self::new()))
+    }
+
+    fn new() -> Self {
+        let mirrored = |h: [f64; 4]| -> Lane { std::array::from_fn(|i| if i < 4 { h[i] } else { 17.0 - h[7 - i] }) };
+        let sets = [FITTED, CHECKED, mirrored(EXTRA[0]), mirrored(EXTRA[1])];
+        let places = sets.map(|s| {
+            let tau = s.map(|j| j * UNIT);
+            [tau, tau.map(|t| t * (1.0 - t)), tau.map(|t| 2.0 * t - 1.0)]
+        });
+        let half = |i: usize| places[i / 4][0][i % 4];
+        let basis = Basis::new();
+        let mut grid = (2..26).filter(|j| j % 3 != 0).map(|j| f64::from(j) / 51.0);
+        let grid: [f64; 16] = std::array::from_fn(|_| grid.next().unwrap_or(0.5));
+        let (feet, offset, kappa) = feet(&places);
+        let inverse: [[Lane; 2]; V + 1] = {
+            let power = |u: f64| -> [f64; V + 1] { std::array::from_fn(|k| u.powi(k as i32)) };
+            let rows: Vec<[f64; V + 1]> = (0..16).map(|i| power(places[i / 8][2][i % 8])).collect();
+            let gram: [[f64; V + 1]; V + 1] =
+                std::array::from_fn(|r| std::array::from_fn(|c| rows.iter().map(|p| p[r] * p[c]).sum()));
+            let gram = inverse(gram);
+            std::array::from_fn(|k| {
+                std::array::from_fn(|b| {
+                    std::array::from_fn(|i| (0..=V).map(|c| gram[k][c] * rows[8 * b + i][c]).sum())
+                })
+            })
+        };
+        Self {
+            places,
+            few: Expansion::new(&basis, std::array::from_fn(half)),
+            many: Expansion::new(&basis, std::array::from_fn(half)),
+            fine: std::array::from_fn(|odd| std::array::from_fn(|k| grid.map(|t| basis.at(2 * k + odd, t)))),
+            feet,
+            offset,
+            kappa,
+            inverse,
+        }
+    }
+}
+
+impl Tables {
+    /// Replaces the values of W by those of VW, and returns the largest |VW − 1| of the first twenty-four.
+    #[inline(never)]
+    fn clear(&self, w: &mut [Lane; 4]) -> f64 {
+        let mut parts = [[0.0; 8]; V + 1];
+        for b in 0..2 {
+            for i in 0..8 {
+                let v = 1.0 / w[b][i];
+                for k in 0..=V {
+                    parts[k][i] = fma(self.inverse[k][b][i], v, parts[k][i]);
+                }
+            }
+        }
+        let v = parts.map(|p| sum(&p));
+        let mut most = [0.0; 8];
+        for b in 0..4 {
+            for i in 0..8 {
+                let u = self.places[b][2][i];
+                w[b][i] *= fma(fma(fma(fma(v[4], u, v[3]), u, v[2]), u, v[1]), u, v[0]);
+                let off = (w[b][i] - 1.0).abs();
+                most[i] = if b < 3 && off > most[i] { off } else { most[i] };
+            }
+        }
+        largest(&most)
+    }
+}
+
+/// The rows of the coefficients of r, what is to be taken off them, and κ; see [`Tables`].
+fn feet(places: &[[Lane; 3]; 4]) -> ([[Lane; 2]; 3], [[f64; 3]; 3], f64) {
+    let over = |f: &dyn Fn(f64, f64, f64) -> f64| -> f64 {
+        (0..16).map(|i| f(places[i / 8][0][i % 8], places[i / 8][1][i % 8], places[i / 8][2][i % 8])).sum()
+    };
+    let kappa = over(&|_, v, u| v.powi(4) * u * u) / over(&|_, v, _| v.powi(4));
+    let base = |k: usize, u: f64| [1.0, u, u * u - kappa][k];
+    let square: [f64; 3] = std::array::from_fn(|k| over(&|_, v, u| (v * v * base(k, u)).powi(2)));
+    let row = |k: usize, v: f64, u: f64| v * v * base(k, u) / square[k];
+    (
+        std::array::from_fn(|k| {
+            std::array::from_fn(|b| std::array::from_fn(|i| row(k, places[b][1][i], places[b][2][i])))
+        }),
+        std::array::from_fn(|k| {
+            [
+                over(&|t, v, u| row(k, v, u) * t),
+                over(&|_, v, u| row(k, v, u) * 0.5 * v),
+                over(&|_, v, u| row(k, v, u) * 0.5 * v * u),
+            ]
+        }),
+        kappa,
+    )
+}
+
+/// The functions Bₖ.
+struct Basis {
+    scale: Vec<f64>,
+}
+
+impl Basis {
+    /// As many as there are samples at most.
+    const MOST: usize = 32;
+
+    fn new() -> Self {
+        /// Nodes; a polynomial of degree n exceeds its largest value there by 1/cos(πn/2N) at most.
+        const N: usize = 512;
+        let plain = Self { scale: vec![1.0; Self::MOST] };
+        let nodes: Vec<f64> = (0..N).map(|i| 0.5 + 0.5 * (PI * (i as f64 + 0.5) / N as f64).cos()).collect();
+        let largest = |k: usize| nodes.iter().map(|t| plain.at(k, *t).abs()).fold(0.0, f64::max);
+        let grown = |k: usize| largest(k) / (PI * (k + 4) as f64 / (2 * N) as f64).cos();
+        Self { scale: (0..Self::MOST).map(|k| 1.0 / grown(k)).collect() }
+    }
+
+    fn at(&self, k: usize, tau: f64) -> f64 {
+        let (u, v) = (2.0 * tau - 1.0, tau * (1.0 - tau));
+        // Gegenbauer polynomials of index 4 (DLMF 18.9.1).
+        let (mut last, mut c) = (0.0, 1.0);
+        for n in 0..k {
+            let n = n as f64;
+            (last, c) = (c, (2.0 * (n + 4.0) * u * c - (n + 7.0) * last) / (n + 1.0));
+        }
+        v * v * c * self.scale[k]
+    }
+}
+
+impl<const H: usize> Expansion<H> {
+    fn new(basis: &Basis, half: [f64; H]) -> Self {
+        // A sum of mirror images is twice the even part.
+        let rows = |odd: usize| -> [[f64; H]; H] {
+            inverse(std::array::from_fn(|i| std::array::from_fn(|k| 2.0 * basis.at(2 * k + odd, half[i]))))
+        };
+        let (even, odd) = (rows(0), rows(1));
+        let row = |m: &[[f64; H]; H], k: usize| 2.0 * m[k].iter().map(|v| v.abs()).sum::<f64>();
+        let mut noise = [[0.0; 2]; H];
+        let mut all = 0.0;
+        for k in 0..H {
+            let e = all + row(&even, k);
+            all = e + row(&odd, k);
+            noise[k] = [e, all];
+        }
+        let turned = |m: [[f64; H]; H]| std::array::from_fn(|i| std::array::from_fn(|k| m[k][i]));
+        Self { even: turned(even), odd: turned(odd), noise }
+    }
+}
+
+/// The inverse of a matrix, by Gauss–Jordan elimination with pivots.
+fn inverse<const N: usize>(mut a: [[f64; N]; N]) -> [[f64; N]; N] {
+    let mut b: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
+    for c in 0..N {
+        let pivot = (c..N).max_by(|i, j| a[*i][c].abs().total_cmp(&a[*j][c].abs())).unwrap_or(c);
+        a.swap(c, pivot);
+        b.swap(c, pivot);
+        let k = 1.0 / a[c][c];
+        a[c] = a[c].map(|v| v * k);
+        b[c] = b[c].map(|v| v * k);
+        for r in 0..N {
+            if r != c {
+                let f = a[r][c];
+                for j in 0..N {
+                    a[r][j] -= f * a[c][j];
+                    b[r][j] -= f * b[c][j];
+                }
+            }
+        }
+    }
+    b
+}
+
+/// The polynomial φ: p₀ + p₁, p₁ − p₀ (both halved) and the power coefficients of r.
+#[derive(Debug, Clone, Copy)]
+struct Phi {
+    p: [f64; 2],
+    r: [f64; 3],
+}
+
+impl Phi {
+    /// `slopes` are φ′ at the ends. `None`: φ leaves [0, 1].
+    #[inline(always)]
+    fn through(tables: &Tables, feet: [&Lane; 2], slopes: [f64; 2], sextic: bool) -> Option<Self> {
+        let (p0, p1) = (slopes[0] - 1.0, 1.0 - slopes[1]);
+        let (sum_p, dif) = (p0 + p1, p1 - p0);
+        let mut parts = [[0.0; 8]; 3];
+        for i in 0..8 {
+            for k in 0..3 {
+                parts[k][i] = fma(tables.feet[k][0][i], feet[0][i], tables.feet[k][1][i] * feet[1][i]);
+            }
+        }
+        let part = |k: usize| {
+            let o = &tables.offset[k];
+            sum(&parts[k]) - o[0] - o[1] * sum_p - o[2] * dif
+        };
+        let c2 = if sextic { part(2) } else { 0.0 };
+        let r = [part(0) - tables.kappa * c2, part(1), c2];
+        // Bernstein coefficients one to five of six; the others are 0 and 1.
+        let (left, right, middle) = (r[0] - r[1] + r[2], r[0] + r[1] + r[2], r[0] - r[2]);
+        let b = [
+            (1.0 + p0) / 6.0,
+            1.0 / 3.0 + 0.2 * p0 + (p1 + left) / 15.0,
+            0.5 + 0.15 * sum_p + 0.1 * middle,
+            2.0 / 3.0 + 0.2 * p1 + (p0 + right) / 15.0,
+            (5.0 + p1) / 6.0,
+        ];
+        let inside = b.iter().all(|b| (0.0..=1.0).contains(b));
+        inside.then_some(Self { p: [0.5 * sum_p, 0.5 * dif], r })
+    }
+}
+
+/// What image and cubic differ by at the corresponding places of a batch, and the largest square of that.
+#[inline(never)]
+fn difference(c: &Candidate, places: &[Lane; 3], phi: Option<&Phi>, g: &Lanes, out: &mut Lanes) -> f64 {
+    let mut f = places[0];
+    if let Some(phi) = phi {
+        let ([p, q], [r0, r1, r2]) = (phi.p, phi.r);
+        for i in 0..8 {
+            let (v, u) = (places[1][i], places[2][i]);
+            let r = fma(fma(r2, u, r1), u, r0);
+            f[i] = fma(v, fma(v, r, fma(q, u, p)), f[i]);
+        }
+    }
+    let [c1, c2, c3] = c.frame.power(c.a, c.b);
+    let mut squares = [0.0; 8];
+    for i in 0..8 {
+        let t = f[i];
+        let x = g.x[i] - fma(fma(c3.x, t, c2.x), t, c1.x) * t;
+        let y = g.y[i] - fma(fma(c3.y, t, c2.y), t, c1.y) * t;
+        (out.x[i], out.y[i]) = (x, y);
+        squares[i] = fma(x, x, y * y);
+    }
+    largest(&squares)
+}
+
+/// The coefficients of D: even ones of x and y, odd ones of x and y.
+#[inline(never)]
+fn coefficients<const B: usize, const H: usize>(e: &Expansion<H>, d: &[Lanes; B], c: &mut [[f64; H]; 4]) {
+    let mut folded = [[0.0; H]; 4];
+    for b in 0..B {
+        for i in 0..4 {
+            let (x, y, mx, my) = (d[b].x[i], d[b].y[i], d[b].x[7 - i], d[b].y[7 - i]);
+            let k = 4 * b + i;
+            (folded[0][k], folded[1][k], folded[2][k], folded[3][k]) = (x + mx, y + my, x - mx, y - my);
+        }
+    }
+    let mut sums = [[0.0; H]; 4];
+    for i in 0..H {
+        let (even, odd) = (&e.even[i], &e.odd[i]);
+        let [ex, ey, ox, oy] = [folded[0][i], folded[1][i], folded[2][i], folded[3][i]];
+        for k in 0..H {
+            sums[0][k] = fma(even[k], ex, sums[0][k]);
+            sums[1][k] = fma(even[k], ey, sums[1][k]);
+            sums[2][k] = fma(odd[k], ox, sums[2][k]);
+            sums[3][k] = fma(odd[k], oy, sums[3][k]);
+        }
+    }
+    *c = sums;
+}
+
+/// The largest value of L, coefficients 0 to 5, on the fine grid but for the samples.
+#[inline(never)]
+fn on_fine_grid<const H: usize>(tables: &Tables, c: &[[f64; H]; 4]) -> f64 {
+    let [even, odd] = &tables.fine;
+    let mut all = [0.0; 8];
+    for b in [0, 8] {
+        for i in 0..8 {
+            let at = |m: &[[f64; 16]; FINE], c: &[f64; H]| {
+                fma(m[0][b + i], c[0], fma(m[1][b + i], c[1], m[2][b + i] * c[2]))
+            };
+            let (ex, ey, ox, oy) = (at(even, &c[0]), at(even, &c[1]), at(odd, &c[2]), at(odd, &c[3]));
+            let square = |x: f64, y: f64| fma(x, x, y * y);
+            // The larger of the two mirror images.
+            let (l, r) = (square(ex + ox, ey + oy), square(ex - ox, ey - oy));
+            let m = if l > r { l } else { r };
+            all[i] = if m > all[i] { m } else { all[i] };
+        }
+    }
+    largest(&all).sqrt()
+}
+
+/// The bound for |D| from its coefficients and its largest sample; with `enough`, that is looked at closer only where that may
+/// bring it down so far.
+#[inline(always)]
+fn supremum<const H: usize>(tables: &Tables, c: &[[f64; H]; 4], most: f64, enough: f64) -> f64 {
+    let (mut even, mut odd) = ([0.0; H], [0.0; H]);
+    for k in 0..H {
+        even[k] = fma(c[0][k], c[0][k], c[1][k] * c[1][k]).sqrt();
+        odd[k] = fma(c[2][k], c[2][k], c[3][k] * c[3][k]).sqrt();
+    }
+    // Beyond the tried degrees all together.
+    let mut tail = 0.0;
+    for k in TRIED.len() + 1..H {
+        tail += even[k] + odd[k];
+    }
+    let mut best = f64::INFINITY;
+    let mut fine = 0.0;
+    for j in (0..TRIED.len()).rev() {
+        // The even coefficient of degree d is not in the tail, the odd one after it is.
+        let d = TRIED[j];
+        tail += odd[d / 2];
+        let limit = fma(GROWTH[d], most + tail, tail);
+        best = if limit < best { limit } else { best };
+        tail += even[d / 2];
+        fine = if d / 2 == FINE { tail } else { fine };
+    }
+    if best > enough && most + fine <= enough {
+        let at = on_fine_grid(tables, c);
+        let largest = if at > most + fine { at } else { most + fine };
+        let limit = fma(FINE_GROWTH, largest, fine);
+        best = if limit < best { limit } else { best };
+    }
+    best
+}
+
+/// A bound for the distance between candidate and image, both ways; infinite if none was found. `hermite` are the handles that
+/// would follow the image's pace at the ends. `g` and `feet` belong to the samples [`FITTED`] and [`CHECKED`], the former
+/// relative to the first point; without feet, φ = τ. Where the bound is larger than `enough`, it is not certain to be the
+/// best that the samples give.
+pub(super) fn bound(
+    source: &Source<'_>,
+    algebra: &Algebra,
+    c: &Candidate,
+    hermite: [f64; 2],
+    g: [&Lanes; 2],
+    feet: Option<[&Lane; 2]>,
+    enough: f64,
+) -> Result<f64, Point> {
+    let tables = Tables::shared();
+    let slopes = [hermite[0] / c.a, hermite[1] / c.b];
+    // Which φ, how many samples.
+    let v = if algebra.below > 0 { V } else { 0 };
+    let degree = |p: usize| algebra.degree.max(algebra.below + 3 * p) + v;
+    let (p, sextic) = match feet {
+        None => (1, false),
+        Some(_) if degree(6) <= MOST[0] => (6, true),
+        Some(_) if degree(5) <= MOST[0] => (5, false),
+        Some(_) if degree(6) <= MOST[1] => (6, true),
+        Some(_) => (5, false),
+    };
+    let n = degree(p);
+    if n > MOST[1] || algebra.below + v > BELOW || !(hermite[0] > 0.0 && hermite[1] > 0.0) {
+        return Ok(f64::INFINITY);
+    }
+    let phi = match feet {
+        None if c.a != hermite[0] || c.b != hermite[1] => return Ok(f64::INFINITY),
+        None => None,
+        Some(feet) => match Phi::through(tables, feet, slopes, sextic) {
+            Some(phi) => Some(phi),
+            None => return Ok(f64::INFINITY),
+        },
+    };
+    let mut d = [Lanes::default(); 2];
+    let [m0, m1] = [0, 1].map(|b| difference(c, &tables.places[b], phi.as_ref(), g[b], &mut d[b]));
+    let most = (if m0 > m1 { m0 } else { m1 }).sqrt();
+    // More than the samples themselves show nothing proves.
+    if !(most <= enough) {
+        return Ok(f64::INFINITY);
+    }
+    let known = Known { tables, c, noise: noise(algebra, c, hermite), top: n.max(4) - 4, enough };
+    if algebra.below == 0 && n <= MOST[0] { Ok(known.by_few(&d, most)) } else { known.by_more(source, algebra, phi.as_ref(), d) }
+}
+
+/// What a proof knows.
+struct Known<'a> {
+    tables: &'static Tables,
+    c: &'a Candidate,
+    noise: f64,
+    /// Degree of q.
+    top: usize,
+    enough: f64,
+}
+
+impl Known<'_> {
+    /// The bound from sixteen samples, the largest of which is `most`.
+    #[inline(always)]
+    fn by_few(&self, d: &[Lanes; 2], most: f64) -> f64 {
+        let top = self.top;
+        if let Some(growth) = GROWTH.get(top) {
+            let limit = growth * (most * ARITHMETIC + 2.0 * self.noise);
+            if limit <= self.enough {
+                return limit;
+            }
+        }
+        let mut k = [[0.0; 8]; 4];
+        coefficients(&self.tables.few, d, &mut k);
+        let least = supremum(self.tables, &k, most, self.enough);
+        least * ARITHMETIC + self.noise * shares(self.tables.few.noise[top / 2][top % 2])
+    }
+
+    /// With denominators, or from thirty-two samples.
+    #[inline(never)]
+    fn by_more(&self, source: &Source<'_>, algebra: &Algebra, phi: Option<&Phi>, d: [Lanes; 2]) -> Result<f64, Point> {
+        let (tables, c) = (self.tables, self.c);
+        let few = self.top + 4 <= MOST[0];
+        let h = c.t1 - c.t0;
+        let t = |b: usize| tables.places[b][0].map(|tau| fma(h, tau, c.t0));
+        let mut d = [d[0], d[1], Lanes::default(), Lanes::default()];
+        if !few {
+            for b in [2, 3] {
+                let mut g = Lanes::default();
+                source.images_into(&t(b), &mut g)?;
+                for i in 0..8 {
+                    g.x[i] -= c.p0.x;
+                    g.y[i] -= c.p0.y;
+                }
+                difference(c, &tables.places[b], phi, &g, &mut d[b]);
+            }
+        }
+        let mut off = 0.0;
+        if algebra.below > 0 {
+            let mut w = [[1.0; 8]; 4];
+            for b in 0..if few { 3 } else { 4 } {
+                w[b] = algebra.denominators(source, &t(b));
+            }
+            if w.iter().flatten().any(|v| v.is_nan() || *v <= 0.0) {
+                return Ok(f64::INFINITY);
+            }
+            off = BELOW_GROWTH * tables.clear(&mut w);
+            /// A denominator that varies so much is split instead.
+            const WORST: f64 = 0.1;
+            if !(off < WORST) {
+                return Ok(f64::INFINITY);
+            }
+            for (d, w) in d.iter_mut().zip(&w) {
+                for i in 0..8 {
+                    d.x[i] *= w[i];
+                    d.y[i] *= w[i];
+                }
+            }
+        }
+        let mut squares = [0.0; 8];
+        for d in &d {
+            for i in 0..8 {
+                let v = fma(d.x[i], d.x[i], d.y[i] * d.y[i]);
+                squares[i] = if v > squares[i] { v } else { squares[i] };
+            }
+        }
+        let most = largest(&squares).sqrt();
+        let share = 1.0 - off;
+        let known = Known { enough: self.enough * share, noise: self.noise * (1.0 + off), ..*self };
+        let limit = if few {
+            known.by_few(&[d[0], d[1]], most)
+        } else {
+            let mut k = [[0.0; 16]; 4];
+            coefficients(&tables.many, &d, &mut k);
+            let least = supremum(tables, &k, most, known.enough);
+            least * ARITHMETIC + known.noise * shares(tables.many.noise[self.top / 2][self.top % 2])
+        };
+        Ok(limit / share)
+    }
+}
+
+/// What the noise of the samples becomes in the bound, given what it may become in the coefficients.
+#[inline(always)]
+fn shares(all: f64) -> f64 {
+    // Both times that the tail is in it, and the samples' own.
+    let largest = GROWTH[GROWTH.len() - 1];
+    (1.0 + largest) * all + 2.0 * largest
+}
+
+/// Rounding of the samples, and of the ends and the slopes there, which makes D's zeros there none.
+#[inline(always)]
+fn noise(algebra: &Algebra, c: &Candidate, hermite: [f64; 2]) -> f64 {
+    /// Relative to the coordinates and the length of the whole segment's image, for which its speed at the ends stands.
+    const ROUNDING: f64 = 1e-14;
+    let speeds = 3.0 * (hermite[0] + hermite[1]) / (c.t1 - c.t0);
+    let one = ROUNDING * (c.p0.x.abs() + c.p0.y.abs() + c.frame.size + speeds) + algebra.blur;
+    // Its own, and that of the cubic through the ends' errors: one for either end's place, 4/27 for either slope.
+    one * (1.0 + 1.0 + 8.0 / 27.0)
+}
