@@ -76,6 +76,11 @@ impl Algebra {
         (out.total(P, V) < N && out.below + V - 1 < N).then_some(out)
     }
 
+    /// For pieces whose ends may be that far from the image.
+    pub(super) fn with_blur(self, blur: f64) -> Self {
+        Self { blur, ..self }
+    }
+
     /// Degree of D, or of F: that of VW·C∘φ at most.
     fn total(&self, p: usize, v: usize) -> usize {
         let composed = 3 * (p + 1);

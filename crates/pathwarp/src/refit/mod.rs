@@ -396,7 +396,7 @@ impl Job<'_> {
         report: &mut PathReport,
     ) -> Result<(), Point> {
         let algebra = if self.options.certify { Algebra::of(source, known) } else { None };
-        let algebra = algebra.map(|a| Algebra { blur, ..a });
+        let algebra = algebra.map(|a| a.with_blur(blur));
         let tolerance = self.options.tolerance;
         step::Stepper { source, slow, tolerance, algebra, careful: false, attempts: 0 }.cover(from, to, pieces, report)
     }
