@@ -100,10 +100,10 @@ impl Tables {
             let tau = s.map(|j| j * UNIT);
             [tau, tau.map(|t| t * (1.0 - t)), tau.map(|t| 2.0 * t - 1.0)]
         });
-        let half = |i: usize| places[i / 4][0][i % 4];
         let basis = Basis::new();
+        let half = std::array::from_fn(|i| basis.at(places[i / 4][0][i % 4]));
         let mut grid = (2..26).filter(|j| j % 3 != 0).map(|j| f64::from(j) / 51.0);
-        let grid: [f64; 16] = std::array::from_fn(|_| grid.next().unwrap_or(0.5));
+        let grid: [_; 16] = std::array::from_fn(|_| basis.at(grid.next().unwrap_or(0.5)));
         let (feet, offset, kappa) = feet(&places);
         let inverse: [[Lane; 2]; V + 1] = {
             let power = |u: f64| -> [f64; V + 1] { std::array::from_fn(|k| u.powi(k as i32)) };
@@ -119,9 +119,9 @@ impl Tables {
         };
         Self {
             places,
-            few: Expansion::new(&basis, std::array::from_fn(half)),
-            many: Expansion::new(&basis, std::array::from_fn(half)),
-            fine: std::array::from_fn(|odd| std::array::from_fn(|k| grid.map(|t| basis.at(2 * k + odd, t)))),
+            few: Expansion::new(&half),
+            many: Expansion::new(&half),
+            fine: std::array::from_fn(|odd| std::array::from_fn(|k| grid.map(|b| b[2 * k + odd]))),
             feet,
             offset,
             kappa,
@@ -181,10 +181,8 @@ fn feet(places: &[[Lane; 3]; 4]) -> ([[Lane; 2]; 3], [[f64; 3]; 3], f64) {
     )
 }
 
-/// The functions Bₖ.
-struct Basis {
-    scale: Vec<f64>,
-}
+/// The functions Bₖ: what each is divided by.
+struct Basis([f64; Basis::MOST]);
 
 impl Basis {
     /// As many as there are samples at most.
@@ -193,30 +191,36 @@ impl Basis {
     fn new() -> Self {
         /// Nodes; a polynomial of degree n exceeds its largest value there by 1/cos(πn/2N) at most.
         const N: usize = 512;
-        let plain = Self { scale: vec![1.0; Self::MOST] };
-        let nodes: Vec<f64> = (0..N).map(|i| 0.5 + 0.5 * (PI * (i as f64 + 0.5) / N as f64).cos()).collect();
-        let largest = |k: usize| nodes.iter().map(|t| plain.at(k, *t).abs()).fold(0.0, f64::max);
-        let grown = |k: usize| largest(k) / (PI * (k + 4) as f64 / (2 * N) as f64).cos();
-        Self { scale: (0..Self::MOST).map(|k| 1.0 / grown(k)).collect() }
+        let mut largest = [0.0f64; Self::MOST];
+        for i in 0..N / 2 {
+            let at = Self([1.0; Self::MOST]).at(0.5 + 0.5 * (PI * (i as f64 + 0.5) / N as f64).cos());
+            for (l, v) in largest.iter_mut().zip(at) {
+                *l = l.max(v.abs());
+            }
+        }
+        Self(std::array::from_fn(|k| largest[k] / (PI * (k + 4) as f64 / (2 * N) as f64).cos()))
     }
 
-    fn at(&self, k: usize, tau: f64) -> f64 {
+    /// Their values.
+    fn at(&self, tau: f64) -> [f64; Self::MOST] {
         let (u, v) = (2.0 * tau - 1.0, tau * (1.0 - tau));
         // Gegenbauer polynomials of index 4 (DLMF 18.9.1).
         let (mut last, mut c) = (0.0, 1.0);
-        for n in 0..k {
-            let n = n as f64;
+        std::array::from_fn(|k| {
+            let out = v * v * c / self.0[k];
+            let n = k as f64;
             (last, c) = (c, (2.0 * (n + 4.0) * u * c - (n + 7.0) * last) / (n + 1.0));
-        }
-        v * v * c * self.scale[k]
+            out
+        })
     }
 }
 
 impl<const H: usize> Expansion<H> {
-    fn new(basis: &Basis, half: [f64; H]) -> Self {
+    /// From the values of the basis at the first halves of the batches.
+    fn new(basis: &[[f64; Basis::MOST]; 16]) -> Self {
         // A sum of mirror images is twice the even part.
         let rows = |odd: usize| -> [[f64; H]; H] {
-            inverse(std::array::from_fn(|i| std::array::from_fn(|k| 2.0 * basis.at(2 * k + odd, half[i]))))
+            inverse(std::array::from_fn(|i| std::array::from_fn(|k| 2.0 * basis[i][2 * k + odd])))
         };
         let (even, odd) = (rows(0), rows(1));
         let row = |m: &[[f64; H]; H], k: usize| 2.0 * m[k].iter().map(|v| v.abs()).sum::<f64>();
