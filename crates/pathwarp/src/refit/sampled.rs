@@ -55,8 +55,14 @@ const BELOW_GROWTH: f64 = 12.0;
 const BELOW: usize = 16;
 /// Degrees of D that sixteen and thirty-two samples determine.
 const MOST: [usize; 2] = [19, 35];
-/// Degree of V.
+/// The largest value of τ(1−τ)².
+const LEFT: f64 = 4.0 / 27.0;
+/// Degree of V, and with thirty-two samples of denominators of degree eight and more, where that lets φ have one more.
 const V: usize = 4;
+const LESS: usize = 2;
+/// Free coefficients of φ at most, and all but the one of τ.
+const FREE: usize = 8;
+const PHI: usize = FREE + 2;
 
 /// A basis function's values are exact to rounding, and so is what is summed from them.
 const ARITHMETIC: f64 = 1.0 + 1e-9;
@@ -78,13 +84,16 @@ struct Tables {
     many: Expansion<16>,
     /// Basis functions 0, 2, 4 and 1, 3, 5 in the left half of the fine grid.
     fine: [[[f64; 16]; FINE]; 2],
-    /// Rows: the coefficients of r (in 1, u, u² − κ) from the feet.
-    feet: [[Lane; 2]; 3],
-    /// What they are for φ = τ, and for p₀ + p₁ = 1, p₁ − p₀ = 1.
-    offset: [[f64; 3]; 3],
-    kappa: f64,
+    /// v(1−τ), vτ, and v² times the polynomials that are orthonormal under v⁴ at the sixteen samples, in the batches.
+    phi: [[Lane; 4]; PHI],
+    /// Their products with each other and with τ, summed over the sixteen samples.
+    products: [[f64; 3]; FREE],
+    /// Their Bernstein coefficients, and those of τ.
+    bernstein: [[f64; 12]; PHI],
+    line: [f64; 12],
     /// Rows: the power coefficients of V from the values at the sixteen samples.
-    inverse: [[Lane; 2]; V + 1],
+    /// The same for those of degree two.
+    inverse: [[[Lane; 2]; V + 1]; 2],
 }
 
 impl Tables {
@@ -104,27 +113,31 @@ impl Tables {
         let half = std::array::from_fn(|i| basis.at(places[i / 4][0][i % 4]));
         let mut grid = (2..26).filter(|j| j % 3 != 0).map(|j| f64::from(j) / 51.0);
         let grid: [_; 16] = std::array::from_fn(|_| basis.at(grid.next().unwrap_or(0.5)));
-        let (feet, offset, kappa) = feet(&places);
-        let inverse: [[Lane; 2]; V + 1] = {
-            let power = |u: f64| -> [f64; V + 1] { std::array::from_fn(|k| u.powi(k as i32)) };
-            let rows: Vec<[f64; V + 1]> = (0..16).map(|i| power(places[i / 8][2][i % 8])).collect();
-            let gram: [[f64; V + 1]; V + 1] =
-                std::array::from_fn(|r| std::array::from_fn(|c| rows.iter().map(|p| p[r] * p[c]).sum()));
-            let gram = inverse(gram);
-            std::array::from_fn(|k| {
-                std::array::from_fn(|b| {
-                    std::array::from_fn(|i| (0..=V).map(|c| gram[k][c] * rows[8 * b + i][c]).sum())
+        let (phi, products, bernstein) = phi_tables(&places);
+        let power = |u: f64| -> [f64; V + 1] { std::array::from_fn(|k| u.powi(k as i32)) };
+        let rows: [[f64; V + 1]; 16] = std::array::from_fn(|i| power(places[i / 8][2][i % 8]));
+        let inverse = [V, LESS].map(|degree| {
+            let gram = inverse(std::array::from_fn::<[f64; V + 1], { V + 1 }, _>(|r| {
+                std::array::from_fn(|c| {
+                    let dot: f64 = rows.iter().map(|p| p[r] * p[c]).sum();
+                    let own = f64::from(u8::from(r == c));
+                    if r.max(c) > degree { own } else { dot }
                 })
+            }));
+            std::array::from_fn(|k| {
+                let at = |i: usize| (0..=degree).map(|c| gram[k][c] * rows[i][c]).sum();
+                std::array::from_fn(|b| std::array::from_fn(|i| if k > degree { 0.0 } else { at(8 * b + i) }))
             })
-        };
+        });
         Self {
             places,
             few: Expansion::new(&half),
             many: Expansion::new(&half),
             fine: std::array::from_fn(|odd| std::array::from_fn(|k| grid.map(|b| b[2 * k + odd]))),
-            feet,
-            offset,
-            kappa,
+            phi,
+            products,
+            bernstein,
+            line: std::array::from_fn(|j| j as f64 / 11.0),
             inverse,
         }
     }
@@ -133,13 +146,14 @@ impl Tables {
 impl Tables {
     /// Replaces the values of W by those of VW, and returns the largest |VW − 1| of the first twenty-four.
     #[inline(never)]
-    fn clear(&self, w: &mut [Lane; 4]) -> f64 {
+    fn clear(&self, w: &mut [Lane; 4], degree: usize) -> f64 {
+        let inverse = &self.inverse[usize::from(degree == LESS)];
         let mut parts = [[0.0; 8]; V + 1];
         for b in 0..2 {
             for i in 0..8 {
                 let v = 1.0 / w[b][i];
                 for k in 0..=V {
-                    parts[k][i] = fma(self.inverse[k][b][i], v, parts[k][i]);
+                    parts[k][i] = fma(inverse[k][b][i], v, parts[k][i]);
                 }
             }
         }
@@ -157,27 +171,42 @@ impl Tables {
     }
 }
 
-/// The rows of the coefficients of r, what is to be taken off them, and κ; see [`Tables`].
-fn feet(places: &[[Lane; 3]; 4]) -> ([[Lane; 2]; 3], [[f64; 3]; 3], f64) {
-    let over = |f: &dyn Fn(f64, f64, f64) -> f64| -> f64 {
-        (0..16).map(|i| f(places[i / 8][0][i % 8], places[i / 8][1][i % 8], places[i / 8][2][i % 8])).sum()
-    };
-    let kappa = over(&|_, v, u| v.powi(4) * u * u) / over(&|_, v, _| v.powi(4));
-    let base = |k: usize, u: f64| [1.0, u, u * u - kappa][k];
-    let square: [f64; 3] = std::array::from_fn(|k| over(&|_, v, u| (v * v * base(k, u)).powi(2)));
-    let row = |k: usize, v: f64, u: f64| v * v * base(k, u) / square[k];
+/// See [`Tables`].
+type PhiTables = ([[Lane; 4]; PHI], [[f64; 3]; FREE], [[f64; 12]; PHI]);
+
+fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
+    let tau = |i: usize| places[i / 8][0][i % 8];
+    let v = |t: f64| t * (1.0 - t);
+    // Values at the samples first, then where the Bernstein coefficients are found from.
+    const AT: usize = 32 + 12;
+    let at: [f64; AT] = std::array::from_fn(|i| if i < 32 { tau(i) } else { (i - 32) as f64 / 11.0 });
+    let dot = |a: &[f64; AT], b: &[f64; AT]| -> f64 { (0..16).map(|i| a[i] * b[i]).sum() };
+    let mut q = [[0.0; AT]; PHI];
+    q[0] = at.map(|t| v(t) * (1.0 - t));
+    q[1] = at.map(|t| v(t) * t);
+    for k in 2..PHI {
+        let last = q[k - 1];
+        let mut next = if k == 2 { at.map(|t| v(t) * v(t)) } else { std::array::from_fn(|i| (2.0 * at[i] - 1.0) * last[i]) };
+        // Twice, as rounding spoils the first time.
+        for _ in 0..2 {
+            for base in &q[2..k] {
+                let f = dot(&next, base);
+                next = std::array::from_fn(|i| next[i] - f * base[i]);
+            }
+        }
+        let size = dot(&next, &next).sqrt();
+        q[k] = next.map(|v| v / size);
+    }
+    let choose = |j: usize| (0..j).fold(1.0, |c, i| c * (11 - i) as f64 / (i + 1) as f64);
+    let collocation: [[f64; 12]; 12] = std::array::from_fn(|i| {
+        let t = at[32 + i];
+        std::array::from_fn(|j| choose(j) * t.powi(j as i32) * (1.0 - t).powi(11 - j as i32))
+    });
+    let solved = inverse(collocation);
     (
-        std::array::from_fn(|k| {
-            std::array::from_fn(|b| std::array::from_fn(|i| row(k, places[b][1][i], places[b][2][i])))
-        }),
-        std::array::from_fn(|k| {
-            [
-                over(&|t, v, u| row(k, v, u) * t),
-                over(&|_, v, u| row(k, v, u) * 0.5 * v),
-                over(&|_, v, u| row(k, v, u) * 0.5 * v * u),
-            ]
-        }),
-        kappa,
+        q.map(|q| std::array::from_fn(|b| std::array::from_fn(|i| q[8 * b + i]))),
+        std::array::from_fn(|k| [dot(&q[k + 2], &at), dot(&q[k + 2], &q[0]), dot(&q[k + 2], &q[1])]),
+        q.map(|q| std::array::from_fn(|j| (0..12).map(|i| solved[j][i] * q[32 + i]).sum())),
     )
 }
 
@@ -259,55 +288,64 @@ fn inverse<const N: usize>(mut a: [[f64; N]; N]) -> [[f64; N]; N] {
     b
 }
 
-/// The polynomial φ: p₀ + p₁, p₁ − p₀ (both halved) and the power coefficients of r.
-#[derive(Debug, Clone, Copy)]
-struct Phi {
-    p: [f64; 2],
-    r: [f64; 3],
-}
+/// The polynomial φ − τ: p₀, p₁, and its part v²r in the orthonormal basis.
+type Phi<const F: usize> = ([f64; 2], [f64; F]);
 
-impl Phi {
-    /// `slopes` are φ′ at the ends. `None`: φ leaves [0, 1].
-    #[inline(always)]
-    fn through(tables: &Tables, feet: [&Lane; 2], slopes: [f64; 2], sextic: bool) -> Option<Self> {
-        let (p0, p1) = (slopes[0] - 1.0, 1.0 - slopes[1]);
-        let (sum_p, dif) = (p0 + p1, p1 - p0);
-        let mut parts = [[0.0; 8]; 3];
+/// φ of degree `p` at most with these slopes at the ends. `None`: it leaves [0, 1].
+#[inline(always)]
+fn through<const F: usize>(tables: &Tables, feet: [&Lane; 2], slopes: [f64; 2], p: usize) -> Option<Phi<F>> {
+    let ends = [slopes[0] - 1.0, 1.0 - slopes[1]];
+    let mut parts = [[0.0; 8]; F];
+    for k in 0..F {
+        let row = &tables.phi[k + 2];
         for i in 0..8 {
-            for k in 0..3 {
-                parts[k][i] = fma(tables.feet[k][0][i], feet[0][i], tables.feet[k][1][i] * feet[1][i]);
-            }
+            parts[k][i] = fma(row[0][i], feet[0][i], row[1][i] * feet[1][i]);
         }
-        let part = |k: usize| {
-            let o = &tables.offset[k];
-            sum(&parts[k]) - o[0] - o[1] * sum_p - o[2] * dif
-        };
-        let c2 = if sextic { part(2) } else { 0.0 };
-        let r = [part(0) - tables.kappa * c2, part(1), c2];
-        // Bernstein coefficients one to five of six; the others are 0 and 1.
-        let (left, right, middle) = (r[0] - r[1] + r[2], r[0] + r[1] + r[2], r[0] - r[2]);
-        let b = [
-            (1.0 + p0) / 6.0,
-            1.0 / 3.0 + 0.2 * p0 + (p1 + left) / 15.0,
-            0.5 + 0.15 * sum_p + 0.1 * middle,
-            2.0 / 3.0 + 0.2 * p1 + (p0 + right) / 15.0,
-            (5.0 + p1) / 6.0,
-        ];
-        let inside = b.iter().all(|b| (0.0..=1.0).contains(b));
-        inside.then_some(Self { p: [0.5 * sum_p, 0.5 * dif], r })
     }
+    let mut c = [0.0; F];
+    let mut b = tables.line;
+    for j in 0..12 {
+        b[j] = fma(tables.bernstein[0][j], ends[0], fma(tables.bernstein[1][j], ends[1], b[j]));
+    }
+    for k in 0..F {
+        if k + 4 < p {
+            let known = &tables.products[k];
+            c[k] = sum(&parts[k]) - known[0] - known[1] * ends[0] - known[2] * ends[1];
+        }
+        for j in 0..12 {
+            b[j] = fma(tables.bernstein[k + 2][j], c[k], b[j]);
+        }
+    }
+    // The coefficients are right up to rounding; the first and the last are 0 and 1, those beside them the slopes' elevenths.
+    const ROUNDING: f64 = 1e-9;
+    let mut outside = 0.0;
+    for j in 2..10 {
+        let off = (b[j] - 0.5).abs();
+        outside = if off > outside { off } else { outside };
+    }
+    let slopes_inside = slopes.iter().all(|s| (0.0..11.0).contains(s));
+    (slopes_inside && outside < 0.5 - ROUNDING && sum(&parts[0]).is_finite()).then_some((ends, c))
 }
 
-/// What image and cubic differ by at the corresponding places of a batch, and the largest square of that.
+/// What image and cubic differ by at the corresponding places of batch `b`, and the largest square of that.
 #[inline(never)]
-fn difference(c: &Candidate, places: &[Lane; 3], phi: Option<&Phi>, g: &Lanes, out: &mut Lanes) -> f64 {
-    let mut f = places[0];
-    if let Some(phi) = phi {
-        let ([p, q], [r0, r1, r2]) = (phi.p, phi.r);
+fn difference<const F: usize>(
+    tables: &Tables,
+    b: usize,
+    c: &Candidate,
+    (ends, phi): &Phi<F>,
+    g: &Lanes,
+    out: &mut Lanes,
+) -> f64 {
+    let mut f = tables.places[b][0];
+    if F > 0 {
         for i in 0..8 {
-            let (v, u) = (places[1][i], places[2][i]);
-            let r = fma(fma(r2, u, r1), u, r0);
-            f[i] = fma(v, fma(v, r, fma(q, u, p)), f[i]);
+            f[i] = fma(tables.phi[0][b][i], ends[0], fma(tables.phi[1][b][i], ends[1], f[i]));
+        }
+        for k in 0..F {
+            for i in 0..8 {
+                f[i] = fma(tables.phi[k + 2][b][i], phi[k], f[i]);
+            }
         }
     }
     let [c1, c2, c3] = c.frame.power(c.a, c.b);
@@ -403,60 +441,153 @@ fn supremum<const H: usize>(tables: &Tables, c: &[[f64; H]; 4], most: f64, enoug
 }
 
 /// A bound for the distance between candidate and image, both ways; infinite if none was found. `hermite` are the handles that
-/// would follow the image's pace at the ends. `g` and `feet` belong to the samples [`FITTED`] and [`CHECKED`], the former
-/// relative to the first point; without feet, φ = τ. Where the bound is larger than `enough`, it is not certain to be the
-/// best that the samples give.
-pub(super) fn bound(
-    source: &Source<'_>,
-    algebra: &Algebra,
-    c: &Candidate,
+/// would follow the image's pace at the ends. `g` are the images at the samples [`FITTED`] and [`CHECKED`], relative to the first
+/// point. A bound larger than `enough` is none: it only tells how far from one that is.
+pub(super) struct Sampled<'a> {
+    source: &'a Source<'a>,
+    algebra: &'a Algebra,
+    c: &'a Candidate,
     hermite: [f64; 2],
-    g: [&Lanes; 2],
-    feet: Option<[&Lane; 2]>,
+    g: [&'a Lanes; 2],
     enough: f64,
-) -> Result<f64, Point> {
-    let tables = Tables::shared();
-    let slopes = [hermite[0] / c.a, hermite[1] / c.b];
-    // Which φ, how many samples.
-    let v = if algebra.below > 0 { V } else { 0 };
-    let degree = |p: usize| algebra.degree.max(algebra.below + 3 * p) + v;
-    let (p, sextic) = match feet {
-        None => (1, false),
-        Some(_) if degree(6) <= MOST[0] => (6, true),
-        Some(_) if degree(5) <= MOST[0] => (5, false),
-        Some(_) if degree(6) <= MOST[1] => (6, true),
-        Some(_) => (5, false),
-    };
-    let n = degree(p);
-    if n > MOST[1] || algebra.below + v > BELOW || !(hermite[0] > 0.0 && hermite[1] > 0.0) {
-        return Ok(f64::INFINITY);
+    /// What is left of C's derivative at the ends, times φ's, if the image stops there and C nearly does.
+    left: [f64; 2],
+    /// Degree of V.
+    clearing: usize,
+}
+
+impl<'a> Sampled<'a> {
+    #[inline(always)]
+    pub(super) fn new(
+        source: &'a Source<'a>,
+        algebra: &'a Algebra,
+        c: &'a Candidate,
+        hermite: [f64; 2],
+        g: [&'a Lanes; 2],
+        enough: f64,
+    ) -> Self {
+        Self { source, algebra, c, hermite, g, enough, left: [0.0; 2], clearing: V }
     }
-    let phi = match feet {
-        None if c.a != hermite[0] || c.b != hermite[1] => return Ok(f64::INFINITY),
-        None => None,
-        Some(feet) => match Phi::through(tables, feet, slopes, sextic) {
-            Some(phi) => Some(phi),
-            None => return Ok(f64::INFINITY),
-        },
-    };
-    let mut d = [Lanes::default(); 2];
-    let [m0, m1] = [0, 1].map(|b| difference(c, &tables.places[b], phi.as_ref(), g[b], &mut d[b]));
-    let most = (if m0 > m1 { m0 } else { m1 }).sqrt();
-    // More than the samples themselves show nothing proves.
-    if !(most <= enough) {
-        return Ok(f64::INFINITY);
+
+    /// Degree of D, or of VW·D, with φ of degree p.
+    #[inline(always)]
+    fn degree(&self, p: usize) -> usize {
+        let below = self.algebra.below;
+        self.algebra.degree.max(below + 3 * p) + if below > 0 { self.clearing } else { 0 }
     }
-    let known = Known { tables, c, noise: noise(algebra, c, hermite), top: n.max(4) - 4, enough };
-    if algebra.below == 0 && n <= MOST[0] { Ok(known.by_few(&d, most)) } else { known.by_more(source, algebra, phi.as_ref(), d) }
+
+    /// The bound with φ = τ, for the Hermite cubic.
+    pub(super) fn even(&self) -> Result<f64, Point> {
+        let own = [self.c.a, self.c.b] == self.hermite;
+        if own { self.with(&([0.0; 2], []), 1, MOST[0]) } else { Ok(f64::INFINITY) }
+    }
+
+    /// The bound from the sixteen samples, whose feet are known about.
+    pub(super) fn few(&mut self, feet: [&Lane; 2]) -> Result<f64, Point> {
+        self.through::<3>(feet, MOST[0])
+    }
+
+    /// The bound from thirty-two samples; the feet should be known well.
+    pub(super) fn many(&mut self, feet: [&Lane; 2]) -> Result<f64, Point> {
+        // A V of low degree lets φ have a higher one, where the denominator varies little.
+        if self.algebra.below >= 8 {
+            self.clearing = LESS;
+            let less = self.through::<FREE>(feet, MOST[1])?;
+            self.clearing = V;
+            if less <= self.enough {
+                return Ok(less);
+            }
+        }
+        self.through::<FREE>(feet, MOST[1])
+    }
+
+    #[inline(always)]
+    fn through<const F: usize>(&mut self, feet: [&Lane; 2], most: usize) -> Result<f64, Point> {
+        // The highest degree of φ that so many samples allow.
+        let Some(p) = (5..=F + 3).rev().find(|p| self.degree(*p) <= most) else { return Ok(f64::INFINITY) };
+        let [h0, h1] = self.hermite;
+        let mut slopes = [h0 / self.c.a, h1 / self.c.b];
+        if h0 == 0.0 || h1 == 0.0 {
+            self.stopping(feet, &mut slopes);
+        }
+        match through::<F>(Tables::shared(), feet, slopes, p) {
+            Some(phi) => self.with(&phi, p, most),
+            None => Ok(f64::INFINITY),
+        }
+    }
+    /// Where the image stops at an end, D′ vanishes there only if φ′ or C′ does. Where C nearly stops too, φ goes on as the feet
+    /// do, and what is left of D′ is taken off as a cubic with that slope.
+    #[cold]
+    fn stopping(&mut self, feet: [&Lane; 2], slopes: &mut [f64; 2]) {
+        /// What that may cost of the tolerance.
+        const COST: f64 = 0.3;
+        let handles = [self.c.a, self.c.b];
+        // Parabolas through the first and last two feet.
+        let along = [2.0 * feet[0][0] - 0.5 * feet[1][0], 2.0 * (1.0 - feet[0][7]) - 0.5 * (1.0 - feet[1][7])];
+        for k in 0..2 {
+            if self.hermite[k] == 0.0 {
+                let left = 3.0 * handles[k] * along[k] / UNIT;
+                let slow = along[k] >= 0.0 && left * LEFT <= COST * self.enough;
+                (slopes[k], self.left[k]) = if slow { (along[k] / UNIT, left) } else { (0.0, 0.0) };
+            }
+        }
+    }
+
+    /// Takes the cubic off.
+    #[cold]
+    fn take_off(&self, b: usize, d: &mut Lanes) {
+        let tables = Tables::shared();
+        let (t0, t1) = (self.c.frame.t0 * self.left[0], self.c.frame.t1 * self.left[1]);
+        for i in 0..8 {
+            let (l, r) = (tables.phi[0][b][i], tables.phi[1][b][i]);
+            d.x[i] += t0.x * l - t1.x * r;
+            d.y[i] += t0.y * l - t1.y * r;
+        }
+    }
+
+    /// The bound with this φ, of degree p, from samples that determine D of degree `most`.
+    #[inline(always)]
+    fn with<const F: usize>(&self, phi: &Phi<F>, p: usize, most: usize) -> Result<f64, Point> {
+        let tables = Tables::shared();
+        let c = self.c;
+        let (limit, n) = (most, self.degree(p));
+        if n > limit || self.algebra.below > BELOW - V {
+            return Ok(f64::INFINITY);
+        }
+        let mut d = [Lanes::default(); 2];
+        let [m0, m1] = [0, 1].map(|b| difference(tables, b, c, phi, self.g[b], &mut d[b]));
+        let most = (if m0 > m1 { m0 } else { m1 }).sqrt();
+        // More than the samples themselves show nothing proves.
+        if !(most <= self.enough) {
+            return Ok(most);
+        }
+        let noise = noise(self.algebra, c, self.hermite);
+        let left = self.left[0] + self.left[1];
+        if left > 0.0 {
+            self.take_off(0, &mut d[0]);
+            self.take_off(1, &mut d[1]);
+        }
+        let cost = LEFT * left;
+        let few = limit == MOST[0];
+        let known = Known { job: self, noise, top: n.max(4) - 4, few, enough: self.enough - cost };
+        let most = most + cost;
+        let rest = if self.algebra.below == 0 && few {
+            known.by_few(&d, most)
+        } else {
+            known.by_more(phi, d)?
+        };
+        Ok(rest + cost)
+    }
 }
 
 /// What a proof knows.
 struct Known<'a> {
-    tables: &'static Tables,
-    c: &'a Candidate,
+    job: &'a Sampled<'a>,
     noise: f64,
     /// Degree of q.
     top: usize,
+    /// Whether from sixteen samples only.
+    few: bool,
     enough: f64,
 }
 
@@ -472,16 +603,18 @@ impl Known<'_> {
             }
         }
         let mut k = [[0.0; 8]; 4];
-        coefficients(&self.tables.few, d, &mut k);
-        let least = supremum(self.tables, &k, most, self.enough);
-        least * ARITHMETIC + self.noise * shares(self.tables.few.noise[top / 2][top % 2])
+        let tables = Tables::shared();
+        coefficients(&tables.few, d, &mut k);
+        let least = supremum(tables, &k, most, self.enough);
+        least * ARITHMETIC + self.noise * shares(tables.few.noise[top / 2][top % 2])
     }
 
     /// With denominators, or from thirty-two samples.
     #[inline(never)]
-    fn by_more(&self, source: &Source<'_>, algebra: &Algebra, phi: Option<&Phi>, d: [Lanes; 2]) -> Result<f64, Point> {
-        let (tables, c) = (self.tables, self.c);
-        let few = self.top + 4 <= MOST[0];
+    fn by_more<const F: usize>(&self, phi: &Phi<F>, d: [Lanes; 2]) -> Result<f64, Point> {
+        let tables = Tables::shared();
+        let Sampled { source, algebra, c, .. } = self.job;
+        let few = self.few;
         let h = c.t1 - c.t0;
         let t = |b: usize| tables.places[b][0].map(|tau| fma(h, tau, c.t0));
         let mut d = [d[0], d[1], Lanes::default(), Lanes::default()];
@@ -493,7 +626,8 @@ impl Known<'_> {
                     g.x[i] -= c.p0.x;
                     g.y[i] -= c.p0.y;
                 }
-                difference(c, &tables.places[b], phi, &g, &mut d[b]);
+                difference(tables, b, c, phi, &g, &mut d[b]);
+                self.job.take_off(b, &mut d[b]);
             }
         }
         let mut off = 0.0;
@@ -505,7 +639,7 @@ impl Known<'_> {
             if w.iter().flatten().any(|v| v.is_nan() || *v <= 0.0) {
                 return Ok(f64::INFINITY);
             }
-            off = BELOW_GROWTH * tables.clear(&mut w);
+            off = BELOW_GROWTH * tables.clear(&mut w, self.job.clearing);
             /// A denominator that varies so much is split instead.
             const WORST: f64 = 0.1;
             if !(off < WORST) {

@@ -3,7 +3,7 @@
 use super::Piece;
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
-use super::sampled;
+use super::sampled::Sampled;
 use super::samples::{CHECKED, FITTED, Job, Shape, UNIT, between, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
@@ -18,6 +18,8 @@ const PLAIN: f64 = 0.9;
 const OUTER: f64 = 0.6;
 /// PLAIN for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
+/// The longest proof loses more than the rest of the tolerance.
+const MOST_PROVEN: f64 = 0.97;
 /// What errors of pieces over several segments grow by between the samples.
 const CORNERS: f64 = 1.015;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
@@ -140,36 +142,43 @@ impl<C: Curve> Stepper<'_, C> {
     fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
         let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        let (g, hermite) = ([job.g, job.check], job.frame.home);
-        if hermite == [z.a, z.b] {
-            let even = sampled::bound(source, algebra, &c, hermite, g, None, self.tolerance)?;
-            if even <= self.tolerance {
-                return Ok(even);
-            }
+        let mut sampled =
+            Sampled::new(source, algebra, &c, job.frame.home, [job.g, job.check], self.tolerance);
+        let even = sampled.even()?;
+        if even <= self.tolerance {
+            return Ok(even);
         }
-        let feet = |s0: &Lane, s1: &Lane| {
-            let mut feet = [0.0; 16];
-            for i in 0..8 {
-                feet[FITTED[i] as usize - 1] = s0[i];
-                feet[CHECKED[i] as usize - 1] = s1[i];
-            }
-            feet
-        };
         let mut s0 = z.s;
         job.frame.settle(job.g, z.a, z.b, &mut s0);
         let mut s1 = between(&s0);
         job.frame.settle(job.check, z.a, z.b, &mut s1);
-        let sampled = sampled::bound(source, algebra, &c, hermite, g, Some([&s0, &s1]), self.tolerance)?;
-        if sampled <= self.tolerance {
-            return Ok(sampled);
-        }
-        let quick = certify::quick(source, algebra, &c, &feet(&s0, &s1))?;
-        if quick <= self.tolerance {
-            return Ok(quick);
+        let few = sampled.few([&s0, &s1])?;
+        if few <= self.tolerance {
+            return Ok(few);
         }
         job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
         job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
-        certify::bound(source, algebra, &c, &feet(&s0, &s1))
+        let many = sampled.many([&s0, &s1])?;
+        if many <= self.tolerance {
+            return Ok(many);
+        }
+        /// Where they are farther off, no proof succeeds.
+        const NEAR: f64 = 3.0;
+        if many.is_finite() && many > NEAR * self.tolerance || error > MOST_PROVEN * self.tolerance {
+            return Ok(f64::INFINITY);
+        }
+        let mut feet = [0.0; 16];
+        for i in 0..8 {
+            feet[FITTED[i] as usize - 1] = s0[i];
+            feet[CHECKED[i] as usize - 1] = s1[i];
+        }
+        if algebra.below > 0 {
+            let quick = certify::quick(source, algebra, &c, &feet)?;
+            if quick <= self.tolerance {
+                return Ok(quick);
+            }
+        }
+        certify::bound(source, algebra, &c, &feet)
     }
 
     /// The measured error, and if that will do, the proven one.
