@@ -164,15 +164,16 @@ impl<C: Curve> Stepper<'_, C> {
         }
         /// Where they are farther off, no proof succeeds.
         const NEAR: f64 = 3.0;
-        if many.is_finite() && many > NEAR * self.tolerance || error > MOST_PROVEN * self.tolerance {
-            return Ok(f64::INFINITY);
+        let polynomial = algebra.below == 0;
+        if polynomial && many.is_finite() && (many > NEAR * self.tolerance || error > MOST_PROVEN * self.tolerance) {
+            return Ok(many);
         }
         let mut feet = [0.0; 16];
         for i in 0..8 {
             feet[FITTED[i] as usize - 1] = s0[i];
             feet[CHECKED[i] as usize - 1] = s1[i];
         }
-        if algebra.below > 0 {
+        if !polynomial {
             let quick = certify::quick(source, algebra, &c, &feet)?;
             if quick <= self.tolerance {
                 return Ok(quick);
