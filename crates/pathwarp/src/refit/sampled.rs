@@ -186,7 +186,8 @@ fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
     q[1] = at.map(|t| v(t) * t);
     for k in 2..PHI {
         let last = q[k - 1];
-        let mut next = if k == 2 { at.map(|t| v(t) * v(t)) } else { std::array::from_fn(|i| (2.0 * at[i] - 1.0) * last[i]) };
+        let mut next =
+            if k == 2 { at.map(|t| v(t) * v(t)) } else { std::array::from_fn(|i| (2.0 * at[i] - 1.0) * last[i]) };
         // Twice, as rounding spoils the first time.
         for _ in 0..2 {
             for base in &q[2..k] {
@@ -571,11 +572,7 @@ impl<'a> Sampled<'a> {
         let few = limit == MOST[0];
         let known = Known { job: self, noise, top: n.max(4) - 4, few, enough: self.enough - cost };
         let most = most + cost;
-        let rest = if self.algebra.below == 0 && few {
-            known.by_few(&d, most)
-        } else {
-            known.by_more(phi, d)?
-        };
+        let rest = if self.algebra.below == 0 && few { known.by_few(&d, most) } else { known.by_more(phi, d)? };
         Ok(rest + cost)
     }
 }
@@ -774,13 +771,19 @@ mod tests {
         for i in 0..=400 {
             let p = source.image(c.t0 + (c.t1 - c.t0) * f64::from(i) / 400.0).0;
             let d = |s: f64| cubic.eval(s.clamp(0.0, 1.0)).distance(p);
-            let near = (0..=64).map(|j| f64::from(j) / 64.0).min_by(|a, b| d(*a).total_cmp(&d(*b))).unwrap_or(0.0);
-            let (mut lo, mut hi) = (near - 1.0 / 64.0, near + 1.0 / 64.0);
-            for _ in 0..50 {
-                let (a, b) = (lo + 0.382 * (hi - lo), hi - 0.382 * (hi - lo));
-                if d(a) < d(b) { hi = b } else { lo = a }
+            // Every valley of the distance: near a hairpin or a crossing the nearest of even places may lie in the wrong one.
+            let at: Vec<f64> = (-1..=65).map(|j| d(f64::from(j) / 64.0)).collect();
+            let mut least = f64::INFINITY;
+            for j in (1..66).filter(|j| at[*j] <= at[j - 1] && at[*j] <= at[j + 1]) {
+                let s = (j - 1) as f64 / 64.0;
+                let (mut lo, mut hi) = (s - 1.0 / 64.0, s + 1.0 / 64.0);
+                for _ in 0..50 {
+                    let (a, b) = (lo + 0.382 * (hi - lo), hi - 0.382 * (hi - lo));
+                    if d(a) < d(b) { hi = b } else { lo = a }
+                }
+                least = least.min(d(0.5 * (lo + hi)));
             }
-            worst = worst.max(d(0.5 * (lo + hi)));
+            worst = worst.max(least);
         }
         worst
     }
@@ -800,7 +803,8 @@ mod tests {
             let source = Source::new(&seg, &map);
             let known = map.algebra().map(|a| crate::map::Algebra { degree: claimed.unwrap_or(a.degree), ..a });
             let (t0, t1) = (0.4 + 0.3 * r.next(), 0.9 + 0.1 * r.next());
-            let (Some(algebra), Ok(from), Ok(to)) = (Algebra::of(&source, known), source.end(t0), source.end(t1)) else {
+            let (Some(algebra), Ok(from), Ok(to)) = (Algebra::of(&source, known), source.end(t0), source.end(t1))
+            else {
                 continue;
             };
             let hermite = [from.speed, to.speed].map(|s| s * (t1 - t0) / 3.0);
@@ -808,8 +812,15 @@ mod tests {
             let stretch = if even { [1.0; 2] } else { [1.0 + 0.2 * r.next(), 1.0 + 0.2 * r.next()] };
             let (a, b) = (hermite[0] * stretch[0], hermite[1] * stretch[1]);
             let q = to.p - from.p;
-            let frame =
-                Frame { q, t0: from.away, t1: to.into, floor: [0.0; 2], size: q.hypot() + a + b, home: hermite, pull: 0.0 };
+            let frame = Frame {
+                q,
+                t0: from.away,
+                t1: to.into,
+                floor: [0.0; 2],
+                size: q.hypot() + a + b,
+                home: hermite,
+                pull: 0.0,
+            };
             let c = Candidate { t0, t1, p0: from.p, frame, a, b };
             let images = |set: &Lane| {
                 let mut g = source.images(&set.map(|j| t0 + (t1 - t0) * j * UNIT)).unwrap_or_default();
@@ -833,7 +844,8 @@ mod tests {
                 let Ok(bound) = bound else { continue };
                 if bound <= enough {
                     kinds[k] += 1;
-                    tightest = tightest.min((bound + 1e-15) / (real + 1e-15));
+                    // The truth's own rounding.
+                    tightest = tightest.min((bound + 1e-12) / (real + 1e-12));
                     if real > 1e-6 {
                         loosest = loosest.max(bound / real);
                     }
@@ -847,13 +859,19 @@ mod tests {
     fn proofs_hold_for_random_pieces() {
         for (degree, below, rounds) in [(6, 0.0, 1500), (3, 0.0, 600), (4, 0.05, 900), (2, 0.2, 600)] {
             let (kinds, loosest, tightest) = prove(degree, below, rounds, None);
-            assert!(tightest >= 1.0 - 1e-9, "{degree}: {tightest}");
+            assert!(tightest >= 1.0 - 1e-6, "{degree}: {tightest}");
             assert!(kinds.iter().all(|k| *k > rounds / 60), "{degree}: {kinds:?}");
             assert!(loosest <= 5.0);
         }
     }
 
-    /// K(d) and the sensitivities: random polynomials v²q whose samples are at most one.
+    #[test]
+    fn a_degree_that_is_too_low_would_be_seen() {
+        let (_, _, tightest) = prove(6, 0.0, 1500, Some(2));
+        assert!(tightest < 0.999, "{tightest}");
+    }
+
+    /// K(d): random polynomials v²q whose samples are at most one.
     #[test]
     fn nothing_grows_more_than_it_is_said_to() {
         let mut r = Noise(5);

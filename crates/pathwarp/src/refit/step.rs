@@ -142,8 +142,7 @@ impl<C: Curve> Stepper<'_, C> {
     fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
         let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
         let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        let mut sampled =
-            Sampled::new(source, algebra, &c, job.frame.home, [job.g, job.check], self.tolerance);
+        let mut sampled = Sampled::new(source, algebra, &c, job.frame.home, [job.g, job.check], self.tolerance);
         let even = sampled.even()?;
         if even <= self.tolerance {
             return Ok(even);
