@@ -105,7 +105,7 @@ impl Merger<'_> {
             slow: &slow,
             tolerance: SHARE * self.options.tolerance,
             algebra: None,
-            opaque: true,
+            known: None,
             careful: false,
             attempts: 0,
         };

@@ -17,6 +17,8 @@ mod fit;
 #[allow(clippy::needless_range_loop)]
 mod merge;
 #[allow(clippy::needless_range_loop)]
+mod sampled;
+#[allow(clippy::needless_range_loop)]
 mod samples;
 mod shared;
 #[allow(clippy::needless_range_loop)]
@@ -382,25 +384,29 @@ impl Job<'_> {
         if self.creases.items().is_empty() {
             let from = whole.end_with(0.0, jets[0].p, jets[0]);
             let to = whole.end_with(1.0, jets[1].p, jets[1]);
-            return self.cover(&whole, self.algebra, &slow, [&from, &to], pieces, report);
+            return self.cover(&whole, self.algebra, 0.0, &slow, [&from, &to], pieces, report);
         }
         self.warp_parts(seg, jets, &whole, &slow, pieces, report)
     }
 
-    /// Covers a smooth part.
+    /// Covers a smooth part, whose ends are at most `blur` from the source's image.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
     fn cover(
         &self,
         source: &Source<'_>,
         known: Option<crate::map::Algebra>,
+        blur: f64,
         slow: &split::Slow,
         [from, to]: [&End; 2],
         pieces: &mut Vec<Piece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
         let algebra = if self.options.certify { Algebra::of(source, known) } else { None };
+        let algebra = algebra.map(|a| a.with_blur(blur));
+        let known = known.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        step::Stepper { source, slow, tolerance, algebra, opaque: known.is_none(), careful: false, attempts: 0 }
+        step::Stepper { source, slow, tolerance, algebra, known, careful: false, attempts: 0 }
             .cover(from, to, pieces, report)
     }
 
@@ -444,19 +450,24 @@ impl Job<'_> {
                 }
             };
             // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
-            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
+            let mut blur = 0.0f64;
+            let mut end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
                 if branch.is_none() && (t == 0.0 || t == 1.0) {
                     return Ok((source.end_with(t, p, jet), false));
                 }
                 let own = source.end_at(t, None)?;
-                let torn = own.p.distance(p) > TORN * tolerance;
-                Ok((if torn { own } else { End { p, ..own } }, torn))
+                let off = own.p.distance(p);
+                if off > TORN * tolerance {
+                    return Ok((own, true));
+                }
+                blur = blur.max(off);
+                Ok((End { p, ..own }, false))
             };
             let ((e0, torn0), (e1, torn1)) = (end(from, jets[0])?, end(to, jets[1])?);
             if torn0 {
                 pieces.push(Piece::Line(Line::new(from.1, e0.p)));
             }
-            self.cover(source, source.map.algebra(), slow, [&e0, &e1], pieces, report)?;
+            self.cover(source, source.map.algebra(), blur, slow, [&e0, &e1], pieces, report)?;
             if torn1 {
                 pieces.push(Piece::Line(Line::new(e1.p, to.1)));
             }

@@ -2,7 +2,7 @@
 
 use super::fit::{self, Frame, State, at, fma, square};
 use super::source::{End, Lane, Lanes};
-use super::verify::turns_little;
+use super::verify::{Candidate, turns_little};
 use kurbo::{Line, Vec2};
 
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
@@ -121,6 +121,10 @@ fn neighbours(v: &Lane) -> Lane {
 impl Job<'_> {
     pub(super) fn cubic(&self, z: &State) -> kurbo::CubicBez {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
+    }
+
+    pub(super) fn candidate(&self, z: &State) -> Candidate {
+        Candidate { t0: self.from.t, t1: self.to.t, p0: self.from.p, frame: self.frame, a: z.a, b: z.b }
     }
 
     /// The Hermite cubic.

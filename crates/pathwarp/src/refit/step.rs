@@ -3,6 +3,7 @@
 use super::Piece;
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
+use super::sampled::Sampled;
 use super::samples::{CHECKED, FITTED, Glance, Job, Shape, UNIT, between, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
@@ -21,6 +22,8 @@ const SURE: f64 = 0.7;
 const NEAR_ENDS: Lane = [0.5, 1.5, 2.5, 3.5, 13.5, 14.5, 15.5, 16.5];
 /// PLAIN for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
+/// The longest proof loses more than the rest of the tolerance.
+const MOST_PROVEN: f64 = 0.97;
 /// What errors of pieces over several segments grow by between the samples.
 const CORNERS: f64 = 1.015;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
@@ -63,8 +66,8 @@ pub(super) struct Stepper<'a, C> {
     pub(super) tolerance: f64,
     /// What proofs need, if there are to be any.
     pub(super) algebra: Option<Algebra>,
-    /// Nothing is known of the map's degree.
-    pub(super) opaque: bool,
+    /// What the map says of itself, where the ends of the pieces lie on its image.
+    pub(super) known: Option<crate::map::Algebra>,
     /// Whether to look at every piece closely.
     pub(super) careful: bool,
     pub(super) attempts: usize,
@@ -118,7 +121,7 @@ impl<C: Curve> Stepper<'_, C> {
         if !(may(first.worst, PLAIN) && still(first.drift) && first.sound(None)) {
             return Ok(None);
         }
-        if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque {
+        if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque() {
             return Ok(Some(EIGHT * first.worst.sqrt()));
         }
         self.second_glance(job, &first)
@@ -142,7 +145,12 @@ impl<C: Curve> Stepper<'_, C> {
         for i in 0..8 {
             z.s[i] = FITTED[i] * UNIT;
         }
-        let error = self.proven(job, &z, worst)?;
+        let (mut s0, mut s1) = ([0.0; 8], [0.0; 8]);
+        for i in 0..8 {
+            s0[i] = fit::unit(z.s[i] + first.ds[i]);
+            s1[i] = fit::unit(CHECKED[i] * UNIT + second.ds[i]);
+        }
+        let error = self.proven(job, &z, [&s0, &s1], worst)?;
         Ok((error <= tol).then_some(error))
     }
 
@@ -154,6 +162,11 @@ impl<C: Curve> Stepper<'_, C> {
             None => Ok(None),
             Some(line) => self.line(job.from, job.to, line, size).map(Some),
         }
+    }
+
+    /// Nothing is known of the map's degree.
+    fn opaque(&self) -> bool {
+        self.known.is_none()
     }
 
     /// The checked samples, taken when first wanted.
@@ -191,38 +204,57 @@ impl<C: Curve> Stepper<'_, C> {
         Ok(Outcome::Misses { piece: line, error, reach: error, sharp: None })
     }
 
-    /// The proven error of a state that was measured to have `error`; what it was measured at where there is nothing to prove
-    /// it with.
+    /// The proven error of a state that was measured to have `error`, with these feet of its samples.
     #[inline(never)]
-    fn proven(&self, job: &mut Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
+    fn proven(&self, job: &mut Job<'_>, z: &State, feet: [&Lane; 2], error: f64) -> Result<f64, Point> {
         let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
         let check = *self.checked(job)?;
-        let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        let feet = |s0: &Lane, s1: &Lane| {
-            let mut feet = [0.0; 16];
-            for i in 0..8 {
-                feet[FITTED[i] as usize - 1] = s0[i];
-                feet[CHECKED[i] as usize - 1] = s1[i];
-            }
-            feet
-        };
-        let mut s0 = z.s;
-        job.frame.settle(job.g, z.a, z.b, &mut s0);
-        let mut s1 = between(&s0);
-        job.frame.settle(&check, z.a, z.b, &mut s1);
-        let quick = certify::quick(source, algebra, &c, &feet(&s0, &s1))?;
-        if quick <= self.tolerance {
-            return Ok(quick);
+        let c = job.candidate(z);
+        let mut sampled = Sampled::new(source, algebra, &c, job.frame.home, [job.g, &check], self.tolerance);
+        let even = sampled.even()?;
+        if even <= self.tolerance {
+            return Ok(even);
         }
+        let few = sampled.few(feet)?;
+        if few <= self.tolerance {
+            return Ok(few);
+        }
+        let (mut s0, mut s1) = (*feet[0], *feet[1]);
         job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
         job.frame.distances(&check, z.a, z.b, &mut s1, 2);
-        certify::bound(source, algebra, &c, &feet(&s0, &s1))
+        let many = sampled.many([&s0, &s1])?;
+        if many <= self.tolerance {
+            return Ok(many);
+        }
+        /// Where they are farther off, no proof succeeds.
+        const NEAR: f64 = 3.0;
+        let polynomial = algebra.below == 0;
+        if polynomial && many.is_finite() && (many > NEAR * self.tolerance || error > MOST_PROVEN * self.tolerance) {
+            return Ok(many);
+        }
+        let mut feet = [0.0; 16];
+        for i in 0..8 {
+            feet[FITTED[i] as usize - 1] = s0[i];
+            feet[CHECKED[i] as usize - 1] = s1[i];
+        }
+        if !polynomial {
+            let quick = certify::quick(source, algebra, &c, &feet)?;
+            if quick <= self.tolerance {
+                return Ok(quick);
+            }
+        }
+        certify::bound(source, algebra, &c, &feet)
     }
 
-    /// The measured error, and if that will do, the proven one.
-    fn judge(&self, job: &mut Job<'_>, f: &Fit) -> Result<f64, Point> {
-        let error = self.check(job, f)?;
-        if error <= self.tolerance { self.proven(job, &f.z, error) } else { Ok(error) }
+    /// What the samples prove of a state, where the map is a quotient of polynomials; infinite elsewhere.
+    #[inline(never)]
+    fn told(&self, job: &Job<'_>, check: &Lanes, z: &State, feet: [&Lane; 2]) -> Result<f64, Point> {
+        let Some(source) = self.source.single() else { return Ok(f64::INFINITY) };
+        let Some(algebra) = self.known.and_then(|known| Algebra::of(source, Some(known))) else {
+            return Ok(f64::INFINITY);
+        };
+        let c = job.candidate(z);
+        Sampled::new(source, &algebra, &c, job.frame.home, [job.g, check], DENSE * self.tolerance).few(feet)
     }
 
     /// Images at the given samples of the stretch, relative to its first point.
@@ -254,7 +286,7 @@ impl<C: Curve> Stepper<'_, C> {
                 for i in 0..8 {
                     z.s[i] = FITTED[i] * UNIT;
                 }
-                let error = self.proven(job, &z, 0.0)?;
+                let error = self.proven(job, &z, [&z.s, &CHECKED.map(|j| j * UNIT)], 0.0)?;
                 if error <= tol {
                     return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
                 }
@@ -332,9 +364,10 @@ impl<C: Curve> Stepper<'_, C> {
         Ok(Outcome::Misses { piece, error: error.max(f.error), reach: error, sharp })
     }
 
-    /// The error of a fit: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
-    #[inline(always)]
-    fn check(&self, job: &mut Job<'_>, f: &Fit) -> Result<f64, Point> {
+    /// The error of a fit: at all sixteen samples; if that will do, the proven one, or where nothing is to be proven a closer look
+    /// at what is near the tolerance or may be sharp.
+    #[inline(never)]
+    fn judge(&self, job: &mut Job<'_>, f: &Fit) -> Result<f64, Point> {
         let check = *self.checked(job)?;
         let frame = &job.frame;
         let z = &f.z;
@@ -356,11 +389,20 @@ impl<C: Curve> Stepper<'_, C> {
         if error > self.tolerance {
             return Ok(error);
         }
-        if !job.careful && error <= PLAIN * self.tolerance && job.sound(&check, z, &s0, &s1) {
-            let regular = error <= SURE * self.tolerance || d1[0].max(d1[7]) <= (OUTER * error).powi(2);
-            if regular {
-                return Ok(error);
+        if self.algebra.is_some() {
+            return self.proven(job, z, [&s0, &s1], error);
+        }
+        let sound = !job.careful && error <= PLAIN * self.tolerance && job.sound(&check, z, &s0, &s1);
+        if sound && (error <= SURE * self.tolerance || d1[0].max(d1[7]) <= (OUTER * error).powi(2)) {
+            return Ok(error);
+        }
+        if !self.opaque() {
+            let told = self.told(job, &check, z, [&s0, &s1])?;
+            if told <= DENSE * self.tolerance {
+                return Ok(told.max(error));
             }
+        }
+        if sound {
             let closer = self.near_ends(job, z, &s0, &s1)?.max(error);
             if closer <= PLAIN * self.tolerance {
                 return Ok(closer);
@@ -385,7 +427,7 @@ impl<C: Curve> Stepper<'_, C> {
 
     #[inline(never)]
     fn dense(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane, error: f64) -> Result<f64, Point> {
-        let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
+        let c = job.candidate(z);
         let mut feet = [0.0; 18];
         feet[17] = 1.0;
         for i in 0..8 {
