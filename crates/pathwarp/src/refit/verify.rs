@@ -79,7 +79,23 @@ pub(super) fn dense(
         *squares = d;
     }
     sound &= turns_little(last.slope, c.frame.t1) || walk(&spread(last.tau, 1.0), &mut worst, &mut last, 1)?.0;
-    let peak = peak(even.as_flattened(), worst);
+    // Eight more between the neighbours of every sample that is nearly the largest: where the cubic nearly stops, the distance
+    // has a corner that no parabola follows.
+    let mut tops = 0.0f64;
+    let even = even.as_flattened();
+    for i in 0..even.len() {
+        let (before, after) = (if i > 0 { even[i - 1] } else { 0.0 }, even.get(i + 1).copied().unwrap_or(0.0));
+        if even[i] < NEAR * worst || even[i] < before || even[i] < after {
+            continue;
+        }
+        let at = (i as f64 + 0.5) / (BATCHES * 8) as f64;
+        let tau = spread(at - STEP, at + STEP).map(|t| t.clamp(0.0, 1.0));
+        let mut s: Lane = tau.map(|t| guess(feet, t));
+        let g = c.images(source, &tau)?;
+        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+        let largest = fit::largest(&d);
+        tops = tops.max(largest.sqrt()).max(peak(&d, largest));
+    }
     for t in slow.all() {
         let at = (t - c.t0) / (c.t1 - c.t0);
         if at > 0.0 && at < 1.0 {
@@ -101,15 +117,18 @@ pub(super) fn dense(
         let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
         worst = d.iter().copied().fold(worst, f64::max);
     }
-    let worst = worst.sqrt().max(peak);
+    let worst = worst.sqrt().max(tops);
     if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
 }
+
+/// A sample whose square is below this share of the largest is no top.
+const NEAR: f64 = 0.64;
+/// Between samples.
+const STEP: f64 = 1.0 / (BATCHES * 8) as f64;
 
 /// The largest distance between evenly spaced samples: parabolas through three neighbours, where the middle one is the largest
 /// of them. Squares are given, of samples none larger than `most`.
 fn peak(squares: &[f64], most: f64) -> f64 {
-    /// A sample this far below the largest is on no parabola that reaches higher.
-    const NEAR: f64 = 0.8;
     let mut best = 0.0f64;
     for w in squares.windows(3) {
         if w[1] < NEAR * most || w[1] < w[0] || w[1] < w[2] {
