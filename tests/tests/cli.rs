@@ -38,13 +38,20 @@ fn every_job_of_the_cookbook_runs() {
     }
 }
 
-/// Runs a command line of the documentation, what it writes going to `dir`; gives its messages.
+/// Runs a command line of the documentation, perhaps a pipe, what it writes going to `dir`; gives its messages.
 fn run_into(dir: &Path, command: &str) -> String {
-    let inside = |w: String| {
-        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w }
+    let inside = |w: &String| {
+        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w.clone() }
     };
-    let args: Vec<String> = words(command).into_iter().map(inside).collect();
-    let (_, messages) = expect_code(0, &args);
+    let (mut drawing, mut messages) = (Vec::new(), String::new());
+    for stage in words(command).split(|w| w == "|") {
+        let args: Vec<String> = stage.iter().filter(|w| *w != "pathwarp").map(inside).collect();
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        let out = pathwarp_in(&root(), &args, &drawing);
+        assert_eq!(out.status.code(), Some(0), "{command}: {}", text(&out.stderr));
+        messages += &text(&out.stderr);
+        drawing = out.stdout;
+    }
     let svg = fs::read_to_string(dir.join("out.svg")).unwrap();
     assert!(svg.contains("<svg"), "{command}");
     fs::remove_file(dir.join("out.svg")).unwrap();
@@ -89,6 +96,31 @@ fn a_drawing_is_not_written_under_a_pictures_name() {
     assert_eq!(out.status.code(), Some(2), "{}", text(&out.stderr));
     assert!(text(&out.stderr).contains("out.png: a drawing is written as SVG"), "{}", text(&out.stderr));
     assert!(!dir.path().join("out.png").exists());
+}
+
+#[test]
+fn artwork_that_leaves_the_page_is_warned_of_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |options: &[&str]| {
+        let mut args = vec!["affine", "--move-x", "30", "--move-y", "-8", "--report", "r.json"];
+        args.extend(options);
+        let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+        (text(&out.stderr), report["inputs"][0]["warnings"].as_array().unwrap().clone())
+    };
+    let (said, told) = run(&[]);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    for part in ["leaves the page by up to 30 units", "30 %; top, right", "--fit grow", "--fit page"] {
+        assert!(said.contains(part) && told[0].as_str().unwrap().contains(part), "{part} not in {said}");
+    }
+    assert_eq!(told.len(), 1);
+    let (said, told) = run(&["--quiet"]);
+    assert!(said.is_empty() && told.len() == 1, "{said} {told:?}");
+    for fit in ["grow", "page"] {
+        let (said, told) = run(&["--fit", fit]);
+        assert!(said.is_empty() && told.is_empty(), "{fit}: {said}");
+    }
 }
 
 #[test]
@@ -140,6 +172,21 @@ fn unreadable_input_is_3_and_names_the_place() {
         assert_eq!(out.status.code(), Some(3), "{input} {shaper}: {}", text(&out.stderr));
         assert!(text(&out.stderr).contains(part), "{input} {shaper}: {}", text(&out.stderr));
         assert!(!dir.path().join("out.svg").exists());
+    }
+    // A file beside the artwork is named first, and the artwork not at all.
+    fs::write(dir.path().join("style.toml"), "name = 7").unwrap();
+    fs::write(dir.path().join("cage.svg"), "<svg").unwrap();
+    for args in [
+        ["warp", "--style", "missing.toml"],
+        ["warp", "--style", "style.toml"],
+        ["wordart", "--preset", "missing.json"],
+        ["shaper", "--shaper", "missing.svg#a"],
+        ["shaper", "--shaper", "cage.svg#a"],
+    ] {
+        let out = pathwarp_in(dir.path(), &[&args[..], &["ok.svg", "-o", "out.svg"]].concat(), b"");
+        let (said, file) = (text(&out.stderr), args[2].split('#').next().unwrap());
+        assert_eq!(out.status.code(), Some(3), "{args:?}: {said}");
+        assert!(said.starts_with(&format!("error: {file}")) && !said.contains("ok.svg"), "{args:?}: {said}");
     }
 }
 

@@ -359,11 +359,20 @@ fn beyond_the_page(o: Overhang) -> String {
     let sides: Vec<&str> = names.iter().zip(o.by).filter(|(_, by)| *by > 0.0).map(|(name, _)| *name).collect();
     let most = o.by.into_iter().fold(0.0, f64::max);
     format!(
-        "the artwork leaves the page by up to {most:.3} units ({:.1} %; {}); --fit grow makes room for it, --fit page fits the \
-         page to it",
-        100.0 * o.share,
+        "the artwork leaves the page by up to {} units ({} %; {}); --fit grow makes room for it, --fit page fits the page to it",
+        three_figures(most),
+        three_figures(100.0 * o.share),
         sides.join(", ")
     )
+}
+
+/// A positive number with the three figures that tell how much it is.
+fn three_figures(v: f64) -> String {
+    /// Nobody's page is so small.
+    const MOST_DECIMALS: f64 = 12.0;
+    let decimals = (2.0 - v.log10().floor()).clamp(0.0, MOST_DECIMALS) as usize;
+    let text = format!("{v:.decimals$}");
+    if decimals == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
 }
 
 /// Every selected shape's orientation under the map.

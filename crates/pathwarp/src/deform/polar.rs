@@ -50,12 +50,12 @@ unless --center says where the centre lies. With --spacing conformal, squares st
     ],
     demo: &[("turn", "15")],
     examples: &[
-        Example { what: "An arch", command: "polar samples/lettering.svg -o out.svg" },
+        Example { what: "An arch", command: "polar samples/lettering.svg --fit grow -o out.svg" },
         Example {
             what: "A whole ring about the middle",
             command: "polar samples/grid.svg --sweep 360 --inner 15% --outer 50% --center 50%,50% -o out.svg",
         },
-        Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 -o out.svg" },
+        Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 --fit grow -o out.svg" },
     ],
     laws: &[
         Law::Identity(&[("sweep", "0")]),

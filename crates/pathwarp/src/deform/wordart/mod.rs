@@ -101,7 +101,7 @@ let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\
         },
         Example {
             what: "On an arch, from low on the left to low on the right",
-            command: "wordart samples/logo.svg --preset arch-up --adj 150deg -o out.svg",
+            command: "wordart samples/logo.svg --preset arch-up --adj 150deg --fit page -o out.svg",
         },
         Example {
             what: "Round a ring, by the curves' own parameters",
