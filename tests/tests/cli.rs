@@ -452,6 +452,35 @@ fn compare_tells_how_far_and_can_fail() {
 }
 
 #[test]
+fn compare_counts_off_what_has_no_id() {
+    let dir = tempfile::tempdir().unwrap();
+    let compare = |a: &str, b: &str| -> Value {
+        let svg = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
+        fs::write(dir.path().join("a.svg"), svg(a)).unwrap();
+        fs::write(dir.path().join("b.svg"), svg(b)).unwrap();
+        let out = pathwarp_in(dir.path(), &["compare", "--json", "a.svg", "b.svg"], b"");
+        serde_json::from_slice(&out.stdout).unwrap()
+    };
+    let distances = |c: &Value| -> Vec<f64> {
+        c["paths"].as_array().unwrap().iter().map(|p| p["distance"].as_f64().unwrap().round()).collect()
+    };
+    let square = |x: i32| format!("<path d='M{x},0h10v10h-10z'/>");
+    // All on one line; numbers of other lengths move what follows, and a circle may have become a path.
+    let a = format!("{}{}<g id='g'>{}<path id='p' d='M0,50h9'/></g>", square(0), square(20), square(40));
+    let b = format!("{}{}<g id='g'>{}<path id='p' d='M0,57h9'/></g>", square(-100), square(23), square(45));
+    let c = compare(&a, &b);
+    assert_eq!(distances(&c), [100.0, 3.0, 5.0, 7.0]);
+    assert!(c["only_in_a"].as_array().unwrap().is_empty() && c["only_in_b"].as_array().unwrap().is_empty(), "{c}");
+    let circle = compare("<rect width='10' height='10'/>", "<path d='M0,0h12v10h-12z'/>");
+    assert_eq!(distances(&circle), [2.0]);
+    // One more in the group: the others are still compared; here the place in the file tells which is which.
+    let more = format!("{}{}<g id='g'>{}{}</g>", square(0), square(20), square(41), square(70));
+    let c = compare(&a, &more);
+    assert_eq!(distances(&c), [0.0, 0.0, 1.0]);
+    assert_eq!((c["only_in_a"][0].as_str(), c["only_in_b"].as_array().unwrap().len()), (Some("p"), 1), "{c}");
+}
+
+#[test]
 fn render_and_preview_write_pictures() {
     let dir = tempfile::tempdir().unwrap();
     let png = dir.path().join("logo.png");

@@ -63,9 +63,9 @@ taken for a corner. `--explain` tells what was chosen.",
     Job {
         name: "t-shirt",
         title: "Arched lettering for a T-shirt",
-        text: "Flat below, arched above. `--frame` is the box from baseline to ascenders, so that the baseline becomes the flat side and \
+        text: "Flat below, arched above. `--frame` is the box from the baseline to the capitals' height, so that the baseline becomes the flat side and \
 tails hang below it. With `--keep verticals` uprights stay upright and letters keep their even widths.",
-        command: "text 'Rugby Club' --fill '#1b5e20' | pathwarp envelope - --frame baseline-ascent --bottom 'M20,180 H516' --top 'M20,110 Q268,-80 516,110' --keep verticals --fit page -o out.svg",
+        command: "text 'Rugby Club' --fill '#1b5e20' | pathwarp envelope - --frame baseline-capheight --bottom 'M20,180 H516' --top 'M20,110 Q268,-80 516,110' --keep verticals --fit page -o out.svg",
     },
     Job {
         name: "wine-label",
