@@ -1,6 +1,6 @@
 //! Fonts: any bytes are a font that text can be set in, or are refused.
 //!
-//! The fonts of the tests are good seeds: `cargo +nightly fuzz run font fuzz/corpus/font crates/pathwarp-text/tests/fonts`
+//! The fonts of the tests are good seeds: `cp crates/pathwarp-text/tests/fonts/*.?tf fuzz/corpus/font`
 
 #![no_main]
 
