@@ -91,8 +91,8 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
     let alone = paths_a.iter().zip(&twins).filter(|(_, twin)| twin.is_none());
     let only_in_a = alone.map(|(p, _)| p.id.clone()).collect();
     // Later ones of an id are no paths of their own.
-    let alone =
-        paths_b.iter().enumerate().filter(|(i, p)| !met.contains(i) && !(p.group.is_none() && ids_b.contains(&*p.id)));
+    let again = |p: &NamedPath| p.group.is_none() && ids_b.contains(p.id.as_str());
+    let alone = paths_b.iter().enumerate().filter(|(i, p)| !met.contains(i) && !again(p));
     let only_in_b = alone.map(|(_, p)| p.id.clone()).collect();
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
     let render = |d: &pathwarp_svg::Document| RenderOptions { size, background: Some(Color::WHITE) }.render(d.tree());

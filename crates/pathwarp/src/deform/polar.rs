@@ -374,8 +374,8 @@ mod tests {
         }
         // Artwork that reaches below the centre is refused where it does.
         let m = build(&[("inner", "0"), ("outer", "50")]).unwrap().map;
-        let art = crate::Outline::from_svg("M10,10 L20,150").unwrap();
-        let e = crate::refit::warp_path(&art, &*m, &crate::refit::Options::new(0.1)).unwrap_err();
+        let art = Outline::from_svg("M10,10 L20,150").unwrap();
+        let e = refit::warp_path(&art, &*m, &refit::Options::new(0.1)).unwrap_err();
         assert!(e.to_string().contains("infinity"), "{e}");
     }
 }
