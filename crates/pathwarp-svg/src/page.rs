@@ -118,7 +118,7 @@ impl Job<'_> {
 
     fn group_box(&self, g: &Group, m: Measure<'_>) -> Option<Rect> {
         let scene = &self.document.scene;
-        let boxes = g.children.iter().filter_map(|n| match n {
+        let one = |n: &Node, m: Measure<'_>| match n {
             Node::Group(g) => self.group_box(g, m),
             Node::Text { content, .. } => self.group_box(content, m),
             Node::Part(i) => {
@@ -138,8 +138,16 @@ impl Job<'_> {
                     _ => frame.transform_rect_bbox(Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into())),
                 })
             }
-        });
-        let mut all = boxes.filter(Rect::is_finite).reduce(|a, b| a.union(b))?;
+        };
+        let mut all: Option<Rect> = None;
+        for n in &g.children {
+            // Nor what lies within what there is already.
+            let room = m.room.map(|room| all.map_or(room, |a| room.union(a)));
+            if let Some(b) = one(n, Measure { room, ..m }).filter(Rect::is_finite) {
+                all = Some(all.map_or(b, |a| a.union(b)));
+            }
+        }
+        let mut all = all?;
         for f in g.filters.iter().filter(|_| m.filters) {
             // Where a filter may paint; measured from its region before the warp.
             let r = f.rect();
