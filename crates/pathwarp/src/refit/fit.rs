@@ -307,6 +307,8 @@ pub(super) struct Fit {
     pub(super) reach: f64,
     /// The Newton step that is still to be taken by the feet.
     pub(super) ds: Lane,
+    /// Squares of the normal residuals.
+    pub(super) squares: Lane,
 }
 
 /// Fits from `z` until the largest residual is at most `enough`, or no longer improves. Where it stays far above `wanted`, a
@@ -363,7 +365,7 @@ pub(super) fn fit(frame: &Frame, g: &Lanes, start: State, [enough, wanted]: [f64
         }
         (step[0], step[1], length) = frame.bent(newton, &z[best], trust);
     }
-    Fit { z: z[best], error: error.sqrt(), reach: (error * left).sqrt(), ds: r[best].ds }
+    Fit { z: z[best], error: error.sqrt(), reach: (error * left).sqrt(), ds: r[best].ds, squares: r[best].squares }
 }
 
 /// Minimax by Lawson's reweighting on sixteen samples: weights grow with the residuals, and the largest ones even out.

@@ -203,6 +203,26 @@ pub(super) fn between(s: &Lane) -> Lane {
     ]
 }
 
+/// The largest distance between samples by parabolas through three of them, the middle one being the largest; at the ends there is
+/// none. Given are squares at the fitted and the checked samples.
+pub(super) fn between_samples(fitted: &Lane, checked: &Lane) -> f64 {
+    let mut v = [0.0; 18];
+    for i in 0..8 {
+        v[FITTED[i] as usize] = fitted[i].sqrt();
+        v[CHECKED[i] as usize] = checked[i].sqrt();
+    }
+    let mut best = 0.0;
+    for w in v.windows(3) {
+        let [a, b, c] = [w[0], w[1], w[2]];
+        if b >= a && b >= c && b > 0.0 {
+            let bend = 2.0 * b - a - c;
+            let top = if bend > 0.0 { b + (c - a) * (c - a) / (8.0 * bend) } else { b };
+            best = fit::larger(top, best);
+        }
+    }
+    best
+}
+
 /// What the polyline through the samples looks like.
 pub(super) struct Shape {
     pub(super) length: f64,

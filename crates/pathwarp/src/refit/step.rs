@@ -4,7 +4,7 @@ use super::Piece;
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
 use super::sampled::Sampled;
-use super::samples::{CHECKED, FITTED, Glance, Job, Shape, UNIT, between, hermite_exact, straight};
+use super::samples::{CHECKED, FITTED, Glance, Job, Shape, UNIT, between, between_samples, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate};
@@ -13,13 +13,10 @@ use kurbo::{Line, Point, Vec2};
 /// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
 /// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
 const PLAIN: f64 = 0.9;
-/// Where the errors at 2/17 or 15/17 of a piece are more than this share of the largest, a residual may swing between an end and
-/// its neighbours: eight more samples there tell.
-const OUTER: f64 = 0.6;
-/// Below this share of the tolerance they need not be asked.
+/// Below this share of the tolerance what they may grow by is not asked for.
 const SURE: f64 = 0.7;
-/// Where those are, in seventeenths.
-const NEAR_ENDS: Lane = [0.5, 1.5, 2.5, 3.5, 13.5, 14.5, 15.5, 16.5];
+/// Where parabolas through three samples each rise above the samples, the residual may rise by so much more.
+const STEEPER: f64 = 1.7;
 /// PLAIN for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
 /// The longest proof loses more than the rest of the tolerance.
@@ -118,7 +115,7 @@ impl<C: Curve> Stepper<'_, C> {
         let [a, b] = job.frame.home;
         let may = |worst: f64, share: f64| worst <= (share * tol).powi(2) && a > 0.0 && b > 0.0 && !job.careful;
         let still = |drift: f64| drift * drift * size <= FLAT * tol;
-        if !(may(first.worst, PLAIN) && still(first.drift) && first.sound(None)) {
+        if !(may(first.worst, SURE) && still(first.drift) && first.sound(None)) {
             return Ok(None);
         }
         if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque() {
@@ -134,7 +131,7 @@ impl<C: Curve> Stepper<'_, C> {
         let check = *self.checked(job)?;
         let second = job.second_glance(&check);
         let worst = fit::larger(first.worst, second.worst).sqrt();
-        if !(worst <= PLAIN * tol && second.drift * second.drift * size <= FLAT * tol && first.sound(Some(&second))) {
+        if !(worst <= SURE * tol && second.drift * second.drift * size <= FLAT * tol && first.sound(Some(&second))) {
             return Ok(None);
         }
         if self.algebra.is_none() {
@@ -348,7 +345,7 @@ impl<C: Curve> Stepper<'_, C> {
             let check = *self.checked(job)?;
             let (z, e) = fit::lawson(frame, [job.g, &check], [f.z, other], 4);
             if e < error {
-                f = Fit { z: z[0], error: e, reach: e, ds: [1.0; 8] };
+                f = Fit { z: z[0], error: e, reach: e, ds: [1.0; 8], squares: [0.0; 8] };
                 error = e;
                 if e <= tol {
                     error = self.judge(job, &f)?;
@@ -378,10 +375,11 @@ impl<C: Curve> Stepper<'_, C> {
             drift[i] = f.ds[i].abs();
         }
         let drift = fit::largest(&drift);
-        let mut error = f.error;
+        let (mut error, mut d0) = (f.error, f.squares);
         if drift * drift * frame.size > FLAT * self.tolerance {
             s0 = z.s;
-            error = fit::largest(&frame.distances(job.g, z.a, z.b, &mut s0, 2)).sqrt();
+            d0 = frame.distances(job.g, z.a, z.b, &mut s0, 2);
+            error = fit::largest(&d0).sqrt();
         }
         let mut s1 = between(&s0);
         let d1 = frame.distances(&check, z.a, z.b, &mut s1, 1);
@@ -392,9 +390,14 @@ impl<C: Curve> Stepper<'_, C> {
         if self.algebra.is_some() {
             return self.proven(job, z, [&s0, &s1], error);
         }
-        let sound = !job.careful && error <= PLAIN * self.tolerance && job.sound(&check, z, &s0, &s1);
-        if sound && (error <= SURE * self.tolerance || d1[0].max(d1[7]) <= (OUTER * error).powi(2)) {
-            return Ok(error);
+        if !job.careful && error <= PLAIN * self.tolerance && job.sound(&check, z, &s0, &s1) {
+            if error <= SURE * self.tolerance {
+                return Ok(error);
+            }
+            let between = error + STEEPER * (between_samples(&d0, &d1) - error);
+            if between <= DENSE * self.tolerance {
+                return Ok(between.max(error));
+            }
         }
         if !self.opaque() {
             let told = self.told(job, &check, z, [&s0, &s1])?;
@@ -402,27 +405,7 @@ impl<C: Curve> Stepper<'_, C> {
                 return Ok(told.max(error));
             }
         }
-        if sound {
-            let closer = self.near_ends(job, z, &s0, &s1)?.max(error);
-            if closer <= PLAIN * self.tolerance {
-                return Ok(closer);
-            }
-        }
         self.dense(job, z, &s0, &s1, error)
-    }
-
-    /// The largest distance of samples near both ends.
-    #[inline(never)]
-    fn near_ends(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane) -> Result<f64, Point> {
-        let mut g = Lanes::default();
-        self.samples(job.from, job.to.t - job.from.t, &NEAR_ENDS, &mut g)?;
-        let feet = [0.0, s0[0], s1[0], s0[1], s1[1], s1[6], s0[6], s1[7], s0[7], 1.0];
-        let mut s = [0.0; 8];
-        for i in 0..8 {
-            let k = i + i / 4;
-            s[i] = 0.5 * (feet[k] + feet[k + 1]);
-        }
-        Ok(fit::largest(&job.frame.distances(&g, z.a, z.b, &mut s, 1)).sqrt())
     }
 
     #[inline(never)]
