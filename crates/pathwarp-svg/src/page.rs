@@ -19,6 +19,10 @@ const FINE: f64 = 1e-4;
 impl Job<'_> {
     /// New values for attributes of the root, if the page is to fit.
     pub(crate) fn page(&self) -> Option<Vec<(&'static str, String)>> {
+        // The artwork's box takes every outline; it is not asked for in vain.
+        if self.options.page == PageFit::None {
+            return None;
+        }
         let document = self.document;
         let to_px = document.scene.to_px;
         let size = document.page;
