@@ -36,6 +36,7 @@ mod image;
 mod keep;
 mod lettering;
 mod letters;
+mod marks;
 mod number;
 mod options;
 mod page;

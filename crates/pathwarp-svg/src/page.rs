@@ -24,7 +24,7 @@ impl Job<'_> {
             return None;
         }
         let document = self.document;
-        let to_px = document.scene.to_px;
+        let to_px = document.scene().to_px;
         let size = document.page;
         // What is seen, which may be more or less than the viewBox where the two have different proportions.
         let page = to_px.inverse().transform_rect_bbox(size.to_rect());
@@ -55,11 +55,11 @@ impl Job<'_> {
     fn artwork(&self) -> Option<Rect> {
         let guides = Selection { guides: self.options.selection.guides.clone(), ..Selection::default() };
         let counts = guides.resolve(&self.document.source);
-        self.group_box(&self.document.scene.root, &counts)
+        self.group_box(&self.document.scene().root, &counts)
     }
 
     fn group_box(&self, g: &Group, counts: &[bool]) -> Option<Rect> {
-        let scene = &self.document.scene;
+        let scene = &self.document.scene();
         let boxes = g.children.iter().filter_map(|n| match n {
             Node::Group(g) => self.group_box(g, counts),
             Node::Text { content, .. } => self.group_box(content, counts),

@@ -2,12 +2,13 @@
 
 use crate::fontface;
 use crate::fonts::{self, GenericFamilies, Missing};
-use crate::source::Source;
+use crate::source::{self, Source};
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
 use std::sync::Arc;
+use usvg::roxmltree;
 
 /// How a file is read.
 #[derive(Debug, Clone)]
@@ -85,7 +86,7 @@ pub(crate) fn is_shallow(source: &Source) -> bool {
     let mut references = 1;
     for e in &source.elements {
         depths.push(e.parent.map_or(0, |p| depths[p] + 1));
-        let refers = matches!(e.tag.as_str(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
+        let refers = matches!(e.tag.as_ref(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
         references += usize::from(refers);
     }
     // Fonts that came with a file may be made to break what reads them; that is caught where the stack is deep.
@@ -109,23 +110,30 @@ pub(crate) fn with_stack<T: Send>(name: &str, f: impl FnOnce() -> Result<T, Erro
 }
 
 /// usvg's tree, and the font families that were asked for and not found.
-pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usvg::Tree, Vec<String>), Error> {
+pub(crate) fn tree(
+    xml: &roxmltree::Document<'_>,
+    name: &str,
+    options: &ReadOptions,
+) -> Result<(usvg::Tree, Vec<String>), Error> {
     let missing = Missing::default();
-    let mut usvg = usvg::Options {
-        resources_dir: options.base_dir.clone(),
-        dpi: options.dpi,
-        font_resolver: fonts::resolver(options.generic_families.clone(), missing.clone()),
-        ..usvg::Options::default()
-    };
+    let text = xml.input_text();
     // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
-    if ["<text", ":text", "ENTITY", "image/svg", ".svg"].iter().any(|t| text.contains(t)) {
-        usvg.fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), text);
-    }
+    let holds = |tags: &[&str]| xml.descendants().any(|n| tags.contains(&n.tag_name().name()));
+    let lettered = holds(&["text"]);
+    let drawings = || ["image/svg", ".svg"].iter().any(|t| text.contains(t));
+    let base = if lettered || holds(&["image", "feImage"]) && drawings() {
+        let fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), text);
+        let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone());
+        usvg::Options { fontdb, font_resolver, ..usvg::Options::default() }
+    } else {
+        usvg::Options::default()
+    };
+    let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..base };
     if options.base_dir.is_none() {
         // Relative links would otherwise be looked for in the current folder.
         usvg.image_href_resolver.resolve_string = Box::new(|_, _| None);
     }
-    let tree = usvg::Tree::from_str(text, &usvg).map_err(|e| {
+    let tree = usvg::Tree::from_xmltree(xml, &usvg).map_err(|e| {
         let problem = match e {
             usvg::Error::InvalidSize => {
                 "the root <svg> has no valid size; give it a viewBox, or width and height".into()
@@ -145,5 +153,6 @@ pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usv
 /// [`Error::Input`] if it is not an SVG drawing; `name` is what it is called in the message.
 pub fn parse_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<Arc<usvg::Tree>, Error> {
     let text = text(data, name, options)?;
-    with_stack(name, || Ok(Arc::new(tree(&text, name, options)?.0)))
+    let xml = source::xml(&text, name)?;
+    with_stack(name, || Ok(Arc::new(tree(&xml, name, options)?.0)))
 }

@@ -64,8 +64,8 @@ pub(crate) struct Writer<'a> {
 impl<'a> Writer<'a> {
     pub(crate) fn new(job: Job<'a>, in_source: bool, skipped: &'a mut Vec<Skipped>, notes: &'a mut Notes) -> Self {
         let source = &job.document.source;
-        let scene = &job.document.scene;
-        let taken = if in_source { source.by_id.keys().cloned().collect() } else { HashSet::new() };
+        let scene = &job.document.scene();
+        let taken = if in_source { source.by_id().keys().cloned().collect() } else { HashSet::new() };
         Self {
             job,
             prefix: if in_source { source.prefix().to_owned() } else { String::new() },
@@ -204,7 +204,7 @@ impl<'a> Writer<'a> {
         }
         let own = g.source.map_or(String::new(), |e| self.id_attribute(e));
         let mut head = format!("{own}{extra}");
-        let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene.slots[s].before)) {
+        let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene().slots[s].before)) {
             Some((fit, true)) => fit * g.transform,
             Some((fit, false)) => g.transform * fit,
             None => g.transform,
@@ -231,7 +231,7 @@ impl<'a> Writer<'a> {
     /// A part as one path, or as two where the stroke has become an outline.
     pub(crate) fn part(&mut self, i: usize) -> String {
         let job = self.job;
-        let p = &job.document.scene.parts[i];
+        let p = &job.document.scene().parts[i];
         let done = job.outcomes[i].done();
         let d = part_data(p, done, &job.document.source);
         let id = p.source.map_or(String::new(), |e| self.id_attribute(e));
@@ -312,7 +312,7 @@ impl<'a> Writer<'a> {
     /// The presentation of a part's fill, its stroke, or both.
     pub(crate) fn properties_of(&mut self, i: usize, fill: bool, stroke: bool) -> Properties {
         let job = self.job;
-        let p = &job.document.scene.parts[i];
+        let p = &job.document.scene().parts[i];
         let done = job.outcomes[i].done();
         let mut all = self.shared(p);
         match p.fill.as_ref().filter(|_| fill) {
@@ -423,7 +423,7 @@ impl<'a> Writer<'a> {
     }
 
     fn image(&mut self, i: usize) -> String {
-        let bitmap = &self.job.document.scene.bitmaps[i];
+        let bitmap = &self.job.document.scene().bitmaps[i];
         let image = &bitmap.image;
         if !image.is_visible() {
             return String::new();
@@ -554,7 +554,7 @@ pub(crate) fn flat(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes)
     if let Some(t) = source.elements.first().and_then(|e| e.title.as_ref()) {
         let _ = writeln!(out, "<title>{}</title>", escape(t));
     }
-    let body: String = job.document.scene.root.children.iter().map(|n| format!("{}\n", w.node(n))).collect();
+    let body: String = job.document.scene().root.children.iter().map(|n| format!("{}\n", w.node(n))).collect();
     if !w.defs.is_empty() {
         let _ = write!(out, "<defs>\n{}</defs>\n", w.defs);
     }
