@@ -2,6 +2,7 @@
 //! ids, and the table of the source's own elements.
 
 use crate::source::{ElementId, is_tracked};
+use memchr::{memchr, memmem};
 use std::collections::HashSet;
 use std::ops::Range;
 
@@ -143,21 +144,23 @@ pub(crate) fn links(text: &str) -> HashSet<&str> {
 
 /// All opening tags in order.
 fn tags(text: &str) -> Option<Vec<Tag<'_>>> {
+    /// About as many bytes as a tag has in small files.
+    const TAG: usize = 48;
     let bytes = text.as_bytes();
-    let past = |from: usize, end: &str| Some(from + text.get(from..)?.find(end)? + end.len());
-    let mut out = Vec::new();
+    let past = |from: usize, end: &str| Some(from + memmem::find(bytes.get(from..)?, end.as_bytes())? + end.len());
+    let mut out = Vec::with_capacity(text.len() / TAG);
     let mut at = 0;
-    while let Some(i) = text.get(at..)?.find('<') {
+    while let Some(i) = memchr(b'<', bytes.get(at..)?) {
         at += i;
         match bytes.get(at + 1)? {
-            b'/' => at = past(at, ">")?,
+            b'/' => at += memchr(b'>', bytes.get(at..)?)? + 1,
             b'?' => at = past(at, "?>")?,
-            b'!' if text[at..].starts_with("<!--") => at = past(at + 4, "-->")?,
-            b'!' if text[at..].starts_with("<![CDATA[") => at = past(at + 9, "]]>")?,
+            b'!' if bytes[at..].starts_with(b"<!--") => at = past(at + 4, "-->")?,
+            b'!' if bytes[at..].starts_with(b"<![CDATA[") => at = past(at + 9, "]]>")?,
             b'!' => {
                 let end = past(at, ">")?;
                 // Entities may be declared, which hold anything.
-                if text[at..end].contains('[') {
+                if bytes[at..end].contains(&b'[') {
                     return None;
                 }
                 at = end;
@@ -181,11 +184,18 @@ fn tag(text: &str, from: usize) -> Option<(Tag<'_>, usize)> {
         }
         at
     };
-    let name_end = from + bytes.get(from..)?.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'/' | b'>'))?;
-    let name = text.get(from..name_end)?;
-    let name = name.rsplit_once(':').map_or(name, |n| n.1);
-    let mut out = Tag { name, name_end, id: None, plain: false };
-    let mut at = name_end;
+    let mut local = from;
+    let mut at = from;
+    loop {
+        match bytes.get(at)? {
+            b'/' | b'>' => break,
+            b':' => local = at + 1,
+            b if b.is_ascii_whitespace() => break,
+            _ => {}
+        }
+        at += 1;
+    }
+    let mut out = Tag { name: text.get(local..at)?, name_end: at, id: None, plain: false };
     loop {
         at = skip(at);
         match bytes.get(at)? {
@@ -193,20 +203,21 @@ fn tag(text: &str, from: usize) -> Option<(Tag<'_>, usize)> {
             b'/' => at += 1,
             _ => {
                 let start = at;
-                at += bytes.get(at..)?.iter().position(|b| *b == b'=' || b.is_ascii_whitespace())?;
+                while !matches!(bytes.get(at)?, b'=' | b' ' | b'\t' | b'\n' | b'\r') {
+                    at += 1;
+                }
                 let name = &bytes[start..at];
                 at = skip(at);
                 if bytes.get(at)? != &b'=' {
                     return None;
                 }
                 at = skip(at + 1);
-                let quote = match bytes.get(at)? {
-                    b'"' => '"',
-                    b'\'' => '\'',
-                    _ => return None,
-                };
+                let quote = *bytes.get(at)?;
+                if !matches!(quote, b'"' | b'\'') {
+                    return None;
+                }
                 let value = at + 1;
-                at = value + text.get(value..)?.find(quote)?;
+                at = value + memchr(quote, bytes.get(value..)?)?;
                 if matches!(name, b"id" | b"xml:id") && out.id.is_none() {
                     // What it says may be other than what is written.
                     if bytes[value..at].iter().any(|b| matches!(b, b'&' | b'\t' | b'\n' | b'\r')) {

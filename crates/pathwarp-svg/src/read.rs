@@ -118,10 +118,14 @@ pub(crate) fn tree(
     let missing = Missing::default();
     let text = xml.input_text();
     // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
-    let holds = |tags: &[&str]| xml.descendants().any(|n| tags.contains(&n.tag_name().name()));
-    let lettered = holds(&["text"]);
-    let drawings = || ["image/svg", ".svg"].iter().any(|t| text.contains(t));
-    let base = if lettered || holds(&["image", "feImage"]) && drawings() {
+    let (mut lettered, mut pictured) = (false, false);
+    for n in xml.descendants() {
+        let tag = n.tag_name();
+        lettered |= tag.name() == "text";
+        pictured |= matches!(tag.name(), "image" | "feImage");
+    }
+    lettered |= pictured && ["image/svg", ".svg"].iter().any(|t| text.contains(t));
+    let base = if lettered {
         let fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), text);
         let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone());
         usvg::Options { fontdb, font_resolver, ..usvg::Options::default() }

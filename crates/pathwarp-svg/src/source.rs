@@ -2,6 +2,7 @@
 
 use crate::keep::is_animation;
 use crate::marks::{self, Marks, Patch};
+use memchr::memrchr;
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -407,12 +408,14 @@ struct Places<'a> {
 fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>) -> Option<Element> {
     let text = places.text;
     let range = node.range();
-    let body = text.get(range.clone())?;
-    let rest = body.strip_prefix('<')?;
-    let len = rest.as_bytes().iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'/' | b'>'))?;
+    let rest = text.as_bytes().get(range.clone())?.strip_prefix(b"<")?;
+    let len = rest.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'/' | b'>'))?;
     let qname = range.start + 1..range.start + 1 + len;
-    let local = rest.get(..len)?.rsplit(':').next()?;
-    if local != node.tag_name().name() {
+    let name = node.tag_name();
+    let local = name.name();
+    // It may have a prefix.
+    let before = rest.get(..len)?.strip_suffix(local.as_bytes())?;
+    if !matches!(before.last(), None | Some(b':')) {
         return None;
     }
     let moved = |r: &Range<usize>, shift: usize| r.start.wrapping_sub(shift)..r.end.wrapping_sub(shift);
@@ -427,7 +430,7 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
     for a in attributes {
         let (r, v) = (a.range(), a.range_value());
         let raw = text.get(v.clone())?;
-        if r.start < last || r.end > range.end || !text.get(r.clone())?.contains('=') {
+        if r.start < last || r.end > range.end || !text.as_bytes().get(r.clone())?.contains(&b'=') {
             return None;
         }
         last = last.max(r.end);
@@ -456,13 +459,13 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
     // Namespace declarations are no attributes for the parser but stand among them; their quotes may hold a `>`.
     let open_end = tag_end(text, last, range.end)?;
     let close = if open_end < range.end {
-        let start = text.as_bytes().get(..range.end)?.iter().rposition(|b| *b == b'<')?;
+        let start = memrchr(b'<', text.as_bytes().get(..range.end)?)?;
         let shift = range.end.wrapping_sub(marks::in_source(places.patches, range.end));
         Some(moved(&(start..range.end), shift))
     } else {
         None
     };
-    let svg = matches!(node.tag_name().namespace(), Some(SVG) | None);
+    let svg = matches!(name.namespace(), Some(SVG) | None);
     let title = node
         .children()
         .find(|c| c.is_element() && c.tag_name().name() == "title")
@@ -485,11 +488,27 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
 
 /// The names that drawings are full of, which need no memory of their own.
 fn known(tag: &str) -> Option<&'static str> {
-    const NAMES: [&str; 20] = [
-        "path", "g", "svg", "rect", "circle", "use", "defs", "ellipse", "line", "polygon", "polyline", "stop", "text",
-        "tspan", "linearGradient", "radialGradient", "clipPath", "mask", "title", "style",
-    ];
-    NAMES.into_iter().find(|n| *n == tag)
+    Some(match tag {
+        "path" => "path",
+        "g" => "g",
+        "svg" => "svg",
+        "rect" => "rect",
+        "circle" => "circle",
+        "use" => "use",
+        "defs" => "defs",
+        "stop" => "stop",
+        "title" => "title",
+        "ellipse" => "ellipse",
+        "line" => "line",
+        "polygon" => "polygon",
+        "polyline" => "polyline",
+        "linearGradient" => "linearGradient",
+        "radialGradient" => "radialGradient",
+        "clipPath" => "clipPath",
+        "mask" => "mask",
+        "style" => "style",
+        _ => return None,
+    })
 }
 
 fn tag_end(text: &str, from: usize, to: usize) -> Option<usize> {
@@ -564,7 +583,7 @@ mod tests {
             "<?xml version='1.0'?>\n<!DOCTYPE svg>\n<!-- <path> --><s:svg xmlns:s='http://www.w3.org/2000/svg' a='>'\n><s:g\n/>\
              <s:path xml:id = \"a\" d='M0,0'/><s:style><![CDATA[ <g> .b{} ]]></s:style><s:title>t &amp; u</s:title></s:svg >",
             "<svg xmlns='http://www.w3.org/2000/svg' xmlns:i='http://www.inkscape.org/namespaces/inkscape'>\
-             <g id='a' i:label='&lt;'><path id='a' d='M0,0\n1,1'/></g><rect id='longer than warp-5' x='1'/><rect\
+             <g id='a' i:label='&lt;'><path id='a' d='M0,0\n1,1'/></g><rect id='longer than warp-5' x='1'/><rect \
              id='longer than warp-5' y='2'/><use href='#a'/><text><tspan id='c'>warp-</tspan></text><svg/></svg>",
         ];
         for d in drawings {
