@@ -49,6 +49,7 @@ mod select;
 pub mod sheet;
 mod source;
 mod stroke;
+mod unfold;
 mod warp;
 mod write;
 

@@ -82,7 +82,12 @@ pub(crate) fn mark(text: &str) -> Option<Marked> {
     let shared: Vec<&str> = ids.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
     let links = if shared.is_empty() { HashSet::new() } else { links(text) };
     let marks = Marks { stem: stem(text), elements: Vec::new() };
-    let mut out = Marked { text: String::with_capacity(text.len() + 16 * tags.len()), marks, elements: tags.len(), patches: Vec::new() };
+    let mut out = Marked {
+        text: String::with_capacity(text.len() + 16 * tags.len()),
+        marks,
+        elements: tags.len(),
+        patches: Vec::new(),
+    };
     let mut done = 0;
     for (i, t) in tags.iter().enumerate().filter(|(_, t)| is_tracked(t.name)) {
         if value(t).is_some_and(|v| shared.binary_search(&v).is_err() || links.contains(v)) {

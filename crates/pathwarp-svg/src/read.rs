@@ -3,11 +3,12 @@
 use crate::fontface;
 use crate::fonts::{self, GenericFamilies, Missing};
 use crate::source::{self, Source};
+use crate::unfold;
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::io::{Read as _, Write as _};
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 use usvg::roxmltree;
 
 /// How a file is read.
@@ -118,11 +119,19 @@ pub(crate) fn tree(
     let missing = Missing::default();
     let text = xml.input_text();
     // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
-    let (mut lettered, mut pictured) = (false, false);
+    let (mut lettered, mut pictured, mut markers, mut referring) = (false, false, false, false);
     for n in xml.descendants() {
-        let tag = n.tag_name();
-        lettered |= tag.name() == "text";
-        pictured |= matches!(tag.name(), "image" | "feImage");
+        match n.tag_name().name() {
+            "text" => lettered = true,
+            "image" => pictured = true,
+            "feImage" => (pictured, referring) = (true, true),
+            "marker" => markers = true,
+            "use" | "pattern" | "clipPath" | "mask" => referring = true,
+            _ => {}
+        }
+    }
+    if unfold::may_be_large(xml, markers, referring) {
+        unfold::check(xml, name)?;
     }
     lettered |= pictured && ["image/svg", ".svg"].iter().any(|t| text.contains(t));
     let base = if lettered {
@@ -137,6 +146,10 @@ pub(crate) fn tree(
         // Relative links would otherwise be looked for in the current folder.
         usvg.image_href_resolver.resolve_string = Box::new(|_, _| None);
     }
+    let refused = Refused::default();
+    if pictured {
+        bound_drawings(&mut usvg, name, options, &refused);
+    }
     let tree = usvg::Tree::from_xmltree(xml, &usvg).map_err(|e| {
         let problem = match e {
             usvg::Error::InvalidSize => {
@@ -147,8 +160,43 @@ pub(crate) fn tree(
         };
         Error::input(name, problem)
     })?;
+    if let Some(e) = refused.lock().ok().and_then(|mut r| r.take()) {
+        return Err(e);
+    }
     let missing = missing.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
     Ok((tree, missing))
+}
+
+/// Why a drawing shown as an image is not taken.
+type Refused = Arc<Mutex<Option<Error>>>;
+
+/// Holds drawings shown as images to the same bounds as the drawing itself.
+fn bound_drawings<'a>(usvg: &mut usvg::Options<'a>, name: &'a str, options: &'a ReadOptions, refused: &Refused) {
+    let refuses = move |refused: &Refused, data: &[u8], what: &str| {
+        let place = format!("{name}: {what}");
+        let checked = text(data, &place, options).ok().map(|t| match source::xml(&t, &place) {
+            Ok(xml) => unfold::check(&xml, &place),
+            // usvg says what it thinks of it.
+            Err(_) => Ok(()),
+        });
+        let Some(Err(e)) = checked else { return false };
+        if let Ok(mut r) = refused.lock() {
+            r.get_or_insert(e);
+        }
+        true
+    };
+    let resolver = std::mem::take(&mut usvg.image_href_resolver);
+    let (data_of, file_of) = (resolver.resolve_data, resolver.resolve_string);
+    let also = refused.clone();
+    usvg.image_href_resolver.resolve_data = Box::new(move |mime, data, usvg| {
+        let drawing = matches!(mime, "image/svg+xml" | "text/plain");
+        if drawing && refuses(&also, &data, "the drawing in an image") { None } else { data_of(mime, data, usvg) }
+    });
+    let also = refused.clone();
+    usvg.image_href_resolver.resolve_string = Box::new(move |link, usvg| {
+        let data = link.contains(".svg").then(|| std::fs::read(usvg.get_abs_path(Path::new(link))).ok()).flatten();
+        if data.is_some_and(|d| refuses(&also, &d, link)) { None } else { file_of(link, usvg) }
+    });
 }
 
 /// Reads any SVG or svgz data into usvg's tree, with the same fonts and bounds as [`crate::Document::read`].
