@@ -156,6 +156,9 @@ pub(crate) fn tree(
                 "the root <svg> has no valid size; give it a viewBox, or width and height".into()
             }
             usvg::Error::ElementsLimitReached => "it has more than a million elements".into(),
+            usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
+                "with all that its uses show it has more than a million elements, or nests deeper than 1024".into()
+            }
             other => other.to_string(),
         };
         Error::input(name, problem)

@@ -330,8 +330,13 @@ impl Element {
 
 /// Parses XML, called `name` in messages.
 pub(crate) fn xml<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
-    let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: 4_000_000, ..Default::default() };
+    /// Elements, texts and comments together; usvg takes no more than a million elements.
+    const MOST: u32 = 4_000_000;
+    let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MOST, ..Default::default() };
     roxmltree::Document::parse_with_options(text, options).map_err(|e| {
+        if matches!(e, roxmltree::Error::NodesLimitReached) {
+            return Error::input(name, format!("it has more than {MOST} elements, texts and comments"));
+        }
         let at = e.pos();
         Error::input(format!("{name}:{}:{}", at.row, at.col), format!("this is not well-formed XML: {e}"))
     })
