@@ -119,13 +119,13 @@ pub(crate) fn tree(
     let missing = Missing::default();
     let text = xml.input_text();
     // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
-    let (mut lettered, mut pictured, mut markers, mut referring) = (false, false, false, false);
+    let (mut lettered, mut pictured, mut referring, mut markers) = (false, false, false, 0);
     for n in xml.descendants() {
         match n.tag_name().name() {
             "text" => lettered = true,
             "image" => pictured = true,
             "feImage" => (pictured, referring) = (true, true),
-            "marker" => markers = true,
+            "marker" => markers += 1,
             "use" | "pattern" | "clipPath" | "mask" => referring = true,
             _ => {}
         }

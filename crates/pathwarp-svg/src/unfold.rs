@@ -14,11 +14,16 @@ const MOST: u64 = 1_000_000;
 const DEEPEST: usize = 4_000;
 /// Drawings with so few references unfold to little, whatever they are.
 const FEW: usize = 16;
+/// In so many bytes there is no room for vertices and a marker whose product were large.
+const SMALL: usize = 4096;
 
 /// Whether a drawing may unfold to much: it has markers, which stand on every vertex, or other elements that show what is
 /// referred to (`referring`), and more than a few references.
-pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: bool, referring: bool) -> bool {
-    markers || referring && doc.input_text().bytes().filter(|b| *b == b'#').count() > FEW
+pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) -> bool {
+    let text = doc.input_text();
+    // Entities may hold references.
+    let references = || text.bytes().filter(|b| matches!(b, b'#' | b'&')).count();
+    markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && references() > FEW
 }
 
 /// Refuses a drawing that unfolds to too much; `name` is what it is called in messages.
