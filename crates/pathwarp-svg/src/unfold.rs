@@ -173,7 +173,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             if node != top && is_defined(tag) {
                 continue;
             }
-            let says = self.says(node);
+            let (says, filters) = self.says(node);
             for (slot, say) in inherited.iter_mut().zip(says) {
                 match say {
                     Says::Shows(id) => *slot = Some(id),
@@ -199,7 +199,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                     show(Some(placed(*target)), 1);
                 }
             }
-            for filter in self.filters(node) {
+            for filter in filters {
                 show(Some(placed(filter)), 1);
             }
             let linked = || self.linked(node).map(|n| n.id());
@@ -223,7 +223,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         let mut out = Inherited::default();
         let mut open: Vec<usize> = (0..INHERITED).collect();
         for around in node.ancestors().skip(1).filter(Node::is_element) {
-            let says = self.says(around);
+            let (says, _) = self.says(around);
             open.retain(|&i| match says[i] {
                 Says::Nothing | Says::Context(_) => true,
                 Says::Plain => false,
@@ -236,15 +236,21 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         out
     }
 
-    /// What the properties of an element say, by attribute, style sheet and style attribute.
-    fn says(&self, node: Node<'a, 'i>) -> [Says; PROPERTIES.len()] {
+    /// What the properties of an element say, by attribute, style sheet and style attribute; and the filters named anywhere,
+    /// of which there may be a list.
+    fn says(&self, node: Node<'a, 'i>) -> ([Says; PROPERTIES.len()], Vec<NodeId>) {
         let mut out = [(Says::Nothing, false); PROPERTIES.len()];
-        let mut set = |name: &str, value: &str, important: bool| {
-            for (i, p) in PROPERTIES.iter().enumerate() {
-                if (*p == name || name == "marker" && p.starts_with("marker-")) && !out[i].1 {
-                    out[i] = (self.value(value), important);
+        let mut filters = Vec::new();
+        let mut set = |name: &str, value: &str, important: bool| match name {
+            "filter" => filters.extend(urls(value).filter_map(|id| self.by_id.get(id)).map(Node::id)),
+            "fill" | "stroke" | "mask" | "clip-path" | "marker" | "marker-start" | "marker-mid" | "marker-end" => {
+                for (i, p) in PROPERTIES.iter().enumerate() {
+                    if (*p == name || name == "marker" && p.starts_with("marker-")) && !out[i].1 {
+                        out[i] = (self.value(value), important);
+                    }
                 }
             }
+            _ => {}
         };
         for a in node.attributes() {
             set(a.name(), a.value(), false);
@@ -256,7 +262,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         for d in node.attribute("style").into_iter().flat_map(DeclarationTokenizer::from) {
             set(d.name, d.value, d.important);
         }
-        out.map(|o| o.0)
+        (out.map(|o| o.0), filters)
     }
 
     fn value(&self, value: &str) -> Says {
@@ -266,16 +272,6 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             "context-stroke" => Says::Context(1),
             v => urls(v).find_map(|id| self.by_id.get(id)).map_or(Says::Plain, |n| Says::Shows(n.id())),
         }
-    }
-
-    /// All filters on an element, which may be a list.
-    fn filters(&self, node: Node<'a, 'i>) -> Vec<NodeId> {
-        let rules = self.sheet.rules.iter().filter(|r| r.selector.matches(&Element(node)));
-        let sheets = rules.flat_map(|r| &r.declarations).filter(|d| d.name == "filter").map(|d| d.value);
-        let style = node.attribute("style").into_iter().flat_map(DeclarationTokenizer::from);
-        let own = style.filter(|d| d.name == "filter").map(|d| d.value);
-        let all = node.attribute("filter").into_iter().chain(sheets).chain(own);
-        all.flat_map(urls).filter_map(|id| self.by_id.get(id)).map(Node::id).collect()
     }
 
     fn linked(&self, node: Node<'a, 'i>) -> Option<Node<'a, 'i>> {
