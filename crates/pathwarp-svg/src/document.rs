@@ -65,6 +65,8 @@ pub struct NamedPath {
     pub outline: Outline,
     /// Where the element starts in the source: line and column, counted from 1.
     pub at: (usize, usize),
+    /// Of a path without an id, as [`Document::paths`] gives it, the id of the nearest element around it that has one, or nothing.
+    pub group: Option<Arc<str>>,
 }
 
 impl Document {
@@ -208,7 +210,22 @@ impl Document {
     #[must_use]
     pub fn paths(&self) -> Vec<NamedPath> {
         let shapes = (0..self.source.elements.len()).filter(|&e| is_shape(&self.source.elements[e].tag));
-        shapes.filter_map(|e| self.named_path(e)).collect()
+        let groups = self.groups();
+        shapes.filter_map(|e| Some(NamedPath { group: groups[e].clone(), ..self.named_path(e)? })).collect()
+    }
+
+    /// For every element without an id what [`NamedPath::group`] says.
+    fn groups(&self) -> Vec<Option<Arc<str>>> {
+        let mut nearest: Vec<Arc<str>> = Vec::with_capacity(self.source.elements.len());
+        let mut out = Vec::with_capacity(self.source.elements.len());
+        // Parents come before their children.
+        for (e, element) in self.source.elements.iter().enumerate() {
+            let outer = element.parent.map_or_else(|| "".into(), |p| nearest[p].clone());
+            let id = self.source.attr(e, "id").filter(|v| !v.is_empty());
+            out.push(id.is_none().then(|| outer.clone()));
+            nearest.push(id.map_or(outer, |id| id.as_ref().into()));
+        }
+        out
     }
 
     /// The path of this name: an id, else an Inkscape label, else a title; a leading `#` is ignored. It may be invisible, or
@@ -280,6 +297,7 @@ impl Document {
             element: source.elements[e].tag.to_string(),
             outline,
             at: source.line_column(source.elements[e].range.start),
+            group: None,
         })
     }
 }

@@ -60,6 +60,7 @@ pub use gradient::{GradientPainter, GradientRequest};
 pub use image::{BentImage, ImageRequest, ImageWarper, Images};
 pub use lettering::{LetterPlaces, Lettering, LetteringFrame, LetteringOptions, write_lettering};
 pub use options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
+pub use page::Overhang;
 pub use read::{ReadOptions, compressed, parse_tree};
 pub use select::Selection;
 pub use warp::{ShapeReport, Skipped, Warped};

@@ -6,6 +6,7 @@ use crate::image::{self, BentImage, Picture};
 use crate::lettering::{Piece, placed};
 use crate::number::MOST_DECIMALS;
 use crate::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
+use crate::page::Overhang;
 use crate::paint::{self, Fit};
 use crate::resolve::Tiling;
 use crate::scene::{Bitmap, Part, Role, Scene};
@@ -31,6 +32,8 @@ pub struct Warped {
     pub skipped: Vec<Skipped>,
     /// What the owner should know.
     pub warnings: Vec<String>,
+    /// How far the artwork leaves the page, if it does, the original did not, and the page was to stay ([`PageFit::None`]).
+    pub overhang: Option<Overhang>,
 }
 
 /// What was done to a shape.
@@ -149,7 +152,13 @@ impl Document {
     /// [`Error::Geometry`] naming the shape that the map cannot bend, unless [`OnError::Skip`]; [`Error::Input`] if the
     /// structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
-        let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
+        let mut out = Warped {
+            svg: String::new(),
+            shapes: Vec::new(),
+            skipped: Vec::new(),
+            warnings: Vec::new(),
+            overhang: None,
+        };
         // What nothing moves is left in the source's own words.
         if unmoved(map, options) && options.structure != Structure::Flatten && options.page == PageFit::None {
             self.source.text.clone_into(&mut out.svg);
@@ -291,6 +300,7 @@ impl Document {
             }
         };
         out.warnings.extend(notes.lines());
+        out.overhang = job.overhang();
         Ok(())
     }
 
