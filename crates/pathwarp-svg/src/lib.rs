@@ -36,6 +36,7 @@ mod image;
 mod keep;
 mod lettering;
 mod letters;
+mod marks;
 mod number;
 mod options;
 mod page;
@@ -48,6 +49,7 @@ mod select;
 pub mod sheet;
 mod source;
 mod stroke;
+mod unfold;
 mod warp;
 mod write;
 

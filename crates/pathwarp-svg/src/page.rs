@@ -67,7 +67,11 @@ impl Job<'_> {
 
     /// How far the artwork leaves a page that stays as it is, if it did not do so before.
     pub(crate) fn overhang(&self) -> Option<Overhang> {
-        if self.options.page != PageFit::None || !self.has_page() {
+        // The artwork's box takes every outline; it is not asked for where nothing has moved.
+        let moved = self.outcomes.iter().any(|o| o.done().is_some())
+            || self.slots.iter().any(|s| s.fit != Affine::IDENTITY)
+            || self.pictures.iter().any(|p| matches!(p, Picture::Bent(_)));
+        if self.options.page != PageFit::None || !moved || !self.has_page() {
             return None;
         }
         let page = self.sheet();
@@ -106,18 +110,18 @@ impl Job<'_> {
 
     /// What is seen, which may be more or less than the viewBox where the two have different proportions.
     fn sheet(&self) -> Rect {
-        self.document.scene.to_px.inverse().transform_rect_bbox(self.document.page.to_rect())
+        self.document.scene().to_px.inverse().transform_rect_bbox(self.document.page.to_rect())
     }
 
     /// The box of everything that is painted, strokes included, in root user space. Guides do not count.
     fn artwork(&self, room: Option<Rect>, filters: bool) -> Option<Rect> {
         let guides = Selection { guides: self.options.selection.guides.clone(), ..Selection::default() };
         let counts = guides.resolve(&self.document.source);
-        self.group_box(&self.document.scene.root, Measure { counts: &counts, room, filters })
+        self.group_box(&self.document.scene().root, Measure { counts: &counts, room, filters })
     }
 
     fn group_box(&self, g: &Group, m: Measure<'_>) -> Option<Rect> {
-        let scene = &self.document.scene;
+        let scene = self.document.scene();
         let one = |n: &Node, m: Measure<'_>| match n {
             Node::Group(g) => self.group_box(g, m),
             Node::Text { content, .. } => self.group_box(content, m),

@@ -180,7 +180,7 @@ impl Document {
             Patterns::Auto if options.copies.len() <= 1 => Some(VISIBLE * view.width().hypot(view.height())),
             Patterns::Auto | Patterns::Instantiate => None,
         };
-        if self.scene.tiles.is_empty() {
+        if self.scene().tiles.is_empty() {
             return Ok(None);
         }
         let strokes = matches!(options.strokes, Strokes::Auto | Strokes::Outline);
@@ -197,7 +197,7 @@ impl Document {
             options.refit.shared = Arc::new(refit::SharedEdges::among(self.shapes().iter().map(|s| &s.outline)));
         }
         let options = &options;
-        let parts = &self.scene.parts;
+        let parts = &self.scene().parts;
         let slots = self.place_slots(map, &meant, &options.selection);
         let shaded = |p: &usvg::Paint| usize::from(Shading::of(p).is_some());
         let on = |p: &Part| {
@@ -207,9 +207,9 @@ impl Document {
         let among = if exact { parts.iter().map(on).sum() } else { 0 };
         let pieces = self.pieces(options);
         let one = |((p, meant), pieces): ((&Part, &bool), &Vec<Piece>)| {
-            let write = written(&self.scene, &slots, p.slot, p.frame);
+            let write = written(self.scene(), &slots, p.slot, p.frame);
             (*meant && !identity && usable(p.frame) && usable(write))
-                .then(|| warp_part(p, write, map, options, pieces, (self.scene.to_px, among)))
+                .then(|| warp_part(p, write, map, options, pieces, (self.scene().to_px, among)))
         };
         /// Below so many segments the work is done before another thread has woken up.
         const WORTH_IT: usize = 100;
@@ -263,8 +263,8 @@ impl Document {
         }
         let elements = options.selection.resolve(&self.source);
         let chosen = |b: &Bitmap| b.owner.map_or(options.selection.is_everything(), |e| elements[e]);
-        let bend = |b: &Bitmap| image::bend(b, &self.scene, &slots, chosen(b), map, &options.images);
-        let pictures: Vec<Picture> = self.scene.bitmaps.iter().map(bend).collect();
+        let bend = |b: &Bitmap| image::bend(b, self.scene(), &slots, chosen(b), map, &options.images);
+        let pictures: Vec<Picture> = self.scene().bitmaps.iter().map(bend).collect();
         let job = write::Job { document: self, outcomes: &outcomes, pictures: &pictures, slots: &slots, map, options };
         // The walk over the drawing's groups wants a stack as deep as they are. Nothing in there waits for other threads: a
         // caller that runs on a thread pool, as does the work above, would wait for itself.
@@ -279,10 +279,10 @@ impl Document {
     fn write(&self, job: &write::Job<'_>, out: &mut Warped) -> Result<(), Error> {
         let structure = job.options.structure;
         let mut notes = Notes::default();
-        for (what, whom) in &self.scene.notes {
+        for (what, whom) in &self.scene().notes {
             notes.add(what, whom);
         }
-        let kept = match (structure, &self.scene.unkeepable) {
+        let kept = match (structure, &self.scene().unkeepable) {
             (Structure::Flatten, _) => None,
             (_, Some(why)) => Some(Err(why.clone())),
             _ => Some(keep::write(job, &mut out.skipped, &mut notes)),
@@ -306,12 +306,12 @@ impl Document {
 
     /// Where filtered groups and images go: the affine fit of the map over each.
     fn place_slots(&self, map: &dyn Map, meant: &[bool], selection: &Selection) -> Vec<Placed> {
-        let mut out: Vec<Placed> = Vec::with_capacity(self.scene.slots.len());
+        let mut out: Vec<Placed> = Vec::with_capacity(self.scene().slots.len());
         let elements = selection.resolve(&self.source);
-        for s in &self.scene.slots {
-            let outer = written(&self.scene, &out, s.outer, s.frame);
+        for s in &self.scene().slots {
+            let outer = written(self.scene(), &out, s.outer, s.frame);
             // What stands in tiles and in filters' pictures is never bent and has no say.
-            let mut own = s.parts.clone().filter(|&i| self.scene.parts[i].role != Role::Pattern).peekable();
+            let mut own = s.parts.clone().filter(|&i| self.scene().parts[i].role != Role::Pattern).peekable();
             let moved = if own.peek().is_some() {
                 own.all(|i| meant[i])
             } else {
@@ -332,13 +332,13 @@ impl Document {
         let mut meant = self.meant(&options.selection);
         let all = options.selection.is_everything();
         let elements = options.selection.resolve(&self.source);
-        let refs = self.scene.clips.iter().map(|c| (&c.parts, &c.referrers));
-        let refs = refs.chain(self.scene.masks.iter().map(|m| (&m.parts, &m.referrers)));
+        let refs = self.scene().clips.iter().map(|c| (&c.parts, &c.referrers));
+        let refs = refs.chain(self.scene().masks.iter().map(|m| (&m.parts, &m.referrers)));
         for (parts, referrers) in refs {
             let any = all || referrers.iter().any(|r| r.owner.or(r.element).is_some_and(|e| elements[e]));
             meant[parts.clone()].fill(any);
         }
-        for (m, p) in meant.iter_mut().zip(&self.scene.parts) {
+        for (m, p) in meant.iter_mut().zip(&self.scene().parts) {
             let text = p.owner.is_some_and(|e| self.source.elements[e].tag == "text");
             *m &= p.role != Role::Pattern && !(text && options.text == TextMode::Skip);
         }
