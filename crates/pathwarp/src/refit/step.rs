@@ -15,8 +15,10 @@ use kurbo::{Line, Point, Vec2};
 const PLAIN: f64 = 0.9;
 /// Below this share of the tolerance what they may grow by is not asked for.
 const SURE: f64 = 0.7;
-/// Where parabolas through three samples each rise above the samples, the residual may rise by so much more.
-const STEEPER: f64 = 1.7;
+/// Where parabolas through three samples each rise above the samples, a residual that swings over six samples rises twice as far:
+/// so many times is allowed for, up to this share of the tolerance.
+const STEEPER: f64 = 2.5;
+const RISEN: f64 = 0.97;
 /// PLAIN for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
 /// The longest proof loses more than the rest of the tolerance.
@@ -395,7 +397,7 @@ impl<C: Curve> Stepper<'_, C> {
                 return Ok(error);
             }
             let between = error + STEEPER * (between_samples(&d0, &d1) - error);
-            if between <= DENSE * self.tolerance {
+            if between <= RISEN * self.tolerance {
                 return Ok(between.max(error));
             }
         }
