@@ -4,7 +4,7 @@
 //! split where the map is not smooth (`split`), sampled eight places at a time (`source`), fitted by cubics with the right end
 //! tangents and the best handle lengths (`fit`, `step`), over as few stretches as the tolerance allows (`breaks`), each looked at
 //! closely where its samples may not tell all (`verify`), and proven where map and segment are quotients of polynomials
-//! (`certify`). Pieces may be merged across smooth joints (`merge`).
+//! (`sampled`, `certify`). Pieces may be merged across smooth joints (`merge`).
 
 mod breaks;
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
