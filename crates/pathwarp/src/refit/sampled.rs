@@ -560,7 +560,7 @@ impl<'a> Sampled<'a> {
         let [m0, m1] = [0, 1].map(|b| difference(tables, b, c, phi, self.g[b], &mut d[b]));
         let most = (if m0 > m1 { m0 } else { m1 }).sqrt();
         // More than the samples themselves show nothing proves.
-        if !(most <= self.enough) {
+        if most.is_nan() || most > self.enough {
             return Ok(most);
         }
         let noise = noise(self.algebra, c, self.hermite);
@@ -640,7 +640,7 @@ impl Known<'_> {
             off = BELOW_GROWTH * tables.clear(&mut w, self.job.clearing);
             /// A denominator that varies so much is split instead.
             const WORST: f64 = 0.1;
-            if !(off < WORST) {
+            if off.is_nan() || off >= WORST {
                 return Ok(f64::INFINITY);
             }
             for (d, w) in d.iter_mut().zip(&w) {
