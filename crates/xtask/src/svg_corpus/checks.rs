@@ -9,7 +9,7 @@ use pathwarp_raster::{Pixmap, compare};
 use pathwarp_svg::{Document, Gradients, Images, ReadOptions, Structure, WarpOptions, Warped};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -31,6 +31,16 @@ pub(super) const ALIVE: &str = "no panic, no hang";
 
 /// What was found of one file, by check: whether it passed, and a word on it.
 pub(super) type Findings = Vec<(&'static str, bool, String)>;
+
+/// How files are examined.
+#[derive(Clone)]
+pub(super) struct Way {
+    pub(super) read: ReadOptions,
+    /// Where pictures of what misses go.
+    pub(super) pictures: Option<PathBuf>,
+    /// The checks that are made; all if empty.
+    pub(super) only: Vec<String>,
+}
 
 /// An affine map that does not say so.
 struct Plain(Affine);
@@ -60,14 +70,14 @@ struct Case<'a> {
     file: &'a Path,
     document: &'a Document,
     read: &'a ReadOptions,
-    pictures: Option<&'a Path>,
+    way: &'a Way,
     out: Findings,
     slowest: (Duration, &'static str),
 }
 
-pub(super) fn all(file: &Path, options: &ReadOptions, pictures: Option<&Path>) -> Findings {
+pub(super) fn all(file: &Path, way: &Way) -> Findings {
     let Ok(bytes) = std::fs::read(file) else { return Findings::new() };
-    let options = ReadOptions { base_dir: file.parent().map(Path::to_owned), ..options.clone() };
+    let options = ReadOptions { base_dir: file.parent().map(Path::to_owned), ..way.read.clone() };
     let started = Instant::now();
     let document = match Document::read(&bytes, "the file", &options) {
         Ok(d) => d,
@@ -84,7 +94,7 @@ pub(super) fn all(file: &Path, options: &ReadOptions, pictures: Option<&Path>) -
         file,
         document: &document,
         read: &options,
-        pictures,
+        way,
         out: vec![("read", true, String::new())],
         slowest: (started.elapsed(), "reading"),
     };
@@ -105,8 +115,24 @@ impl Case<'_> {
         let scale = SIDE / size.width.max(size.height);
         let options = self.options(scale);
         let Some(original) = pictures::whole(document.tree(), scale) else { return };
-        self.identity(&original, scale, &options);
+        if self.asked("identity") {
+            self.identity(&original, scale, &options);
+        }
+        if self.asked("affine") {
+            self.affine(scale);
+        }
+        if self.asked("shaper") {
+            self.bent(scale);
+        }
+    }
 
+    fn asked(&self, check: &str) -> bool {
+        self.way.only.is_empty() || self.way.only.iter().any(|o| o == check)
+    }
+
+    /// The affine map, hidden from the fitter.
+    fn affine(&mut self, scale: f64) {
+        let document = self.document;
         // Turned, sheared and squeezed about the middle.
         let middle = document.view_box().center().to_vec2();
         let turn =
@@ -128,7 +154,6 @@ impl Case<'_> {
                 self.out.push(("affine map", ok, word + &remarks(&warped)));
             }
         }
-        self.bent(scale);
     }
 
     /// Bends and draws as fine as asked for: pixels per px.
@@ -250,7 +275,7 @@ impl Case<'_> {
 
     /// Keeps a pair of pictures for looking at, side by side with their difference.
     fn keep(&self, check: &str, pair: Option<(Pixmap, Pixmap)>) {
-        let (Some(folder), Some((a, b))) = (self.pictures, pair) else { return };
+        let (Some(folder), Some((a, b))) = (&self.way.pictures, pair) else { return };
         let mut name: Vec<&str> = self.file.iter().rev().take(3).filter_map(|p| p.to_str()).collect();
         name.reverse();
         pictures::side_by_side(&a, &b, &folder.join(format!("{check}--{}.png", name.join("--"))));
