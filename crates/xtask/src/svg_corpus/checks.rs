@@ -1,6 +1,7 @@
 //! What is checked of one file.
 
 use super::pictures::{self, Pair};
+use super::refined;
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Jet, Map};
 use pathwarp::refit;
@@ -25,6 +26,10 @@ const MEAN: f64 = 1.0;
 const TOLERANCE: f64 = 0.01;
 /// How long reading and bending one file may take.
 const SLOW: Duration = Duration::from_secs(60);
+
+/// The affine map against the original, and against the original with exact arcs.
+const AFFINE: &str = "affine map";
+const EXACT: &str = "affine map, the original's arcs exact";
 
 /// The check that nothing breaks.
 pub(super) const ALIVE: &str = "no panic, no hang";
@@ -140,19 +145,26 @@ impl Case<'_> {
         let fine = pictures::fine(document, scale);
         let map: Arc<dyn Map> = Arc::new(Plain(turn));
         let options = bending(&map, self.options(fine.needed * f64::from(fine.n)));
-        match self.warped("affine map", &*map, &options) {
-            Err(e) => self.out.push(("affine map", false, e)),
-            Ok((warped, after)) => {
-                self.structure(&warped);
-                let moved = document.user_to_px() * turn * document.user_to_px().inverse();
-                let pair = Pair { a: document.tree(), moved, b: after.tree() };
+        let (warped, after) = match self.warped(AFFINE, &*map, &options) {
+            Err(e) => return [AFFINE, EXACT].into_iter().for_each(|check| self.out.push((check, false, e.clone()))),
+            Ok(w) => w,
+        };
+        self.structure(&warped);
+        let moved = document.user_to_px() * turn * document.user_to_px().inverse();
+        let exact = refined::refined(&String::from_utf8_lossy(document.source()));
+        let exact = exact.and_then(|text| Document::read(text.as_bytes(), "the refined file", self.read).ok());
+        let mut last = None;
+        for (check, original) in [(AFFINE, Some(document)), (EXACT, exact.as_ref())] {
+            if let Some(original) = original {
+                let pair = Pair { a: original.tree(), moved, b: after.tree() };
                 let (share, word) = pair.share(&fine);
-                let ok = share <= SHARE;
-                if !ok {
-                    self.keep("affine", pair.pictures(&fine));
+                if share > SHARE {
+                    self.keep(&check.replace([' ', ','], "-"), pair.pictures(&fine));
                 }
-                self.out.push(("affine map", ok, word + &remarks(&warped)));
+                last = Some((share <= SHARE, word + &remarks(&warped)));
             }
+            // Where there is nothing to refine, one picture is as good as the other.
+            self.out.extend(last.clone().map(|(ok, word)| (check, ok, word)));
         }
     }
 

@@ -5,7 +5,8 @@
 //!
 //! 1. the identity, written anew and with its structure kept: the pictures must be the same. Once as the affine map it is,
 //!    whose control points are moved, and once hidden from the fitter;
-//! 2. an affine map, hidden as well: the picture must be what resvg draws of the original under that transform;
+//! 2. an affine map, hidden as well: the picture must be what resvg draws of the original under that transform, and of the
+//!    original with its arcs written more precisely ([`refined`]);
 //! 3. a strong shaper: the picture must be the original's picture, large, bent pixel by pixel;
 //! 4. a comparison of its ids, classes, titles and nesting before and after;
 //! 5. reading and writing, timed beside usvg's own.
@@ -14,6 +15,7 @@
 
 mod checks;
 mod pictures;
+mod refined;
 mod speed;
 
 use crate::Fault;
