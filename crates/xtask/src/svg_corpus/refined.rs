@@ -15,8 +15,9 @@ const SVG: &str = "http://www.w3.org/2000/svg";
 
 /// The drawing with exact arcs, if it has any that can be told.
 pub(super) fn refined(text: &str) -> Option<String> {
-    // Inside entities there are no places to write to.
-    if text.contains("<!ENTITY") {
+    // Inside entities there are no places to write to; and usvg puts markers on the joints of its cubics, of which there would be
+    // more.
+    if text.contains("<!ENTITY") || text.contains("marker-") {
         return None;
     }
     let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
@@ -43,10 +44,10 @@ pub(super) fn refined(text: &str) -> Option<String> {
     Some(out)
 }
 
-/// Whether a shape looks the same as a path: no style sheet speaks of its name, and no marker would appear on it.
+/// Whether a shape looks the same as a path: no style sheet speaks of its name.
 fn may_be_a_path(text: &str, tag: &str) -> bool {
     let sheets = text.match_indices("<style").filter_map(|(at, _)| text.get(at..)?.split("</style").next());
-    !text.contains("marker") && !sheets.into_iter().any(|s| s.contains(tag))
+    !sheets.into_iter().any(|s| s.contains(tag))
 }
 
 /// The edits that make a `path` of an element: its name, its data, its closing name.
