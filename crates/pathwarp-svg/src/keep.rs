@@ -118,7 +118,7 @@ impl<'a> Keeper<'a, '_> {
         for (i, m) in scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
             let def = self.def(&m.id, "mask");
             // Over a box without area a mask in box units hides everything; the box of what is written may have an area.
-            let boxed = def.is_some_and(|d| self.source.attr(d, "maskUnits").is_none_or(|u| u != "userSpaceOnUse"));
+            let boxed = def.is_none_or(|d| self.source.attr(d, "maskUnits").is_none_or(|u| u != "userSpaceOnUse"));
             if boxed && m.root.children.is_empty() {
                 let id = self.writer.mask_id(i);
                 self.point(&m.referrers, "mask", &id)?;

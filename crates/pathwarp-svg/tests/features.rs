@@ -81,8 +81,13 @@ const FEATURES: &[(&str, &str)] = &[
     ),
     (
         "mask in box units on a line without a box",
-        "<mask id='m'><rect width='100' height='100' fill='white'/></mask><rect x='60' width='40' height='90' fill='green' \
-         mask='url(#m)'/><path d='M0 50H50' stroke='red' stroke-width='9' mask='url(#m)'/>",
+        "<mask id='m'><rect width='100' height='100' fill='white'/></mask><path d='M10 50H70' stroke='red' stroke-width='9' \
+         mask='url(#m)'/><rect y='60' width='50' height='30' fill='green'/>",
+    ),
+    (
+        "mask in box units on a shape and on a line without a box",
+        "<mask id='m'><rect width='100' height='100' fill='white'/></mask><rect width='90' height='90' fill='green' \
+         mask='url(#m)'/><path d='M10 50H70' stroke='red' stroke-width='9' mask='url(#m)'/>",
     ),
     (
         "mask whose region cuts",
