@@ -38,13 +38,20 @@ fn every_job_of_the_cookbook_runs() {
     }
 }
 
-/// Runs a command line of the documentation, what it writes going to `dir`; gives its messages.
+/// Runs a command line of the documentation, perhaps a pipe, what it writes going to `dir`; gives its messages.
 fn run_into(dir: &Path, command: &str) -> String {
-    let inside = |w: String| {
-        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w }
+    let inside = |w: &String| {
+        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w.clone() }
     };
-    let args: Vec<String> = words(command).into_iter().map(inside).collect();
-    let (_, messages) = expect_code(0, &args);
+    let (mut drawing, mut messages) = (Vec::new(), String::new());
+    for stage in words(command).split(|w| w == "|") {
+        let args: Vec<String> = stage.iter().filter(|w| *w != "pathwarp").map(inside).collect();
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        let out = pathwarp_in(&root(), &args, &drawing);
+        assert_eq!(out.status.code(), Some(0), "{command}: {}", text(&out.stderr));
+        messages += &text(&out.stderr);
+        drawing = out.stdout;
+    }
     let svg = fs::read_to_string(dir.join("out.svg")).unwrap();
     assert!(svg.contains("<svg"), "{command}");
     fs::remove_file(dir.join("out.svg")).unwrap();
@@ -89,6 +96,31 @@ fn a_drawing_is_not_written_under_a_pictures_name() {
     assert_eq!(out.status.code(), Some(2), "{}", text(&out.stderr));
     assert!(text(&out.stderr).contains("out.png: a drawing is written as SVG"), "{}", text(&out.stderr));
     assert!(!dir.path().join("out.png").exists());
+}
+
+#[test]
+fn artwork_that_leaves_the_page_is_warned_of_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |options: &[&str]| {
+        let mut args = vec!["affine", "--move-x", "30", "--move-y", "-8", "--report", "r.json"];
+        args.extend(options);
+        let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+        (text(&out.stderr), report["inputs"][0]["warnings"].as_array().unwrap().clone())
+    };
+    let (said, told) = run(&[]);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    for part in ["leaves the page by up to 30 units", "30 %; top, right", "--fit grow", "--fit page"] {
+        assert!(said.contains(part) && told[0].as_str().unwrap().contains(part), "{part} not in {said}");
+    }
+    assert_eq!(told.len(), 1);
+    let (said, told) = run(&["--quiet"]);
+    assert!(said.is_empty() && told.len() == 1, "{said} {told:?}");
+    for fit in ["grow", "page"] {
+        let (said, told) = run(&["--fit", fit]);
+        assert!(said.is_empty() && told.is_empty(), "{fit}: {said}");
+    }
 }
 
 #[test]
@@ -140,6 +172,21 @@ fn unreadable_input_is_3_and_names_the_place() {
         assert_eq!(out.status.code(), Some(3), "{input} {shaper}: {}", text(&out.stderr));
         assert!(text(&out.stderr).contains(part), "{input} {shaper}: {}", text(&out.stderr));
         assert!(!dir.path().join("out.svg").exists());
+    }
+    // A file beside the artwork is named first, and the artwork not at all.
+    fs::write(dir.path().join("style.toml"), "name = 7").unwrap();
+    fs::write(dir.path().join("cage.svg"), "<svg").unwrap();
+    for args in [
+        ["warp", "--style", "missing.toml"],
+        ["warp", "--style", "style.toml"],
+        ["wordart", "--preset", "missing.json"],
+        ["shaper", "--shaper", "missing.svg#a"],
+        ["shaper", "--shaper", "cage.svg#a"],
+    ] {
+        let out = pathwarp_in(dir.path(), &[&args[..], &["ok.svg", "-o", "out.svg"]].concat(), b"");
+        let (said, file) = (text(&out.stderr), args[2].split('#').next().unwrap());
+        assert_eq!(out.status.code(), Some(3), "{args:?}: {said}");
+        assert!(said.starts_with(&format!("error: {file}")) && !said.contains("ok.svg"), "{args:?}: {said}");
     }
 }
 
@@ -402,6 +449,35 @@ fn compare_tells_how_far_and_can_fail() {
     let c: Value = serde_json::from_slice(&apart.stdout).unwrap();
     assert!((c["max_distance"].as_f64().unwrap() - 10.0).abs() < 1e-9);
     assert!((c["pixels"]["visible_share"].as_f64().unwrap() - 0.1).abs() < 0.005, "{c}");
+}
+
+#[test]
+fn compare_counts_off_what_has_no_id() {
+    let dir = tempfile::tempdir().unwrap();
+    let compare = |a: &str, b: &str| -> Value {
+        let svg = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
+        fs::write(dir.path().join("a.svg"), svg(a)).unwrap();
+        fs::write(dir.path().join("b.svg"), svg(b)).unwrap();
+        let out = pathwarp_in(dir.path(), &["compare", "--json", "a.svg", "b.svg"], b"");
+        serde_json::from_slice(&out.stdout).unwrap()
+    };
+    let distances = |c: &Value| -> Vec<f64> {
+        c["paths"].as_array().unwrap().iter().map(|p| p["distance"].as_f64().unwrap().round()).collect()
+    };
+    let square = |x: i32| format!("<path d='M{x},0h10v10h-10z'/>");
+    // All on one line; numbers of other lengths move what follows, and a circle may have become a path.
+    let a = format!("{}{}<g id='g'>{}<path id='p' d='M0,50h9'/></g>", square(0), square(20), square(40));
+    let b = format!("{}{}<g id='g'>{}<path id='p' d='M0,57h9'/></g>", square(-100), square(23), square(45));
+    let c = compare(&a, &b);
+    assert_eq!(distances(&c), [100.0, 3.0, 5.0, 7.0]);
+    assert!(c["only_in_a"].as_array().unwrap().is_empty() && c["only_in_b"].as_array().unwrap().is_empty(), "{c}");
+    let circle = compare("<rect width='10' height='10'/>", "<path d='M0,0h12v10h-12z'/>");
+    assert_eq!(distances(&circle), [2.0]);
+    // One more in the group: the others are still compared; here the place in the file tells which is which.
+    let more = format!("{}{}<g id='g'>{}{}</g>", square(0), square(20), square(41), square(70));
+    let c = compare(&a, &more);
+    assert_eq!(distances(&c), [0.0, 0.0, 1.0]);
+    assert_eq!((c["only_in_a"][0].as_str(), c["only_in_b"].as_array().unwrap().len()), (Some("p"), 1), "{c}");
 }
 
 #[test]

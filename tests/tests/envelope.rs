@@ -36,7 +36,7 @@ fn kept_lines_are_straight_in_the_file() {
         "horizontals",
     ];
     for (args, prefix) in [(lying, "v"), (standing, "h")] {
-        let mut all = vec!["envelope", &grid, "-o", &out, "--strokes", "keep"];
+        let mut all = vec!["envelope", &grid, "-o", &out, "--strokes", "keep", "--fit", "grow"];
         all.extend(args);
         let (_, messages) = expect_code(0, &all);
         assert!(messages.is_empty(), "{messages}");

@@ -132,8 +132,9 @@ fn refs(words: &[String]) -> Vec<&str> {
 #[test]
 fn text_into_bend() {
     const TOLERANCE: f64 = 0.01;
-    let drawing =
-        run("text HI --size 100 | bend - --along 'M-100,350 A300,300 0 0 1 500,350' --tolerance 0.01 --baseline 0%");
+    let drawing = run(
+        "text HI --size 100 | bend - --along 'M-100,350 A300,300 0 0 1 500,350' --tolerance 0.01 --baseline 0% --fit grow",
+    );
     let centre = Point::new(200.0, 350.0);
     let radii = |o: &Outline| o.segs().map(|s| s.start().distance(centre)).collect::<Vec<f64>>();
     let radii = radii(&outline(&drawing));
@@ -144,7 +145,7 @@ fn text_into_bend() {
 /// Straight sides are an affine map: the ink fills the rectangle.
 #[test]
 fn text_into_envelope() {
-    let drawing = run("text 'Hot Tea' | envelope - --bottom 'M10,150 H410' --top 'M10,50 H410'");
+    let drawing = run("text 'Hot Tea' | envelope - --bottom 'M10,150 H410' --top 'M10,50 H410' --fit grow");
     let b = bounds(&drawing);
     assert!((b.x0 - 10.0).abs() + (b.x1 - 410.0).abs() + (b.y0 - 50.0).abs() + (b.y1 - 150.0).abs() < 1e-6, "{b:?}");
 }
@@ -158,14 +159,15 @@ fn uprights_stay_upright_under_an_arch() {
         |p: Point, q: Point| (q.y - p.y).abs() > LEAST && ((q.x - p.x) / (q.y - p.y)).atan().to_degrees().abs() < 0.1;
     let count = |drawing: &[u8]| outline(drawing).segs().filter(|s| upright(s.start(), s.end())).count();
     let word = "text HILTEN --size 90";
-    let arched =
-        run(&format!("{word} | envelope - --bottom 'M20,180 H516' --top 'M20,110 Q268,-80 516,110' --keep verticals"));
+    let arched = run(&format!(
+        "{word} | envelope - --bottom 'M20,180 H516' --top 'M20,110 Q268,-80 516,110' --keep verticals --fit grow"
+    ));
     let before = count(&run(word));
     // H has six, I two and its serifs' four, L three, T four, E six, N four.
     assert_eq!(before, 29);
     assert_eq!(count(&arched), before);
     // Between sides that lean they do not: the test can fail.
-    let leaning = run(&format!("{word} | envelope - --bottom 'M20,180 H516' --top 'M90,60 H446'"));
+    let leaning = run(&format!("{word} | envelope - --bottom 'M20,180 H516' --top 'M90,60 H446' --fit grow"));
     assert!(count(&leaning) < before / 2);
 }
 
@@ -178,7 +180,7 @@ fn text_into_warp() {
     let ends = |d: &[u8]| outline(d).segs().map(|s| s.end()).collect::<Vec<_>>();
     let (a, b) = (ends(&plain), ends(&same));
     assert!(a.len() == b.len() && a.iter().zip(&b).all(|(p, q)| p.distance(*q) < 1e-6));
-    let bent = svg(&format!("{word} | warp - --style flag --bend 50%"));
+    let bent = svg(&format!("{word} | warp - --style flag --bend 50% --fit grow"));
     assert!(bent.contains("<title>Regatta</title>") && bent.contains("aria-label=\"R\""));
     assert!(bounds(bent.as_bytes()).height() > 1.3 * bounds(&plain).height());
 }

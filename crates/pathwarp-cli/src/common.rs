@@ -143,7 +143,8 @@ pub(crate) fn args() -> Vec<Arg> {
              the difference is seen and they are not too many [default: auto]",
         ),
         choice("fit", &["none", "grow", "page"]).help(
-            "The page: leave it, grow it to hold the warped artwork, or make it the artwork's box [default: none]",
+            "The page: leave it, grow it to hold the warped artwork, or make it the artwork's box; a warning tells what leaves it \
+             [default: none]",
         ),
         choice("structure", &["auto", "keep", "flatten"]).help(
             "The document: keep its text and structure wherever possible, insist on it, or write a flat new one [default: auto]",

@@ -8,9 +8,10 @@ use pathwarp_raster::{Color, RenderOptions, Size};
 use pathwarp_svg::NamedPath;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A difference of this much in a channel is seen.
 const VISIBLE: u8 = 16;
@@ -37,7 +38,7 @@ pub(crate) fn command() -> Command {
         .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this share of the pixels differs visibly (0 to 1)"))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("As JSON"))
         .after_help(
-            "Paths of the same id are compared: the largest distance from a point of one to the other, both ways. A pixel \
+            "Paths of the same id are compared, paths without one in their order within the group of an id: the largest distance from a point of one to the other, both ways. A pixel \
              differs visibly when a channel is off by more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
         )
 }
@@ -73,14 +74,11 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
     let file = |name: &str| m.get_one::<PathBuf>(name).cloned().ok_or_else(|| Failure::usage("two files are needed"));
     let (a, b) = (deform::document(&file("A")?)?, deform::document(&file("B")?)?);
     let (paths_a, paths_b) = (a.paths(), b.paths());
-    // The first of an id counts, as for every reader of SVG.
-    let by_id = |paths: &[NamedPath]| -> HashMap<String, usize> {
-        paths.iter().enumerate().rev().map(|(i, p)| (p.id.clone(), i)).collect()
-    };
-    let (index_a, index_b) = (by_id(&paths_a), by_id(&paths_b));
+    let twins = twins(&paths_a, &paths_b);
     let pairs: Vec<PathPair> = paths_a
         .par_iter()
-        .filter_map(|p| index_b.get(&p.id).map(|i| (p, &paths_b[*i])))
+        .zip(&twins)
+        .filter_map(|(p, twin)| twin.map(|i| (p, &paths_b[i])))
         .map(|(p, q)| PathPair {
             id: p.id.clone(),
             segments_a: p.outline.segs().count(),
@@ -88,16 +86,21 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
             distance: distance::symmetric(&p.outline, &q.outline),
         })
         .collect();
-    let missing = |from: &[NamedPath], to: &HashMap<String, usize>| -> Vec<String> {
-        from.iter().filter(|p| !to.contains_key(&p.id)).map(|p| p.id.clone()).collect()
-    };
+    let met: HashSet<usize> = twins.iter().flatten().copied().collect();
+    let ids_b: HashSet<&str> = met.iter().map(|&i| paths_b[i].id.as_str()).collect();
+    let alone = paths_a.iter().zip(&twins).filter(|(_, twin)| twin.is_none());
+    let only_in_a = alone.map(|(p, _)| p.id.clone()).collect();
+    // Later ones of an id are no paths of their own.
+    let again = |p: &NamedPath| p.group.is_none() && ids_b.contains(p.id.as_str());
+    let alone = paths_b.iter().enumerate().filter(|(i, p)| !met.contains(i) && !again(p));
+    let only_in_b = alone.map(|(_, p)| p.id.clone()).collect();
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
     let render = |d: &pathwarp_svg::Document| RenderOptions { size, background: Some(Color::WHITE) }.render(d.tree());
     let difference = pathwarp_raster::compare(&render(&a)?, &render(&b)?)?;
     let result = Comparison {
         max_distance: pairs.iter().filter_map(|p| p.distance).fold(0.0, f64::max),
-        only_in_a: missing(&paths_a, &index_b),
-        only_in_b: missing(&paths_b, &index_a),
+        only_in_a,
+        only_in_b,
         paths: pairs,
         pixels: Pixels {
             width: difference.width,
@@ -116,6 +119,36 @@ pub(crate) fn run(m: &ArgMatches) -> Result<Outcome, Failure> {
     let over = |name: &str, value: f64| m.get_one::<f64>(name).is_some_and(|most| value > *most);
     let apart = over("max-distance", result.max_distance) || over("max-pixels", result.pixels.visible_share);
     Ok(if apart { Outcome::Partly } else { Outcome::Done })
+}
+
+/// For every path of `a` the one of `b` that it is compared with: the first of its id, as for every reader of SVG. Paths without
+/// an id are counted off within the element around them that has one; where that holds more of them in one drawing than in
+/// the other, the place in the file decides.
+fn twins(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
+    let unnamed = |paths: &[NamedPath]| {
+        let mut out: HashMap<Arc<str>, Vec<usize>> = HashMap::new();
+        for (i, p) in paths.iter().enumerate() {
+            if let Some(g) = &p.group {
+                out.entry(g.clone()).or_default().push(i);
+            }
+        }
+        out
+    };
+    let others = unnamed(b);
+    let mut out = vec![None; a.len()];
+    let mut counted = HashSet::new();
+    for (group, own) in unnamed(a) {
+        for (i, j) in others.get(&group).filter(|o| o.len() == own.len()).into_iter().flat_map(|o| own.iter().zip(o)) {
+            out[*i] = Some(*j);
+            counted.insert(*j);
+        }
+    }
+    let rest = b.iter().enumerate().rev().filter(|(j, _)| !counted.contains(j));
+    let by_id: HashMap<(bool, &str), usize> = rest.map(|(j, q)| ((q.group.is_none(), q.id.as_str()), j)).collect();
+    for (twin, p) in out.iter_mut().zip(a) {
+        *twin = twin.or_else(|| by_id.get(&(p.group.is_none(), p.id.as_str())).copied());
+    }
+    out
 }
 
 fn table(c: &Comparison) -> String {

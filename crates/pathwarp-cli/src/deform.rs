@@ -17,8 +17,8 @@ use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::refit;
 use pathwarp_raster::Picture;
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions, Warped,
-    compressed,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, Overhang, ReadOptions, Selection, WarpOptions,
+    Warped, compressed,
 };
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -204,7 +204,7 @@ fn warp(
     let frame = frame(&doc, &selection, common.frame, artwork_box, wants_baseline(registry, &recipe))?;
     let artwork: Vec<&Outline> = doc.selected(&selection).map(|s| &s.outline).collect();
     let baseline = frame.baseline;
-    let built = recipe.build(registry, frame, &artwork.iter().copied())?;
+    let built = recipe.build(registry, frame, &artwork.iter().copied()).map_err(Failure::of_recipe)?;
 
     let tolerance = common.tolerance_for(artwork_box);
     let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), common.image_dpi));
@@ -308,6 +308,7 @@ fn report(
     let folds = folds(doc, built, options);
     let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
     warnings.extend(warped.warnings.iter().cloned());
+    warnings.extend(warped.overhang.map(beyond_the_page));
     // Parts of one text or `use` share an id, and are one shape in the report.
     let mut by_id: HashMap<&str, Orientation> = HashMap::new();
     let mut all = Orientation::default();
@@ -350,6 +351,28 @@ fn report(
         skipped: warped.skipped.iter().map(|s| report::Skipped { id: s.id.clone(), why: s.why.clone() }).collect(),
         warnings,
     }
+}
+
+/// Artwork beyond the page is not seen.
+fn beyond_the_page(o: Overhang) -> String {
+    let names = ["left", "top", "right", "bottom"];
+    let sides: Vec<&str> = names.iter().zip(o.by).filter(|(_, by)| *by > 0.0).map(|(name, _)| *name).collect();
+    let most = o.by.into_iter().fold(0.0, f64::max);
+    format!(
+        "the artwork leaves the page by up to {} units ({} %; {}); --fit grow makes room for it, --fit page fits the page to it",
+        three_figures(most),
+        three_figures(100.0 * o.share),
+        sides.join(", ")
+    )
+}
+
+/// A positive number with the three figures that tell how much it is.
+fn three_figures(v: f64) -> String {
+    /// Nobody's page is so small.
+    const MOST_DECIMALS: f64 = 12.0;
+    let decimals = (2.0 - v.log10().floor()).clamp(0.0, MOST_DECIMALS) as usize;
+    let text = format!("{v:.decimals$}");
+    if decimals == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
 }
 
 /// Every selected shape's orientation under the map.

@@ -13,6 +13,8 @@ pub(crate) enum Failure {
     Usage(String),
     /// A file cannot be read, understood or written.
     Input(String),
+    /// Neither can one beside the artwork (a cage, a style, a mesh), which the message names.
+    Beside(String),
     /// The geometry forbids it.
     Geometry(String),
 }
@@ -36,7 +38,7 @@ impl Failure {
         match self {
             Self::Clap(e) => u8::try_from(e.exit_code()).unwrap_or(2),
             Self::Usage(_) => 2,
-            Self::Input(_) => 3,
+            Self::Input(_) | Self::Beside(_) => 3,
             Self::Geometry(_) => 4,
         }
     }
@@ -45,7 +47,15 @@ impl Failure {
         match self {
             // clap chooses the stream (help goes to standard output); a closed pipe there is nobody's fault.
             Self::Clap(e) => drop(e.print()),
-            Self::Usage(m) | Self::Input(m) | Self::Geometry(m) => terminal::error(m),
+            Self::Usage(m) | Self::Input(m) | Self::Beside(m) | Self::Geometry(m) => terminal::error(m),
+        }
+    }
+
+    /// What is wrong with a recipe: its input errors are those of the files that it names.
+    pub(crate) fn of_recipe(e: pathwarp::Error) -> Self {
+        match Self::from(e) {
+            Self::Input(m) => Self::Beside(m),
+            other => other,
         }
     }
 

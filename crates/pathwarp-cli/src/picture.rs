@@ -53,7 +53,7 @@ pub(crate) fn warp(
     };
     let corners = [(0.0, 0.0), (area.x1, 0.0), (area.x1, area.y1), (0.0, area.y1)].map(Point::from);
     let artwork = Outline::from_points(&corners, true);
-    let built = recipe.build(registry, Frame::new(frame), &[&artwork].into_iter())?;
+    let built = recipe.build(registry, Frame::new(frame), &[&artwork].into_iter()).map_err(Failure::of_recipe)?;
     if !built.copies.is_empty() {
         return Err(Failure::usage("a photograph cannot be repeated; --stretch repeat is for drawings"));
     }

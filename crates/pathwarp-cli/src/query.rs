@@ -69,7 +69,7 @@ pub(crate) fn run(registry: &Registry, m: &ArgMatches, rest: &[Vec<OsString>]) -
         Some(t) => crate::common::rect(t)?,
         None => cloud.bounding_box().unwrap_or(Rect::ZERO),
     };
-    let map = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud))?.map;
+    let map = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud)).map_err(Failure::of_recipe)?.map;
     let mut creases = Creases::default();
     map.creases(&mut creases);
     let mut jets = vec![Jet::default(); points.len()];

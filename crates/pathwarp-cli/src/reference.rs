@@ -1,5 +1,6 @@
 //! Path references: `FILE#NAME`, `FILE`, `#NAME`.
 
+use crate::failure::Failure;
 use crate::{data_file, gimp};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
@@ -28,11 +29,12 @@ impl<'a> References<'a> {
     }
 
     /// Everything in a recipe that lies in files: paths and texts.
-    pub(crate) fn resolve(&mut self, registry: &Registry, recipe: &mut Recipe) -> Result<(), Error> {
+    pub(crate) fn resolve(&mut self, registry: &Registry, recipe: &mut Recipe) -> Result<(), Failure> {
         for step in &mut recipe.steps {
             if let Some(e) = registry.get(&step.deformation) {
-                step.args.resolve_paths(e.info().params, |r| self.look_up(r))?;
-                step.args.resolve_files(e.info().params, data_file::read)?;
+                let paths = step.args.resolve_paths(e.info().params, |r| self.look_up(r));
+                let all = paths.and_then(|()| step.args.resolve_files(e.info().params, data_file::read));
+                all.map_err(Failure::of_recipe)?;
             }
         }
         Ok(())

@@ -82,13 +82,13 @@ pub(crate) fn command() -> Command {
         .arg(Arg::new("quiet").short('q').long("quiet").action(ArgAction::SetTrue).help("No warnings"))
         .after_help(
             "The outlines are the font's own curves. The page is as large as the ink and the lines together; \
-             --margin makes room for where a deformation moves them. Every line is a group with data-baseline, every letter a path with data-glyph: place and \
+             --margin makes room around them, and a deformation's --fit grow where it moves them. Every line is a group with data-baseline, every letter a path with data-glyph: place and \
              advance width. What no font has is drawn as the font draws what is missing, a warning names it, and the exit code is 1.\n\n\
              Examples:\n  pathwarp text Welcome -o word.svg\n  \
              pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg\n  \
              pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg\n  \
              pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg\n  \
-             pathwarp text Welcome --margin 60% | pathwarp bend - --along 'M0,90 Q170,0 340,90' -o arc.svg",
+             pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' --fit grow -o arc.svg",
         )
 }
 

@@ -61,11 +61,8 @@ impl<'a> Input<'a> {
     /// Fills `buffer` or says that the file ends inside `what`.
     pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
         if self.left() < buffer.len() as u64 {
-            let (needed, left) = (buffer.len(), self.left());
-            return Err(Error::at(
-                self.at,
-                format!("{what}: {needed} bytes must follow here, but only {left} are left"),
-            ));
+            let needed = format!("{what}: {} bytes must follow here", buffer.len());
+            return Err(Error::short(self.at, &needed, self.left()));
         }
         self.allowance = self.allowance.checked_sub(buffer.len() as u64).ok_or_else(|| {
             let problem = format!(
@@ -88,7 +85,7 @@ impl<'a> Input<'a> {
     /// `count` bytes, bounded by what is left; memory is taken as the bytes arrive.
     pub(crate) fn vec(&mut self, count: u64, what: &str) -> Result<Vec<u8>, Error> {
         if count > self.left() {
-            return Err(Error::at(self.at, format!("{what} of {count} bytes, but only {} are left", self.left())));
+            return Err(Error::short(self.at, &format!("{what} of {count} bytes"), self.left()));
         }
         let mut out = Vec::new();
         let mut left = usize::try_from(count).unwrap_or(usize::MAX);
@@ -160,7 +157,7 @@ impl<'a> Input<'a> {
 
     pub(crate) fn skip(&mut self, count: u64, what: &str) -> Result<(), Error> {
         if count > self.left() {
-            return Err(Error::at(self.at, format!("{what} of {count} bytes, but only {} are left", self.left())));
+            return Err(Error::short(self.at, &format!("{what} of {count} bytes"), self.left()));
         }
         self.go(self.at + count, what)
     }

@@ -18,7 +18,7 @@ impl Writer<'_> {
         let mut next = Some(id.to_owned());
         for _ in 0..LONGEST {
             let Some(id) = next else { return true };
-            match source.by_id.get(&id).map(Vec::as_slice) {
+            match source.by_id().get(&id).map(Vec::as_slice) {
                 Some(&[e]) if source.elements[e].tag.ends_with("Gradient") => next = source.href(e),
                 _ => return false,
             }
@@ -51,7 +51,7 @@ impl Writer<'_> {
             SpreadMethod::Reflect => out.push_str(" spreadMethod=\"reflect\""),
             SpreadMethod::Repeat => out.push_str(" spreadMethod=\"repeat\""),
         }
-        if self.in_source && self.can_lean_on(g.id()) && !self.job.document.scene.foreign.contains(&address) {
+        if self.in_source && self.can_lean_on(g.id()) && !self.job.document.scene().foreign.contains(&address) {
             // The stops stay with the original.
             let _ = write!(out, " {}=\"#{}\"/>", self.link(), escape(g.id()));
         } else {
@@ -77,7 +77,7 @@ impl Writer<'_> {
         if let Some(id) = self.servers.get(&key) {
             return format!("url(#{id})");
         }
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let Some(tile) = scene.tiles.iter().find(|t| std::sync::Arc::ptr_eq(&t.pattern, pattern)) else {
             return "none".into();
         };
@@ -114,7 +114,7 @@ impl Writer<'_> {
         if let Some(id) = &self.clip_ids[i] {
             return id.clone();
         }
-        let id = self.new_id(&self.job.document.scene.clips[i].id.clone());
+        let id = self.new_id(&self.job.document.scene().clips[i].id.clone());
         self.clip_ids[i] = Some(id.clone());
         let text = self.clip(i, &format!(" id=\"{}\"", escape(&id)));
         self.define(&text);
@@ -123,7 +123,7 @@ impl Writer<'_> {
 
     /// A clip path, all transforms on its paths, as it must not hold groups.
     pub(crate) fn clip(&mut self, i: usize, head: &str) -> String {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let c = &scene.clips[i];
         let mut out = format!("<{}{head}", self.tag("clipPath"));
         if c.transform != Affine::IDENTITY {
@@ -151,7 +151,7 @@ impl Writer<'_> {
                 Node::Text { content, .. } => self.clip_children(content, t * content.transform, clip, out),
                 Node::Image(_) => {}
                 Node::Part(i) => {
-                    let p = &job.document.scene.parts[*i];
+                    let p = &job.document.scene().parts[*i];
                     if !p.visible {
                         continue;
                     }
@@ -182,7 +182,7 @@ impl Writer<'_> {
         if let Some(id) = &self.mask_ids[i] {
             return id.clone();
         }
-        let id = self.new_id(&self.job.document.scene.masks[i].id.clone());
+        let id = self.new_id(&self.job.document.scene().masks[i].id.clone());
         self.mask_ids[i] = Some(id.clone());
         let text = self.mask(i, &format!(" id=\"{}\"", escape(&id)));
         self.define(&text);
@@ -190,7 +190,7 @@ impl Writer<'_> {
     }
 
     pub(crate) fn mask(&mut self, i: usize, head: &str) -> String {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let m = &scene.masks[i];
         let region = self.mask_region(i);
         let mut properties = Properties::new();
@@ -215,7 +215,7 @@ impl Writer<'_> {
 
     /// The attributes that say where a mask counts: about all that its content covers after the warp.
     pub(crate) fn mask_region(&self, i: usize) -> Vec<(&'static str, String)> {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let m = &scene.masks[i];
         let mut area = m.rect;
         if self.changes(m.parts.clone()) {
@@ -254,7 +254,7 @@ impl Writer<'_> {
 
     /// The warped border of a mask's region, where it cuts the content.
     pub(crate) fn mask_edge(&self, i: usize) -> Option<String> {
-        let m = &self.job.document.scene.masks[i];
+        let m = &self.job.document.scene().masks[i];
         let inside = m.rect.union(m.content) == m.rect;
         if inside || !self.changes(m.parts.clone()) {
             return None;
@@ -269,7 +269,7 @@ impl Writer<'_> {
         let border = border.finish().transformed(m.frame).repeated(&self.job.options.copies);
         let warped = refit::warp_path(&border, self.job.map, &self.job.options.refit).ok()?;
         let mut path = warped.path;
-        path.apply_affine(warp::written(&self.job.document.scene, self.job.slots, m.slot, m.frame).inverse());
+        path.apply_affine(warp::written(self.job.document.scene(), self.job.slots, m.slot, m.frame).inverse());
         Some(path_data(&path, MOST_DECIMALS.min(9)))
     }
 
@@ -277,8 +277,8 @@ impl Writer<'_> {
     pub(crate) fn filter(&mut self, f: &std::sync::Arc<usvg::filter::Filter>) -> String {
         let source = &self.job.document.source;
         self.notes.add(FILTERS, f.id());
-        let own = source.by_id.get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
-        let foreign = self.job.document.scene.foreign.contains(&(std::sync::Arc::as_ptr(f) as usize));
+        let own = source.by_id().get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
+        let foreign = self.job.document.scene().foreign.contains(&(std::sync::Arc::as_ptr(f) as usize));
         if self.in_source && own && !foreign && !self.shows_warped(f) {
             return format!("url(#{})", f.id());
         }
@@ -291,14 +291,14 @@ impl Writer<'_> {
         if !f.primitives().iter().any(|p| matches!(p.kind(), usvg::filter::Kind::Image(_))) {
             return false;
         }
-        let (scene, source) = (&self.job.document.scene, &self.job.document.source);
+        let (scene, source) = (&self.job.document.scene(), &self.job.document.source);
         let inside = |range: &std::ops::Range<usize>, e: usize| range.contains(&source.elements[e].range.start);
-        let own = source.by_id.get(f.id()).into_iter().flatten();
+        let own = source.by_id().get(f.id()).into_iter().flatten();
         let images = own.flat_map(|&e| {
             let range = &source.elements[e].range;
             (e + 1..source.elements.len()).take_while(move |&c| inside(range, c))
         });
-        let shown = images.filter_map(|e| source.by_id.get(&source.href(e)?)).flatten();
+        let shown = images.filter_map(|e| source.by_id().get(&source.href(e)?)).flatten();
         shown.map(|&e| &source.elements[e].range).any(|range| {
             let of = |p: &crate::scene::Part| p.owner.or(p.source).is_some_and(|e| inside(range, e));
             scene.parts.iter().zip(self.job.outcomes).any(|(p, o)| o.done().is_some() && of(p))

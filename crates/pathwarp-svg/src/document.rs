@@ -9,24 +9,23 @@ use crate::select::{self, Selection};
 use crate::source::{ElementId, Source, is_shape};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::{Error, Outline};
-use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 /// An SVG file.
 #[derive(Debug)]
 pub struct Document {
     pub(crate) name: String,
-    pub(crate) bytes: Arc<[u8]>,
+    /// The file as it came, where it is not just the text.
+    packed: Option<Arc<[u8]>>,
     pub(crate) source: Arc<Source>,
-    pub(crate) scene: Scene,
+    /// What is painted; where the stack may be small, it is worked out when it is first asked for.
+    scene: OnceLock<Scene>,
     shapes: OnceLock<Vec<Shape>>,
     pub(crate) missing_fonts: Vec<String>,
     pub(crate) page: Size,
     /// Whether walking it takes little stack.
     pub(crate) shallow: bool,
     tree: Arc<usvg::Tree>,
-    /// What the tree's ids stand for.
-    ids: Arc<HashMap<String, Vec<ElementId>>>,
     /// Which element each letter of a text with names inside comes from.
     letters: Arc<letters::Owners>,
     dpi: f64,
@@ -66,6 +65,8 @@ pub struct NamedPath {
     pub outline: Outline,
     /// Where the element starts in the source: line and column, counted from 1.
     pub at: (usize, usize),
+    /// Of a path without an id, as [`Document::paths`] gives it, the id of the nearest element around it that has one, or nothing.
+    pub group: Option<Arc<str>>,
 }
 
 impl Document {
@@ -75,42 +76,46 @@ impl Document {
     /// [`Error::Input`] with the place, if it is not UTF-8, not XML, not SVG, or too large.
     pub fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
         let text = read::text(data, name, options)?;
-        let bytes = Arc::from(data);
+        let packed = (text.len() != data.len()).then(|| Arc::from(data));
         let dpi = f64::from(options.dpi);
-        let source = Source::parse(text, name)?;
-        let shallow = read::is_shallow(&source);
-        let resolve = || {
-            let (instrumented, ids) = source.instrumented();
-            // Where positions are not to be trusted, the text must not be touched.
-            let text = if source.unpatchable.is_none() { &instrumented } else { &source.text };
-            let (tree, missing_fonts) = read::tree(text, name, options)?;
-            let letters = letters::owners(&source, &ids, name, options)?;
-            let scene = resolve::build(&tree, &source, &ids, &letters, dpi, None);
-            let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
-            Ok((tree, ids, letters, missing_fonts, scene, page))
-        };
-        let (tree, ids, letters, missing_fonts, scene, page) =
-            if shallow { resolve()? } else { read::with_stack(name, resolve)? };
+        let (source, read) = Source::read(text, name, |source, xml| {
+            let shallow = read::is_shallow(source);
+            let resolve = || {
+                let (tree, missing_fonts) = read::tree(xml, name, options)?;
+                let letters = letters::owners(source, name, options)?;
+                let scene = OnceLock::new();
+                if !shallow {
+                    scene.get_or_init(|| resolve::build(&tree, source, &letters, dpi, None));
+                }
+                Ok((tree, letters, missing_fonts, scene))
+            };
+            Ok((if shallow { resolve()? } else { read::with_stack(name, resolve)? }, shallow))
+        })?;
+        let ((tree, letters, missing_fonts, scene), shallow) = read;
         Ok(Self {
             name: name.to_owned(),
-            bytes,
+            packed,
             source: Arc::new(source),
             scene,
             shapes: OnceLock::new(),
             missing_fonts,
-            page,
+            page: Size::new(f64::from(tree.size().width()), f64::from(tree.size().height())),
             shallow,
             tree: Arc::new(tree),
-            ids: Arc::new(ids),
             letters: Arc::new(letters),
             dpi,
         })
     }
 
+    /// The drawing as it is painted.
+    pub(crate) fn scene(&self) -> &Scene {
+        self.scene.get_or_init(|| resolve::build(&self.tree, &self.source, &self.letters, self.dpi, None))
+    }
+
     /// The file's bytes.
     #[must_use]
     pub fn source(&self) -> &[u8] {
-        &self.bytes
+        self.packed.as_deref().unwrap_or(self.source.text.as_bytes())
     }
 
     /// What it is called in messages.
@@ -129,7 +134,7 @@ impl Document {
     /// From root user units to px.
     #[must_use]
     pub fn user_to_px(&self) -> Affine {
-        self.scene.to_px
+        self.scene().to_px
     }
 
     /// The page in px.
@@ -151,19 +156,18 @@ impl Document {
     /// The document with its patterns' tiles laid out as geometry.
     pub(crate) fn tiled(&self, tiling: Tiling<'_>) -> Result<Self, Error> {
         // `Map`s may be used by any thread, so the tiling may go to one.
-        let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.ids, &self.letters, self.dpi, Some(tiling)));
+        let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.letters, self.dpi, Some(tiling)));
         let scene = if self.shallow { resolve()? } else { read::with_stack(&self.name, resolve)? };
         Ok(Self {
             name: self.name.clone(),
-            bytes: self.bytes.clone(),
+            packed: self.packed.clone(),
             source: self.source.clone(),
-            scene,
+            scene: scene.into(),
             shapes: OnceLock::new(),
             missing_fonts: self.missing_fonts.clone(),
             page: self.page,
             shallow: self.shallow,
             tree: self.tree.clone(),
-            ids: self.ids.clone(),
             letters: self.letters.clone(),
             dpi: self.dpi,
         })
@@ -177,7 +181,7 @@ impl Document {
     /// Everything that is painted, clips or masks, in painting order. Texts and `use` copies count once per path.
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
-        self.shapes.get_or_init(|| shapes(&self.scene, &self.source))
+        self.shapes.get_or_init(|| shapes(self.scene(), &self.source))
     }
 
     /// The tight box of what is painted and meant by `selection`: the filled geometry, without stroke widths.
@@ -198,7 +202,7 @@ impl Document {
     pub(crate) fn meant(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.source);
         let all = selection.is_everything();
-        let parts = self.scene.parts.iter();
+        let parts = self.scene().parts.iter();
         parts.map(|p| p.owner.or(p.source).map_or(all, |e| elements[e])).collect()
     }
 
@@ -206,7 +210,22 @@ impl Document {
     #[must_use]
     pub fn paths(&self) -> Vec<NamedPath> {
         let shapes = (0..self.source.elements.len()).filter(|&e| is_shape(&self.source.elements[e].tag));
-        shapes.filter_map(|e| self.named_path(e)).collect()
+        let groups = self.groups();
+        shapes.filter_map(|e| Some(NamedPath { group: groups[e].clone(), ..self.named_path(e)? })).collect()
+    }
+
+    /// For every element without an id what [`NamedPath::group`] says.
+    fn groups(&self) -> Vec<Option<Arc<str>>> {
+        let mut nearest: Vec<Arc<str>> = Vec::with_capacity(self.source.elements.len());
+        let mut out = Vec::with_capacity(self.source.elements.len());
+        // Parents come before their children.
+        for (e, element) in self.source.elements.iter().enumerate() {
+            let outer = element.parent.map_or_else(|| "".into(), |p| nearest[p].clone());
+            let id = self.source.attr(e, "id").filter(|v| !v.is_empty());
+            out.push(id.is_none().then(|| outer.clone()));
+            nearest.push(id.map_or(outer, |id| id.as_ref().into()));
+        }
+        out
     }
 
     /// The path of this name: an id, else an Inkscape label, else a title; a leading `#` is ignored. It may be invisible, or
@@ -260,8 +279,8 @@ impl Document {
 
     fn named_path(&self, e: ElementId) -> Option<NamedPath> {
         // What is painted is known best; the rest comes from the source alone.
-        let parts = self.scene.by_source.get(&e).map_or(&[][..], Vec::as_slice);
-        let painted = parts.iter().map(|&i| &self.scene.parts[i]).find(|p| p.role == Role::Paint);
+        let parts = self.scene().by_source.get(&e).map_or(&[][..], Vec::as_slice);
+        let painted = parts.iter().map(|&i| &self.scene().parts[i]).find(|p| p.role == Role::Paint);
         let outline = match painted {
             Some(p) => p.outline(),
             None => {
@@ -275,9 +294,10 @@ impl Document {
             id: source.display_name(e),
             label: source.label(e).map(std::borrow::Cow::into_owned),
             title: source.elements[e].title.clone(),
-            element: source.elements[e].tag.clone(),
+            element: source.elements[e].tag.to_string(),
             outline,
             at: source.line_column(source.elements[e].range.start),
+            group: None,
         })
     }
 }
@@ -287,7 +307,7 @@ fn shapes(scene: &Scene, source: &Source) -> Vec<Shape> {
         let e = p.owner.or(p.source);
         Shape {
             id: e.map_or_else(|| "path".to_owned(), |e| source.display_name(e)),
-            element: e.map_or_else(|| "path".to_owned(), |e| source.elements[e].tag.clone()),
+            element: e.map_or_else(|| "path".to_owned(), |e| source.elements[e].tag.to_string()),
             outline: p.outline(),
             at: e.map_or((1, 1), |e| source.line_column(source.elements[e].range.start)),
             painted: p.painted() && p.role == Role::Paint,

@@ -155,7 +155,8 @@ fn patch(source: &Source, e: ElementId, c: Change, out: &mut Vec<(usize, usize, 
     for (name, value) in attrs {
         // `xlink:href` and `href` go together.
         let existing = el.attrs.iter().filter(|a| {
-            a.name == name && (a.namespace == Namespace::None || (name == "href" && a.namespace == Namespace::Xlink))
+            a.name(text) == name
+                && (a.namespace == Namespace::None || (name == "href" && a.namespace == Namespace::Xlink))
         });
         let mut set = false;
         for a in existing {

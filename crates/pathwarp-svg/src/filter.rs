@@ -277,7 +277,7 @@ impl Writer<'_> {
 
     /// The picture of an `feImage`, written once as a definition; the link to it.
     fn fe_image(&mut self, root: &usvg::Group) -> String {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let Some(picture) = scene.pictures.get(&(std::ptr::from_ref(root) as usize)) else { return String::new() };
         let id = self.new_id("picture");
         let text = self.group(picture, &format!(" id=\"{id}\""));

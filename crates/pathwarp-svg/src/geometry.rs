@@ -117,7 +117,7 @@ impl Reader<'_> {
         if let Some(text) = self.source.attr(e, "transform") {
             t = transform(&text)?;
         }
-        match el.tag.as_str() {
+        match el.tag.as_ref() {
             "use" => {
                 let shift = (self.length_or_zero(e, "x", Side::Width)?, self.length_or_zero(e, "y", Side::Height)?);
                 Some(t * Affine::translate(shift))
@@ -155,7 +155,7 @@ impl Reader<'_> {
         let x = |name| self.length_or_zero(e, name, Side::Width);
         let y = |name| self.length_or_zero(e, name, Side::Height);
         let mut b = Builder::default();
-        match self.source.elements[e].tag.as_str() {
+        match self.source.elements[e].tag.as_ref() {
             "path" => return Some(Outline::from_svg_lossy(&self.source.attr(e, "d")?)).filter(|o| !o.is_empty()),
             "rect" => {
                 let (x0, y0) = (x("x")?, y("y")?);

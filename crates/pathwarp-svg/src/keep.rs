@@ -41,7 +41,7 @@ pub(crate) fn write(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes
         Keeper { edits: Edits::new(source), source, job: *job, writer: &mut writer, fragments: BTreeSet::new() };
     k.clips()?;
     k.masks()?;
-    k.group(&job.document.scene.root);
+    k.group(&job.document.scene().root);
     k.slots();
     k.animations();
     for (name, value) in job.page().into_iter().flatten() {
@@ -79,7 +79,7 @@ impl<'a> Keeper<'a, '_> {
 
     /// Clip paths: the first frame's version stays in its place, others get definitions of their own.
     fn clips(&mut self) -> Result<(), String> {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let mut placed = BTreeSet::new();
         for (i, c) in scene.clips.iter().enumerate().filter(|c| !c.1.foreign) {
             let def = self.def(&c.id, "clipPath");
@@ -113,7 +113,7 @@ impl<'a> Keeper<'a, '_> {
     }
 
     fn masks(&mut self) -> Result<(), String> {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let mut placed = BTreeSet::new();
         for (i, m) in scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
             let def = self.def(&m.id, "mask");
@@ -166,7 +166,7 @@ impl<'a> Keeper<'a, '_> {
 
     /// Filtered elements and images move along with their transforms.
     fn slots(&mut self) {
-        for (s, placed) in self.job.document.scene.slots.iter().zip(self.job.slots) {
+        for (s, placed) in self.job.document.scene().slots.iter().zip(self.job.slots) {
             if let (None, Some(e)) = (s.owner, s.element)
                 && placed.fit != Affine::IDENTITY
             {
@@ -177,7 +177,7 @@ impl<'a> Keeper<'a, '_> {
     }
 
     fn def(&self, id: &str, tag: &str) -> Option<ElementId> {
-        self.source.by_id.get(id)?.iter().copied().rfind(|&e| self.tag(e) == tag)
+        self.source.by_id().get(id)?.iter().copied().rfind(|&e| self.tag(e) == tag)
     }
 
     /// Points all that referred to the old definition to the new one.
@@ -199,7 +199,7 @@ impl<'a> Keeper<'a, '_> {
         g.children.iter().all(|n| match n {
             Node::Group(g) => g.owner.is_none() && self.plain_clip(g),
             Node::Part(i) => {
-                let p = &self.job.document.scene.parts[*i];
+                let p = &self.job.document.scene().parts[*i];
                 p.source.is_some() && p.owner.is_none()
             }
             Node::Image(_) | Node::Text { .. } => false,
@@ -209,7 +209,7 @@ impl<'a> Keeper<'a, '_> {
     /// A nested viewport cuts its content along straight edges in one place. Warped content must not be cut there: the
     /// viewport lets everything through, and if it did cut something, its warped edge becomes a clip path around it.
     fn viewport(&mut self, i: usize) -> Result<(), String> {
-        let c = &self.job.document.scene.clips[i];
+        let c = &self.job.document.scene().clips[i];
         let svgs: BTreeSet<ElementId> =
             c.referrers.iter().filter_map(|r| r.element).filter(|&e| self.tag(e) == "svg").collect();
         for e in svgs {
@@ -229,7 +229,7 @@ impl<'a> Keeper<'a, '_> {
 
     /// Whether all that `e` holds lies inside the box of these parts.
     fn fits(&self, e: ElementId, edge: std::ops::Range<usize>) -> bool {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let Some(edge) = scene.parts.get(edge.start).and_then(|p| p.outline().bounding_box()) else { return false };
         let inside = self.source.elements[e].range.clone();
         scene.parts.iter().filter(|p| !p.in_tile).all(|p| {
@@ -243,7 +243,7 @@ impl<'a> Keeper<'a, '_> {
     /// The element's attributes but for those that are written anew.
     fn kept_attributes(&self, e: ElementId, gone: &[&str]) -> String {
         let el = &self.source.elements[e];
-        let kept = el.attrs.iter().filter(|a| !gone.contains(&a.name.as_str()));
+        let kept = el.attrs.iter().filter(|a| !gone.contains(&a.name(&self.source.text)));
         kept.map(|a| format!(" {}", &self.source.text[a.range.clone()])).collect()
     }
 
@@ -255,13 +255,13 @@ impl<'a> Keeper<'a, '_> {
             let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", self.writer.filter_id(f))).collect();
             self.edits.set_property(*e, "filter", list.join(" "));
         } else if g.filters.iter().any(|f| self.writer.shows_warped(f))
-            && let Some(slot) = g.slot.map(|s| &self.job.document.scene.slots[s])
+            && let Some(slot) = g.slot.map(|s| &self.job.document.scene().slots[s])
             && let (None, Some(e)) = (slot.owner, slot.element)
         {
             let list: Vec<String> = g.filters.iter().map(|f| self.writer.filter(f)).collect();
             self.edits.set_property(e, "filter", list.join(" "));
         }
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         for f in &g.filters {
             self.writer.notes.add(crate::write::FILTERS, f.id());
         }
@@ -302,7 +302,7 @@ impl<'a> Keeper<'a, '_> {
             Node::Group(g) => g.children.iter().any(|n| self.changed(n)),
             Node::Text { content, .. } => content.children.iter().any(|n| self.changed(n)),
             Node::Image(i) => {
-                let slot = self.job.document.scene.bitmaps[*i].slot;
+                let slot = self.job.document.scene().bitmaps[*i].slot;
                 let moved = slot.is_some_and(|s| self.job.slots[s].fit != Affine::IDENTITY);
                 moved || matches!(self.job.pictures[*i], Picture::Bent(_))
             }
@@ -310,7 +310,7 @@ impl<'a> Keeper<'a, '_> {
     }
 
     fn image(&mut self, g: &Group, i: usize) {
-        let bitmap = &self.job.document.scene.bitmaps[i];
+        let bitmap = &self.job.document.scene().bitmaps[i];
         let e = g.source.or(bitmap.owner).filter(|&e| self.tag(e) == "image");
         match (&self.job.pictures[i], e) {
             (Picture::Placed, _) => {}
@@ -334,7 +334,7 @@ impl<'a> Keeper<'a, '_> {
     /// A shape element stays; only where its stroke has become an outline it turns into a group of two paths.
     fn shape(&mut self, e: ElementId, i: usize) {
         let job = self.job;
-        let p = &job.document.scene.parts[i];
+        let p = &job.document.scene().parts[i];
         let Some(done) = job.outcomes[i].done() else { return };
         let outlined = p.stroke.is_some() && matches!(done.stroke, StrokeDone::Outlined(_));
         let filled = done.fill.as_ref().is_some_and(|f| !f.elements().is_empty());
@@ -441,7 +441,7 @@ impl<'a> Keeper<'a, '_> {
         let mut head: String = el
             .attrs
             .iter()
-            .filter(|a| kept(&a.name) || matches!(a.namespace, crate::source::Namespace::Inkscape))
+            .filter(|a| kept(a.name(&self.source.text)) || matches!(a.namespace, crate::source::Namespace::Inkscape))
             .map(|a| format!(" {}", &self.source.text[a.range.clone()]))
             .collect();
         let title = self.writer.tag("title");

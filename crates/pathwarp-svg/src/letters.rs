@@ -7,7 +7,7 @@ use crate::keep::Keeper;
 use crate::number::escape;
 use crate::read::{self, ReadOptions};
 use crate::scene::Group;
-use crate::source::{ElementId, Namespace, Source};
+use crate::source::{self, Attr, ElementId, Namespace, Source};
 use pathwarp::Error;
 use std::collections::HashMap;
 use usvg::{Color, Fill, Node, Paint};
@@ -15,13 +15,8 @@ use usvg::{Color, Fill, Node, Paint};
 /// By text element: for every node of its outlines, in order, the element that it comes from.
 pub(crate) type Owners = HashMap<ElementId, Vec<ElementId>>;
 
-/// Who owns which letters, for the texts that have names inside. `ids` says what the ids of usvg's tree stand for.
-pub(crate) fn owners(
-    source: &Source,
-    ids: &HashMap<String, Vec<ElementId>>,
-    name: &str,
-    options: &ReadOptions,
-) -> Result<Owners, Error> {
+/// Who owns which letters, for the texts that have names inside.
+pub(crate) fn owners(source: &Source, name: &str, options: &ReadOptions) -> Result<Owners, Error> {
     let mut out = Owners::new();
     if source.unpatchable.is_some() {
         return Ok(out);
@@ -33,8 +28,9 @@ pub(crate) fn owners(
     }
     let painted: Vec<ElementId> = meant.iter().flat_map(|&t| std::iter::once(t).chain(inside(source, t))).collect();
     let styles = painted.iter().filter_map(|&e| Some((e, format!("fill:{};stroke:none", colour(e)?))));
-    let (tree, _) = read::tree(&source.instrumented_with(styles).0, name, options)?;
-    collect(tree.root(), source, ids, &mut out);
+    let painted = source.instrumented_with(styles).0;
+    let (tree, _) = read::tree(&source::xml(&painted, name)?, name, options)?;
+    collect(tree.root(), source, &mut out);
     Ok(out)
 }
 
@@ -47,12 +43,12 @@ fn element(c: Color) -> ElementId {
     usize::from(c.red) << 16 | usize::from(c.green) << 8 | usize::from(c.blue)
 }
 
-fn collect(g: &usvg::Group, source: &Source, ids: &HashMap<String, Vec<ElementId>>, out: &mut Owners) {
+fn collect(g: &usvg::Group, source: &Source, out: &mut Owners) {
     for n in g.children() {
         match n {
-            Node::Group(g) => collect(g, source, ids, out),
+            Node::Group(g) => collect(g, source, out),
             Node::Text(t) => {
-                let Some(&[text]) = ids.get(t.id()).map(Vec::as_slice) else { continue };
+                let Some(&[text]) = source.ids().get(t.id()).map(Vec::as_slice) else { continue };
                 let end = source.elements[text].range.end;
                 let mut last = text;
                 let owners = t.flattened().children().iter().map(|n| {
@@ -77,7 +73,7 @@ fn collect(g: &usvg::Group, source: &Source, ids: &HashMap<String, Vec<ElementId
 fn inside(source: &Source, text: ElementId) -> impl Iterator<Item = ElementId> + '_ {
     let end = source.elements[text].range.end;
     let all = (text + 1..source.elements.len()).take_while(move |&e| source.elements[e].range.start < end);
-    all.filter(|&e| matches!(source.elements[e].tag.as_str(), "tspan" | "textPath" | "tref" | "a"))
+    all.filter(|&e| matches!(source.elements[e].tag.as_ref(), "tspan" | "textPath" | "tref" | "a"))
 }
 
 /// Attributes by which an element is known.
@@ -88,7 +84,7 @@ fn names(name: &str, namespace: Namespace) -> bool {
 
 fn is_named(source: &Source, e: ElementId) -> bool {
     let el = &source.elements[e];
-    el.title.is_some() || el.attrs.iter().any(|a| names(&a.name, a.namespace))
+    el.title.is_some() || el.attrs.iter().any(|a| names(a.name(&source.text), a.namespace))
 }
 
 /// A named element of a text with what is left of it, in painting order.
@@ -198,8 +194,10 @@ impl Keeper<'_, '_> {
         // What comes again carries its name no second time.
         let again = seen.contains(&element);
         seen.push(element);
-        let kept = el.attrs.iter().filter(|a| names(&a.name, a.namespace) && !(again && a.name == "id"));
-        let mut head: String = kept.map(|a| format!(" {}", &self.source.text[a.range.clone()])).collect();
+        let text = &self.source.text;
+        let name = |a: &Attr| a.name(text);
+        let kept = el.attrs.iter().filter(|a| names(name(a), a.namespace) && !(again && name(a) == "id"));
+        let mut head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
         if self.source.has_css() {
             head.push_str(crate::keep::NO_EFFECTS);
         }
@@ -218,7 +216,7 @@ impl Keeper<'_, '_> {
         let silent = (e + 1..self.source.elements.len())
             .map(|c| &self.source.elements[c])
             .take_while(|c| c.range.start < el.range.end)
-            .filter(|c| matches!(c.tag.as_str(), "title" | "desc" | "metadata" | "style" | "script"));
+            .filter(|c| matches!(c.tag.as_ref(), "title" | "desc" | "metadata" | "style" | "script"));
         let mut raw = String::new();
         let mut at = el.open_end;
         for s in silent {

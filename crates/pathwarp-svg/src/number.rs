@@ -1,5 +1,6 @@
 //! Numbers and path data as text: rounded once, shortest form.
 
+use memchr::memchr3;
 use pathwarp::kurbo::{Affine, BezPath, PathEl, Point};
 use pathwarp::outline::EllipticArc;
 use pathwarp::{Outline, Seg};
@@ -43,7 +44,8 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
         n /= 10;
         written += 1;
     }
-    out.extend(buffer[at..].iter().map(|b| char::from(*b)));
+    // Digits are text.
+    out.push_str(std::str::from_utf8(&buffer[at..]).unwrap_or_default());
 }
 
 const POWERS: [f64; MOST_DECIMALS as usize + 1] =
@@ -71,23 +73,37 @@ pub(crate) fn short(v: f64) -> String {
 /// `v` with as many significant digits as asked for.
 pub(crate) fn significant(v: f64, digits: i32) -> String {
     let mut out = String::new();
+    push_significant(&mut out, v, digits);
+    out
+}
+
+fn push_significant(out: &mut String, v: f64, digits: i32) {
     if v == 0.0 || !v.is_finite() {
-        out.push('0');
-        return out;
+        return out.push('0');
+    }
+    // Small whole numbers, which most are, need no logarithm.
+    if v.fract() == 0.0 && v.abs() < 1e6 {
+        return push(out, v, 0);
     }
     let size = v.abs().log10().floor() as i32 + 1;
     match u8::try_from((digits - size).max(0)) {
-        Ok(d) if d <= MOST_DECIMALS => push(&mut out, v, d),
+        Ok(d) if d <= MOST_DECIMALS => push(out, v, d),
         // Nothing in a drawing is smaller than thirty decimals can tell.
-        _ => push_exactly(&mut out, v, (digits - size).clamp(0, 30) as usize),
+        _ => push_exactly(out, v, (digits - size).clamp(0, 30) as usize),
     }
-    out
 }
 
 /// `matrix(…)` with digits enough for f32 readers and f64 ones.
 pub(crate) fn matrix(m: Affine) -> String {
-    let c: Vec<String> = m.as_coeffs().iter().map(|v| significant(*v, 15)).collect();
-    format!("matrix({})", c.join(" "))
+    let mut out = String::from("matrix(");
+    for (i, v) in m.as_coeffs().into_iter().enumerate() {
+        if i > 0 {
+            out.push(' ');
+        }
+        push_significant(&mut out, v, 15);
+    }
+    out.push(')');
+    out
 }
 
 /// The `d` attribute: absolute commands.
@@ -146,6 +162,15 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
 /// Appends `v` to the last bit: as f32 where it came from one.
 fn push_exact(out: &mut String, v: f64) {
     let single = v as f32;
+    // A number of few digits is the only one so short that rounds to `v`; it is found without the long way.
+    const DECIMALS: u8 = 3;
+    const LARGEST: f64 = 1e6;
+    let scale = POWERS[usize::from(DECIMALS)];
+    let n = (v * scale).round();
+    let near = n / scale;
+    if n != 0.0 && n.abs() < LARGEST && (near == v || f64::from(single) == v && near as f32 == single) {
+        return push(out, near, DECIMALS);
+    }
     // Writing to a String cannot fail.
     let _ = if f64::from(single) == v { write!(out, "{single}") } else { write!(out, "{v}") };
 }
@@ -212,7 +237,9 @@ fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)>
 
 /// Text made safe for an attribute value in double quotes, and for element content.
 pub(crate) fn escape(text: &str) -> String {
-    if !text.bytes().any(|b| matches!(b, b'&' | b'<' | b'>' | b'"' | b'\n' | b'\r' | b'\t')) {
+    let bytes = text.as_bytes();
+    let has = |a, b, c| memchr3(a, b, c, bytes).is_some();
+    if !has(b'&', b'<', b'>') && !has(b'"', b'\n', b'\r') && !bytes.contains(&b'\t') {
         return text.to_owned();
     }
     let mut out = String::with_capacity(text.len());
@@ -265,6 +292,34 @@ mod tests {
         let mut p = BezPath::new();
         p.move_to((f64::from(0.1_f32), 2.0));
         assert_eq!(outline_data(&(&p).into()), "M0.1 2");
+    }
+
+    /// Against the standard library, which knows no short way.
+    #[test]
+    fn exact_numbers_are_the_shortest_there_are() {
+        let mut seed = 1_u64;
+        for i in 0..200_000_u32 {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let few = (seed >> 44) as f64 - 524_288.0;
+            let v = match i % 4 {
+                0 => few / 1000.0,
+                1 => f64::from((few / 1000.0) as f32),
+                2 => f64::from((few * 1e-3) as f32) + f64::EPSILON * few,
+                _ => f64::from_bits(f64::to_bits(few / 100.0) ^ (seed >> 20 & 1)),
+            };
+            let mut out = String::new();
+            push_exact(&mut out, v);
+            let single = v as f32;
+            let wanted = if f64::from(single) == v { single.to_string() } else { v.to_string() };
+            assert_eq!(out, wanted);
+            // The same with three digits behind the point by hand.
+            out.clear();
+            push(&mut out, v, 3);
+            let wanted = format!("{v:.3}");
+            let wanted = wanted.trim_end_matches('0').trim_end_matches('.');
+            let halfway = (v * 1000.0).fract().abs() == 0.5;
+            assert!(out == wanted || halfway || wanted == "-0" && out == "0", "{out} {wanted}");
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The page made to fit the warped artwork: its box, and the root's viewBox, width and height for it.
+//! The page and the warped artwork: how far that leaves it; and the root's viewBox, width and height that fit it.
 
 use crate::image::Picture;
 use crate::number::short;
@@ -6,7 +6,7 @@ use crate::options::PageFit;
 use crate::scene::{Group, Node, Part, Role};
 use crate::select::Selection;
 use crate::stroke;
-use crate::warp::{Done, StrokeDone, written};
+use crate::warp::{Done, Outcome, StrokeDone, written};
 use crate::write::{Job, stroke_scale};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
@@ -15,20 +15,38 @@ use svgtypes::{Length, LengthUnit};
 
 /// Fine against any page.
 const FINE: f64 = 1e-4;
+/// Artwork that leaves the page by less than this share of it is not seen to: a pixel of a thousand.
+const UNSEEN: f64 = 1e-3;
+
+/// How far warped artwork leaves the page, on sides where the original did not leave it as far: left, top, right, bottom.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Overhang {
+    /// In root user units; 0 on the other sides.
+    pub by: [f64; 4],
+    /// The largest as a share of the page's width (left, right) or height (top, bottom).
+    pub share: f64,
+}
+
+/// What counts when the artwork's box is measured.
+#[derive(Clone, Copy)]
+struct Measure<'a> {
+    /// For every element whether it counts.
+    counts: &'a [bool],
+    /// What is sure to lie in here need not be measured closely.
+    room: Option<Rect>,
+    /// Whether all of a filter's region counts, wherever it paints.
+    filters: bool,
+}
 
 impl Job<'_> {
     /// New values for attributes of the root, if the page is to fit.
     pub(crate) fn page(&self) -> Option<Vec<(&'static str, String)>> {
         let document = self.document;
-        let to_px = document.scene.to_px;
-        let size = document.page;
-        // What is seen, which may be more or less than the viewBox where the two have different proportions.
-        let page = to_px.inverse().transform_rect_bbox(size.to_rect());
-        let artwork = self.artwork()?;
+        let page = self.sheet();
         let shown = match self.options.page {
             PageFit::None => return None,
-            PageFit::Grow => page.union(artwork),
-            PageFit::Page => artwork,
+            PageFit::Grow => page.union(self.artwork(Some(page), true)?),
+            PageFit::Page => self.artwork(None, true)?,
         };
         if !(shown.width() > 0.0 && shown.height() > 0.0 && shown.is_finite()) || shown == page {
             return None;
@@ -47,23 +65,73 @@ impl Job<'_> {
         Some(out)
     }
 
-    /// The box of everything that is painted, strokes included, in root user space. Guides do not count.
-    fn artwork(&self) -> Option<Rect> {
-        let guides = Selection { guides: self.options.selection.guides.clone(), ..Selection::default() };
-        let counts = guides.resolve(&self.document.source);
-        self.group_box(&self.document.scene.root, &counts)
+    /// How far the artwork leaves a page that stays as it is, if it did not do so before.
+    pub(crate) fn overhang(&self) -> Option<Overhang> {
+        // The artwork's box takes every outline; it is not asked for where nothing has moved.
+        let moved = self.outcomes.iter().any(|o| o.done().is_some())
+            || self.slots.iter().any(|s| s.fit != Affine::IDENTITY)
+            || self.pictures.iter().any(|p| matches!(p, Picture::Bent(_)));
+        if self.options.page != PageFit::None || !moved || !self.has_page() {
+            return None;
+        }
+        let page = self.sheet();
+        let sides = [page.width(), page.height(), page.width(), page.height()];
+        let beyond = |b: Rect| [page.x0 - b.x0, page.y0 - b.y0, b.x1 - page.x1, b.y1 - page.y1];
+        let seen = |by: &[f64; 4]| by.iter().zip(sides).any(|(by, side)| *by > UNSEEN * side);
+        let after = beyond(self.artwork(Some(page), false)?);
+        if !seen(&after) {
+            return None;
+        }
+        let (outcomes, pictures): (Vec<_>, Vec<_>) = (
+            self.outcomes.iter().map(|_| Outcome::Kept).collect(),
+            self.pictures.iter().map(|_| Picture::Placed).collect(),
+        );
+        let original = Job { outcomes: &outcomes, pictures: &pictures, slots: &[], ..*self };
+        let before = original.artwork(Some(page), false).map_or([0.0; 4], beyond);
+        let mut out = Overhang::default();
+        for i in 0..4 {
+            if after[i] > before[i].max(0.0) + UNSEEN * sides[i] {
+                out.by[i] = after[i];
+                out.share = out.share.max(after[i] / sides[i]);
+            }
+        }
+        (out.share > 0.0).then_some(out)
     }
 
-    fn group_box(&self, g: &Group, counts: &[bool]) -> Option<Rect> {
-        let scene = &self.document.scene;
-        let boxes = g.children.iter().filter_map(|n| match n {
-            Node::Group(g) => self.group_box(g, counts),
-            Node::Text { content, .. } => self.group_box(content, counts),
+    /// Whether the file says how large its page is.
+    fn has_page(&self) -> bool {
+        let source = &self.document.source;
+        let length = |name| {
+            let text = source.attr(0, name);
+            text.and_then(|t| Length::from_str(t.trim()).ok()).is_some_and(|l| l.unit != LengthUnit::Percent)
+        };
+        source.attr(0, "viewBox").is_some() || length("width") && length("height")
+    }
+
+    /// What is seen, which may be more or less than the viewBox where the two have different proportions.
+    fn sheet(&self) -> Rect {
+        self.document.scene().to_px.inverse().transform_rect_bbox(self.document.page.to_rect())
+    }
+
+    /// The box of everything that is painted, strokes included, in root user space. Guides do not count.
+    fn artwork(&self, room: Option<Rect>, filters: bool) -> Option<Rect> {
+        let guides = Selection { guides: self.options.selection.guides.clone(), ..Selection::default() };
+        let counts = guides.resolve(&self.document.source);
+        self.group_box(&self.document.scene().root, Measure { counts: &counts, room, filters })
+    }
+
+    fn group_box(&self, g: &Group, m: Measure<'_>) -> Option<Rect> {
+        let scene = self.document.scene();
+        let one = |n: &Node, m: Measure<'_>| match n {
+            Node::Group(g) => self.group_box(g, m),
+            Node::Text { content, .. } => self.group_box(content, m),
             Node::Part(i) => {
                 let p = &scene.parts[*i];
-                let seen = p.painted() && p.role == Role::Paint && p.owner.or(p.source).is_none_or(|e| counts[e]);
+                let seen = p.painted() && p.role == Role::Paint && p.owner.or(p.source).is_none_or(|e| m.counts[e]);
                 let frame = written(scene, self.slots, p.slot, p.frame);
-                seen.then(|| painted_box(p, self.outcomes[*i].done(), frame))
+                let done = self.outcomes[*i].done();
+                let near = |r: Rect| Some(bound(p, done, frame)).filter(|b| r.union(*b) == r);
+                seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, done, frame)))
             }
             Node::Image(i) => {
                 let b = &scene.bitmaps[*i];
@@ -74,9 +142,17 @@ impl Job<'_> {
                     _ => frame.transform_rect_bbox(Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into())),
                 })
             }
-        });
-        let mut all = boxes.filter(Rect::is_finite).reduce(|a, b| a.union(b))?;
-        for f in &g.filters {
+        };
+        let mut all: Option<Rect> = None;
+        for n in &g.children {
+            // Nor what lies within what there is already.
+            let room = m.room.map(|room| all.map_or(room, |a| room.union(a)));
+            if let Some(b) = one(n, Measure { room, ..m }).filter(Rect::is_finite) {
+                all = Some(all.map_or(b, |a| a.union(b)));
+            }
+        }
+        let mut all = all?;
+        for f in g.filters.iter().filter(|_| m.filters) {
             // Where a filter may paint; measured from its region before the warp.
             let r = f.rect();
             let region = Rect::new(r.left().into(), r.top().into(), r.right().into(), r.bottom().into());
@@ -104,6 +180,25 @@ fn path(p: &Part, done: Option<&Done>) -> BezPath {
     }
     let size = p.local.bounding_box().map_or(1.0, |b| b.width().max(b.height()));
     p.local.to_bez_path((size * FINE).max(1e-12))
+}
+
+/// A box that holds what a part paints, at little cost.
+fn bound(p: &Part, done: Option<&Done>, frame: Affine) -> Rect {
+    let path = match done {
+        Some(d) => d.path.control_box(),
+        None => p.local.bounding_box().unwrap_or(Rect::ZERO),
+    };
+    let all = match (&p.stroke, done.map(|d| &d.stroke)) {
+        (None, _) => path,
+        (Some(_), Some(StrokeDone::Outlined(o))) => path.union(o.control_box()),
+        (Some(s), _) => {
+            // Miters reach furthest, but for square caps with theirs.
+            let reach = f64::from(s.miterlimit().get()).max(std::f64::consts::SQRT_2);
+            let reach = 0.5 * f64::from(s.width().get()) * stroke_scale(done) * reach;
+            path.inflate(reach, reach)
+        }
+    };
+    frame.transform_rect_bbox(all)
 }
 
 fn painted_box(p: &Part, done: Option<&Done>, frame: Affine) -> Rect {

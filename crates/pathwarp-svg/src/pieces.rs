@@ -19,7 +19,7 @@ impl<'a> Writer<'a> {
 
     /// The tiles that make up a part's fill or stroke, if all of them could be warped.
     fn tiles(&self, i: usize, stroke: bool) -> Option<&'a Tiles> {
-        let part = &self.job.document.scene.parts[i];
+        let part = &self.job.document.scene().parts[i];
         let done = self.job.outcomes[i].done()?;
         let tiles = if stroke {
             part.stroke_tiles.as_ref().filter(|_| matches!(done.stroke, StrokeDone::Outlined(_)))
@@ -31,7 +31,7 @@ impl<'a> Writer<'a> {
 
     /// Whether everything in a group is warped.
     fn whole(&self, g: &Group) -> bool {
-        let clips = &self.job.document.scene.clips;
+        let clips = &self.job.document.scene().clips;
         let mut clip = g.clip;
         while let Some(i) = clip {
             if !self.whole(&clips[i].root) {
@@ -49,7 +49,7 @@ impl<'a> Writer<'a> {
     /// Fill and stroke one after the other.
     pub(crate) fn pieces(&mut self, i: usize, done: &Done, d: &str) -> String {
         let job = self.job;
-        let p = &job.document.scene.parts[i];
+        let p = &job.document.scene().parts[i];
         let inside = |w: &mut Self, tiles: Option<&Tiles>, image: Option<&BentImage>, opacity: f32| match (tiles, image)
         {
             (Some(t), _) => Some((w.group(&t.content, ""), t.opacity)),
@@ -95,7 +95,7 @@ impl<'a> Writer<'a> {
 
     /// Content, with its opacity, within an outline.
     fn cut_to(&mut self, d: &str, rule: &'static str, (inner, opacity): (String, f32), i: usize) -> String {
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let owner = scene.parts[i].source.or(scene.parts[i].owner);
         let name = owner.and_then(|e| self.job.document.source.attr(e, "id")).filter(|n| !n.is_empty());
         let id = self.new_id(&name.map_or_else(|| "shape-edge".to_owned(), |n| format!("{n}-edge")));

@@ -2,12 +2,14 @@
 
 use crate::fontface;
 use crate::fonts::{self, GenericFamilies, Missing};
-use crate::source::Source;
+use crate::source::{self, Source};
+use crate::unfold;
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::io::{Read as _, Write as _};
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use usvg::roxmltree;
 
 /// How a file is read.
 #[derive(Debug, Clone)]
@@ -85,7 +87,7 @@ pub(crate) fn is_shallow(source: &Source) -> bool {
     let mut references = 1;
     for e in &source.elements {
         depths.push(e.parent.map_or(0, |p| depths[p] + 1));
-        let refers = matches!(e.tag.as_str(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
+        let refers = matches!(e.tag.as_ref(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
         references += usize::from(refers);
     }
     // Fonts that came with a file may be made to break what reads them; that is caught where the stack is deep.
@@ -109,34 +111,95 @@ pub(crate) fn with_stack<T: Send>(name: &str, f: impl FnOnce() -> Result<T, Erro
 }
 
 /// usvg's tree, and the font families that were asked for and not found.
-pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usvg::Tree, Vec<String>), Error> {
+pub(crate) fn tree(
+    xml: &roxmltree::Document<'_>,
+    name: &str,
+    options: &ReadOptions,
+) -> Result<(usvg::Tree, Vec<String>), Error> {
     let missing = Missing::default();
-    let mut usvg = usvg::Options {
-        resources_dir: options.base_dir.clone(),
-        dpi: options.dpi,
-        font_resolver: fonts::resolver(options.generic_families.clone(), missing.clone()),
-        ..usvg::Options::default()
-    };
+    let text = xml.input_text();
     // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
-    if ["<text", ":text", "ENTITY", "image/svg", ".svg"].iter().any(|t| text.contains(t)) {
-        usvg.fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), text);
+    let (mut lettered, mut pictured, mut referring, mut markers) = (false, false, false, 0);
+    for n in xml.descendants() {
+        match n.tag_name().name() {
+            "text" => lettered = true,
+            "image" => pictured = true,
+            "feImage" => (pictured, referring) = (true, true),
+            "marker" => markers += 1,
+            "use" | "pattern" | "clipPath" | "mask" => referring = true,
+            _ => {}
+        }
     }
+    if unfold::may_be_large(xml, markers, referring) {
+        unfold::check(xml, name)?;
+    }
+    lettered |= pictured && ["image/svg", ".svg"].iter().any(|t| text.contains(t));
+    let base = if lettered {
+        let fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), text);
+        let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone());
+        usvg::Options { fontdb, font_resolver, ..usvg::Options::default() }
+    } else {
+        usvg::Options::default()
+    };
+    let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..base };
     if options.base_dir.is_none() {
         // Relative links would otherwise be looked for in the current folder.
         usvg.image_href_resolver.resolve_string = Box::new(|_, _| None);
     }
-    let tree = usvg::Tree::from_str(text, &usvg).map_err(|e| {
+    let refused = Refused::default();
+    if pictured {
+        bound_drawings(&mut usvg, name, options, &refused);
+    }
+    let tree = usvg::Tree::from_xmltree(xml, &usvg).map_err(|e| {
         let problem = match e {
             usvg::Error::InvalidSize => {
                 "the root <svg> has no valid size; give it a viewBox, or width and height".into()
             }
             usvg::Error::ElementsLimitReached => "it has more than a million elements".into(),
+            usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
+                "with all that its uses show it has more than a million elements, or nests deeper than 1024".into()
+            }
             other => other.to_string(),
         };
         Error::input(name, problem)
     })?;
+    if let Some(e) = refused.lock().ok().and_then(|mut r| r.take()) {
+        return Err(e);
+    }
     let missing = missing.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
     Ok((tree, missing))
+}
+
+/// Why a drawing shown as an image is not taken.
+type Refused = Arc<Mutex<Option<Error>>>;
+
+/// Holds drawings shown as images to the same bounds as the drawing itself.
+fn bound_drawings<'a>(usvg: &mut usvg::Options<'a>, name: &'a str, options: &'a ReadOptions, refused: &Refused) {
+    let refuses = move |refused: &Refused, data: &[u8], what: &str| {
+        let place = format!("{name}: {what}");
+        let checked = text(data, &place, options).ok().map(|t| match source::xml(&t, &place) {
+            Ok(xml) => unfold::check(&xml, &place),
+            // usvg says what it thinks of it.
+            Err(_) => Ok(()),
+        });
+        let Some(Err(e)) = checked else { return false };
+        if let Ok(mut r) = refused.lock() {
+            r.get_or_insert(e);
+        }
+        true
+    };
+    let resolver = std::mem::take(&mut usvg.image_href_resolver);
+    let (data_of, file_of) = (resolver.resolve_data, resolver.resolve_string);
+    let also = refused.clone();
+    usvg.image_href_resolver.resolve_data = Box::new(move |mime, data, usvg| {
+        let drawing = matches!(mime, "image/svg+xml" | "text/plain");
+        if drawing && refuses(&also, &data, "the drawing in an image") { None } else { data_of(mime, data, usvg) }
+    });
+    let also = refused.clone();
+    usvg.image_href_resolver.resolve_string = Box::new(move |link, usvg| {
+        let data = link.contains(".svg").then(|| std::fs::read(usvg.get_abs_path(Path::new(link))).ok()).flatten();
+        if data.is_some_and(|d| refuses(&also, &d, link)) { None } else { file_of(link, usvg) }
+    });
 }
 
 /// Reads any SVG or svgz data into usvg's tree, with the same fonts and bounds as [`crate::Document::read`].
@@ -145,5 +208,6 @@ pub(crate) fn tree(text: &str, name: &str, options: &ReadOptions) -> Result<(usv
 /// [`Error::Input`] if it is not an SVG drawing; `name` is what it is called in the message.
 pub fn parse_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<Arc<usvg::Tree>, Error> {
     let text = text(data, name, options)?;
-    with_stack(name, || Ok(Arc::new(tree(&text, name, options)?.0)))
+    let xml = source::xml(&text, name)?;
+    with_stack(name, || Ok(Arc::new(tree(&xml, name, options)?.0)))
 }

@@ -20,6 +20,7 @@ use vector_image::holds_vector;
 
 struct Builder<'a> {
     reader: Reader<'a>,
+    /// What the ids of usvg's tree stand for.
     ids: &'a HashMap<String, Vec<ElementId>>,
     letters: &'a Owners,
     /// The source's transforms by what they are in f32; `None` where two different ones round to the same.
@@ -65,11 +66,10 @@ struct Context {
     image: Option<ElementId>,
 }
 
-/// Resolves the drawing. `ids` says what the tree's ids stand for; `tiling` which patterns become geometry.
+/// Resolves the drawing. `tiling` says which patterns become geometry.
 pub(crate) fn build(
     tree: &usvg::Tree,
     source: &Source,
-    ids: &HashMap<String, Vec<ElementId>>,
     letters: &Owners,
     dpi: f64,
     tiling: Option<Tiling<'_>>,
@@ -78,7 +78,7 @@ pub(crate) fn build(
     let reader = Reader { source, dpi, page };
     let mut b = Builder {
         reader,
-        ids,
+        ids: source.ids(),
         letters,
         exact: exact_transforms(&reader),
         starts: None,
@@ -158,7 +158,7 @@ fn exact_transforms(reader: &Reader<'_>) -> HashMap<[u32; 6], Option<Affine>> {
     let mut out: HashMap<[u32; 6], Option<Affine>> = HashMap::new();
     for e in 0..reader.source.elements.len() {
         let moved = reader.source.attr(e, "transform").is_some()
-            || matches!(reader.source.elements[e].tag.as_str(), "use" | "svg");
+            || matches!(reader.source.elements[e].tag.as_ref(), "use" | "svg");
         if moved && let Some(t) = reader.own_transform(e) {
             out.entry(f32_bits(t)).and_modify(|v| *v = v.filter(|v| *v == t)).or_insert(Some(t));
         }
@@ -626,7 +626,7 @@ impl Builder<'_> {
     }
 
     fn element_of_def(&self, id: &str, tag: &str) -> Option<ElementId> {
-        let all = self.reader.source.by_id.get(id).filter(|_| self.abroad == 0)?;
+        let all = self.reader.source.by_id().get(id).filter(|_| self.abroad == 0)?;
         all.iter().copied().rfind(|&e| self.tag(e) == tag)
     }
 }

@@ -1,10 +1,15 @@
 //! The source text as a table of elements with their places in it: what the writer patches and what names are looked up in.
 
+mod table;
+
 use crate::keep::is_animation;
+use crate::marks::{self, Marks};
 use pathwarp::Error;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
+use std::sync::OnceLock;
+use table::Table;
 use usvg::roxmltree;
 
 const SVG: &str = "http://www.w3.org/2000/svg";
@@ -27,7 +32,8 @@ pub(crate) enum Namespace {
 
 #[derive(Debug)]
 pub(crate) struct Attr {
-    pub(crate) name: String,
+    /// The local name in the text.
+    name: Range<usize>,
     pub(crate) namespace: Namespace,
     /// The whole attribute in the text, quotes included.
     pub(crate) range: Range<usize>,
@@ -41,7 +47,7 @@ pub(crate) struct Attr {
 pub(crate) struct Element {
     pub(crate) parent: Option<ElementId>,
     /// The local name; empty for elements that are not SVG.
-    pub(crate) tag: String,
+    pub(crate) tag: Cow<'static, str>,
     /// The name as written, prefix included, right after `<`.
     pub(crate) qname: Range<usize>,
     pub(crate) range: Range<usize>,
@@ -59,17 +65,18 @@ pub(crate) struct Element {
 pub(crate) struct Source {
     pub(crate) text: String,
     pub(crate) elements: Vec<Element>,
-    /// Elements by id, in document order.
-    pub(crate) by_id: HashMap<String, Vec<ElementId>>,
     /// All style sheets' text, one after the other.
     pub(crate) css: String,
-    /// Element and property names that a selector or a declaration of the style sheets mentions.
-    css_words: HashSet<String>,
     /// Whether anything moves.
     pub(crate) animated: bool,
     /// Why the text cannot be patched in place.
     pub(crate) unpatchable: Option<String>,
-    line_starts: Vec<usize>,
+    marks: Marks,
+    // What follows is worked out when it is first asked for.
+    by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
+    ids: OnceLock<HashMap<String, Vec<ElementId>>>,
+    css_words: OnceLock<HashSet<String>>,
+    line_starts: OnceLock<Vec<usize>>,
 }
 
 /// The elements that draw by themselves.
@@ -78,76 +85,107 @@ pub(crate) fn is_shape(tag: &str) -> bool {
 }
 
 /// The elements whose ids usvg carries into its tree.
-fn is_tracked(tag: &str) -> bool {
+pub(crate) fn is_tracked(tag: &str) -> bool {
     is_shape(tag) || matches!(tag, "g" | "a" | "use" | "text" | "image" | "svg" | "switch")
 }
 
 impl Source {
-    /// Reads `text`, called `name` in messages.
+    /// Reads `text`, called `name` in messages, and hands `then` the table of its elements and the XML document that usvg is
+    /// to resolve: with temporary ids, so that usvg's tree can be told apart.
+    pub(crate) fn read<T>(
+        text: String,
+        name: &str,
+        then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
+    ) -> Result<(Self, T), Error> {
+        if let Some(marked) = marks::mark(&text)
+            && let Ok(doc) = xml(&marked.text, name)
+            && let Some(table) = Table::of(&doc, &marked.patches)
+            && table.unpatchable.is_none()
+            && table.elements.len() == marked.elements
+        {
+            let source = Self::new(text, table, marked.marks);
+            let result = then(&source, &doc)?;
+            return Ok((source, result));
+        }
+        let mut source = Self::parse(text, name)?;
+        let (marked, marks) = source.instrumented();
+        source.marks = marks;
+        // Where positions are not to be trusted, the text must not be touched.
+        let marked = if source.unpatchable.is_none() { marked } else { source.text.clone() };
+        let result = then(&source, &xml(&marked, name)?)?;
+        Ok((source, result))
+    }
+
+    /// The table of `text`, called `name` in messages; without temporary ids.
     pub(crate) fn parse(text: String, name: &str) -> Result<Self, Error> {
-        let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: 4_000_000, ..Default::default() };
-        let doc = roxmltree::Document::parse_with_options(&text, options).map_err(|e| {
-            let at = e.pos();
-            Error::input(format!("{name}:{}:{}", at.row, at.col), format!("this is not well-formed XML: {e}"))
-        })?;
+        let doc = xml(&text, name)?;
         let root = doc.root_element();
-        if root.tag_name().name() != "svg" || !matches!(root.tag_name().namespace(), Some(SVG) | None) {
+        let Some(table) = Table::of(&doc, &[]) else {
             let at = doc.text_pos_at(root.range().start);
             return Err(Error::input(
                 format!("{name}:{}:{}", at.row, at.col),
                 format!("the root element is <{}>, not <svg>", root.tag_name().name()),
             ));
+        };
+        drop(doc);
+        Ok(Self::new(text, table, Marks::default()))
+    }
+
+    fn new(text: String, table: Table, marks: Marks) -> Self {
+        let Table { elements, css, unpatchable } = table;
+        let animated = elements.iter().any(|e| is_animation(&e.tag));
+        Self {
+            text,
+            elements,
+            css,
+            animated,
+            unpatchable,
+            marks,
+            by_id: OnceLock::new(),
+            ids: OnceLock::new(),
+            css_words: OnceLock::new(),
+            line_starts: OnceLock::new(),
         }
-        let mut number: HashMap<roxmltree::NodeId, ElementId> = HashMap::new();
-        let mut elements = Vec::new();
-        let mut by_id: HashMap<String, Vec<ElementId>> = HashMap::new();
-        let mut css = String::new();
-        let mut unpatchable = None;
-        for node in doc.descendants().filter(roxmltree::Node::is_element) {
-            let id = elements.len();
-            number.insert(node.id(), id);
-            let element = element(&text, node, node.parent().and_then(|p| number.get(&p.id()).copied()))
-                // An entity's own text stands in the DTD, before the root.
-                .filter(|e| e.range.start >= root.range().start);
-            match element {
-                Some(e) => {
-                    if let Some(v) = e.attr(&text, "id").filter(|v| !v.is_empty()) {
-                        by_id.entry(v.into_owned()).or_default().push(id);
-                    }
-                    if e.tag == "style" {
-                        css.push_str(node.text().unwrap_or_default());
-                        css.push('\n');
-                    }
-                    elements.push(e);
-                }
-                None => {
-                    unpatchable.get_or_insert_with(|| {
-                        "parts of it come from DTD entities, which have no place in the text".to_owned()
-                    });
-                    elements.push(Element {
-                        parent: None,
-                        tag: String::new(),
-                        qname: 0..0,
-                        range: 0..0,
-                        open_end: 0,
-                        close: None,
-                        attrs: Vec::new(),
-                        title: None,
-                    });
+    }
+
+    /// Elements by id, in document order.
+    pub(crate) fn by_id(&self) -> &HashMap<String, Vec<ElementId>> {
+        self.by_id.get_or_init(|| {
+            let mut out: HashMap<String, Vec<ElementId>> = HashMap::new();
+            for (i, e) in self.elements.iter().enumerate() {
+                if let Some(v) = e.attr(&self.text, "id").filter(|v| !v.is_empty()) {
+                    out.entry(v.into_owned()).or_default().push(i);
                 }
             }
-        }
-        let css_words = words(&css);
-        let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
-        drop(doc);
-        let animated = elements.iter().any(|e| is_animation(&e.tag));
-        Ok(Self { animated, text, elements, by_id, css, css_words, unpatchable, line_starts })
+            out
+        })
+    }
+
+    /// What the ids of usvg's tree stand for.
+    pub(crate) fn ids(&self) -> &HashMap<String, Vec<ElementId>> {
+        self.ids.get_or_init(|| {
+            let mut out: HashMap<String, Vec<ElementId>> = HashMap::new();
+            let mut marked = self.marks.elements.iter().copied().peekable();
+            for (i, e) in self.elements.iter().enumerate() {
+                if marked.next_if_eq(&i).is_some() {
+                    out.insert(format!("{}{i}", self.marks.stem), vec![i]);
+                } else if is_tracked(&e.tag)
+                    && let Some(id) = e.name(&self.text)
+                {
+                    out.entry(id.value(&self.text).into_owned()).or_default().push(i);
+                }
+            }
+            out
+        })
     }
 
     /// Line and column (in characters), counted from 1.
     pub(crate) fn line_column(&self, at: usize) -> (usize, usize) {
-        let line = self.line_starts.partition_point(|&s| s <= at);
-        let start = line.checked_sub(1).and_then(|l| self.line_starts.get(l)).copied().unwrap_or(0);
+        let starts = self
+            .line_starts
+            .get_or_init(|| std::iter::once(0).chain(self.text.match_indices('\n').map(|(i, _)| i + 1)).collect());
+        let line = starts.partition_point(|&s| s <= at);
+        let start = line.checked_sub(1).and_then(|l| starts.get(l)).copied().unwrap_or(0);
         (line, self.text.get(start..at).map_or(0, |s| s.chars().count()) + 1)
     }
 
@@ -158,7 +196,7 @@ impl Source {
     /// An attribute whatever its namespace prefix means, e.g. Inkscape's label.
     pub(crate) fn attr_in(&self, e: ElementId, namespace: Namespace, name: &str) -> Option<Cow<'_, str>> {
         let el = self.elements.get(e)?;
-        el.attrs.iter().find(|a| a.namespace == namespace && a.name == name).map(|a| a.value(&self.text))
+        el.attrs.iter().find(|a| a.namespace == namespace && a.name(&self.text) == name).map(|a| a.value(&self.text))
     }
 
     /// The target of `href` or `xlink:href`, without the `#`.
@@ -203,7 +241,7 @@ impl Source {
 
     /// Whether the style sheets say anything with this name: an element in a selector or a property in a declaration.
     pub(crate) fn css_mentions(&self, word: &str) -> bool {
-        self.css_words.contains(word)
+        !self.css.is_empty() && self.css_words.get_or_init(|| words(&self.css)).contains(word)
     }
 
     /// The prefix that SVG's own elements carry, with its colon: mostly "".
@@ -213,58 +251,35 @@ impl Source {
         name.find(':').map_or("", |i| &name[..=i])
     }
 
-    /// The text with a temporary id on every element that has none of its own, so that usvg's tree can be told apart; and
-    /// what each id stands for.
-    pub(crate) fn instrumented(&self) -> (String, HashMap<String, Vec<ElementId>>) {
+    /// The text with a temporary id on every element that has none of its own, and which elements these are.
+    fn instrumented(&self) -> (String, Marks) {
         self.instrumented_with(std::iter::empty())
     }
 
     /// The same with declarations added to elements' style attributes.
-    pub(crate) fn instrumented_with(
-        &self,
-        styles: impl Iterator<Item = (ElementId, String)>,
-    ) -> (String, HashMap<String, Vec<ElementId>>) {
-        let mut stem = "warp-".to_owned();
-        while self.text.contains(&stem) {
-            stem.push('x');
-        }
-        // Everything that looks like a reference; more than there are does no harm.
-        let links: HashSet<&str> = self
-            .text
-            .match_indices('#')
-            .map(|(i, _)| {
-                let rest = &self.text[i + 1..];
-                &rest[..rest.find(|c: char| !(c.is_alphanumeric() || "-_.:".contains(c))).unwrap_or(rest.len())]
-            })
-            .collect();
-        let mut ids: HashMap<String, Vec<ElementId>> = HashMap::new();
+    pub(crate) fn instrumented_with(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (String, Marks) {
+        let mut marks = Marks { stem: marks::stem(&self.text), elements: Vec::new() };
+        let links = marks::links(&self.text);
         let mut patches: Vec<(Range<usize>, String)> = Vec::new();
         for (i, e) in self.elements.iter().enumerate() {
             if !is_tracked(&e.tag) {
                 continue;
             }
-            let own =
-                e.attrs.iter().find(|a| a.name == "id" && matches!(a.namespace, Namespace::None | Namespace::Xml));
+            let own = e.name(&self.text);
             let value = own.map(|a| a.value(&self.text));
-            let shared = |id: &str| self.by_id.get(id).is_some_and(|v| v.len() > 1);
-            let referenced = |id: &str| links.contains(id);
-            match (own, value) {
-                (Some(_), Some(id)) if !id.is_empty() && (!shared(&id) || referenced(&id)) => {
-                    ids.entry(id.into_owned()).or_default().push(i);
-                }
-                (own, _) => {
-                    let id = format!("{stem}{i}");
-                    patches.push(match own {
-                        Some(a) => (a.value_range.clone(), id.clone()),
-                        None => (e.qname.end..e.qname.end, format!(" id=\"{id}\"")),
-                    });
-                    ids.insert(id, vec![i]);
-                }
+            let shared = |id: &str| self.by_id().get(id).is_some_and(|v| v.len() > 1);
+            if value.is_none_or(|id| id.is_empty() || shared(&id) && !links.contains(&*id)) {
+                let id = format!("{}{i}", marks.stem);
+                patches.push(match own {
+                    Some(a) => (a.value_range.clone(), id),
+                    None => (e.qname.end..e.qname.end, format!(" id=\"{id}\"")),
+                });
+                marks.elements.push(i);
             }
         }
         patches.extend(styles.filter_map(|(e, style)| {
             let e = self.elements.get(e)?;
-            Some(match e.find("style") {
+            Some(match e.find(&self.text, "style") {
                 Some(a) => (a.value_range.end..a.value_range.end, format!(";{style}")),
                 None => (e.qname.end..e.qname.end, format!(" style=\"{style}\"")),
             })
@@ -281,11 +296,16 @@ impl Source {
             }
         }
         out.push_str(&self.text[done..]);
-        (out, ids)
+        (out, marks)
     }
 }
 
 impl Attr {
+    /// The local name.
+    pub(crate) fn name<'a>(&self, text: &'a str) -> &'a str {
+        text.get(self.name.clone()).unwrap_or("")
+    }
+
     pub(crate) fn value<'a>(&'a self, text: &'a str) -> Cow<'a, str> {
         match &self.value {
             Some(v) => Cow::Borrowed(v),
@@ -295,70 +315,33 @@ impl Attr {
 }
 
 impl Element {
-    pub(crate) fn find(&self, name: &str) -> Option<&Attr> {
-        self.attrs.iter().find(|a| a.namespace == Namespace::None && a.name == name)
+    fn find(&self, text: &str, name: &str) -> Option<&Attr> {
+        self.attrs.iter().find(|a| a.namespace == Namespace::None && a.name(text) == name)
     }
 
     fn attr<'a>(&'a self, text: &'a str, name: &str) -> Option<Cow<'a, str>> {
-        self.find(name).map(|a| a.value(text))
+        self.find(text, name).map(|a| a.value(text))
+    }
+
+    /// What usvg takes for its id.
+    fn name(&self, text: &str) -> Option<&Attr> {
+        let named = |a: &&Attr| matches!(a.namespace, Namespace::None | Namespace::Xml) && a.name(text) == "id";
+        self.attrs.iter().find(named)
     }
 }
 
-/// The element's places in the text; `None` if they are not there (it comes from an entity).
-fn element(text: &str, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>) -> Option<Element> {
-    let range = node.range();
-    let body = text.get(range.clone())?;
-    let rest = body.strip_prefix('<')?;
-    let len = rest.find(|c: char| c.is_whitespace() || c == '/' || c == '>')?;
-    let qname = range.start + 1..range.start + 1 + len;
-    let local = rest[..len].rsplit(':').next()?;
-    if local != node.tag_name().name() {
-        return None;
-    }
-    let mut attrs = Vec::new();
-    let mut last = qname.end;
-    for a in node.attributes() {
-        let (r, v) = (a.range(), a.range_value());
-        let raw = text.get(v.clone())?;
-        if r.start < last || r.end > range.end || !text.get(r.clone())?.contains('=') {
-            return None;
+/// Parses XML, called `name` in messages.
+pub(crate) fn xml<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
+    /// Elements, texts and comments together; usvg takes no more than a million elements.
+    const MOST: u32 = 4_000_000;
+    let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MOST, ..Default::default() };
+    roxmltree::Document::parse_with_options(text, options).map_err(|e| {
+        if matches!(e, roxmltree::Error::NodesLimitReached) {
+            return Error::input(name, format!("it has more than {MOST} elements, texts and comments"));
         }
-        last = last.max(r.end);
-        let namespace = match a.namespace() {
-            None => Namespace::None,
-            Some(XLINK) => Namespace::Xlink,
-            Some(XML) => Namespace::Xml,
-            Some(INKSCAPE) => Namespace::Inkscape,
-            Some(_) => Namespace::Other,
-        };
-        let value = (raw != a.value()).then(|| a.value().to_owned());
-        attrs.push(Attr { name: a.name().to_owned(), namespace, range: r, value_range: v, value });
-    }
-    // Namespace declarations are no attributes for the parser but stand among them; their quotes may hold a `>`.
-    let open_end = tag_end(text, last, range.end)?;
-    let close = (open_end < range.end).then(|| text[..range.end].rfind("</").map(|s| s..range.end)).flatten();
-    let svg = matches!(node.tag_name().namespace(), Some(SVG) | None);
-    let title = node
-        .children()
-        .find(|c| c.is_element() && c.tag_name().name() == "title")
-        .and_then(|t| t.text())
-        .map(|t| t.trim().to_owned())
-        .filter(|t| !t.is_empty());
-    let tag = if svg { local.to_owned() } else { String::new() };
-    Some(Element { parent, tag, qname, range, open_end, close, attrs, title })
-}
-
-fn tag_end(text: &str, from: usize, to: usize) -> Option<usize> {
-    let mut quote = None;
-    for (i, b) in text.as_bytes().get(from..to)?.iter().enumerate() {
-        match (quote, b) {
-            (None, b'"' | b'\'') => quote = Some(*b),
-            (Some(q), b) if q == *b => quote = None,
-            (None, b'>') => return Some(from + i + 1),
-            _ => {}
-        }
-    }
-    None
+        let at = e.pos();
+        Error::input(format!("{name}:{}:{}", at.row, at.col), format!("this is not well-formed XML: {e}"))
+    })
 }
 
 /// The words of a style sheet. Class and id names are left out, as `.rect` says nothing about `<rect>`.
@@ -405,26 +388,51 @@ mod tests {
         .unwrap();
         let r = &s.elements[1];
         assert_eq!(&s.text[r.range.clone()], "<rect  x = '1' id='a'/>");
-        assert_eq!(&s.text[r.find("x").unwrap().value_range.clone()], "1");
+        assert_eq!(&s.text[r.find(&s.text, "x").unwrap().value_range.clone()], "1");
         assert!(r.close.is_none());
         let g = &s.elements[2];
         assert_eq!(&s.text[g.open_end..g.close.clone().unwrap().start], "t");
         assert_eq!(s.line_column(r.range.start), (2, 2));
     }
 
+    /// The same things in the same places, however the ids came into the text.
     #[test]
     fn temporary_ids_leave_the_rest_alone() {
-        let s = Source::parse(
-            "<svg xmlns='http://www.w3.org/2000/svg'><path/><g id='q'><path id=''/></g></svg>".into(),
-            "t",
-        )
-        .unwrap();
-        let (text, ids) = s.instrumented();
+        let drawings = [
+            "<svg xmlns='http://www.w3.org/2000/svg'><path/><g id='q'><path id=''/></g></svg>",
+            "<?xml version='1.0'?>\n<!DOCTYPE svg>\n<!-- <path> --><s:svg xmlns:s='http://www.w3.org/2000/svg' a='>'\n><s:g\n/>\
+             <s:path xml:id = \"a\" d='M0,0'/><s:style><![CDATA[ <g> .b{} ]]></s:style><s:title>t &amp; u</s:title></s:svg >",
+            "<svg xmlns='http://www.w3.org/2000/svg' xmlns:i='http://www.inkscape.org/namespaces/inkscape'>\
+             <g id='a' i:label='&lt;'><path id='a' d='M0,0\n1,1'/></g><rect id='longer than warp-5' x='1'/><rect \
+             id='longer than warp-5' y='2'/><use href='#a'/><text><tspan id='c'>warp-</tspan></text><svg/></svg>",
+        ];
+        for d in drawings {
+            let direct = Source::parse(d.to_owned(), "t").unwrap();
+            let (wanted, marks) = direct.instrumented();
+            let marked = marks::mark(d).unwrap();
+            assert_eq!(marked.text, wanted);
+            assert_eq!(marked.marks.elements, marks.elements);
+            let (source, n) = Source::read(d.to_owned(), "t", |_, doc| Ok(doc.input_text().len())).unwrap();
+            assert_eq!((n, &source.text), (wanted.len(), &direct.text));
+            assert_eq!(format!("{:?}", source.elements), format!("{:?}", direct.elements));
+            for e in &source.elements {
+                assert!(d[e.range.start..].starts_with(&format!("<{}", &d[e.qname.clone()])));
+                assert_eq!(&d[e.open_end - 1..e.open_end], ">");
+                assert!(e.attrs.iter().all(|a| d[a.range.clone()].contains(&d[a.value_range.clone()])));
+            }
+        }
+        let (text, ids) = {
+            let (s, text) =
+                Source::read(drawings[0].to_owned(), "t", |_, doc| Ok(doc.input_text().to_owned())).unwrap();
+            (text, s.ids().clone())
+        };
         assert_eq!(
             text,
             "<svg id=\"warp-0\" xmlns='http://www.w3.org/2000/svg'><path id=\"warp-1\"/><g id='q'><path id='warp-3'/></g></svg>"
         );
-        assert_eq!(ids["q"], [2]);
+        assert_eq!((&ids["q"], &ids["warp-3"]), (&vec![2], &vec![3]));
+        // Entities take the long way.
+        assert!(marks::mark("<!DOCTYPE svg [<!ENTITY g '<g/>'>]><svg/>").is_none());
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::image::{self, BentImage, Picture};
 use crate::lettering::{Piece, placed};
 use crate::number::MOST_DECIMALS;
 use crate::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
+use crate::page::Overhang;
 use crate::paint::{self, Fit};
 use crate::resolve::Tiling;
 use crate::scene::{Bitmap, Part, Role, Scene};
@@ -31,6 +32,8 @@ pub struct Warped {
     pub skipped: Vec<Skipped>,
     /// What the owner should know.
     pub warnings: Vec<String>,
+    /// How far the artwork leaves the page, if it does, the original did not, and the page was to stay ([`PageFit::None`]).
+    pub overhang: Option<Overhang>,
 }
 
 /// What was done to a shape.
@@ -149,7 +152,13 @@ impl Document {
     /// [`Error::Geometry`] naming the shape that the map cannot bend, unless [`OnError::Skip`]; [`Error::Input`] if the
     /// structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<Warped, Error> {
-        let mut out = Warped { svg: String::new(), shapes: Vec::new(), skipped: Vec::new(), warnings: Vec::new() };
+        let mut out = Warped {
+            svg: String::new(),
+            shapes: Vec::new(),
+            skipped: Vec::new(),
+            warnings: Vec::new(),
+            overhang: None,
+        };
         // What nothing moves is left in the source's own words.
         if unmoved(map, options) && options.structure != Structure::Flatten && options.page == PageFit::None {
             self.source.text.clone_into(&mut out.svg);
@@ -171,7 +180,7 @@ impl Document {
             Patterns::Auto if options.copies.len() <= 1 => Some(VISIBLE * view.width().hypot(view.height())),
             Patterns::Auto | Patterns::Instantiate => None,
         };
-        if self.scene.tiles.is_empty() {
+        if self.scene().tiles.is_empty() {
             return Ok(None);
         }
         let strokes = matches!(options.strokes, Strokes::Auto | Strokes::Outline);
@@ -188,7 +197,7 @@ impl Document {
             options.refit.shared = Arc::new(refit::SharedEdges::among(self.shapes().iter().map(|s| &s.outline)));
         }
         let options = &options;
-        let parts = &self.scene.parts;
+        let parts = &self.scene().parts;
         let slots = self.place_slots(map, &meant, &options.selection);
         let shaded = |p: &usvg::Paint| usize::from(Shading::of(p).is_some());
         let on = |p: &Part| {
@@ -198,9 +207,9 @@ impl Document {
         let among = if exact { parts.iter().map(on).sum() } else { 0 };
         let pieces = self.pieces(options);
         let one = |((p, meant), pieces): ((&Part, &bool), &Vec<Piece>)| {
-            let write = written(&self.scene, &slots, p.slot, p.frame);
+            let write = written(self.scene(), &slots, p.slot, p.frame);
             (*meant && !identity && usable(p.frame) && usable(write))
-                .then(|| warp_part(p, write, map, options, pieces, (self.scene.to_px, among)))
+                .then(|| warp_part(p, write, map, options, pieces, (self.scene().to_px, among)))
         };
         /// Below so many segments the work is done before another thread has woken up.
         const WORTH_IT: usize = 100;
@@ -254,8 +263,8 @@ impl Document {
         }
         let elements = options.selection.resolve(&self.source);
         let chosen = |b: &Bitmap| b.owner.map_or(options.selection.is_everything(), |e| elements[e]);
-        let bend = |b: &Bitmap| image::bend(b, &self.scene, &slots, chosen(b), map, &options.images);
-        let pictures: Vec<Picture> = self.scene.bitmaps.iter().map(bend).collect();
+        let bend = |b: &Bitmap| image::bend(b, self.scene(), &slots, chosen(b), map, &options.images);
+        let pictures: Vec<Picture> = self.scene().bitmaps.iter().map(bend).collect();
         let job = write::Job { document: self, outcomes: &outcomes, pictures: &pictures, slots: &slots, map, options };
         // The walk over the drawing's groups wants a stack as deep as they are. Nothing in there waits for other threads: a
         // caller that runs on a thread pool, as does the work above, would wait for itself.
@@ -270,10 +279,10 @@ impl Document {
     fn write(&self, job: &write::Job<'_>, out: &mut Warped) -> Result<(), Error> {
         let structure = job.options.structure;
         let mut notes = Notes::default();
-        for (what, whom) in &self.scene.notes {
+        for (what, whom) in &self.scene().notes {
             notes.add(what, whom);
         }
-        let kept = match (structure, &self.scene.unkeepable) {
+        let kept = match (structure, &self.scene().unkeepable) {
             (Structure::Flatten, _) => None,
             (_, Some(why)) => Some(Err(why.clone())),
             _ => Some(keep::write(job, &mut out.skipped, &mut notes)),
@@ -291,17 +300,18 @@ impl Document {
             }
         };
         out.warnings.extend(notes.lines());
+        out.overhang = job.overhang();
         Ok(())
     }
 
     /// Where filtered groups and images go: the affine fit of the map over each.
     fn place_slots(&self, map: &dyn Map, meant: &[bool], selection: &Selection) -> Vec<Placed> {
-        let mut out: Vec<Placed> = Vec::with_capacity(self.scene.slots.len());
+        let mut out: Vec<Placed> = Vec::with_capacity(self.scene().slots.len());
         let elements = selection.resolve(&self.source);
-        for s in &self.scene.slots {
-            let outer = written(&self.scene, &out, s.outer, s.frame);
+        for s in &self.scene().slots {
+            let outer = written(self.scene(), &out, s.outer, s.frame);
             // What stands in tiles and in filters' pictures is never bent and has no say.
-            let mut own = s.parts.clone().filter(|&i| self.scene.parts[i].role != Role::Pattern).peekable();
+            let mut own = s.parts.clone().filter(|&i| self.scene().parts[i].role != Role::Pattern).peekable();
             let moved = if own.peek().is_some() {
                 own.all(|i| meant[i])
             } else {
@@ -322,13 +332,13 @@ impl Document {
         let mut meant = self.meant(&options.selection);
         let all = options.selection.is_everything();
         let elements = options.selection.resolve(&self.source);
-        let refs = self.scene.clips.iter().map(|c| (&c.parts, &c.referrers));
-        let refs = refs.chain(self.scene.masks.iter().map(|m| (&m.parts, &m.referrers)));
+        let refs = self.scene().clips.iter().map(|c| (&c.parts, &c.referrers));
+        let refs = refs.chain(self.scene().masks.iter().map(|m| (&m.parts, &m.referrers)));
         for (parts, referrers) in refs {
             let any = all || referrers.iter().any(|r| r.owner.or(r.element).is_some_and(|e| elements[e]));
             meant[parts.clone()].fill(any);
         }
-        for (m, p) in meant.iter_mut().zip(&self.scene.parts) {
+        for (m, p) in meant.iter_mut().zip(&self.scene().parts) {
             let text = p.owner.is_some_and(|e| self.source.elements[e].tag == "text");
             *m &= p.role != Role::Pattern && !(text && options.text == TextMode::Skip);
         }

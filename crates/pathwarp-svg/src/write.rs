@@ -64,8 +64,8 @@ pub(crate) struct Writer<'a> {
 impl<'a> Writer<'a> {
     pub(crate) fn new(job: Job<'a>, in_source: bool, skipped: &'a mut Vec<Skipped>, notes: &'a mut Notes) -> Self {
         let source = &job.document.source;
-        let scene = &job.document.scene;
-        let taken = if in_source { source.by_id.keys().cloned().collect() } else { HashSet::new() };
+        let scene = &job.document.scene();
+        let taken = if in_source { source.by_id().keys().cloned().collect() } else { HashSet::new() };
         Self {
             job,
             prefix: if in_source { source.prefix().to_owned() } else { String::new() },
@@ -107,6 +107,11 @@ impl<'a> Writer<'a> {
 
     pub(crate) fn attributes(&self, properties: &Properties) -> String {
         let mut out = String::new();
+        self.push_attributes(properties, &mut out);
+        out
+    }
+
+    fn push_attributes(&self, properties: &Properties, out: &mut String) {
         if self.styled {
             if !properties.is_empty() {
                 let all: Vec<String> = properties.iter().map(|(n, v)| format!("{n}:{v}")).collect();
@@ -118,15 +123,21 @@ impl<'a> Writer<'a> {
                 if matches!(*n, "mix-blend-mode" | "isolation") {
                     let _ = write!(out, " style=\"{n}:{v}\"");
                 } else {
-                    let _ = write!(out, " {n}=\"{}\"", escape(v));
+                    push_all(out, [" ", n, "=\"", &escape(v), "\""]);
                 }
             }
         }
-        out
     }
 
-    pub(crate) fn nodes(&mut self, nodes: &[Node]) -> String {
-        nodes.iter().map(|n| self.node(n)).collect()
+    fn push_nodes(&mut self, nodes: &[Node], out: &mut String) {
+        for n in nodes {
+            let one = self.node(n);
+            if out.is_empty() {
+                *out = one;
+            } else {
+                out.push_str(&one);
+            }
+        }
     }
 
     pub(crate) fn node(&mut self, n: &Node) -> String {
@@ -161,21 +172,25 @@ impl<'a> Writer<'a> {
     /// A group with `lead` as the first of its content.
     pub(crate) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
         let head = self.head(g, extra);
-        let inner = self.nodes(&g.children);
-        self.wrapped(g, &head, &format!("{lead}{inner}"))
+        let mut inner = lead.to_owned();
+        self.push_nodes(&g.children, &mut inner);
+        self.wrapped(g, &head, inner)
     }
 
     /// What a group does, around content that is written already.
     pub(crate) fn group_around(&mut self, g: &Group, content: &str) -> String {
         let head = self.head(g, "");
-        self.wrapped(g, &head, content)
+        self.wrapped(g, &head, content.to_owned())
     }
 
-    fn wrapped(&self, g: &Group, head: &str, content: &str) -> String {
+    fn wrapped(&self, g: &Group, head: &str, content: String) -> String {
         if head.is_empty() {
-            return content.to_owned();
+            return content;
         }
-        format!("<{0}{head}>{content}</{0}>", self.tag(if self.link_of(g).is_empty() { "g" } else { "a" }))
+        let tag = if self.link_of(g).is_empty() { "g" } else { "a" };
+        let mut out = String::with_capacity(head.len() + content.len() + 2 * (self.prefix.len() + "<g></".len()));
+        push_all(&mut out, ["<", &self.prefix, tag, head, ">", &content, "</", &self.prefix, tag, ">"]);
+        out
     }
 
     /// A group's attributes.
@@ -204,7 +219,7 @@ impl<'a> Writer<'a> {
         }
         let own = g.source.map_or(String::new(), |e| self.id_attribute(e));
         let mut head = format!("{own}{extra}");
-        let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene.slots[s].before)) {
+        let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene().slots[s].before)) {
             Some((fit, true)) => fit * g.transform,
             Some((fit, false)) => g.transform * fit,
             None => g.transform,
@@ -225,13 +240,19 @@ impl<'a> Writer<'a> {
     }
 
     pub(crate) fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
-        format!("<{}{id} d=\"{d}\"{}/>", self.tag("path"), self.attributes(properties))
+        /// As long as the attributes mostly are.
+        const USUAL: usize = 64;
+        let mut out = String::with_capacity(d.len() + id.len() + USUAL);
+        push_all(&mut out, ["<", &self.prefix, "path", id, " d=\"", d, "\""]);
+        self.push_attributes(properties, &mut out);
+        out.push_str("/>");
+        out
     }
 
     /// A part as one path, or as two where the stroke has become an outline.
     pub(crate) fn part(&mut self, i: usize) -> String {
         let job = self.job;
-        let p = &job.document.scene.parts[i];
+        let p = &job.document.scene().parts[i];
         let done = job.outcomes[i].done();
         let d = part_data(p, done, &job.document.source);
         let id = p.source.map_or(String::new(), |e| self.id_attribute(e));
@@ -312,7 +333,7 @@ impl<'a> Writer<'a> {
     /// The presentation of a part's fill, its stroke, or both.
     pub(crate) fn properties_of(&mut self, i: usize, fill: bool, stroke: bool) -> Properties {
         let job = self.job;
-        let p = &job.document.scene.parts[i];
+        let p = &job.document.scene().parts[i];
         let done = job.outcomes[i].done();
         let mut all = self.shared(p);
         match p.fill.as_ref().filter(|_| fill) {
@@ -423,7 +444,7 @@ impl<'a> Writer<'a> {
     }
 
     fn image(&mut self, i: usize) -> String {
-        let bitmap = &self.job.document.scene.bitmaps[i];
+        let bitmap = &self.job.document.scene().bitmaps[i];
         let image = &bitmap.image;
         if !image.is_visible() {
             return String::new();
@@ -518,6 +539,12 @@ pub(crate) fn dashes(s: &usvg::Stroke, scale: f64) -> String {
         .map_or("none".into(), |list| list.iter().map(|d| short(f64::from(*d) * scale)).collect::<Vec<_>>().join(","))
 }
 
+fn push_all<const N: usize>(out: &mut String, parts: [&str; N]) {
+    for p in parts {
+        out.push_str(p);
+    }
+}
+
 fn base64(data: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(data.len().div_ceil(3) * 4);
@@ -554,7 +581,11 @@ pub(crate) fn flat(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes)
     if let Some(t) = source.elements.first().and_then(|e| e.title.as_ref()) {
         let _ = writeln!(out, "<title>{}</title>", escape(t));
     }
-    let body: String = job.document.scene.root.children.iter().map(|n| format!("{}\n", w.node(n))).collect();
+    let mut body = String::new();
+    for n in &job.document.scene().root.children {
+        body.push_str(&w.node(n));
+        body.push('\n');
+    }
     if !w.defs.is_empty() {
         let _ = write!(out, "<defs>\n{}</defs>\n", w.defs);
     }

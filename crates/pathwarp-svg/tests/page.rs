@@ -122,6 +122,54 @@ fn guides_and_what_is_hidden_do_not_count() {
     assert!(w.svg.contains("viewBox=\"25 30 60 40\""), "{}", w.svg);
 }
 
+/// How far marks lie beyond the page of 0 to 100: left, top, right, bottom.
+fn beyond(marks: Rect) -> [f64; 4] {
+    [-marks.x0, -marks.y0, marks.x1 - 100.0, marks.y1 - 100.0]
+}
+
+#[test]
+fn what_leaves_the_page_is_measured() {
+    for (name, body) in DRAWINGS {
+        let svg = common::drawing(body);
+        for map in [Affine::translate((45.0, -35.0)), Affine::translate((-50.0, 52.0))] {
+            let w = read(&svg).warp(&Hidden(map), &warp_options()).unwrap();
+            let out = beyond(marks(&read(&w.svg)));
+            let by = w.overhang.unwrap_or_else(|| panic!("{name}: {out:?} is not seen")).by;
+            for (told, true_one) in by.iter().zip(out) {
+                assert!((told - true_one.max(0.0)).abs() < 1.5 / FINE, "{name}: {by:?} is not {out:?}");
+            }
+            let share = out.into_iter().fold(0.0, f64::max) / 100.0;
+            assert!((w.overhang.unwrap().share - share).abs() < 0.01, "{name}");
+            let grown = WarpOptions { page: PageFit::Grow, ..warp_options() };
+            assert_eq!(read(&svg).warp(&Hidden(map), &grown).unwrap().overhang, None, "{name}");
+        }
+        let still = read(&svg).warp(&Hidden(Affine::rotate_about(0.1, (50.0, 50.0))), &warp_options()).unwrap();
+        assert_eq!(still.overhang, None, "{name}");
+    }
+}
+
+#[test]
+fn what_left_the_page_before_is_not_told() {
+    let moved = |svg: &str, x: f64, y: f64| {
+        let w = read(svg).warp(&Hidden(Affine::translate((x, y))), &warp_options()).unwrap();
+        w.overhang.map(|o| o.by.map(|v| (v * 1e6).round() / 1e6))
+    };
+    // It hangs over the left side by 30, strokes included, and stands 10 away from the right.
+    let body = "<path d='M-28,40H88' stroke='black' stroke-width='4' stroke-linecap='square'/>";
+    let svg = common::drawing(body);
+    assert_eq!(moved(&svg, 5.0, 0.0), None);
+    assert_eq!(moved(&svg, 10.0, 3.0), None);
+    assert_eq!(moved(&svg, 17.0, 0.0), Some([0.0, 0.0, 7.0, 0.0]));
+    assert_eq!(moved(&svg, -5.0, 0.0), Some([35.0, 0.0, 0.0, 0.0]));
+    assert_eq!(moved(&svg, 0.0, -50.0), Some([0.0, 12.0, 0.0, 0.0]));
+    // Less than a pixel of a thousand.
+    assert_eq!(moved(&svg, 10.05, 0.0), None);
+    // A file that does not say how large its page is has none.
+    let endless = format!("<svg xmlns='http://www.w3.org/2000/svg'>{body}</svg>");
+    assert_eq!(moved(&endless, 60.0, 0.0), None);
+    assert!(moved(&endless.replace("<svg", "<svg width='100' height='100'"), 60.0, 0.0).is_some());
+}
+
 /// Nothing bends, and still the page is wanted.
 #[test]
 fn the_identity_fits_the_page() {

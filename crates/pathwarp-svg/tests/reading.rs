@@ -117,6 +117,47 @@ fn files_made_to_hurt_end_in_an_error_or_a_drawing() {
     }
 }
 
+/// Each level shows the next one ten times, in every way there is.
+#[test]
+fn what_unfolds_without_end_is_refused_at_once() {
+    const LEVELS: usize = 12;
+    let svg = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>\n{body}</svg>");
+    let nest = |open: &str, show: &str, close: &str| {
+        let level = |i: usize| {
+            let inside = show.replace('#', &format!("#n{}", i + 1)).repeat(10);
+            format!("{}{inside}{close}\n", open.replace("id=''", &format!("id='n{i}'")))
+        };
+        let levels: String = (0..LEVELS).map(level).collect();
+        let last = open.replace("id=''", &format!("id='n{LEVELS}'"));
+        svg(&format!("{levels}{last}<path d='M0 0L5 5L9 0'/>{close}{}", show.replace('#', "#n0")))
+    };
+    let pattern = "<pattern id='' width='1' height='1'>";
+    let shape = "<path d='M0 0L5 5L9 0' ";
+    let nests = [
+        nest(pattern, &format!("{shape} fill='url(#)'/>"), "</pattern>"),
+        nest(pattern, &format!("{shape} style='stroke:url(#)'/>"), "</pattern>"),
+        nest("<symbol id=''>", "<use href='#'/>", "</symbol>"),
+        nest("<mask id=''>", &format!("{shape} mask='url(#)'/>"), "</mask>"),
+        nest("<clipPath id=''>", &format!("{shape} clip-path='url(#)'/>"), "</clipPath>"),
+        nest("<marker id=''>", &format!("{shape} marker-mid='url(#)'/>"), "</marker>"),
+    ];
+    for n in &nests {
+        let started = std::time::Instant::now();
+        let e = fault(n.as_bytes());
+        assert!(e.contains("unfolds to more than") && e.starts_with("f.svg:"), "{e}");
+        // In a drawing within a drawing as well.
+        let coded =
+            n.replace('#', "%23").replace('<', "%3c").replace('>', "%3e").replace('\'', "%27").replace('\n', "%0a");
+        let e = fault(svg(&format!("<image width='9' height='9' href='data:image/svg+xml,{coded}'/>")).as_bytes());
+        assert!(e.contains("unfolds to more than") && e.contains("image"), "{e}");
+        // usvg alone takes longer than anybody waits.
+        assert!(started.elapsed().as_secs() < 10, "{:?}", started.elapsed());
+    }
+    // Few levels are a drawing like others.
+    let few = nests[0].replace("fill='url(#n3)'", "fill='red'");
+    assert!(Document::read(few.as_bytes(), "f.svg", &options()).is_ok());
+}
+
 #[test]
 fn many_deep_drawings_at_once_do_not_wait_for_each_other() {
     use rayon::prelude::*;

@@ -1,11 +1,11 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
 
 use crate::deform::{Built, Overlay, Registry, Role};
-use crate::error::Error;
+use crate::error::{Error, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
 use crate::param::{Args, Frame};
-use kurbo::{Affine, Point, Rect};
+use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
 /// A deformation with its arguments.
@@ -100,6 +100,18 @@ impl Recipe {
                 letters.clone_from(&built.letters);
             }
             if step.inverse {
+                if let Some([end, through]) = built.seam
+                    && let Some(at) = first_across(artwork.clone(), &copies, &map, end, through - end)
+                {
+                    built.warnings.push(format!(
+                        "{}: the edges of what is undone meet on the ray from {} through {}: what crosses it, as at {}, is torn apart; \
+                         turn the map or cut the artwork there",
+                        step.deformation,
+                        show(end),
+                        show(through),
+                        show(at)
+                    ));
+                }
                 built = inverted(built, &frame);
             }
             if i > 0 {
@@ -139,21 +151,45 @@ impl Recipe {
     }
 }
 
-/// The box of the artwork's image, from points along the outlines: what a percentage needs, not what a proof needs.
-fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], map: &dyn Map) -> Option<Rect> {
-    const PER_SEGMENT: usize = 16;
-    let mut all: Option<Rect> = None;
+/// Pieces that a segment is sampled in.
+const PER_SEGMENT: usize = 16;
+
+/// Points along the image of every segment of the artwork: what a percentage or a warning needs, not what a proof needs.
+fn images<'a>(
+    artwork: impl Iterator<Item = &'a Outline>,
+    copies: &[Affine],
+    map: &dyn Map,
+) -> impl Iterator<Item = [Point; PER_SEGMENT + 1]> {
     let places = if copies.is_empty() { &[Affine::IDENTITY][..] } else { copies };
-    for (seg, place) in artwork.flat_map(Outline::segs).flat_map(|s| places.iter().map(move |m| (s, *m))) {
+    artwork.flat_map(Outline::segs).flat_map(|s| places.iter().map(move |m| (s, *m))).map(|(seg, place)| {
         let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| place * seg.eval(i as f64 / PER_SEGMENT as f64));
         let mut image = [Point::ORIGIN; PER_SEGMENT + 1];
         map.points(&ps, &mut image);
-        for p in image.into_iter().filter(|p| p.is_finite()) {
-            let at = Rect::from_points(p, p);
-            all = Some(all.map_or(at, |a| a.union(at)));
-        }
-    }
-    all
+        image
+    })
+}
+
+/// The box of the artwork's image.
+fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], map: &dyn Map) -> Option<Rect> {
+    let points = images(artwork, copies, map).flatten().filter(|p| p.is_finite());
+    points.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))
+}
+
+/// The first place where the artwork's image crosses the ray from `end` in the direction `along`.
+fn first_across<'a>(
+    artwork: impl Iterator<Item = &'a Outline>,
+    copies: &[Affine],
+    map: &dyn Map,
+    end: Point,
+    along: Vec2,
+) -> Option<Point> {
+    let side = |p: Point| along.cross(p - end);
+    let cross = |a: Point, b: Point| {
+        let (s, t) = (side(a), side(b));
+        let at = a.lerp(b, s / (s - t));
+        ((s < 0.0) != (t < 0.0) && along.dot(at - end) > 0.0).then_some(at)
+    };
+    images(artwork, copies, map).find_map(|ps| ps.windows(2).find_map(|w| cross(w[0], w[1])))
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> 
         picture(root, &program, example.command, &folder.join(format!("{}.png", e.info().name)))?;
     }
     picture(root, &program, GIMP_EXAMPLE, &root.join(GIMP_PICTURE))?;
-    run_program(root, &program, &["gallery", SHEET_OF, "-o", SHEET].map(str::to_owned))?;
+    guide::pipe(root, &program, &["gallery", SHEET_OF, "-o", SHEET].map(str::to_owned), &[])?;
     guide::run(root, &program)?;
     let jobs = cookbook::run(root, &program)?;
     Ok(format!(
@@ -61,25 +61,20 @@ fn build(root: &Path) -> Result<std::path::PathBuf, Fault> {
 
 /// Draws what a command makes of its artwork.
 pub(crate) fn picture(root: &Path, program: &Path, command: &str, png: &Path) -> Result<(), Fault> {
-    let mut words = words(command);
-    // What the example writes is not wanted here, nor a preview of its own.
-    for option in ["-o", "--preview"] {
-        if let Some(i) = words.iter().position(|w| w == option) {
-            words.drain(i..(i + 2).min(words.len()));
-        }
+    let mut stages = guide::stages(&format!("pathwarp {command}"));
+    let Some(mut last) = stages.pop() else { return Ok(()) };
+    let mut drawing = Vec::new();
+    for stage in stages {
+        drawing = guide::pipe(root, program, &stage, &drawing)?;
     }
-    words.extend(["--quiet", "-o", "-", "--preview"].map(str::to_owned));
-    words.push(png.display().to_string());
-    run_program(root, program, &words)
-}
-
-fn run_program(root: &Path, program: &Path, words: &[String]) -> Result<(), Fault> {
-    let out = Command::new(program).args(words).current_dir(root).output();
-    let out = out.map_err(|e| format!("{}: {e}", program.display()))?;
-    if out.status.success() {
-        return Ok(());
+    // A preview of the example's own is not wanted here.
+    if let Some(i) = last.iter().position(|w| w == "--preview") {
+        last.drain(i..(i + 2).min(last.len()));
     }
-    Err(format!("pathwarp {}: {}", words.join(" "), String::from_utf8_lossy(&out.stderr)))
+    last.retain(|w| w != "--explain");
+    last.extend(["--quiet", "--preview"].map(str::to_owned));
+    last.push(png.display().to_string());
+    guide::pipe(root, program, &last, &drawing).map(drop)
 }
 
 /// Words of a shell command line with single quotes.

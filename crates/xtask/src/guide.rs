@@ -49,7 +49,7 @@ fn pictures(page: &str) -> Vec<(&str, &str)> {
 }
 
 /// The commands of a pipeline, each without its first word; what the last one writes to a file goes to standard output.
-fn stages(line: &str) -> Vec<Vec<String>> {
+pub(crate) fn stages(line: &str) -> Vec<Vec<String>> {
     let words = docs::words(line);
     let stages = words.split(|w| w == "|").map(|stage| {
         let mut stage: Vec<String> = stage.iter().skip(1).cloned().collect();
@@ -62,7 +62,7 @@ fn stages(line: &str) -> Vec<Vec<String>> {
     stages.collect()
 }
 
-fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, Fault> {
+pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, Fault> {
     let fault = |e: std::io::Error| format!("{}: {e}", program.display());
     let mut command = Command::new(program);
     command.args(args).current_dir(root).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

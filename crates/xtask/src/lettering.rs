@@ -11,7 +11,7 @@ Text in a drawing, and outlines made by [`pathwarp text`](lettering.md), tell wh
 ends. Other outlines do not: for those `--frame X,Y,W,H` names the box, and `bend --baseline` the height.
 
 ```sh
-pathwarp text 'Summit Camp' | pathwarp bend - --along 'M0,120 Q200,0 400,120' --glyphs rotate -o out.svg
+pathwarp text 'Summit Camp' | pathwarp bend - --along 'M0,120 Q250,0 500,120' --glyphs rotate --fit page -o out.svg
 ```
 
 ## Frames

@@ -48,7 +48,7 @@ pub(crate) fn warp(
             return Err(Failure::usage("--frame: GIMP paths do not tell where their baseline is; give X,Y,W,H"));
         }
     };
-    let built = recipe.build(registry, Frame::new(frame), &outlines.iter())?;
+    let built = recipe.build(registry, Frame::new(frame), &outlines.iter()).map_err(Failure::of_recipe)?;
     if built.steps.iter().any(|s| s.space.is_some())
         && recipe.steps.iter().any(|s| ["mesh", "curves"].iter().any(|n| !s.args.get(n).is_empty()))
     {

@@ -1,6 +1,6 @@
 //! Paths as items (version 18 on, GIMP 3): each behind a pointer, with a property list of its own.
 
-use super::{Layout, MOST_PROPERTIES, PROP_END, Record, Xcf, count, said_to_have, string, vectors};
+use super::{Layout, MOST_PROPERTIES, PROP_END, Record, Xcf, count, string, vectors};
 use crate::error::Error;
 use crate::input::Input;
 use crate::path::GimpPath;
@@ -76,15 +76,14 @@ fn item(input: &mut Input<'_>, pointer_at: u64) -> Result<Record, Error> {
     let size_at = input.at();
     let size = u64::from(input.u32("a path")?);
     if size > input.left() {
-        let left = input.left();
-        return Err(Error::at(size_at, format!("a path is said to have {size} bytes, but only {left} are left")));
+        return Err(Error::short(size_at, &format!("a path is said to have {size} bytes"), input.left()));
     }
     let end = input.at() + size;
     let file_end = std::mem::replace(&mut input.end, end);
     let read = content(input);
     input.end = file_end;
     let (visible, count_at, strokes) =
-        read.map_err(|e| if end < file_end { said_to_have(e, size, &format!("the path `{name}`")) } else { e })?;
+        read.map_err(|e| if end < file_end { e.within(size, &format!("the path `{name}`")) } else { e })?;
     if input.at() != end {
         let (found, name) = (input.at() - size_at - 4, &name);
         let problem = format!("the path `{name}` has {found} bytes, but its size word says {size}");

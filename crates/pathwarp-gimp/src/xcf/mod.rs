@@ -151,8 +151,7 @@ pub(super) fn string(input: &mut Input<'_>, what: &str) -> Result<String, Error>
     let at = input.at();
     let length = u64::from(input.u32(what)?);
     if length > input.left() {
-        let left = input.left();
-        return Err(Error::at(at, format!("{what} is said to have {length} bytes, but only {left} are left")));
+        return Err(Error::short(at, &format!("{what} is said to have {length} bytes"), input.left()));
     }
     if length > LONGEST_NAME {
         return Err(Error::at(at, format!("{what} of {length} bytes is longer than any name")));
@@ -172,21 +171,10 @@ pub(super) fn count(input: &mut Input<'_>, least: u64, what: &str) -> Result<u32
     let at = input.at();
     let n = input.u32(what)?;
     if u64::from(n) * least > input.left() {
-        let left = input.left();
-        return Err(Error::at(
-            at,
-            format!("{n} {what} need {} bytes or more, but only {left} are left", u64::from(n) * least),
-        ));
+        let needed = format!("{n} {what} need {} bytes or more", u64::from(n) * least);
+        return Err(Error::short(at, &needed, input.left()));
     }
     Ok(n)
-}
-
-/// Names the length word behind what an error calls left.
-pub(super) fn said_to_have(mut e: Error, size: u64, what: &str) -> Error {
-    if e.problem.contains("left") {
-        e.problem += &format!(" of the {size} that {what} is said to have");
-    }
-    e
 }
 
 /// A coordinate: neither NaN nor infinite.

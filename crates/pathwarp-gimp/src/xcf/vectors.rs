@@ -1,6 +1,6 @@
 //! `PROP_VECTORS`, GIMP 2's paths, and the strokes that path items share with it.
 
-use super::{Layout, Record, Xcf, coordinate, count, said_to_have, string, word};
+use super::{Layout, Record, Xcf, coordinate, count, string, word};
 use crate::error::Error;
 use crate::input::Input;
 use crate::path::{GimpPath, Stroke};
@@ -28,7 +28,7 @@ pub(super) fn read(input: &mut Input<'_>, length: u64, xcf: &mut Xcf) -> Result<
     input.end = end.min(file_end);
     let read = paths(input, xcf);
     input.end = file_end;
-    read.map_err(|e| if end < file_end { said_to_have(e, length, "PROP_VECTORS") } else { e })?;
+    read.map_err(|e| if end < file_end { e.within(length, "PROP_VECTORS") } else { e })?;
     if input.at() != end {
         let found = input.at() - start;
         let problem = format!("PROP_VECTORS has {found} bytes of paths, but its length word says {length}");

@@ -20,7 +20,7 @@ impl Keeper<'_, '_> {
         if !self.source.animated {
             return;
         }
-        let scene = &self.job.document.scene;
+        let scene = &self.job.document.scene();
         let count = self.source.elements.len();
         let (mut warped, mut around) = (vec![false; count], vec![false; count]);
         let parts = scene.parts.iter().enumerate().filter(|p| self.done(p.0)).filter_map(|p| p.1.owner.or(p.1.source));
@@ -37,7 +37,7 @@ impl Keeper<'_, '_> {
         let source = self.source;
         for a in (0..count).filter(|&a| is_animation(&source.elements[a].tag)) {
             let target = match self.source.href(a) {
-                Some(id) => self.source.by_id.get(&id).and_then(|all| all.first().copied()),
+                Some(id) => self.source.by_id().get(&id).and_then(|all| all.first().copied()),
                 None => self.source.elements[a].parent,
             };
             let Some(target) = target else { continue };

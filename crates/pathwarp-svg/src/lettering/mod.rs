@@ -199,9 +199,9 @@ impl Document {
             lettered[*i] = true;
         }
         let owners: Vec<ElementId> = lines.iter().filter_map(|l| l.owner).collect();
-        let belongs = |i: usize| lettered[i] || self.scene.parts[i].owner.is_some_and(|o| owners.contains(&o));
+        let belongs = |i: usize| lettered[i] || self.scene().parts[i].owner.is_some_and(|o| owners.contains(&o));
         let only = (0..lettered.len()).all(|i| belongs(i) || !meant[i] || !self.shapes()[i].painted)
-            && self.scene.bitmaps.is_empty()
+            && self.scene().bitmaps.is_empty()
             && !lines.is_empty();
         Lettering { lines, letters, only, file: self.name.clone() }
     }
@@ -210,7 +210,7 @@ impl Document {
     fn meant_lines(&self, meant: &[bool]) -> Vec<Line> {
         let whole = |l: &Letter| l.owns.iter().all(|(i, _)| meant[*i] && self.shapes()[*i].painted);
         let lines = self
-            .scene
+            .scene()
             .lines
             .iter()
             .map(|line| Line { letters: line.letters.iter().filter(|l| whole(l)).cloned().collect(), ..line.clone() });
@@ -219,7 +219,7 @@ impl Document {
 
     /// For every part the letters in it, by their number in [`Lettering::letters`], with the subpaths they own.
     pub(crate) fn letters_by_part(&self, selection: &Selection) -> Vec<Vec<(usize, Range<usize>)>> {
-        let mut out = vec![Vec::new(); self.scene.parts.len()];
+        let mut out = vec![Vec::new(); self.scene().parts.len()];
         let lines = self.meant_lines(&self.meant(selection));
         for (k, letter) in lines.iter().flat_map(|l| &l.letters).enumerate() {
             for (i, range) in &letter.owns {

@@ -55,7 +55,7 @@ impl Document {
     pub(crate) fn pieces(&self, options: &WarpOptions) -> Vec<Vec<Piece>> {
         let places = &options.letters.places;
         if places.is_empty() {
-            return vec![Vec::new(); self.scene.parts.len()];
+            return vec![Vec::new(); self.scene().parts.len()];
         }
         let piece = |(k, range): (usize, Range<usize>)| {
             Some(Piece { range, places: places.get(k).filter(|p| !p.is_empty())?.clone() })

@@ -41,12 +41,15 @@ points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d),
     ],
     demo: &[("pole", "60,250")],
     examples: &[
-        Example { what: "As it comes", command: "mobius samples/logo.svg -o out.svg" },
+        Example { what: "As it comes", command: "mobius samples/logo.svg --fit grow -o out.svg" },
         Example {
             what: "Both ends of a word up, its middle kept",
             command: "mobius samples/lettering.svg --from '0%,50% 50%,50% 100%,50%' --to '5%,10% 50%,50% 95%,10%' -o out.svg",
         },
-        Example { what: "A grid of circles", command: "mobius samples/grid.svg --pole 130%,-40% -o out.svg" },
+        Example {
+            what: "A grid of circles",
+            command: "mobius samples/grid.svg --pole 130%,-40% --fit page -o out.svg",
+        },
     ],
     laws: &[
         Law::Identity(&[("from", "0,0 50,20 100,0"), ("to", "0,0 50,20 100,0")]),

@@ -162,6 +162,9 @@ pub struct Built {
     pub overlays: Vec<Overlay>,
     /// What the user should know: said as warnings, and in the report.
     pub warnings: Vec<String>,
+    /// A ray in the image plane, by its end and another point of it, where the map brings two edges of the artwork together: the
+    /// inverse tears apart what crosses it, and a recipe that wants the inverse warns of that.
+    pub seam: Option<[Point; 2]>,
     /// Files asked for by parameters of kind [`Save`](crate::param::Kind::Save): name and text.
     pub saves: Vec<(String, String)>,
     /// The artwork as often as the map is to bend it: where each copy stands in the source plane, the original included. Empty:
@@ -188,6 +191,7 @@ impl Built {
             notes: Vec::new(),
             overlays: Vec::new(),
             warnings: Vec::new(),
+            seam: None,
             saves: Vec::new(),
             copies: Vec::new(),
             letters: Vec::new(),

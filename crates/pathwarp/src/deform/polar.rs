@@ -9,14 +9,15 @@
 //! ρ = 1/κ gives the inner edge its own length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
 //! inner one. F = C + r·(sin φ, −cos φ) is computed from the image O of the artwork's middle, F = O + (r·sin φ, r(yₘ) − r +
 //! 2r·sin²(φ/2)), which loses nothing where the sweep is small and C far away. Inverse: r and φ from the distance to C and the
-//! direction, exact up to the ray opposite the middle, where a whole turn meets itself. Elementary.
+//! direction, exact up to the ray opposite the middle. A whole turn meets itself there; what crosses it is cut and drawn on by a
+//! straight line, and the recipe warns of it. Elementary.
 
 use super::{Built, Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Point, Vec2};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 pub(super) struct Polar;
@@ -50,12 +51,12 @@ unless --center says where the centre lies. With --spacing conformal, squares st
     ],
     demo: &[("turn", "15")],
     examples: &[
-        Example { what: "An arch", command: "polar samples/lettering.svg -o out.svg" },
+        Example { what: "An arch", command: "polar samples/lettering.svg --fit grow -o out.svg" },
         Example {
             what: "A whole ring about the middle",
             command: "polar samples/grid.svg --sweep 360 --inner 15% --outer 50% --center 50%,50% -o out.svg",
         },
-        Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 -o out.svg" },
+        Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 --fit grow -o out.svg" },
     ],
     laws: &[
         Law::Identity(&[("sweep", "0")]),
@@ -142,6 +143,10 @@ impl Deformation for Polar {
             map.to = s.point("center")? + map.turned(Vec2::new(0.0, -map.radius_at(map.middle.y)));
         }
         let mut built = Built::new(Arc::new(map));
+        if map.is_whole() {
+            let c = map.centre();
+            built.seam = Some([c, c + map.turned(Vec2::new(0.0, up))]);
+        }
         built.notes.push(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
         Ok(built)
     }
@@ -181,6 +186,11 @@ impl PolarMap {
         if self.conformal { (h * self.k).exp() * self.radius } else { h * self.gain + self.radius }
     }
 
+    /// Whether the turn is a whole one, but for rounding.
+    fn is_whole(&self) -> bool {
+        self.sweep > TAU * (1.0 - 1e-9)
+    }
+
     fn centre(&self) -> Point {
         self.to + self.turned(Vec2::new(0.0, self.radius_at(self.middle.y)))
     }
@@ -206,28 +216,38 @@ impl Formula for PolarMap {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Unrolled(*self)))
+        Some(Arc::new(Unrolled { ring: *self, half: None }))
     }
 }
 
 /// The inverse: the ring unrolled.
 #[derive(Debug, Clone, Copy)]
-struct Unrolled(PolarMap);
+struct Unrolled {
+    ring: PolarMap,
+    /// Of a whole turn: the sign of the angles in the half that is meant, edges included.
+    half: Option<f64>,
+}
 
 impl Unrolled {
     /// Distance from the centre and angle from the middle.
     fn polar<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let Unrolled(m) = self;
+        let m = &self.ring;
         let (c, t) = (m.centre(), m.turn);
         let (u, v) = (x - c.x, y - c.y);
         let (a, b) = (u * t.x + v * t.y, v * t.x - u * t.y);
-        (a.hypot(b), (a * m.up).atan2(b * -m.up))
+        let angle = (a * m.up).atan2(b * -m.up);
+        // On the ray itself rounding gives either end of the turn.
+        let angle = match self.half {
+            Some(sign) if angle.value() * sign < -FRAC_PI_2 => angle + sign * TAU,
+            _ => angle,
+        };
+        (a.hypot(b), angle)
     }
 }
 
 impl Formula for Unrolled {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let Unrolled(m) = self;
+        let m = &self.ring;
         let (r, angle) = self.polar(x, y);
         let r = r * m.up;
         let h = if m.conformal { (r / m.radius).ln() / m.k } else { (r - m.radius) / m.gain };
@@ -235,23 +255,36 @@ impl Formula for Unrolled {
     }
 
     /// Undefined on the ray opposite the middle: half of what the sweep leaves free goes to either end. A whole turn leaves
-    /// nothing free; artwork across that ray is then torn.
+    /// nothing free: the value jumps there. The halves are told apart by the whole line, so that each has its own ends.
     fn creases(&self, out: &mut Creases) {
         let own = *self;
-        let most = 0.5 * (0.5 * own.0.sweep + PI) * (1.0 - 1e-9);
+        if own.ring.is_whole() {
+            let (c, t) = (own.ring.centre().to_vec2(), own.ring.turn);
+            out.push(Crease::kink(Level::Line { a: t.x, b: t.y, c: -c.dot(t) }));
+            return;
+        }
+        let most = 0.5 * (0.5 * own.ring.sweep + PI) * (1.0 - 1e-9);
         out.push(Crease::edge(Level::Field(Arc::new(move |p| most - own.polar(p.x, p.y).1.abs()))));
     }
 
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        let half = self.polar(inside.x, inside.y).1.signum();
+        self.ring.is_whole().then(|| Arc::new(Self { half: Some(half), ..*self }) as Arc<dyn Map>)
+    }
+
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(self.0))
+        Some(Arc::new(self.ring))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check;
-    use crate::param::Args;
+    use crate::deform::Registry;
+    use crate::param::{Args, Frame};
+    use crate::recipe::{Recipe, Step};
+    use crate::{Outline, check, refit};
+    use kurbo::{ParamCurveNearest as _, Rect};
 
     #[test]
     fn is_sound() {
@@ -292,6 +325,42 @@ mod tests {
         }
     }
 
+    /// A square across the ray opposite the middle, and one that is not, unrolled from a ring about 0,0.
+    #[test]
+    fn a_whole_turn_is_cut_where_it_meets_itself_and_the_cut_is_told() {
+        let pairs = [("sweep", "360"), ("inner", "20"), ("outer", "90"), ("center", "0,0"), ("turn", "-10")];
+        let step = Step { inverse: true, ..Step::new("polar", Args::from_pairs(&pairs)) };
+        let recipe = Recipe { steps: vec![step] };
+        let unroll = |d: &str| {
+            let art = Outline::from_svg(d).unwrap();
+            let frame = Frame::new(Rect::new(0.0, 0.0, 300.0, 70.0));
+            let built = recipe.build(&Registry::builtin(), frame, &std::iter::once(&art)).unwrap();
+            let warped = refit::warp_path(&art, &built.map, &refit::Options::new(0.01)).unwrap();
+            assert!(warped.report.over_budget.is_empty() && warped.report.max_error <= 0.01, "{:?}", warped.report);
+            // The distance from 0,0 is the height, the angle from the vertical, turned back, the width.
+            let mut apart: f64 = 0.0;
+            for p in art.segs().flat_map(|s| (1..200).map(move |i| s.eval(f64::from(i) / 200.0))) {
+                let angle = (p.x.atan2(-p.y) + 10_f64.to_radians() + 3.0 * PI).rem_euclid(TAU) - PI;
+                let to = Point::new(150.0 + 300.0 * angle / TAU, 70.0 - (p.to_vec2().hypot() - 20.0));
+                let near =
+                    warped.path.segments().map(|s| s.nearest(to, 1e-6).distance_sq.sqrt()).fold(f64::MAX, f64::min);
+                apart = apart.max(near);
+            }
+            assert!(apart < 0.0101, "{apart}");
+            (built.steps[0].warnings.clone(), warped.report.segments_out)
+        };
+        let (warnings, segments) = unroll("M-31.37,40 H8.63 V80 H-31.37 Z");
+        assert!(warnings.len() == 1 && warnings[0].contains("torn apart"), "{warnings:?}");
+        assert!(segments < 16, "{segments}");
+        let (warnings, _) = unroll("M-20,-80 H20 V-40 H-20 Z");
+        assert!(warnings.is_empty(), "{warnings:?}");
+        // A circle that starts and ends on the ray: two halves, the way back, and what rounding makes of either end.
+        let (sin, cos) = 10_f64.to_radians().sin_cos();
+        let (x, y) = (50.0 * -sin, 50.0 * cos);
+        let (warnings, segments) = unroll(&format!("M{x},{y} A50,50 0 0 1 {},{} A50,50 0 0 1 {x},{y} Z", -x, -y));
+        assert!(segments <= 6 && warnings.len() == 1, "{segments} {warnings:?}");
+    }
+
     #[test]
     fn rings_that_are_none_are_refused() {
         for pairs in [
@@ -305,8 +374,8 @@ mod tests {
         }
         // Artwork that reaches below the centre is refused where it does.
         let m = build(&[("inner", "0"), ("outer", "50")]).unwrap().map;
-        let art = crate::Outline::from_svg("M10,10 L20,150").unwrap();
-        let e = crate::refit::warp_path(&art, &*m, &crate::refit::Options::new(0.1)).unwrap_err();
+        let art = Outline::from_svg("M10,10 L20,150").unwrap();
+        let e = refit::warp_path(&art, &*m, &refit::Options::new(0.1)).unwrap_err();
         assert!(e.to_string().contains("infinity"), "{e}");
     }
 }

@@ -133,11 +133,11 @@ impl Seg {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         const HUGE: f64 = 1e100;
-        let ok = |p: &Point| p.x.abs() < HUGE && p.y.abs() < HUGE;
+        let ok = |p: Point| (p.x.abs() < HUGE) & (p.y.abs() < HUGE);
         match self {
-            Self::Line(s) => [s.p0, s.p1].iter().all(ok),
-            Self::Quad(s) => [s.p0, s.p1, s.p2].iter().all(ok),
-            Self::Cubic(s) => [s.p0, s.p1, s.p2, s.p3].iter().all(ok),
+            Self::Line(s) => ok(s.p0) & ok(s.p1),
+            Self::Quad(s) => ok(s.p0) & ok(s.p1) & ok(s.p2),
+            Self::Cubic(s) => ok(s.p0) & ok(s.p1) & ok(s.p2) & ok(s.p3),
             Self::Arc(s) => s.is_finite(HUGE),
         }
     }

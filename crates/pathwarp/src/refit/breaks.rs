@@ -7,7 +7,8 @@
 //! That is the leading term. Its coefficient changes sign along many curves, and a piece across such a place has a much smaller
 //! error. So fewer pieces than the difficulty says are tried first, and near the limit single breaks are mended by bisection.
 
-use super::source::{Curve, End};
+use super::fit;
+use super::source::{Curve, End, Lanes};
 use super::step::{Outcome, Stepper};
 use super::{Assurance, PathReport, Piece};
 use kurbo::Point;
@@ -24,7 +25,7 @@ impl Outcome {
     fn difficulty(&self, tolerance: f64) -> f64 {
         /// Eight pieces; also where nothing is known.
         const MOST: f64 = 2.6e5;
-        let (Self::Fits { error, .. } | Self::Misses { error, .. }) = self;
+        let (Self::Fits { error, .. } | Self::Misses { reach: error, .. }) = self;
         sixth_root((error / tolerance).clamp(1e-3, MOST))
     }
 }
@@ -50,8 +51,19 @@ impl<C: Curve> Stepper<'_, C> {
         out: &mut Vec<Piece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
-        // Inlined here, where most segments end.
-        let first = self.try_stretch(from, to)?;
+        // As `attempt`, but what most segments end with is not handed round.
+        let mut g = Lanes::default();
+        let mut job = self.start(from, to, &mut g)?;
+        let first = match self.straight(&job)? {
+            Some(line) => line,
+            None => {
+                if let Some(error) = self.glance(&mut job)? {
+                    self.accept(Piece::Cubic(job.hermite()), error, out, report);
+                    return Ok(());
+                }
+                self.improve(&mut job)?
+            }
+        };
         if let Outcome::Fits { piece, error } = first {
             self.accept(piece, error, out, report);
             return Ok(());
@@ -80,7 +92,7 @@ impl<C: Curve> Stepper<'_, C> {
                     self.accept(piece, error, out, report);
                     continue;
                 }
-                Outcome::Misses { piece, error, sharp } => (piece, error, sharp),
+                Outcome::Misses { piece, error, sharp, .. } => (piece, error, sharp),
             };
             let h = to.t - from.t;
             if self.attempts >= MOST_ATTEMPTS || h < SHORTEST {
@@ -166,8 +178,9 @@ impl<C: Curve> Stepper<'_, C> {
             report.assurance = report.assurance.min(Assurance::Certified);
         } else {
             // What may hide between the samples, see PLAIN.
-            let bound = (error * 1.05).min(self.tolerance).max(error);
-            report.max_error = report.max_error.max(bound);
+            let bound = error * 1.05;
+            let bound = fit::larger(error, if bound < self.tolerance { bound } else { self.tolerance });
+            report.max_error = fit::larger(bound, report.max_error);
             report.assurance = report.assurance.min(Assurance::Checked);
         }
         out.push(piece);

@@ -46,13 +46,15 @@ const QUICK_V: usize = 4;
 #[derive(Debug, Clone)]
 pub(super) struct Algebra {
     /// Degree of numerators and denominator in the segment's parameter.
-    degree: usize,
+    pub(super) degree: usize,
     /// Degree of the denominator; 0 if there is none.
-    below: usize,
+    pub(super) below: usize,
     /// The denominator's Bernstein coefficients, where the map gives them as such.
     weights: Option<Vec<f64>>,
     /// Degree of the map, the power of the source's own denominator.
     power: i32,
+    /// How far the ends of the pieces may be from the image, where more than rounding puts them elsewhere.
+    pub(super) blur: f64,
 }
 
 impl Algebra {
@@ -61,7 +63,7 @@ impl Algebra {
         let (degree, rational) = source.degree()?;
         let out = if let Some(a) = map {
             let below = if a.rational || rational { a.degree * degree } else { 0 };
-            Self { degree: a.degree * degree, below, weights: None, power: a.degree as i32 }
+            Self { degree: a.degree * degree, below, weights: None, power: a.degree as i32, blur: 0.0 }
         } else {
             if rational {
                 return None;
@@ -69,9 +71,14 @@ impl Algebra {
             let image = source.map.image_of(&RationalBezier::from_seg(source.seg)?)?;
             let n = image.degree();
             let weights = (!image.is_polynomial()).then(|| image.points.iter().map(|p| p[2]).collect::<Vec<_>>());
-            Self { degree: n, below: if weights.is_some() { n } else { 0 }, weights, power: 1 }
+            Self { degree: n, below: if weights.is_some() { n } else { 0 }, weights, power: 1, blur: 0.0 }
         };
         (out.total(P, V) < N && out.below + V - 1 < N).then_some(out)
+    }
+
+    /// For pieces whose ends may be that far from the image.
+    pub(super) fn with_blur(self, blur: f64) -> Self {
+        Self { blur, ..self }
     }
 
     /// Degree of D, or of F: that of VW·C∘φ at most.
@@ -81,7 +88,7 @@ impl Algebra {
     }
 
     /// The denominators at eight parameters.
-    fn denominators(&self, source: &Source<'_>, t: &Lane) -> Lane {
+    pub(super) fn denominators(&self, source: &Source<'_>, t: &Lane) -> Lane {
         match &self.weights {
             Some(w) => bernstein(w, t),
             None => source.denominators(t, &source.points(t), self.power),

@@ -75,8 +75,16 @@ impl Residuals {
     /// The normal equations, the sum of squares, and the square of the largest residual.
     #[inline(always)]
     fn sums(&self) -> ([f64; 5], f64, f64) {
-        let s = self.parts.map(|v| (v[0] + v[2]) + (v[1] + v[3]));
+        let mut s = [0.0; 6];
+        self.add_up(&mut s);
         ([s[0], s[1], s[2], s[3], s[4]], s[5], largest(&self.squares))
+    }
+
+    #[inline(never)]
+    fn add_up(&self, out: &mut [f64; 6]) {
+        for (s, v) in out.iter_mut().zip(&self.parts) {
+            *s = (v[0] + v[2]) + (v[1] + v[3]);
+        }
     }
 }
 
@@ -113,6 +121,21 @@ impl Frame {
     /// The normal part of the residuals is ρ×C′/|C′|; 1/|C′|² makes squares of the products lengths.
     #[inline(never)]
     fn residuals(&self, g: &Lanes, z: &State, w: &Lane, out: &mut Residuals) {
+        self.measure(g, z, w, out);
+    }
+
+    /// The state `z` with its handles moved and its feet after them, and its residuals.
+    #[inline(never)]
+    fn advance(&self, g: &Lanes, [da, db]: [f64; 2], z: &State, at: &Residuals, to: &mut State, out: &mut Residuals) {
+        (to.a, to.b) = (z.a + da, z.b + db);
+        for i in 0..8 {
+            to.s[i] = unit(z.s[i] + fma(da, at.sa[i], fma(db, at.sb[i], at.ds[i])));
+        }
+        self.measure(g, to, &[1.0; 8], out);
+    }
+
+    #[inline(always)]
+    fn measure(&self, g: &Lanes, z: &State, w: &Lane, out: &mut Residuals) {
         let c = self.power(z.a, z.b);
         let (t0, t1) = (self.t0, self.t1);
         let o = [0.0; 8];
@@ -250,15 +273,29 @@ pub(super) fn unit(s: f64) -> f64 {
     if s < 1.0 { s } else { 1.0 }
 }
 
+/// Halves first, as vectors do it.
 #[inline(always)]
 pub(super) fn sum(v: &Lane) -> f64 {
-    ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
+    let mut h = [0.0; 4];
+    for i in 0..4 {
+        h[i] = v[i] + v[i + 4];
+    }
+    (h[0] + h[2]) + (h[1] + h[3])
 }
 
 #[inline(always)]
 pub(super) fn largest(v: &Lane) -> f64 {
-    let m = |a: f64, b: f64| if a > b { a } else { b };
-    m(m(m(v[0], v[4]), m(v[2], v[6])), m(m(v[1], v[5]), m(v[3], v[7])))
+    let mut h = [0.0; 4];
+    for i in 0..4 {
+        h[i] = larger(v[i], v[i + 4]);
+    }
+    larger(larger(h[0], h[2]), larger(h[1], h[3]))
+}
+
+/// The larger of two numbers; of one that is not a number, the second. One instruction, unlike `f64::max`.
+#[inline(always)]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// A fit: the state with the smallest sum of squares, and the largest normal residual there.
@@ -266,59 +303,69 @@ pub(super) fn largest(v: &Lane) -> f64 {
 pub(super) struct Fit {
     pub(super) z: State,
     pub(super) error: f64,
+    /// What the residual would have come down to, where the fit was given up; else the same.
+    pub(super) reach: f64,
     /// The Newton step that is still to be taken by the feet.
     pub(super) ds: Lane,
+    /// Squares of the normal residuals.
+    pub(super) squares: Lane,
 }
 
 /// Fits from `z` until the largest residual is at most `enough`, or no longer improves. Where it stays far above `wanted`, a
 /// rough fit will do: it only tells how many pieces are needed.
-pub(super) fn fit(frame: &Frame, g: &Lanes, mut z: State, [enough, wanted]: [f64; 2]) -> Fit {
+///
+/// The feet of `start` are to be one Newton step from where they belong at most; see [`Frame::settle`].
+pub(super) fn fit(frame: &Frame, g: &Lanes, start: State, [enough, wanted]: [f64; 2]) -> Fit {
     /// Far above.
     const FAR: f64 = 6.0;
     /// A step that promises less than this share of the sum of squares is not taken.
     const GAIN: f64 = 0.1;
-    let ones = [1.0; 8];
-    let (enough, far) = (enough * enough, (FAR * wanted).powi(2));
-    frame.settle(g, z.a, z.b, &mut z.s);
-    // Errors are squared in here.
-    let mut best = Fit { z, error: f64::INFINITY, ds: [0.0; 8] };
+    /// After so many evaluations the next step's promise tells what there is to reach, if it is less than this share of the sum
+    /// of squares; after more of them whatever it is.
+    const TELLS: (usize, f64) = (3, 0.5);
+    /// Where what there is to reach is this many times what is wanted, it is not gone for.
+    const BEYOND: f64 = 2.0;
+    let (enough, far, beyond) = (enough * enough, (FAR * wanted).powi(2), (BEYOND * wanted).powi(2));
+    // The best state so far and the one to be tried take turns in two places. Errors are squared in here.
+    let mut z = [start, start];
+    let mut r = [Residuals::NONE; 2];
+    let (mut best, mut error) = (0, f64::INFINITY);
     let (mut sums, mut squares) = ([0.0; 5], f64::INFINITY);
-    let (mut next, mut length) = (z, 0.0);
+    let (mut step, mut length) = ([0.0; 2], 0.0);
     let mut trust = 0.5 * TRUST * frame.size;
-    let mut r = Residuals::NONE;
+    let mut left = 1.0;
     for k in 1.. {
-        frame.residuals(g, &next, &ones, &mut r);
-        let (sn, sq, en) = frame.pulled(r.sums(), &next);
+        let [z0, z1] = &mut z;
+        let [r0, r1] = &mut r;
+        let (from, to) = if best == 0 { ((z0, r0), (z1, r1)) } else { ((z1, r1), (z0, r0)) };
+        frame.advance(g, step, from.0, from.1, to.0, to.1);
+        let (sn, sq, en) = frame.pulled(to.1.sums(), to.0);
         // The first steps also settle the feet, which may raise the sum a little.
         if sq <= squares {
-            (z, sums, squares) = (next, sn, sq);
-            if en < best.error {
-                best = Fit { z, error: en, ds: r.ds };
-            }
+            (sums, squares, error) = (sn, sq, en);
+            best = 1 - best;
             trust *= 2.0;
         } else if k == 1 {
             // Not a number.
             break;
         } else {
             trust = 0.25 * length;
-            frame.residuals(g, &z, &ones, &mut r);
         }
-        if k == MOST_EVALUATIONS || best.error <= enough || (k > 4 && best.error > far) {
+        if k == MOST_EVALUATIONS || error <= enough || (k > 4 && error > far) {
             break;
         }
-        let Some((step, gain)) = Frame::gauss_newton(&sums) else { break };
+        let Some((newton, gain)) = Frame::gauss_newton(&sums) else { break };
         if k > 1 && gain < GAIN * squares {
             break;
         }
-        let (da, db);
-        (da, db, length) = frame.bent(step, &z, trust);
-        (next.a, next.b) = (z.a + da, z.b + db);
-        for i in 0..8 {
-            next.s[i] = unit(z.s[i] + fma(da, r.sa[i], fma(db, r.sb[i], r.ds[i])));
+        let told = k > TELLS.0 || k == TELLS.0 && gain < TELLS.1 * squares;
+        if told && error * (squares - gain) > beyond * squares {
+            left = 1.0 - gain / squares;
+            break;
         }
+        (step[0], step[1], length) = frame.bent(newton, &z[best], trust);
     }
-    best.error = best.error.sqrt();
-    best
+    Fit { z: z[best], error: error.sqrt(), reach: (error * left).sqrt(), ds: r[best].ds, squares: r[best].squares }
 }
 
 /// Minimax by Lawson's reweighting on sixteen samples: weights grow with the residuals, and the largest ones even out.

@@ -105,6 +105,7 @@ impl Merger<'_> {
             slow: &slow,
             tolerance: SHARE * self.options.tolerance,
             algebra: None,
+            known: None,
             careful: false,
             attempts: 0,
         };

@@ -4,7 +4,7 @@
 //! split where the map is not smooth (`split`), sampled eight places at a time (`source`), fitted by cubics with the right end
 //! tangents and the best handle lengths (`fit`, `step`), over as few stretches as the tolerance allows (`breaks`), each looked at
 //! closely where its samples may not tell all (`verify`), and proven where map and segment are quotients of polynomials
-//! (`certify`). Pieces may be merged across smooth joints (`merge`).
+//! (`sampled`, `certify`). Pieces may be merged across smooth joints (`merge`).
 
 mod breaks;
 // Loops over eight lanes run by index through several arrays at once, the form the compiler turns into vectors.
@@ -16,6 +16,8 @@ mod chebyshev;
 mod fit;
 #[allow(clippy::needless_range_loop)]
 mod merge;
+#[allow(clippy::needless_range_loop)]
+mod sampled;
 #[allow(clippy::needless_range_loop)]
 mod samples;
 mod shared;
@@ -115,11 +117,9 @@ pub struct Warped {
 /// assert!(warped.report.max_error <= 0.01);
 /// ```
 pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<Warped, GeometryError> {
-    if let Some(bad) = outline.segs().find(|s| !s.is_finite()) {
-        return Err(GeometryError::NotFinite { shape: PATH.into(), at: bad.start() });
-    }
     let mut out = Output::default();
     if let Class::Affine(m) = map.class() {
+        outline.segs().try_for_each(finite)?;
         affine(outline, m, options, &mut out);
     } else {
         let mut creases = Creases::default();
@@ -218,6 +218,10 @@ fn affine(outline: &Outline, m: Affine, options: &Options, out: &mut Output) {
     }
 }
 
+fn finite(seg: &Seg) -> Result<(), GeometryError> {
+    if seg.is_finite() { Ok(()) } else { Err(GeometryError::NotFinite { shape: PATH.into(), at: seg.start() }) }
+}
+
 fn infinity(at: Point) -> GeometryError {
     GeometryError::Infinity { shape: PATH.into(), at }
 }
@@ -230,6 +234,7 @@ fn warp_subpath(
     out: &mut Output,
 ) -> Result<(), GeometryError> {
     let projective = matches!(map.class(), Class::Projective(_));
+    sub.segs.first().map_or(Ok(()), finite)?;
     // The jets at the last two nodes; each is the next segment's first.
     let mut jets = [map.jet(sub.start); 2];
     let mut at = sub.start;
@@ -243,6 +248,7 @@ fn warp_subpath(
     bounds.push(0);
     let job = Job { map, algebra: map.algebra(), creases, options };
     for (i, seg) in sub.segs.iter().enumerate() {
+        finite(seg)?;
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
         }
@@ -362,7 +368,10 @@ impl Job<'_> {
     /// Appends the image of a segment in its canonical direction, given the jets at its ends.
     fn warp(&self, seg: &Seg, jets: [&Jet; 2], pieces: &mut Vec<Piece>, report: &mut PathReport) -> Result<(), Point> {
         let certify = self.options.certify;
-        let whole = Source::for_proof(seg, self.map, certify);
+        let mut whole = Source::new(seg, self.map);
+        if certify {
+            whole.make_rational();
+        }
         if whole.size() <= ROUNDING * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot()) {
             // A segment that goes nowhere stays one (it carries line caps and markers), and has no direction to keep.
             pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
@@ -375,25 +384,30 @@ impl Job<'_> {
         if self.creases.items().is_empty() {
             let from = whole.end_with(0.0, jets[0].p, jets[0]);
             let to = whole.end_with(1.0, jets[1].p, jets[1]);
-            return self.cover(&whole, self.algebra, &slow, [&from, &to], pieces, report);
+            return self.cover(&whole, self.algebra, 0.0, &slow, [&from, &to], pieces, report);
         }
         self.warp_parts(seg, jets, &whole, &slow, pieces, report)
     }
 
-    /// Covers a smooth part.
+    /// Covers a smooth part, whose ends are at most `blur` from the source's image.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
     fn cover(
         &self,
         source: &Source<'_>,
         known: Option<crate::map::Algebra>,
+        blur: f64,
         slow: &split::Slow,
         [from, to]: [&End; 2],
         pieces: &mut Vec<Piece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
         let algebra = if self.options.certify { Algebra::of(source, known) } else { None };
+        let algebra = algebra.map(|a| a.with_blur(blur));
+        let known = known.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        step::Stepper { source, slow, tolerance, algebra, careful: false, attempts: 0 }.cover(from, to, pieces, report)
+        step::Stepper { source, slow, tolerance, algebra, known, careful: false, attempts: 0 }
+            .cover(from, to, pieces, report)
     }
 
     /// As [`Job::warp`], for a map that has creases.
@@ -436,19 +450,24 @@ impl Job<'_> {
                 }
             };
             // The break points; where the map tears, the branch's own value, to be joined to the node by a line.
-            let end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
+            let mut blur = 0.0f64;
+            let mut end = |(t, p): (f64, Point), jet: &Jet| -> Result<(End, bool), Point> {
                 if branch.is_none() && (t == 0.0 || t == 1.0) {
                     return Ok((source.end_with(t, p, jet), false));
                 }
                 let own = source.end_at(t, None)?;
-                let torn = own.p.distance(p) > TORN * tolerance;
-                Ok((if torn { own } else { End { p, ..own } }, torn))
+                let off = own.p.distance(p);
+                if off > TORN * tolerance {
+                    return Ok((own, true));
+                }
+                blur = blur.max(off);
+                Ok((End { p, ..own }, false))
             };
             let ((e0, torn0), (e1, torn1)) = (end(from, jets[0])?, end(to, jets[1])?);
             if torn0 {
                 pieces.push(Piece::Line(Line::new(from.1, e0.p)));
             }
-            self.cover(source, source.map.algebra(), slow, [&e0, &e1], pieces, report)?;
+            self.cover(source, source.map.algebra(), blur, slow, [&e0, &e1], pieces, report)?;
             if torn1 {
                 pieces.push(Piece::Line(Line::new(e1.p, to.1)));
             }

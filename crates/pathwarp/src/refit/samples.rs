@@ -2,7 +2,7 @@
 
 use super::fit::{self, Frame, State, at, fma, square};
 use super::source::{End, Lane, Lanes};
-use super::verify::turns_little;
+use super::verify::{Candidate, turns_little};
 use kurbo::{Line, Vec2};
 
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
@@ -19,11 +19,11 @@ pub(super) const UNIT: f64 = 1.0 / 17.0;
 /// The Hermite cubic, if the image is that to rounding: so maps that change little give cusps and coincident handles back as
 /// they were.
 #[cold]
-pub(super) fn hermite_exact(job: &Job<'_>, hermite: [f64; 2]) -> bool {
+pub(super) fn hermite_exact(job: &Job<'_>, check: &Lanes) -> bool {
     /// Exact to rounding.
     const EXACT: f64 = 1e-11;
-    let [c1, c2, c3] = job.frame.power(hermite[0], hermite[1]);
-    for (g, set) in [(job.g, &FITTED), (job.check, &CHECKED)] {
+    let [c1, c2, c3] = job.frame.power(job.frame.home[0], job.frame.home[1]);
+    for (g, set) in [(job.g, &FITTED), (check, &CHECKED)] {
         for i in 0..8 {
             let s = set[i] * UNIT;
             let c = (c1 + (c2 + c3 * s) * s) * s;
@@ -41,8 +41,81 @@ pub(super) struct Job<'a> {
     pub(super) to: &'a End,
     pub(super) frame: Frame,
     pub(super) g: &'a Lanes,
-    pub(super) check: &'a Lanes,
+    /// The checked samples, once they are wanted.
+    pub(super) check: Option<Lanes>,
+    /// The Newton steps of the feet at a glance.
+    pub(super) ds: Lane,
     pub(super) careful: bool,
+}
+
+/// What eight samples tell of a cubic at the feet that go with an even pace.
+pub(super) struct Glance {
+    /// The largest normal residual, squared.
+    pub(super) worst: f64,
+    /// The Newton step of each foot, and the longest.
+    pub(super) ds: Lane,
+    pub(super) drift: f64,
+    /// Least and largest distance between neighbours, squared.
+    paces: [f64; 2],
+    /// Whether the cubic runs from neighbour to neighbour as the samples do.
+    along: bool,
+}
+
+impl Glance {
+    /// Whether eight samples, or with `other` sixteen, have seen all of the cubic and the image.
+    #[inline(always)]
+    pub(super) fn sound(&self, other: Option<&Self>) -> bool {
+        let mut paces = self.paces;
+        let (mut along, mut drift) = (self.along, self.drift);
+        if let Some(o) = other {
+            paces = [-fit::larger(-paces[0], -o.paces[0]), fit::larger(paces[1], o.paces[1])];
+            along &= o.along;
+            drift = fit::larger(drift, o.drift);
+        }
+        // Half the spacing each: feet cannot change order.
+        along && drift < 0.5 * UNIT && paces[1] < PACE * paces[0]
+    }
+}
+
+/// Looks at the samples `g`, `set` in seventeenths, beside their neighbours, which follow (`side` = 1) in the first half and precede
+/// in the second, or the other way round (−1).
+#[inline(always)]
+fn glance(power: &[Vec2; 3], set: &Lane, g: &Lanes, next: &Lanes, side: f64) -> Glance {
+    let mut worst = [0.0; 8];
+    let mut drift = [0.0; 8];
+    let mut ds = [0.0; 8];
+    let mut margin = [0.0; 8];
+    let mut pace = [0.0; 8];
+    let mut slowness = [0.0; 8];
+    for i in 0..8 {
+        let (rx, ry, dx, dy) = at(power, set[i] * UNIT, g.x[i], g.y[i]);
+        let d2 = square(dx, dy);
+        let k = 1.0 / d2;
+        let n = fma(rx, dy, -(ry * dx));
+        worst[i] = n * n * k;
+        ds[i] = -fma(rx, dx, ry * dy) * k;
+        drift[i] = ds[i].abs();
+        let (x, y) = (next.x[i] - g.x[i], next.y[i] - g.y[i]);
+        let l2 = fma(x, x, y * y);
+        let along = fma(dx, x, dy * y) * (SIDE[i] * side);
+        let straight = fma(2.0 * along, along, -(d2 * l2));
+        margin[i] = -(if along < straight { along } else { straight });
+        pace[i] = l2;
+        slowness[i] = -l2;
+    }
+    Glance {
+        worst: fit::largest(&worst),
+        ds,
+        drift: fit::largest(&drift),
+        paces: [-fit::largest(&slowness), fit::largest(&pace)],
+        along: fit::largest(&margin) < 0.0,
+    }
+}
+
+/// Each fitted sample's neighbour towards the middle, and past it for the two beside it.
+#[inline(always)]
+fn neighbours(v: &Lane) -> Lane {
+    [v[1], v[2], v[3], v[4], v[3], v[4], v[5], v[6]]
 }
 
 impl Job<'_> {
@@ -50,48 +123,36 @@ impl Job<'_> {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
     }
 
-    /// The largest normal residual of all samples at the feet that go with an even pace, and how far the feet have to move;
-    /// infinite where the samples are not [`Job::sound`].
+    pub(super) fn candidate(&self, z: &State) -> Candidate {
+        Candidate { t0: self.from.t, t1: self.to.t, p0: self.from.p, frame: self.frame, a: z.a, b: z.b }
+    }
+
+    /// The Hermite cubic.
     #[inline(always)]
-    pub(super) fn glance(&self, z: &State) -> (f64, f64) {
-        let power = self.frame.power(z.a, z.b);
-        let (g, c) = (self.g, self.check);
-        let mut worst = [0.0; 8];
-        let mut drift = [0.0; 8];
-        let mut margin = [0.0; 8];
-        let mut pace = [0.0; 8];
-        let mut slowness = [0.0; 8];
-        for i in 0..8 {
-            let residual = |s: f64, x: f64, y: f64| {
-                let (rx, ry, dx, dy) = at(&power, s, x, y);
-                let d2 = square(dx, dy);
-                let k = 1.0 / d2;
-                let n = fma(rx, dy, -(ry * dx));
-                (n * n * k, (fma(rx, dx, ry * dy) * k).abs(), dx, dy, d2)
-            };
-            let (n0, s0, dx, dy, d2) = residual(FITTED[i] * UNIT, g.x[i], g.y[i]);
-            let (n1, s1, ..) = residual(CHECKED[i] * UNIT, c.x[i], c.y[i]);
-            worst[i] = if n0 > n1 { n0 } else { n1 };
-            drift[i] = if s0 > s1 { s0 } else { s1 };
-            let (x, y) = (c.x[i] - g.x[i], c.y[i] - g.y[i]);
-            let l2 = fma(x, x, y * y);
-            let along = fma(dx, x, dy * y) * SIDE[i];
-            let straight = fma(2.0 * along, along, -(d2 * l2));
-            margin[i] = -(if along < straight { along } else { straight });
-            pace[i] = l2;
-            slowness[i] = -l2;
-        }
-        // Half the spacing each: feet cannot change order.
-        let drift = fit::largest(&drift);
-        let sound =
-            fit::largest(&margin) < 0.0 && drift < 0.5 * UNIT && fit::largest(&pace) < -PACE * fit::largest(&slowness);
-        if sound { (fit::largest(&worst).sqrt(), drift) } else { (f64::INFINITY, drift) }
+    pub(super) fn hermite(&self) -> kurbo::CubicBez {
+        let [a, b] = self.frame.home;
+        self.frame.cubic(self.from.p, self.to.p, a, b)
+    }
+
+    /// The fitted samples beside the Hermite cubic.
+    #[inline(always)]
+    pub(super) fn glance(&self) -> Glance {
+        let [a, b] = self.frame.home;
+        let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
+        glance(&self.frame.power(a, b), &FITTED, self.g, &next, 1.0)
+    }
+
+    /// The checked ones.
+    #[inline(always)]
+    pub(super) fn second_glance(&self, check: &Lanes) -> Glance {
+        let [a, b] = self.frame.home;
+        glance(&self.frame.power(a, b), &CHECKED, check, self.g, -1.0)
     }
 
     /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
     /// that of the image there, and the image's pace varies little enough for the samples to have seen all of that.
     #[inline(always)]
-    pub(super) fn sound(&self, z: &State, s0: &Lane, s1: &Lane) -> bool {
+    pub(super) fn sound(&self, check: &Lanes, z: &State, s0: &Lane, s1: &Lane) -> bool {
         /// Feet may be this far from where an even pace would put them.
         const UNEVEN: f64 = 0.18;
         let [c1, c2, c3] = self.frame.power(z.a, z.b);
@@ -103,7 +164,7 @@ impl Job<'_> {
             let b = UNEVEN - (s1[i] - CHECKED[i] * UNIT).abs();
             let s = s0[i];
             let (dx, dy) = ((c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x, (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y);
-            let (x, y) = (self.check.x[i] - self.g.x[i], self.check.y[i] - self.g.y[i]);
+            let (x, y) = (check.x[i] - self.g.x[i], check.y[i] - self.g.y[i]);
             let (d2, l2) = (dx * dx + dy * dy, x * x + y * y);
             // The checked sample follows the fitted one in the first half and precedes it in the second.
             let along = (dx * x + dy * y) * SIDE[i];
@@ -140,6 +201,26 @@ pub(super) fn between(s: &Lane) -> Lane {
         0.5 * (s[5] + s[6]),
         0.5 * (s[6] + s[7]),
     ]
+}
+
+/// The largest distance between samples by parabolas through three of them, the middle one being the largest; at the ends there is
+/// none. Given are squares at the fitted and the checked samples.
+pub(super) fn between_samples(fitted: &Lane, checked: &Lane) -> f64 {
+    let mut v = [0.0; 18];
+    for i in 0..8 {
+        v[FITTED[i] as usize] = fitted[i].sqrt();
+        v[CHECKED[i] as usize] = checked[i].sqrt();
+    }
+    let mut best = 0.0;
+    for w in v.windows(3) {
+        let [a, b, c] = [w[0], w[1], w[2]];
+        if b >= a && b >= c && b > 0.0 {
+            let bend = 2.0 * b - a - c;
+            let top = if bend > 0.0 { b + (c - a) * (c - a) / (8.0 * bend) } else { b };
+            best = fit::larger(top, best);
+        }
+    }
+    best
 }
 
 /// What the polyline through the samples looks like.
@@ -203,11 +284,10 @@ const BLUR: f64 = 1e-12;
 #[inline(always)]
 pub(super) fn straight(g: &Lanes, from: &End, to: &End, size: f64, tolerance: f64) -> Option<(Line, f64)> {
     let q = to.p - from.p;
-    let larger = |a: f64, b: f64| if a > b { a } else { b };
-    let from_origin = larger(from.p.x.abs() + from.p.y.abs(), to.p.x.abs() + to.p.y.abs());
+    let from_origin = fit::larger(from.p.x.abs() + from.p.y.abs(), to.p.x.abs() + to.p.y.abs());
     let rounding = ROUNDING * from_origin;
     let (far, unseen) = (STRAIGHT * size, UNSEEN * tolerance);
-    let most = larger(if far < unseen { far } else { unseen }, BLUR * size) + rounding;
+    let most = fit::larger(if far < unseen { far } else { unseen }, BLUR * size) + rounding;
     // One sample tells nearly all bent pieces.
     if (g.x[2] * q.y - g.y[2] * q.x).abs() > size * most {
         return None;

@@ -109,7 +109,8 @@ impl<'a> Source<'a> {
         out
     }
 
-    fn make_rational(&mut self) {
+    /// See [`Source::for_proof`].
+    pub(super) fn make_rational(&mut self) {
         let Seg::Arc(a) = self.seg else { return };
         if a.sweep.abs() > 3.0 {
             return;

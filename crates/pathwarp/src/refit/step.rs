@@ -3,7 +3,8 @@
 use super::Piece;
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
-use super::samples::{CHECKED, FITTED, Job, Shape, UNIT, between, hermite_exact, straight};
+use super::sampled::Sampled;
+use super::samples::{CHECKED, FITTED, Glance, Job, Shape, UNIT, between, between_samples, hermite_exact, straight};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate};
@@ -12,16 +13,26 @@ use kurbo::{Line, Point, Vec2};
 /// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
 /// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
 const PLAIN: f64 = 0.9;
-/// The errors at 2/17 and 15/17 of a piece are at most this share of the largest, or it is looked at closer. The leading form
-/// has an eighth.
-const OUTER: f64 = 0.6;
+/// Below this share of the tolerance what they may grow by is not asked for.
+const SURE: f64 = 0.7;
+/// Where parabolas through three samples each rise above the samples, a residual that swings over six samples rises twice as far:
+/// so many times is allowed for, up to this share of the tolerance.
+const STEEPER: f64 = 2.5;
+const RISEN: f64 = 0.97;
 /// PLAIN for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
+/// The longest proof loses more than the rest of the tolerance.
+const MOST_PROVEN: f64 = 0.97;
 /// What errors of pieces over several segments grow by between the samples.
 const CORNERS: f64 = 1.015;
 /// A normal residual is the distance up to κδ²/2, δ the way its foot has still to go: less than this share of the tolerance
 /// is let pass (κ about the inverse of the piece's size, δ a share of that size).
 const FLAT: f64 = 0.02;
+/// With fewer samples, where the map is a quotient of polynomials of low degree and nothing swings faster than eight samples see:
+/// Hermite cubics up to this share of the tolerance are taken by the fitted ones alone.
+const EASY: f64 = 0.6;
+/// What their errors grow by in between.
+const EIGHT: f64 = 1.1;
 /// A fit this good is not improved further.
 const ENOUGH: f64 = 0.85;
 
@@ -40,6 +51,8 @@ pub(super) enum Outcome {
         /// The best try, if the budget ends here.
         piece: Piece,
         error: f64,
+        /// The error there would be with more work, as it was estimated: what tells how many pieces are needed.
+        reach: f64,
         /// A place where the image nearly stops.
         sharp: Option<f64>,
     },
@@ -52,6 +65,8 @@ pub(super) struct Stepper<'a, C> {
     pub(super) tolerance: f64,
     /// What proofs need, if there are to be any.
     pub(super) algebra: Option<Algebra>,
+    /// What the map says of itself, where the ends of the pieces lie on its image.
+    pub(super) known: Option<crate::map::Algebra>,
     /// Whether to look at every piece closely.
     pub(super) careful: bool,
     pub(super) attempts: usize,
@@ -61,22 +76,27 @@ impl<C: Curve> Stepper<'_, C> {
     /// Fits one piece to a stretch.
     #[inline(never)]
     pub(super) fn attempt(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
-        self.try_stretch(from, to)
+        let mut g = Lanes::default();
+        let mut job = self.start(from, to, &mut g)?;
+        if let Some(outcome) = self.straight(&job)? {
+            return Ok(outcome);
+        }
+        if let Some(error) = self.glance(&mut job)? {
+            return Ok(Outcome::Fits { piece: Piece::Cubic(job.hermite()), error });
+        }
+        self.improve(&mut job)
     }
 
+    /// What an attempt starts from.
     #[inline(always)]
-    pub(super) fn try_stretch(&mut self, from: &End, to: &End) -> Result<Outcome, Point> {
+    pub(super) fn start<'j>(&mut self, from: &'j End, to: &'j End, g: &'j mut Lanes) -> Result<Job<'j>, Point> {
         self.attempts += 1;
         let (t0, h) = (from.t, to.t - from.t);
         let tol = self.tolerance;
-        let (mut g, mut check) = (Lanes::default(), Lanes::default());
-        self.samples(from, h, &FITTED, &mut g)?;
+        self.samples(from, h, &FITTED, g)?;
         let q = to.p - from.p;
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
-        let size = q.hypot2().max(far(3)).max(far(6)).sqrt();
-        if let Some(line) = straight(&g, from, to, size, tol) {
-            return self.line(from, to, line, size);
-        }
+        let size = fit::larger(fit::larger(q.hypot2(), far(3)), far(6)).sqrt();
         // The handles of the Hermite cubic; a vanishing one starts tiny and may grow.
         let third = h * (1.0 / 3.0);
         let hermite = [from.speed * third, to.speed * third];
@@ -84,27 +104,79 @@ impl<C: Curve> Stepper<'_, C> {
         let floor = [least(hermite[0]), least(hermite[1])];
         let pull = (PULL * tol / size).powi(2);
         let frame = Frame { q, t0: from.away, t1: to.into, floor, size, home: hermite, pull };
-        let mut z = State { a: hermite[0].max(floor[0]), b: hermite[1].max(floor[1]), s: [0.0; 8] };
+        let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
+        Ok(Job { from, to, frame, g, check: None, ds: [0.0; 8], careful })
+    }
+
+    /// The Hermite cubic, which most pieces end with: its error, if it does.
+    #[inline(always)]
+    pub(super) fn glance(&self, job: &mut Job<'_>) -> Result<Option<f64>, Point> {
+        let (tol, size) = (self.tolerance, job.frame.size);
+        let first = job.glance();
+        job.ds = first.ds;
+        let [a, b] = job.frame.home;
+        let may = |worst: f64, share: f64| worst <= (share * tol).powi(2) && a > 0.0 && b > 0.0 && !job.careful;
+        let still = |drift: f64| drift * drift * size <= FLAT * tol;
+        if !(may(first.worst, SURE) && still(first.drift) && first.sound(None)) {
+            return Ok(None);
+        }
+        if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque() {
+            return Ok(Some(EIGHT * first.worst.sqrt()));
+        }
+        self.second_glance(job, &first)
+    }
+
+    /// As [`Stepper::glance`], with all samples.
+    #[inline(never)]
+    fn second_glance(&self, job: &mut Job<'_>, first: &Glance) -> Result<Option<f64>, Point> {
+        let (tol, size) = (self.tolerance, job.frame.size);
+        let check = *self.checked(job)?;
+        let second = job.second_glance(&check);
+        let worst = fit::larger(first.worst, second.worst).sqrt();
+        if !(worst <= SURE * tol && second.drift * second.drift * size <= FLAT * tol && first.sound(Some(&second))) {
+            return Ok(None);
+        }
+        if self.algebra.is_none() {
+            return Ok(Some(worst));
+        }
+        let [a, b] = job.frame.home;
+        let mut z = State { a, b, s: [0.0; 8] };
         for i in 0..8 {
             z.s[i] = FITTED[i] * UNIT;
         }
-        let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
-        self.samples(from, h, &CHECKED, &mut check)?;
-        let job = Job { from, to, frame, g: &g, check: &check, careful };
-        // Most pieces end here: the Hermite cubic does.
-        let (first, drift) = job.glance(&z);
-        if first <= PLAIN * tol
-            && !careful
-            && drift * drift * size <= FLAT * tol
-            && hermite[0] > 0.0
-            && hermite[1] > 0.0
-        {
-            let error = if self.algebra.is_some() { self.proven(&job, &z, first)? } else { first };
-            if error <= tol {
-                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
-            }
+        let (mut s0, mut s1) = ([0.0; 8], [0.0; 8]);
+        for i in 0..8 {
+            s0[i] = fit::unit(z.s[i] + first.ds[i]);
+            s1[i] = fit::unit(CHECKED[i] * UNIT + second.ds[i]);
         }
-        self.improve(&job, z, hermite)
+        let error = self.proven(job, &z, [&s0, &s1], worst)?;
+        Ok((error <= tol).then_some(error))
+    }
+
+    /// The outcome, if the image is straight to rounding.
+    #[inline(always)]
+    pub(super) fn straight(&self, job: &Job<'_>) -> Result<Option<Outcome>, Point> {
+        let size = job.frame.size;
+        match straight(job.g, job.from, job.to, size, self.tolerance) {
+            None => Ok(None),
+            Some(line) => self.line(job.from, job.to, line, size).map(Some),
+        }
+    }
+
+    /// Nothing is known of the map's degree.
+    fn opaque(&self) -> bool {
+        self.known.is_none()
+    }
+
+    /// The checked samples, taken when first wanted.
+    #[inline(always)]
+    fn checked<'j>(&self, job: &'j mut Job<'_>) -> Result<&'j Lanes, Point> {
+        if job.check.is_none() {
+            let mut check = Lanes::default();
+            self.samples(job.from, job.to.t - job.from.t, &CHECKED, &mut check)?;
+            job.check = Some(check);
+        }
+        Ok(job.check.get_or_insert_default())
     }
 
     /// A stretch whose image is straight to rounding.
@@ -128,40 +200,60 @@ impl<C: Curve> Stepper<'_, C> {
         if error <= self.tolerance {
             return Ok(Outcome::Fits { piece: line, error });
         }
-        Ok(Outcome::Misses { piece: line, error, sharp: None })
+        Ok(Outcome::Misses { piece: line, error, reach: error, sharp: None })
     }
 
-    /// The proven error of a state that was measured to have `error`; what it was measured at where there is nothing to prove
-    /// it with.
+    /// The proven error of a state that was measured to have `error`, with these feet of its samples.
     #[inline(never)]
-    fn proven(&self, job: &Job<'_>, z: &State, error: f64) -> Result<f64, Point> {
+    fn proven(&self, job: &mut Job<'_>, z: &State, feet: [&Lane; 2], error: f64) -> Result<f64, Point> {
         let (Some(algebra), Some(source)) = (&self.algebra, self.source.single()) else { return Ok(error) };
-        let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        let feet = |s0: &Lane, s1: &Lane| {
-            let mut feet = [0.0; 16];
-            for i in 0..8 {
-                feet[FITTED[i] as usize - 1] = s0[i];
-                feet[CHECKED[i] as usize - 1] = s1[i];
-            }
-            feet
-        };
-        let mut s0 = z.s;
-        job.frame.settle(job.g, z.a, z.b, &mut s0);
-        let mut s1 = between(&s0);
-        job.frame.settle(job.check, z.a, z.b, &mut s1);
-        let quick = certify::quick(source, algebra, &c, &feet(&s0, &s1))?;
-        if quick <= self.tolerance {
-            return Ok(quick);
+        let check = *self.checked(job)?;
+        let c = job.candidate(z);
+        let mut sampled = Sampled::new(source, algebra, &c, job.frame.home, [job.g, &check], self.tolerance);
+        let even = sampled.even()?;
+        if even <= self.tolerance {
+            return Ok(even);
         }
+        let few = sampled.few(feet)?;
+        if few <= self.tolerance {
+            return Ok(few);
+        }
+        let (mut s0, mut s1) = (*feet[0], *feet[1]);
         job.frame.distances(job.g, z.a, z.b, &mut s0, 2);
-        job.frame.distances(job.check, z.a, z.b, &mut s1, 2);
-        certify::bound(source, algebra, &c, &feet(&s0, &s1))
+        job.frame.distances(&check, z.a, z.b, &mut s1, 2);
+        let many = sampled.many([&s0, &s1])?;
+        if many <= self.tolerance {
+            return Ok(many);
+        }
+        /// Where they are farther off, no proof succeeds.
+        const NEAR: f64 = 3.0;
+        let polynomial = algebra.below == 0;
+        if polynomial && many.is_finite() && (many > NEAR * self.tolerance || error > MOST_PROVEN * self.tolerance) {
+            return Ok(many);
+        }
+        let mut feet = [0.0; 16];
+        for i in 0..8 {
+            feet[FITTED[i] as usize - 1] = s0[i];
+            feet[CHECKED[i] as usize - 1] = s1[i];
+        }
+        if !polynomial {
+            let quick = certify::quick(source, algebra, &c, &feet)?;
+            if quick <= self.tolerance {
+                return Ok(quick);
+            }
+        }
+        certify::bound(source, algebra, &c, &feet)
     }
 
-    /// The measured error, and if that will do, the proven one.
-    fn judge(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
-        let error = self.check(job, f)?;
-        if error <= self.tolerance { self.proven(job, &f.z, error) } else { Ok(error) }
+    /// What the samples prove of a state, where the map is a quotient of polynomials; infinite elsewhere.
+    #[inline(never)]
+    fn told(&self, job: &Job<'_>, check: &Lanes, z: &State, feet: [&Lane; 2]) -> Result<f64, Point> {
+        let Some(source) = self.source.single() else { return Ok(f64::INFINITY) };
+        let Some(algebra) = self.known.and_then(|known| Algebra::of(source, Some(known))) else {
+            return Ok(f64::INFINITY);
+        };
+        let c = job.candidate(z);
+        Sampled::new(source, &algebra, &c, job.frame.home, [job.g, check], DENSE * self.tolerance).few(feet)
     }
 
     /// Images at the given samples of the stretch, relative to its first point.
@@ -181,56 +273,81 @@ impl<C: Curve> Stepper<'_, C> {
 
     /// What else can be done where the first fit does not do.
     #[inline(never)]
-    fn improve(&mut self, job: &Job<'_>, z: State, hermite: [f64; 2]) -> Result<Outcome, Point> {
+    pub(super) fn improve(&mut self, job: &mut Job<'_>) -> Result<Outcome, Point> {
         let tol = self.tolerance;
-        let frame = &job.frame;
+        let frame = &{ job.frame };
         let (from, to) = (job.from, job.to);
-        if (job.careful || hermite[0] == 0.0 || hermite[1] == 0.0) && hermite_exact(job, hermite) {
-            let error = self.proven(job, &State { a: hermite[0], b: hermite[1], s: z.s }, 0.0)?;
-            let z = State { a: hermite[0], b: hermite[1], ..z };
-            if error <= tol {
-                return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+        let [a, b] = frame.home;
+        if job.careful || a == 0.0 || b == 0.0 {
+            let check = *self.checked(job)?;
+            if hermite_exact(job, &check) {
+                let mut z = State { a, b, s: [0.0; 8] };
+                for i in 0..8 {
+                    z.s[i] = FITTED[i] * UNIT;
+                }
+                let error = self.proven(job, &z, [&z.s, &CHECKED.map(|j| j * UNIT)], 0.0)?;
+                if error <= tol {
+                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+                }
             }
         }
+        let mut z = State { a: fit::larger(a, frame.floor[0]), b: fit::larger(b, frame.floor[1]), s: [0.0; 8] };
+        for i in 0..8 {
+            z.s[i] = fit::unit(FITTED[i] * UNIT + job.ds[i]);
+        }
         let mut f = fit::fit(frame, job.g, z, [ENOUGH * tol, tol]);
-        let mut error = f.error;
+        // Of fits that miss, what they would reach.
+        let mut error = f.reach;
         if error <= tol {
             error = self.judge(job, &f)?;
             if error > tol && f.error <= ENOUGH * tol {
-                f = fit::fit(frame, job.g, f.z, [0.0, tol]);
-                error = f.error;
+                let mut start = f.z;
+                frame.settle(job.g, start.a, start.b, &mut start.s);
+                f = fit::fit(frame, job.g, start, [0.0, tol]);
+                error = f.reach;
                 if error <= tol {
                     error = self.judge(job, &f)?;
                 }
             }
         }
         // The sum of squares has up to three minima along the valley, as Levien's quartic has roots: where this one nearly
-        // does, two others are tried.
-        const NEARLY: f64 = 5.0;
-        if error > tol && error < NEARLY * tol {
-            for k in [1.45, 0.69] {
+        // does, two others are tried. Seldom is one of them lower on a piece that turns much, or by much; more often the one with
+        // more even handles is.
+        const NEARLY: f64 = 1.2;
+        const LESS_SO: f64 = 3.0;
+        /// Cosine of the turn from end to end, 50°.
+        const TURNS: f64 = 0.643;
+        let within = if frame.t0.dot(frame.t1) > TURNS { LESS_SO } else { NEARLY };
+        if error > tol && error < within * tol {
+            for k in if f.z.a < f.z.b { [1.45, 0.69] } else { [0.69, 1.45] } {
                 let a = f.z.a * k;
                 let b = frame.slide(&f.z, a);
                 if !(b > frame.floor[1] && b < frame.size) {
                     continue;
                 }
-                let g = fit::fit(frame, job.g, State { a, b, s: f.z.s }, [ENOUGH * tol, tol]);
-                if g.error < 0.98 * error {
-                    let e = if g.error <= tol { self.judge(job, &g)? } else { g.error };
+                let mut start = State { a, b, s: f.z.s };
+                frame.settle(job.g, a, b, &mut start.s);
+                let g = fit::fit(frame, job.g, start, [ENOUGH * tol, tol]);
+                if g.reach < 0.98 * error {
+                    let e = if g.reach <= tol { self.judge(job, &g)? } else { g.reach };
                     if e < error {
                         error = e;
                         f = g;
+                    }
+                    if error <= tol {
+                        break;
                     }
                 }
             }
         }
         // Minimax: worth it only where it can bring the error below the tolerance.
-        const REACH: f64 = 1.9;
+        const REACH: f64 = 1.4;
         if error > tol && error <= REACH * tol {
             let other = State { s: between(&f.z.s), ..f.z };
-            let (z, e) = fit::lawson(frame, [job.g, job.check], [f.z, other], 4);
+            let check = *self.checked(job)?;
+            let (z, e) = fit::lawson(frame, [job.g, &check], [f.z, other], 4);
             if e < error {
-                f = Fit { z: z[0], error: e, ds: [1.0; 8] };
+                f = Fit { z: z[0], error: e, reach: e, ds: [1.0; 8], squares: [0.0; 8] };
                 error = e;
                 if e <= tol {
                     error = self.judge(job, &f)?;
@@ -243,12 +360,14 @@ impl<C: Curve> Stepper<'_, C> {
         }
         let shape = Shape::of(job.g, frame.q);
         let sharp = if shape.sharp { self.sharpest(from, to, shape.length) } else { None };
-        Ok(Outcome::Misses { piece, error, sharp })
+        Ok(Outcome::Misses { piece, error: error.max(f.error), reach: error, sharp })
     }
 
-    /// The error of a fit: at all sixteen samples, finer where that is close to the tolerance or the image may be sharp.
-    #[inline(always)]
-    fn check(&self, job: &Job<'_>, f: &Fit) -> Result<f64, Point> {
+    /// The error of a fit: at all sixteen samples; if that will do, the proven one, or where nothing is to be proven a closer look
+    /// at what is near the tolerance or may be sharp.
+    #[inline(never)]
+    fn judge(&self, job: &mut Job<'_>, f: &Fit) -> Result<f64, Point> {
+        let check = *self.checked(job)?;
         let frame = &job.frame;
         let z = &f.z;
         let mut s0 = [0.0; 8];
@@ -258,33 +377,47 @@ impl<C: Curve> Stepper<'_, C> {
             drift[i] = f.ds[i].abs();
         }
         let drift = fit::largest(&drift);
-        let mut error = f.error;
+        let (mut error, mut d0) = (f.error, f.squares);
         if drift * drift * frame.size > FLAT * self.tolerance {
             s0 = z.s;
-            error = fit::largest(&frame.distances(job.g, z.a, z.b, &mut s0, 2)).sqrt();
+            d0 = frame.distances(job.g, z.a, z.b, &mut s0, 2);
+            error = fit::largest(&d0).sqrt();
         }
         let mut s1 = between(&s0);
-        let d1 = frame.distances(job.check, z.a, z.b, &mut s1, 1);
+        let d1 = frame.distances(&check, z.a, z.b, &mut s1, 1);
         let error = error.max(fit::largest(&d1).sqrt());
         if error > self.tolerance {
             return Ok(error);
         }
-        // Of the leading form, little is left that near the ends; more of it swings faster than the samples follow.
-        let regular = d1[0].max(d1[7]) <= (OUTER * error).powi(2);
-        if regular && job.sound(z, &s0, &s1) && !job.careful && error <= PLAIN * self.tolerance {
-            return Ok(error);
+        if self.algebra.is_some() {
+            return self.proven(job, z, [&s0, &s1], error);
+        }
+        if !job.careful && error <= PLAIN * self.tolerance && job.sound(&check, z, &s0, &s1) {
+            if error <= SURE * self.tolerance {
+                return Ok(error);
+            }
+            let between = error + STEEPER * (between_samples(&d0, &d1) - error);
+            if between <= RISEN * self.tolerance {
+                return Ok(between.max(error));
+            }
+        }
+        if !self.opaque() {
+            let told = self.told(job, &check, z, [&s0, &s1])?;
+            if told <= DENSE * self.tolerance {
+                return Ok(told.max(error));
+            }
         }
         self.dense(job, z, &s0, &s1, error)
     }
 
     #[inline(never)]
     fn dense(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane, error: f64) -> Result<f64, Point> {
-        let c = Candidate { t0: job.from.t, t1: job.to.t, p0: job.from.p, frame: job.frame, a: z.a, b: z.b };
-        let mut feet = [(0.0, 0.0); 18];
-        feet[17] = (1.0, 1.0);
+        let c = job.candidate(z);
+        let mut feet = [0.0; 18];
+        feet[17] = 1.0;
         for i in 0..8 {
-            feet[FITTED[i] as usize] = (FITTED[i] * UNIT, s0[i]);
-            feet[CHECKED[i] as usize] = (CHECKED[i] * UNIT, s1[i]);
+            feet[FITTED[i] as usize] = s0[i];
+            feet[CHECKED[i] as usize] = s1[i];
         }
         let mut e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
         if self.source.single().is_none() && self.careful {
@@ -308,6 +441,12 @@ impl<C: Curve> Stepper<'_, C> {
                 best = (i, v);
             }
         }
+        /// Faster than this share of the mean is no cusp.
+        const STOPS: f64 = 0.1;
+        // Towards a cusp the speed falls linearly: half a sample off it is far below this.
+        if best.1 > 2.0 * STOPS * length {
+            return None;
+        }
         let (mut lo, mut hi) = ((best.0 as f64 - 1.0) / SAMPLES as f64, (best.0 as f64 + 1.0) / SAMPLES as f64);
         const GOLD: f64 = 0.381_966_011_250_105;
         for _ in 0..60 {
@@ -315,8 +454,6 @@ impl<C: Curve> Stepper<'_, C> {
             if speed(a) <= speed(b) { hi = b } else { lo = a }
         }
         let tau = 0.5 * (lo + hi);
-        /// Faster than this share of the mean is no cusp.
-        const STOPS: f64 = 0.1;
         /// Nearer to an end it is that end's own.
         const INSIDE: f64 = 1e-4;
         (speed(tau) < STOPS * length && tau > INSIDE && tau < 1.0 - INSIDE).then_some(from.t + h * tau)

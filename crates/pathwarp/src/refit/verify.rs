@@ -1,6 +1,6 @@
 //! Dense checks of a fitted piece against the true image, both ways.
 
-use super::fit::Frame;
+use super::fit::{self, Frame};
 use super::source::{Curve, Lane, Lanes};
 use super::split::Slow;
 use kurbo::{Point, Vec2};
@@ -9,6 +9,11 @@ use kurbo::{Point, Vec2};
 const BATCHES: usize = 8;
 /// Samples a way of the thorough check.
 const THOROUGH: usize = 160;
+
+/// Known feet.
+const FEET: usize = 18;
+/// The feet of evenly spaced samples, those at both ends included.
+pub(super) type Feet = [f64; FEET];
 
 /// A fitted piece: where it lies on the source, and its handles.
 #[derive(Debug, Clone, Copy)]
@@ -52,11 +57,11 @@ impl Candidate {
 }
 
 /// The distance between the candidate and the image over its stretch, by many samples, more of them around slow spots.
-/// `feet` are known pairs (share of the piece, foot), sorted, from 0 to 1: first guesses.
+/// `feet` are first guesses.
 pub(super) fn dense(
     source: &impl Curve,
     c: &Candidate,
-    feet: &[(f64, f64)],
+    feet: &Feet,
     slow: &Slow,
     tolerance: f64,
 ) -> Result<f64, Point> {
@@ -74,7 +79,23 @@ pub(super) fn dense(
         *squares = d;
     }
     sound &= turns_little(last.slope, c.frame.t1) || walk(&spread(last.tau, 1.0), &mut worst, &mut last, 1)?.0;
-    let peak = peak(even.as_flattened(), worst);
+    // Eight more between the neighbours of every sample that is nearly the largest: where the cubic nearly stops, the distance
+    // has a corner that no parabola follows.
+    let mut tops = 0.0f64;
+    let even = even.as_flattened();
+    for i in 0..even.len() {
+        let (before, after) = (if i > 0 { even[i - 1] } else { 0.0 }, even.get(i + 1).copied().unwrap_or(0.0));
+        if even[i] < NEAR * worst || even[i] < before || even[i] < after {
+            continue;
+        }
+        let at = (i as f64 + 0.5) / (BATCHES * 8) as f64;
+        let tau = spread(at - STEP, at + STEP).map(|t| t.clamp(0.0, 1.0));
+        let mut s: Lane = tau.map(|t| guess(feet, t));
+        let g = c.images(source, &tau)?;
+        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+        let largest = fit::largest(&d);
+        tops = tops.max(largest.sqrt()).max(peak(&d, largest));
+    }
     for t in slow.all() {
         let at = (t - c.t0) / (c.t1 - c.t0);
         if at > 0.0 && at < 1.0 {
@@ -96,15 +117,18 @@ pub(super) fn dense(
         let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
         worst = d.iter().copied().fold(worst, f64::max);
     }
-    let worst = worst.sqrt().max(peak);
+    let worst = worst.sqrt().max(tops);
     if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
 }
+
+/// A sample whose square is below this share of the largest is no top.
+const NEAR: f64 = 0.64;
+/// Between samples.
+const STEP: f64 = 1.0 / (BATCHES * 8) as f64;
 
 /// The largest distance between evenly spaced samples: parabolas through three neighbours, where the middle one is the largest
 /// of them. Squares are given, of samples none larger than `most`.
 fn peak(squares: &[f64], most: f64) -> f64 {
-    /// A sample this far below the largest is on no parabola that reaches higher.
-    const NEAR: f64 = 0.8;
     let mut best = 0.0f64;
     for w in squares.windows(3) {
         if w[1] < NEAR * most || w[1] < w[0] || w[1] < w[2] {
@@ -137,7 +161,7 @@ fn spread(a: f64, b: f64) -> Lane {
 fn walk(
     source: &impl Curve,
     c: &Candidate,
-    feet: &[(f64, f64)],
+    feet: &Feet,
     tau: &Lane,
     worst: &mut f64,
     last: &mut Foot,
@@ -149,11 +173,36 @@ fn walk(
     const ROUNDING: f64 = 1e-9;
     let mut s: Lane = tau.map(|t| guess(feet, t));
     let g = c.images(source, tau)?;
-    let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
-    *worst = d.iter().copied().fold(*worst, f64::max);
+    // Steps left out would only make distances larger.
+    let d = c.frame.distances(&g, c.a, c.b, &mut s, 2);
+    *worst = worst.max(fit::largest(&d));
+    let [c1, c2, c3] = c.frame.power(c.a, c.b);
+    let (mut dx, mut dy) = ([0.0; 8], [0.0; 8]);
+    for i in 0..8 {
+        dx[i] = (c3.x * 3.0 * s[i] + c2.x * 2.0) * s[i] + c1.x;
+        dy[i] = (c3.y * 3.0 * s[i] + c2.y * 2.0) * s[i] + c1.y;
+    }
+    // Nearly always all eight are in order and see little turn: one test for all.
+    let mut before = [(last.s, last.slope.x, last.slope.y); 8];
+    for i in 1..8 {
+        before[i] = (s[i - 1], dx[i - 1], dy[i - 1]);
+    }
+    let mut margin = [0.0; 8];
+    for i in 0..8 {
+        let (s0, x0, y0) = before[i];
+        let dot = x0 * dx[i] + y0 * dy[i];
+        let little = 4.0 * dot * dot - (x0 * x0 + y0 * y0) * (dx[i] * dx[i] + dy[i] * dy[i]);
+        let m = if dot < little { dot } else { little };
+        let order = s[i] - s0;
+        margin[i] = -(if m < order { m } else { order });
+    }
+    if fit::largest(&margin) < 0.0 {
+        *last = Foot { tau: tau[7], s: s[7], slope: Vec2::new(dx[7], dy[7]) };
+        return Ok((true, d));
+    }
     let mut sound = true;
     for i in 0..8 {
-        let next = Foot { tau: tau[i], s: s[i], slope: c.slope(s[i]) };
+        let next = Foot { tau: tau[i], s: s[i], slope: Vec2::new(dx[i], dy[i]) };
         if next.s < last.s - ROUNDING {
             return Ok((false, d));
         }
@@ -172,13 +221,11 @@ pub(super) fn turns_little(a: Vec2, b: Vec2) -> bool {
 }
 
 /// Piecewise linear between the known feet.
-fn guess(feet: &[(f64, f64)], tau: f64) -> f64 {
-    let k = feet.partition_point(|f| f.0 < tau);
-    match (k.checked_sub(1).and_then(|j| feet.get(j)), feet.get(k)) {
-        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (tau - a.0) / (b.0 - a.0),
-        (Some(a), None) | (None, Some(a)) => a.1,
-        (None, None) => tau,
-    }
+#[inline(always)]
+fn guess(feet: &Feet, tau: f64) -> f64 {
+    let at = tau * (FEET - 1) as f64;
+    let k = (at as usize).min(FEET - 2);
+    feet[k] + (feet[k + 1] - feet[k]) * (at - k as f64)
 }
 
 /// Both one-sided distances, with no help from the fit: nearest samples by search, then Newton steps.

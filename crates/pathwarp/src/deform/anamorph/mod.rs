@@ -118,11 +118,11 @@ a held side: the first side of a triangle, the edge of a box if --local.",
     examples: &[
         Example {
             what: "A word on the floor that seems to stand upright",
-            command: "anamorph samples/lettering.svg --eye-height 350 --distance 400 --onto plane:floor -o out.svg",
+            command: "anamorph samples/lettering.svg --eye-height 350 --distance 400 --onto plane:floor --fit page -o out.svg",
         },
         Example {
             what: "A road marking 10 m long, for a driver whose eye is 1.2 m high and 20 m away",
-            command: "anamorph samples/lettering.svg --eye-height 1.2m --distance 20m --length 10m --onto plane:floor -o out.svg",
+            command: "anamorph samples/lettering.svg --eye-height 1.2m --distance 20m --length 10m --onto plane:floor --fit page -o out.svg",
         },
         Example {
             what: "A label for a mug, seen from half a metre",
@@ -142,7 +142,7 @@ a held side: the first side of a triangle, the edge of a box if --local.",
         },
         Example {
             what: "Swell a word away from an eye below it",
-            command: "anamorph samples/lettering.svg --eye 50%,250% --degree 2x1 --push 1,0:140% -o out.svg",
+            command: "anamorph samples/lettering.svg --eye 50%,250% --degree 2x1 --push 1,0:140% --fit grow -o out.svg",
         },
     ],
     laws: &[

@@ -108,11 +108,11 @@ left away). A handle says where the artwork's height goes.",
         },
         Example {
             what: "On an arc of a circle, scaled to its length",
-            command: "bend samples/logo.svg --along 'M60,190 A400,400 0 0 1 604,190' --stretch scale --baseline 0 -o out.svg",
+            command: "bend samples/logo.svg --along 'M60,190 A400,400 0 0 1 604,190' --stretch scale --baseline 0 --fit grow -o out.svg",
         },
         Example {
             what: "A border of logos round a circle",
-            command: "bend samples/logo.svg --along 'M100,400 A300,300 0 1 1 700,400 A300,300 0 1 1 100,400 Z' --stretch repeat --gap 10% --baseline 0 -o out.svg",
+            command: "bend samples/logo.svg --along 'M100,400 A300,300 0 1 1 700,400 A300,300 0 1 1 100,400 Z' --stretch repeat --gap 10% --baseline 0 --fit page -o out.svg",
         },
         Example {
             what: "Lettering whose letters turn but keep their shape",
@@ -120,7 +120,7 @@ left away). A handle says where the artwork's height goes.",
         },
         Example {
             what: "A grid along a winding path, by the paper's polynomial map",
-            command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% -o out.svg",
+            command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% --fit grow -o out.svg",
         },
     ],
     laws: &[

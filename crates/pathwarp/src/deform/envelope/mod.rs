@@ -66,7 +66,7 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
         },
         Example {
             what: "A word between two curves of several pieces, its uprights kept upright",
-            command: "envelope samples/lettering.svg --bottom samples/envelopes.svg#valley --top samples/envelopes.svg#hill --keep verticals -o out.svg --preview out.png",
+            command: "envelope samples/lettering.svg --bottom samples/envelopes.svg#valley --top samples/envelopes.svg#hill --keep verticals --fit page -o out.svg --preview out.png",
         },
         Example {
             what: "The same curve above and below, typed in place",

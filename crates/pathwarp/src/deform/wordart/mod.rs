@@ -81,7 +81,8 @@ let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\
         Param::new(
             "adj",
             Kind::Text("[NAME=]VALUE"),
-            "An adjust value: in 1/100000 of the box or %, angles in 1/60000 degree or with a unit. Without a name, in their order.",
+            "An adjust value, such as adj1=15000: in 1/100000 of the box or %, angles in 1/60000 degree or with a unit. Without a name, in \
+their order.",
         )
         .repeated(),
         Param::new(
@@ -101,7 +102,7 @@ let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\
         },
         Example {
             what: "On an arch, from low on the left to low on the right",
-            command: "wordart samples/logo.svg --preset arch-up --adj 150deg -o out.svg",
+            command: "wordart samples/logo.svg --preset arch-up --adj 150deg --fit page -o out.svg",
         },
         Example {
             what: "Round a ring, by the curves' own parameters",

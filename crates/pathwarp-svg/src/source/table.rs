@@ -1,0 +1,198 @@
+//! From a parsed document to the table of its elements with their places in the source.
+
+use super::{Attr, Element, ElementId, INKSCAPE, Namespace, SVG, XLINK, XML};
+use crate::marks::{self, Patch};
+use memchr::memrchr;
+use std::borrow::Cow;
+use std::ops::Range;
+use usvg::roxmltree;
+
+/// The elements of a document.
+pub(super) struct Table {
+    pub(super) elements: Vec<Element>,
+    /// All style sheets' text.
+    pub(super) css: String,
+    /// Why the text cannot be patched in place.
+    pub(super) unpatchable: Option<String>,
+}
+
+impl Table {
+    /// The elements of a document with their places in the source, from which its text differs by `patches`; `None` if its
+    /// root is not `<svg>`.
+    pub(super) fn of(doc: &roxmltree::Document<'_>, patches: &[Patch]) -> Option<Self> {
+        let root = doc.root_element();
+        if root.tag_name().name() != "svg" || !matches!(root.tag_name().namespace(), Some(SVG) | None) {
+            return None;
+        }
+        let start = root.range().start;
+        let mut out = Self { elements: Vec::new(), css: String::new(), unpatchable: None };
+        // The element at hand and those around it.
+        let mut open: Vec<(Option<roxmltree::NodeId>, ElementId)> = Vec::new();
+        let mut next = 0;
+        for node in doc.descendants().filter(roxmltree::Node::is_element) {
+            let id = out.elements.len();
+            let around = node.parent().map(|p| p.id());
+            while open.last().is_some_and(|o| o.0 != around) {
+                open.pop();
+            }
+            let parent = open.last().map(|o| o.1);
+            open.push((Some(node.id()), id));
+            let patch = patches.get(next).filter(|p| p.element == id);
+            let before = next.checked_sub(1).and_then(|i| patches.get(i)).map_or(0, Patch::shift);
+            next += usize::from(patch.is_some());
+            let places = Places { text: doc.input_text(), patches, patch, before };
+            // An entity's own text stands in the DTD, before the root.
+            let element = (node.range().start >= start).then(|| element(&places, node, parent)).flatten();
+            out.elements.push(element.unwrap_or_else(|| {
+                let why = "parts of it come from DTD entities, which have no place in the text";
+                out.unpatchable.get_or_insert_with(|| why.to_owned());
+                Element {
+                    parent: None,
+                    tag: Cow::Borrowed(""),
+                    qname: 0..0,
+                    range: 0..0,
+                    open_end: 0,
+                    close: None,
+                    attrs: Vec::new(),
+                    title: None,
+                }
+            }));
+            if out.elements.last().is_some_and(|e| e.tag == "style") {
+                out.css.push_str(node.text().unwrap_or_default());
+                out.css.push('\n');
+            }
+        }
+        Some(out)
+    }
+}
+
+/// From the parsed text to the source.
+struct Places<'a> {
+    /// The parsed text.
+    text: &'a str,
+    patches: &'a [Patch],
+    /// What is new in the opening tag at hand.
+    patch: Option<&'a Patch>,
+    /// By what the tag's start is shifted.
+    before: usize,
+}
+
+/// The element's places in the source; `None` if they are not there (it comes from an entity).
+fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>) -> Option<Element> {
+    let text = places.text;
+    let range = node.range();
+    let rest = text.as_bytes().get(range.clone())?.strip_prefix(b"<")?;
+    let len = rest.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'/' | b'>'))?;
+    let qname = range.start + 1..range.start + 1 + len;
+    let name = node.tag_name();
+    let local = name.name();
+    // It may have a prefix.
+    let before = rest.get(..len)?.strip_suffix(local.as_bytes())?;
+    if !matches!(before.last(), None | Some(b':')) {
+        return None;
+    }
+    let moved = |r: &Range<usize>, shift: usize| r.start.wrapping_sub(shift)..r.end.wrapping_sub(shift);
+    // A new attribute stands before all others.
+    let mut shift = match places.patch {
+        Some(p) if p.replaced().is_none() => p.shift(),
+        _ => places.before,
+    };
+    let attributes = node.attributes();
+    let mut attrs = Vec::with_capacity(attributes.len());
+    let mut last = qname.end;
+    for a in attributes {
+        let (r, v) = (a.range(), a.range_value());
+        let raw = text.get(v.clone())?;
+        if r.start < last || r.end > range.end || !text.as_bytes().get(r.clone())?.contains(&b'=') {
+            return None;
+        }
+        last = last.max(r.end);
+        let full = a.range_qname();
+        let mut one = Attr {
+            name: moved(&(full.end.checked_sub(a.name().len())?..full.end), shift),
+            namespace: match a.namespace() {
+                None => Namespace::None,
+                Some(XLINK) => Namespace::Xlink,
+                Some(XML) => Namespace::Xml,
+                Some(INKSCAPE) => Namespace::Inkscape,
+                Some(_) => Namespace::Other,
+            },
+            range: moved(&r, shift),
+            value_range: moved(&v, shift),
+            value: (raw != a.value()).then(|| a.value().to_owned()),
+        };
+        if let Some(p) = places.patch.filter(|p| p.is(&v)) {
+            let Some(old) = p.replaced() else { continue };
+            shift = p.shift();
+            one.range.end = r.end.wrapping_sub(shift);
+            one.value_range = old;
+        }
+        attrs.push(one);
+    }
+    // Namespace declarations are no attributes for the parser but stand among them; their quotes may hold a `>`.
+    let open_end = tag_end(text, last, range.end)?;
+    let close = if open_end < range.end {
+        let start = memrchr(b'<', text.as_bytes().get(..range.end)?)?;
+        let shift = range.end.wrapping_sub(marks::in_source(places.patches, range.end));
+        Some(moved(&(start..range.end), shift))
+    } else {
+        None
+    };
+    let svg = matches!(name.namespace(), Some(SVG) | None);
+    let title = node
+        .children()
+        .find(|c| c.is_element() && c.tag_name().name() == "title")
+        .and_then(|t| t.text())
+        .map(|t| t.trim().to_owned())
+        .filter(|t| !t.is_empty());
+    let tag = if svg { known(local).map_or_else(|| Cow::Owned(local.to_owned()), Cow::Borrowed) } else { "".into() };
+    let open_end = open_end.wrapping_sub(places.patch.map_or(places.before, Patch::shift));
+    Some(Element {
+        parent,
+        tag,
+        qname: moved(&qname, places.before),
+        range: range.start.wrapping_sub(places.before)..close.as_ref().map_or(open_end, |c| c.end),
+        open_end,
+        close,
+        attrs,
+        title,
+    })
+}
+
+/// The names that drawings are full of, which need no memory of their own.
+fn known(tag: &str) -> Option<&'static str> {
+    Some(match tag {
+        "path" => "path",
+        "g" => "g",
+        "svg" => "svg",
+        "rect" => "rect",
+        "circle" => "circle",
+        "use" => "use",
+        "defs" => "defs",
+        "stop" => "stop",
+        "title" => "title",
+        "ellipse" => "ellipse",
+        "line" => "line",
+        "polygon" => "polygon",
+        "polyline" => "polyline",
+        "linearGradient" => "linearGradient",
+        "radialGradient" => "radialGradient",
+        "clipPath" => "clipPath",
+        "mask" => "mask",
+        "style" => "style",
+        _ => return None,
+    })
+}
+
+fn tag_end(text: &str, from: usize, to: usize) -> Option<usize> {
+    let mut quote = None;
+    for (i, b) in text.as_bytes().get(from..to)?.iter().enumerate() {
+        match (quote, b) {
+            (None, b'"' | b'\'') => quote = Some(*b),
+            (Some(q), b) if q == *b => quote = None,
+            (None, b'>') => return Some(from + i + 1),
+            _ => {}
+        }
+    }
+    None
+}

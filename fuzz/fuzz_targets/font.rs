@@ -1,0 +1,47 @@
+//! Fonts: any bytes are a font that text can be set in, or are refused.
+//!
+//! The fonts of the tests are good seeds: `cp crates/pathwarp-text/tests/fonts/*.?tf fuzz/corpus/font`
+
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use pathwarp_text::{Align, Direction, Font, Style, Variation, layout};
+
+/// Kerning, ligatures, marks, letters that join and letters that change places, both directions, and what no font here has.
+const TEXT: &str = "Office AV\nسلام שָׁלוֹם\nहिन्दी क्ष q\u{302} 日";
+
+/// Reads the font of the collection, at places on its axes that `place` chooses, and sets text in it.
+fn set(data: &[u8], index: u32, place: u8) {
+    let Ok(font) = Font::new(data, index) else { return };
+    let _ = (font.name(), font.has('A'), font.metrics(72.0));
+    let at = |a: &pathwarp_text::Axis| match place % 3 {
+        0 => a.min,
+        1 => 0.5 * (a.min + a.max),
+        _ => a.max,
+    };
+    // Axes may have tags that are no text, or no values between their ends.
+    let places: Vec<Variation> = font.axes().iter().filter_map(|a| Variation::new(&a.tag, at(a)).ok()).collect();
+    let Ok(font) = font.with_variations(&places) else { return };
+    let style = Style {
+        align: if place & 4 == 0 { Align::Start } else { Align::Justify },
+        direction: if place & 8 == 0 { Direction::Auto } else { Direction::Rtl },
+        ..Style::default()
+    };
+    let Ok(set) = layout(TEXT, &[font], &style) else { return };
+    assert_eq!(set.lines.len(), 3);
+    for cluster in set.lines.iter().flat_map(|l| &l.clusters) {
+        assert!(cluster.outline.is_finite() && cluster.origin.is_finite() && cluster.advance.is_finite());
+    }
+}
+
+fuzz_target!(
+    // A panic in the font's readers is caught and is an error to who calls them, as it is to users: only what gets out counts.
+    init: std::panic::set_hook(Box::new(|panic| eprintln!("{panic}"))),
+    |data: &[u8]| {
+        let place = data.last().copied().unwrap_or(0);
+        set(data, 0, place);
+        if data.starts_with(b"ttcf") {
+            set(data, 1, place);
+        }
+    }
+);
