@@ -117,6 +117,13 @@ impl<'a> Keeper<'a, '_> {
         let mut placed = BTreeSet::new();
         for (i, m) in scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
             let def = self.def(&m.id, "mask");
+            // Over a box without area a mask in box units hides everything; the box of what is written may have an area.
+            let boxed = def.is_none_or(|d| self.source.attr(d, "maskUnits").is_none_or(|u| u != "userSpaceOnUse"));
+            if boxed && m.root.children.is_empty() {
+                let id = self.writer.mask_id(i);
+                self.point(&m.referrers, "mask", &id)?;
+                continue;
+            }
             if !self.writer.changes(m.parts.clone()) {
                 self.writer.mask_ids[i] = def.map(|_| m.id.clone());
                 continue;

@@ -80,6 +80,16 @@ const FEATURES: &[(&str, &str)] = &[
          </mask><rect y='80' width='20' height='20' mask='url(#n)'/>",
     ),
     (
+        "mask in box units on a line without a box",
+        "<mask id='m'><rect width='100' height='100' fill='white'/></mask><path d='M10 50H70' stroke='red' stroke-width='9' \
+         mask='url(#m)'/><rect y='60' width='50' height='30' fill='green'/>",
+    ),
+    (
+        "mask in box units on a shape and on a line without a box",
+        "<mask id='m'><rect width='100' height='100' fill='white'/></mask><rect width='90' height='90' fill='green' \
+         mask='url(#m)'/><path d='M10 50H70' stroke='red' stroke-width='9' mask='url(#m)'/>",
+    ),
+    (
         "mask whose region cuts",
         "<mask id='m' maskUnits='userSpaceOnUse' x='20' y='20' width='50' height='40'><rect width='100' height='100' \
          fill='white'/></mask><rect width='90' height='90' fill='darkgreen' mask='url(#m)'/>",

@@ -70,6 +70,14 @@ fn main() -> ExitCode {
                         .value_parser(value_parser!(PathBuf))
                         .help("Where to put pictures of what misses: as it should be, as it is, the difference"),
                 )
+                .arg(
+                    Arg::new("only")
+                        .long("only")
+                        .value_name("CHECK")
+                        .action(ArgAction::Append)
+                        .value_parser(svg_corpus::CHECKS)
+                        .help("Make this check alone, and take no times; may be given several times"),
+                )
                 .arg(Arg::new("times").long("times").action(ArgAction::SetTrue).help("Only time reading and writing")),
         )
         .subcommand(
@@ -119,6 +127,7 @@ fn main() -> ExitCode {
             fonts: m.get_one("fonts").cloned(),
             every: m.get_one("every").copied().unwrap_or(1),
             pictures: m.get_one("pictures").cloned(),
+            only: m.get_many::<String>("only").unwrap_or_default().cloned().collect(),
             times: m.get_flag("times"),
         }),
         Some(("corpus", _)) => corpus::run().map(|()| "wrote corpus/icons.txt".to_owned()).map_err(|e| e.to_string()),

@@ -1,6 +1,7 @@
 //! What is checked of one file.
 
 use super::pictures::{self, Pair};
+use super::refined;
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Jet, Map};
 use pathwarp::refit;
@@ -9,7 +10,7 @@ use pathwarp_raster::{Pixmap, compare};
 use pathwarp_svg::{Document, Gradients, Images, ReadOptions, Structure, WarpOptions, Warped};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -26,11 +27,25 @@ const TOLERANCE: f64 = 0.01;
 /// How long reading and bending one file may take.
 const SLOW: Duration = Duration::from_secs(60);
 
+/// The affine map against the original, and against the original with exact arcs.
+const AFFINE: &str = "affine map";
+const EXACT: &str = "affine map, the original's arcs exact";
+
 /// The check that nothing breaks.
 pub(super) const ALIVE: &str = "no panic, no hang";
 
 /// What was found of one file, by check: whether it passed, and a word on it.
 pub(super) type Findings = Vec<(&'static str, bool, String)>;
+
+/// How files are examined.
+#[derive(Clone)]
+pub(super) struct Way {
+    pub(super) read: ReadOptions,
+    /// Where pictures of what misses go.
+    pub(super) pictures: Option<PathBuf>,
+    /// The checks that are made; all if empty.
+    pub(super) only: Vec<String>,
+}
 
 /// An affine map that does not say so.
 struct Plain(Affine);
@@ -60,14 +75,14 @@ struct Case<'a> {
     file: &'a Path,
     document: &'a Document,
     read: &'a ReadOptions,
-    pictures: Option<&'a Path>,
+    way: &'a Way,
     out: Findings,
     slowest: (Duration, &'static str),
 }
 
-pub(super) fn all(file: &Path, options: &ReadOptions, pictures: Option<&Path>) -> Findings {
+pub(super) fn all(file: &Path, way: &Way) -> Findings {
     let Ok(bytes) = std::fs::read(file) else { return Findings::new() };
-    let options = ReadOptions { base_dir: file.parent().map(Path::to_owned), ..options.clone() };
+    let options = ReadOptions { base_dir: file.parent().map(Path::to_owned), ..way.read.clone() };
     let started = Instant::now();
     let document = match Document::read(&bytes, "the file", &options) {
         Ok(d) => d,
@@ -84,7 +99,7 @@ pub(super) fn all(file: &Path, options: &ReadOptions, pictures: Option<&Path>) -
         file,
         document: &document,
         read: &options,
-        pictures,
+        way,
         out: vec![("read", true, String::new())],
         slowest: (started.elapsed(), "reading"),
     };
@@ -105,8 +120,24 @@ impl Case<'_> {
         let scale = SIDE / size.width.max(size.height);
         let options = self.options(scale);
         let Some(original) = pictures::whole(document.tree(), scale) else { return };
-        self.identity(&original, scale, &options);
+        if self.asked("identity") {
+            self.identity(&original, scale, &options);
+        }
+        if self.asked("affine") {
+            self.affine(scale);
+        }
+        if self.asked("shaper") {
+            self.bent(scale);
+        }
+    }
 
+    fn asked(&self, check: &str) -> bool {
+        self.way.only.is_empty() || self.way.only.iter().any(|o| o == check)
+    }
+
+    /// The affine map, hidden from the fitter.
+    fn affine(&mut self, scale: f64) {
+        let document = self.document;
         // Turned, sheared and squeezed about the middle.
         let middle = document.view_box().center().to_vec2();
         let turn =
@@ -114,21 +145,27 @@ impl Case<'_> {
         let fine = pictures::fine(document, scale);
         let map: Arc<dyn Map> = Arc::new(Plain(turn));
         let options = bending(&map, self.options(fine.needed * f64::from(fine.n)));
-        match self.warped("affine map", &*map, &options) {
-            Err(e) => self.out.push(("affine map", false, e)),
-            Ok((warped, after)) => {
-                self.structure(&warped);
-                let moved = document.user_to_px() * turn * document.user_to_px().inverse();
-                let pair = Pair { a: document.tree(), moved, b: after.tree() };
+        let (warped, after) = match self.warped(AFFINE, &*map, &options) {
+            Err(e) => return [AFFINE, EXACT].into_iter().for_each(|check| self.out.push((check, false, e.clone()))),
+            Ok(w) => w,
+        };
+        self.structure(&warped);
+        let moved = document.user_to_px() * turn * document.user_to_px().inverse();
+        let exact = refined::refined(&String::from_utf8_lossy(document.source()));
+        let exact = exact.and_then(|text| Document::read(text.as_bytes(), "the refined file", self.read).ok());
+        let mut last = None;
+        for (check, original) in [(AFFINE, Some(document)), (EXACT, exact.as_ref())] {
+            if let Some(original) = original {
+                let pair = Pair { a: original.tree(), moved, b: after.tree() };
                 let (share, word) = pair.share(&fine);
-                let ok = share <= SHARE;
-                if !ok {
-                    self.keep("affine", pair.pictures(&fine));
+                if share > SHARE {
+                    self.keep(&check.replace([' ', ','], "-"), pair.pictures(&fine));
                 }
-                self.out.push(("affine map", ok, word + &remarks(&warped)));
+                last = Some((share <= SHARE, word + &remarks(&warped)));
             }
+            // Where there is nothing to refine, one picture is as good as the other.
+            self.out.extend(last.clone().map(|(ok, word)| (check, ok, word)));
         }
-        self.bent(scale);
     }
 
     /// Bends and draws as fine as asked for: pixels per px.
@@ -250,7 +287,7 @@ impl Case<'_> {
 
     /// Keeps a pair of pictures for looking at, side by side with their difference.
     fn keep(&self, check: &str, pair: Option<(Pixmap, Pixmap)>) {
-        let (Some(folder), Some((a, b))) = (self.pictures, pair) else { return };
+        let (Some(folder), Some((a, b))) = (&self.way.pictures, pair) else { return };
         let mut name: Vec<&str> = self.file.iter().rev().take(3).filter_map(|p| p.to_str()).collect();
         name.reverse();
         pictures::side_by_side(&a, &b, &folder.join(format!("{check}--{}.png", name.join("--"))));

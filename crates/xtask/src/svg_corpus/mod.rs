@@ -5,7 +5,8 @@
 //!
 //! 1. the identity, written anew and with its structure kept: the pictures must be the same. Once as the affine map it is,
 //!    whose control points are moved, and once hidden from the fitter;
-//! 2. an affine map, hidden as well: the picture must be what resvg draws of the original under that transform;
+//! 2. an affine map, hidden as well: the picture must be what resvg draws of the original under that transform, and of the
+//!    original with its arcs written more precisely ([`refined`]);
 //! 3. a strong shaper: the picture must be the original's picture, large, bent pixel by pixel;
 //! 4. a comparison of its ids, classes, titles and nesting before and after;
 //! 5. reading and writing, timed beside usvg's own.
@@ -14,10 +15,11 @@
 
 mod checks;
 mod pictures;
+mod refined;
 mod speed;
 
 use crate::Fault;
-use checks::Findings;
+use checks::{Findings, Way};
 use pathwarp_svg::{GenericFamilies, ReadOptions};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -27,6 +29,9 @@ use std::time::Duration;
 
 /// How long the checks of one file may take altogether, drawing included, before it is given up.
 const LIMIT: Duration = Duration::from_secs(300);
+
+/// The checks that can be asked for alone. Names and nesting are looked at in what the affine map gives.
+pub(crate) const CHECKS: [&str; 3] = ["identity", "affine", "shaper"];
 
 /// What is asked.
 pub(crate) struct Job {
@@ -38,6 +43,8 @@ pub(crate) struct Job {
     pub(crate) every: usize,
     /// Where pictures of what misses go.
     pub(crate) pictures: Option<PathBuf>,
+    /// Which of [`CHECKS`] are made, and no times taken; all if empty.
+    pub(crate) only: Vec<String>,
     /// Whether only times are taken.
     pub(crate) times: bool,
 }
@@ -64,23 +71,26 @@ pub(crate) fn run(job: &Job) -> Result<String, Fault> {
             ..ReadOptions::default()
         };
         if !job.times {
-            let found = all(&files, &options, job.pictures.as_deref());
+            let way = Way { read: options.clone(), pictures: job.pictures.clone(), only: job.only.clone() };
+            let found = all(&files, &way);
             report(folder, &files, &found, &mut out);
         }
-        speed::report(&files, &options, &mut out);
+        if job.only.is_empty() {
+            speed::report(&files, &options, &mut out);
+        }
     }
     Ok(out)
 }
 
 /// The checks of all files, several at a time. The threads are our own: those of the warp's pool must not wait for it.
-fn all(files: &[PathBuf], options: &ReadOptions, pictures: Option<&Path>) -> Vec<Findings> {
+fn all(files: &[PathBuf], way: &Way) -> Vec<Findings> {
     let next = AtomicUsize::new(0);
     let found: Vec<Mutex<Findings>> = files.iter().map(|_| Mutex::default()).collect();
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
                 while let Some((file, slot)) = files.iter().zip(&found).nth(next.fetch_add(1, Ordering::Relaxed)) {
-                    let findings = guarded(file, options, pictures);
+                    let findings = guarded(file, way);
                     if let Ok(mut slot) = slot.lock() {
                         *slot = findings;
                     }
@@ -104,14 +114,14 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
 }
 
 /// The checks of one file, on a thread that may fail or be left behind.
-fn guarded(file: &Path, options: &ReadOptions, pictures: Option<&Path>) -> Findings {
+fn guarded(file: &Path, way: &Way) -> Findings {
     let (send, receive) = mpsc::channel();
-    let (path, options, pictures) = (file.to_owned(), options.clone(), pictures.map(Path::to_owned));
+    let (path, way) = (file.to_owned(), way.clone());
     /// resvg itself needs a deep stack for some of librsvg's files.
     const STACK: usize = 256 << 20;
     let thread = std::thread::Builder::new().stack_size(STACK).spawn(move || {
         // A receiver that has given up needs no answer.
-        let _ = send.send(checks::all(&path, &options, pictures.as_deref()));
+        let _ = send.send(checks::all(&path, &way));
     });
     let fault = |what: &str| vec![(checks::ALIVE, false, what.to_owned())];
     if thread.is_err() {

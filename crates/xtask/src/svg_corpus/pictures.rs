@@ -21,6 +21,9 @@ const SQUEEZE: f64 = 0.6;
 /// How many times as large pictures are drawn before their pixels are averaged. The renderer cuts a pixel's edge into four and
 /// draws a stroke's edge to a quarter of a pixel, so that edges in the same place may differ by a fifth of all levels.
 const FINER: u32 = 3;
+/// The same for pictures that must agree pixel by pixel. A circle's edge drawn without smoothing, and the corners of dashes, which
+/// the renderer draws to a quarter of a pixel as well, are averaged to within a few levels then.
+const FINEST: u32 = 8;
 /// How much larger still is the picture that is bent.
 const SHARPER: f64 = 2.0;
 
@@ -39,7 +42,7 @@ pub(super) fn fine(document: &Document, least: f64) -> Fine {
     /// Beyond this magnification f32 shows its grain.
     const MOST: f64 = 400.0;
     let size = document.size_px();
-    let n = finer(document);
+    let n = finest(document);
     let largest = LARGE / f64::from(n) / size.width.max(size.height);
     let thinnest = thinnest(document.tree().root()).unwrap_or(f64::INFINITY);
     let needed = (WIDE / (SQUEEZE * thinnest) / f64::from(n)).max(least);
@@ -66,9 +69,14 @@ fn transform(m: Affine) -> Transform {
     Transform::from_row(a, b, c, d, e, f)
 }
 
-/// How many times as large pictures of a drawing are drawn. Filters take too long on large ones.
+/// How many times as large pictures of a bent drawing are drawn. Filters take too long on large ones.
 pub(super) fn finer(document: &Document) -> u32 {
     if document.tree().filters().is_empty() { FINER } else { 1 }
+}
+
+/// How many times as large pictures under the affine map are drawn.
+fn finest(document: &Document) -> u32 {
+    if document.tree().filters().is_empty() { FINEST } else { FINER }
 }
 
 /// The whole page.
