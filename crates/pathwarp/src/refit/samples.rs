@@ -13,6 +13,8 @@ pub(super) const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
 const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
 /// Paces along a piece may differ by this factor (squared) before its samples are thought too few.
 const PACE: f64 = 400.0;
+/// Where only eight are looked at, by this (squared): an image that slows down more may turn between two of them.
+const EVEN_PACE: f64 = 25.0;
 /// Spacing.
 pub(super) const UNIT: f64 = 1.0 / 17.0;
 
@@ -62,6 +64,12 @@ pub(super) struct Glance {
 }
 
 impl Glance {
+    /// Whether the image's pace is even enough for eight samples to have seen all of it.
+    #[inline(always)]
+    pub(super) fn even(&self) -> bool {
+        self.paces[1] < EVEN_PACE * self.paces[0]
+    }
+
     /// Whether eight samples, or with `other` sixteen, have seen all of the cubic and the image.
     #[inline(always)]
     pub(super) fn sound(&self, other: Option<&Self>) -> bool {

@@ -120,7 +120,7 @@ impl<C: Curve> Stepper<'_, C> {
         if !(may(first.worst, SURE) && still(first.drift) && first.sound(None)) {
             return Ok(None);
         }
-        if may(first.worst, EASY) && self.algebra.is_none() && !self.opaque() {
+        if may(first.worst, EASY) && first.even() && self.algebra.is_none() && !self.opaque() {
             return Ok(Some(EIGHT * first.worst.sqrt()));
         }
         self.second_glance(job, &first)
