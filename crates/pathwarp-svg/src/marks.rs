@@ -4,6 +4,7 @@
 use crate::source::{ElementId, is_tracked};
 use memchr::{memchr, memmem};
 use std::collections::HashSet;
+use std::fmt::Write as _;
 use std::ops::Range;
 
 /// The text that is parsed in the source's place.
@@ -101,7 +102,7 @@ pub(crate) fn mark(text: &str) -> Option<Marked> {
             out.text.push_str(" id=\"");
         }
         out.text.push_str(&out.marks.stem);
-        push_number(&mut out.text, i);
+        let _ = write!(out.text, "{i}");
         if new {
             out.text.push('"');
         }
@@ -111,21 +112,6 @@ pub(crate) fn mark(text: &str) -> Option<Marked> {
     }
     out.text.push_str(text.get(done..)?);
     Some(out)
-}
-
-fn push_number(out: &mut String, n: usize) {
-    let mut digits = [0_u8; 20];
-    let mut at = digits.len();
-    let mut n = n;
-    loop {
-        at -= 1;
-        digits[at] = b'0' + (n % 10) as u8;
-        n /= 10;
-        if n == 0 {
-            break;
-        }
-    }
-    out.extend(digits[at..].iter().map(|d| char::from(*d)));
 }
 
 /// What no id begins with.

@@ -2,7 +2,7 @@
 
 use super::fit::{self, Frame, State, at, fma, square};
 use super::source::{End, Lane, Lanes};
-use super::verify::{Candidate, turns_little};
+use super::verify::{Candidate, turns_little, vertex};
 use kurbo::{Line, Vec2};
 
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
@@ -223,9 +223,7 @@ pub(super) fn between_samples(fitted: &Lane, checked: &Lane) -> f64 {
     for w in v.windows(3) {
         let [a, b, c] = [w[0], w[1], w[2]];
         if b >= a && b >= c && b > 0.0 {
-            let bend = 2.0 * b - a - c;
-            let top = if bend > 0.0 { b + (c - a) * (c - a) / (8.0 * bend) } else { b };
-            best = fit::larger(top, best);
+            best = fit::larger(vertex(a, b, c), best);
         }
     }
     best

@@ -140,16 +140,12 @@ impl<C: Curve> Stepper<'_, C> {
             return Ok(Some(worst));
         }
         let [a, b] = job.frame.home;
-        let mut z = State { a, b, s: [0.0; 8] };
-        for i in 0..8 {
-            z.s[i] = FITTED[i] * UNIT;
-        }
         let (mut s0, mut s1) = ([0.0; 8], [0.0; 8]);
         for i in 0..8 {
-            s0[i] = fit::unit(z.s[i] + first.ds[i]);
+            s0[i] = fit::unit(FITTED[i] * UNIT + first.ds[i]);
             s1[i] = fit::unit(CHECKED[i] * UNIT + second.ds[i]);
         }
-        let error = self.proven(job, &z, [&s0, &s1], worst)?;
+        let error = self.proven(job, &State { a, b, s: s0 }, [&s0, &s1], worst)?;
         Ok((error <= tol).then_some(error))
     }
 

@@ -71,6 +71,12 @@ pub(super) fn dense(
     let walk = |tau: &Lane, worst: &mut f64, last: &mut Foot, depth: u32| -> Result<(bool, Lane), Point> {
         walk(source, c, feet, tau, worst, last, depth)
     };
+    // Squared distances at further places.
+    let looked = |tau: &Lane, steps: usize| -> Result<Lane, Point> {
+        let mut s: Lane = tau.map(|t| guess(feet, t));
+        let g = c.images(source, tau)?;
+        Ok(c.frame.distances(&g, c.a, c.b, &mut s, steps))
+    };
     let mut even = [[0.0; 8]; BATCHES];
     for (k, squares) in even.iter_mut().enumerate() {
         let tau: Lane = std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (BATCHES * 8) as f64);
@@ -88,11 +94,9 @@ pub(super) fn dense(
         if even[i] < NEAR * worst || even[i] < before || even[i] < after {
             continue;
         }
-        let at = (i as f64 + 0.5) / (BATCHES * 8) as f64;
+        let at = (i as f64 + 0.5) * STEP;
         let tau = spread(at - STEP, at + STEP).map(|t| t.clamp(0.0, 1.0));
-        let mut s: Lane = tau.map(|t| guess(feet, t));
-        let g = c.images(source, &tau)?;
-        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
+        let d = looked(&tau, 3)?;
         let largest = fit::largest(&d);
         tops = tops.max(largest.sqrt()).max(peak(&d, largest));
     }
@@ -102,20 +106,14 @@ pub(super) fn dense(
             let mut w = 1.0 / (BATCHES * 8) as f64;
             for _ in 0..3 {
                 let tau: Lane = std::array::from_fn(|i| (at + w * (i as f64 - 3.5) / 4.0).clamp(0.0, 1.0));
-                let mut s: Lane = tau.map(|t| guess(feet, t));
-                let g = c.images(source, &tau)?;
-                let d = c.frame.distances(&g, c.a, c.b, &mut s, 4);
-                worst = d.iter().copied().fold(worst, f64::max);
+                worst = worst.max(fit::largest(&looked(&tau, 4)?));
                 w *= 0.125;
             }
         }
     }
     for chunk in source.places(c.t0, c.t1).chunks(8) {
         let tau: Lane = std::array::from_fn(|i| (chunk[i.min(chunk.len() - 1)] - c.t0) / (c.t1 - c.t0));
-        let mut s: Lane = tau.map(|t| guess(feet, t));
-        let g = c.images(source, &tau)?;
-        let d = c.frame.distances(&g, c.a, c.b, &mut s, 3);
-        worst = d.iter().copied().fold(worst, f64::max);
+        worst = worst.max(fit::largest(&looked(&tau, 3)?));
     }
     let worst = worst.sqrt().max(tops);
     if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
@@ -129,18 +127,14 @@ const STEP: f64 = 1.0 / (BATCHES * 8) as f64;
 /// The largest distance between evenly spaced samples: parabolas through three neighbours, where the middle one is the largest
 /// of them. Squares are given, of samples none larger than `most`.
 fn peak(squares: &[f64], most: f64) -> f64 {
-    let mut best = 0.0f64;
-    for w in squares.windows(3) {
-        if w[1] < NEAR * most || w[1] < w[0] || w[1] < w[2] {
-            continue;
-        }
-        let [a, b, c] = [w[0], w[1], w[2]].map(f64::sqrt);
-        let bend = 2.0 * b - a - c;
-        if bend > 0.0 {
-            best = best.max(b + (c - a).powi(2) / (8.0 * bend));
-        }
-    }
-    best
+    let tops = squares.windows(3).filter(|w| w[1] >= NEAR * most && w[1] >= w[0] && w[1] >= w[2]);
+    tops.map(|w| vertex(w[0].sqrt(), w[1].sqrt(), w[2].sqrt())).fold(0.0, f64::max)
+}
+
+/// How high the parabola through three neighbours rises, of which the middle one is the largest.
+pub(super) fn vertex(a: f64, b: f64, c: f64) -> f64 {
+    let bend = 2.0 * b - a - c;
+    if bend > 0.0 { b + (c - a).powi(2) / (8.0 * bend) } else { b }
 }
 
 /// A sample's foot on the cubic.
