@@ -25,8 +25,8 @@ impl Outcome {
     fn difficulty(&self, tolerance: f64) -> f64 {
         /// Eight pieces; also where nothing is known.
         const MOST: f64 = 2.6e5;
-        let (Self::Fits { error, .. } | Self::Misses { reach: error, .. }) = self;
-        sixth_root((error / tolerance).clamp(1e-3, MOST))
+        let (Self::Fits { reach, .. } | Self::Misses { reach, .. }) = self;
+        sixth_root((reach / tolerance).clamp(1e-3, MOST))
     }
 }
 
@@ -64,7 +64,7 @@ impl<C: Curve> Stepper<'_, C> {
                 self.improve(&mut job)?
             }
         };
-        if let Outcome::Fits { piece, error } = first {
+        if let Outcome::Fits { piece, error, .. } = first {
             self.accept(piece, error, out, report);
             return Ok(());
         }
@@ -88,7 +88,7 @@ impl<C: Curve> Stepper<'_, C> {
                 None => self.attempt(&from, &to)?,
             };
             let (piece, error, sharp) = match outcome {
-                Outcome::Fits { piece, error } => {
+                Outcome::Fits { piece, error, .. } => {
                     self.accept(piece, error, out, report);
                     continue;
                 }
@@ -177,7 +177,7 @@ impl<C: Curve> Stepper<'_, C> {
             report.max_error = report.max_error.max(error);
             report.assurance = report.assurance.min(Assurance::Certified);
         } else {
-            // What may hide between the samples, see PLAIN.
+            // What may hide between the samples.
             let bound = error * 1.05;
             let bound = fit::larger(error, if bound < self.tolerance { bound } else { self.tolerance });
             report.max_error = fit::larger(bound, report.max_error);

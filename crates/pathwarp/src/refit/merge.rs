@@ -123,7 +123,7 @@ impl Merger<'_> {
                     continue;
                 }
                 match stepper.attempt(&ends[from], &ends[to])? {
-                    Outcome::Fits { piece, mut error } => {
+                    Outcome::Fits { piece, mut error, .. } => {
                         if self.options.certify {
                             error = self.proven(chain, &ends[from], &ends[to], piece)?;
                             if error > self.options.tolerance {

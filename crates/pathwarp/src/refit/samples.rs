@@ -2,7 +2,7 @@
 
 use super::fit::{self, Frame, State, at, fma, square};
 use super::source::{End, Lane, Lanes};
-use super::verify::{Candidate, turns_little, vertex};
+use super::verify::{Candidate, Feet, turns_little};
 use kurbo::{Line, Vec2};
 
 /// Samples j/17 that are fitted (both sets symmetric about the middle).
@@ -12,9 +12,30 @@ pub(super) const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
 /// Whether the checked sample follows (1) or precedes (−1) the fitted one of the same number.
 const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
 /// Paces along a piece may differ by this factor (squared) before its samples are thought too few.
-const PACE: f64 = 400.0;
+const PACE: f64 = 100.0;
 /// Where only eight are looked at, by this (squared): an image that slows down more may turn between two of them.
 const EVEN_PACE: f64 = 25.0;
+/// What residuals at the fitted samples make of those at 8/17 and 9/17, in the widest gap between them, if they are v²·(polynomial
+/// of degree seven), v = τ(1−τ). The second is the first read backwards.
+const AMID: Lane = {
+    let mut out = [0.0; 8];
+    let mut i = 0;
+    while i < 8 {
+        let (at, from) = (8.0, FITTED[i]);
+        let v = at * (17.0 - at) / (from * (17.0 - from));
+        let mut x = v * v;
+        let mut k = 0;
+        while k < 8 {
+            if k != i {
+                x *= (at - FITTED[k]) / (from - FITTED[k]);
+            }
+            k += 1;
+        }
+        out[i] = x;
+        i += 1;
+    }
+    out
+};
 /// Spacing.
 pub(super) const UNIT: f64 = 1.0 / 17.0;
 
@@ -157,10 +178,37 @@ impl Job<'_> {
         glance(&self.frame.power(a, b), &CHECKED, check, self.g, -1.0)
     }
 
-    /// Whether the feet advance evenly enough for the samples to have seen all of the cubic, its direction at every foot is
-    /// that of the image there, and the image's pace varies little enough for the samples to have seen all of that.
+    /// Whether the sixteen samples have seen all there is, and if so, whether the pace is even besides.
     #[inline(always)]
-    pub(super) fn sound(&self, check: &Lanes, z: &State, s0: &Lane, s1: &Lane) -> bool {
+    pub(super) fn sound(&self, check: &Lanes, z: &State, s0: &Lane, s1: &Lane) -> (bool, bool) {
+        let paces = self.seen(z, s0, (check, s1, &CHECKED));
+        (paces < PACE, paces < EVEN_PACE)
+    }
+
+    /// The largest error in the widest gap between the fitted samples, as they foresee it, where they have seen all there is; else
+    /// infinite. `squares` are theirs.
+    #[inline(always)]
+    pub(super) fn amid(&self, z: &State, s0: &Lane, squares: &Lane) -> f64 {
+        let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
+        if self.seen(z, s0, (&next, &neighbours(s0), &neighbours(&FITTED))) >= EVEN_PACE {
+            return f64::INFINITY;
+        }
+        let power = self.frame.power(z.a, z.b);
+        let (mut left, mut right) = ([0.0; 8], [0.0; 8]);
+        for i in 0..8 {
+            let (rx, ry, dx, dy) = at(&power, s0[i], self.g.x[i], self.g.y[i]);
+            let n = squares[i].sqrt().copysign(fma(rx, dy, -(ry * dx)));
+            left[i] = n * AMID[i];
+            right[i] = n * AMID[7 - i];
+        }
+        fit::larger(fit::sum(&left).abs(), fit::sum(&right).abs())
+    }
+
+    /// How many times as fast as where it is slowest the image gets (squared), if the feet advance evenly enough for the samples to
+    /// have seen all of the cubic and its direction at every foot is that of the image there; else infinite. Beside each fitted
+    /// sample another is given, with its foot and its place: the next one towards the middle.
+    #[inline(always)]
+    fn seen(&self, z: &State, s0: &Lane, (next, s1, set): (&Lanes, &Lane, &Lane)) -> f64 {
         /// Feet may be this far from where an even pace would put them.
         const UNEVEN: f64 = 0.18;
         let [c1, c2, c3] = self.frame.power(z.a, z.b);
@@ -169,12 +217,12 @@ impl Job<'_> {
         let mut slowness = [0.0; 8];
         for i in 0..8 {
             let a = UNEVEN - (s0[i] - FITTED[i] * UNIT).abs();
-            let b = UNEVEN - (s1[i] - CHECKED[i] * UNIT).abs();
+            let b = UNEVEN - (s1[i] - set[i] * UNIT).abs();
             let s = s0[i];
             let (dx, dy) = ((c3.x * 3.0 * s + c2.x * 2.0) * s + c1.x, (c3.y * 3.0 * s + c2.y * 2.0) * s + c1.y);
-            let (x, y) = (check.x[i] - self.g.x[i], check.y[i] - self.g.y[i]);
+            let (x, y) = (next.x[i] - self.g.x[i], next.y[i] - self.g.y[i]);
             let (d2, l2) = (dx * dx + dy * dy, x * x + y * y);
-            // The checked sample follows the fitted one in the first half and precedes it in the second.
+            // The other sample follows the fitted one in the first half and precedes it in the second.
             let along = (dx * x + dy * y) * SIDE[i];
             let order = (s1[i] - s0[i]) * SIDE[i];
             let straight = 2.0 * along * along - d2 * l2;
@@ -188,10 +236,10 @@ impl Job<'_> {
         }
         // Nor may the cubic turn back between the outermost feet and its ends.
         let slope = |s: f64| c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
-        fit::largest(&margin) < 0.0
-            && fit::largest(&pace) < -PACE * fit::largest(&slowness)
+        let all = fit::largest(&margin) < 0.0
             && turns_little(self.frame.t0, slope(s0[0]))
-            && turns_little(slope(s0[7]), self.frame.t1)
+            && turns_little(slope(s0[7]), self.frame.t1);
+        if all { fit::largest(&pace) / -fit::largest(&slowness) } else { f64::INFINITY }
     }
 }
 
@@ -211,22 +259,30 @@ pub(super) fn between(s: &Lane) -> Lane {
     ]
 }
 
-/// The largest distance between samples by parabolas through three of them, the middle one being the largest; at the ends there is
-/// none. Given are squares at the fitted and the checked samples.
-pub(super) fn between_samples(fitted: &Lane, checked: &Lane) -> f64 {
+/// What goes with the fitted and the checked samples, in their order along the piece, with the ends: zero and `last`.
+pub(super) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> Feet {
     let mut v = [0.0; 18];
+    v[17] = last;
     for i in 0..8 {
-        v[FITTED[i] as usize] = fitted[i].sqrt();
-        v[CHECKED[i] as usize] = checked[i].sqrt();
+        v[FITTED[i] as usize] = fitted[i];
+        v[CHECKED[i] as usize] = checked[i];
     }
-    let mut best = 0.0;
-    for w in v.windows(3) {
+    v
+}
+
+/// The largest of the errors and of what they may rise to between the samples. A parabola through a top and its neighbours rises
+/// by an eighth of its second difference at most; corners and faster swings rise more.
+pub(super) fn foreseen(errors: &[f64]) -> f64 {
+    /// So many times as much as a parabola is allowed for.
+    const STEEPER: f64 = 2.5;
+    let mut most = 0.0;
+    for w in errors.windows(3) {
         let [a, b, c] = [w[0], w[1], w[2]];
-        if b >= a && b >= c && b > 0.0 {
-            best = fit::larger(vertex(a, b, c), best);
+        if b >= a && b >= c {
+            most = fit::larger(b + (STEEPER / 8.0) * (2.0 * b - a - c), most);
         }
     }
-    best
+    most
 }
 
 /// What the polyline through the samples looks like.

@@ -4,22 +4,20 @@ use super::Piece;
 use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
 use super::sampled::Sampled;
-use super::samples::{CHECKED, FITTED, Glance, Job, Shape, UNIT, between, between_samples, hermite_exact, straight};
+use super::samples::{
+    CHECKED, FITTED, Glance, Job, Shape, UNIT, between, foreseen, hermite_exact, interleaved, straight,
+};
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
-use super::verify::{self, Candidate};
+use super::verify::{self, Candidate, Feet};
 use kurbo::{Line, Point, Vec2};
 
-/// Sampled errors up to this share of the tolerance are taken as they are: between sixteen samples a residual of the
-/// leading form s²(1−s)²((s−½)²−c) grows by four percent at most, others by little more.
-const PLAIN: f64 = 0.9;
-/// Below this share of the tolerance what they may grow by is not asked for.
+/// Below this share of the tolerance what sampled errors may rise by in between is not asked for: between sixteen samples a residual
+/// of the leading form s²(1−s)²((s−½)²−c) rises by four percent at most, others by little more.
 const SURE: f64 = 0.7;
-/// Where parabolas through three samples each rise above the samples, a residual that swings over six samples rises twice as far:
-/// so many times is allowed for, up to this share of the tolerance.
-const STEEPER: f64 = 2.5;
+/// Up to this share what they are foreseen to rise to is let pass.
 const RISEN: f64 = 0.97;
-/// PLAIN for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
+/// The same for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
 /// The longest proof loses more than the rest of the tolerance.
 const MOST_PROVEN: f64 = 0.97;
@@ -29,7 +27,7 @@ const CORNERS: f64 = 1.015;
 /// is let pass (κ about the inverse of the piece's size, δ a share of that size).
 const FLAT: f64 = 0.02;
 /// With fewer samples, where the map is a quotient of polynomials of low degree and nothing swings faster than eight samples see:
-/// Hermite cubics up to this share of the tolerance are taken by the fitted ones alone.
+/// errors up to this share of the tolerance are taken by the fitted ones alone.
 const EASY: f64 = 0.6;
 /// What their errors grow by in between.
 const EIGHT: f64 = 1.1;
@@ -46,6 +44,8 @@ pub(super) enum Outcome {
         piece: Piece,
         /// Proven, if there is something to prove it with.
         error: f64,
+        /// As the fitted samples say, which is what the errors of other pieces are to be compared with.
+        reach: f64,
     },
     Misses {
         /// The best try, if the budget ends here.
@@ -82,7 +82,7 @@ impl<C: Curve> Stepper<'_, C> {
             return Ok(outcome);
         }
         if let Some(error) = self.glance(&mut job)? {
-            return Ok(Outcome::Fits { piece: Piece::Cubic(job.hermite()), error });
+            return Ok(Outcome::Fits { piece: Piece::Cubic(job.hermite()), error, reach: error });
         }
         self.improve(&mut job)
     }
@@ -180,7 +180,7 @@ impl<C: Curve> Stepper<'_, C> {
     fn line(&self, from: &End, to: &End, (line, off): (Line, f64), size: f64) -> Result<Outcome, Point> {
         let line = Piece::Line(line);
         if self.algebra.is_none() || size == 0.0 {
-            return Ok(Outcome::Fits { piece: line, error: off });
+            return Ok(Outcome::Fits { piece: line, error: off, reach: off });
         }
         let q = to.p - from.p;
         let length = q.hypot();
@@ -194,7 +194,7 @@ impl<C: Curve> Stepper<'_, C> {
             }
         };
         if error <= self.tolerance {
-            return Ok(Outcome::Fits { piece: line, error });
+            return Ok(Outcome::Fits { piece: line, error, reach: error });
         }
         Ok(Outcome::Misses { piece: line, error, reach: error, sharp: None })
     }
@@ -241,17 +241,6 @@ impl<C: Curve> Stepper<'_, C> {
         certify::bound(source, algebra, &c, &feet)
     }
 
-    /// What the samples prove of a state, where the map is a quotient of polynomials; infinite elsewhere.
-    #[inline(never)]
-    fn told(&self, job: &Job<'_>, check: &Lanes, z: &State, feet: [&Lane; 2]) -> Result<f64, Point> {
-        let Some(source) = self.source.single() else { return Ok(f64::INFINITY) };
-        let Some(algebra) = self.known.and_then(|known| Algebra::of(source, Some(known))) else {
-            return Ok(f64::INFINITY);
-        };
-        let c = job.candidate(z);
-        Sampled::new(source, &algebra, &c, job.frame.home, [job.g, check], DENSE * self.tolerance).few(feet)
-    }
-
     /// Images at the given samples of the stretch, relative to its first point.
     #[inline(always)]
     fn samples(&self, from: &End, h: f64, set: &Lane, g: &mut Lanes) -> Result<(), Point> {
@@ -283,7 +272,7 @@ impl<C: Curve> Stepper<'_, C> {
                 }
                 let error = self.proven(job, &z, [&z.s, &CHECKED.map(|j| j * UNIT)], 0.0)?;
                 if error <= tol {
-                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error });
+                    return Ok(Outcome::Fits { piece: Piece::Cubic(job.cubic(&z)), error, reach: error });
                 }
             }
         }
@@ -352,7 +341,7 @@ impl<C: Curve> Stepper<'_, C> {
         }
         let piece = Piece::Cubic(job.cubic(&f.z));
         if error <= tol {
-            return Ok(Outcome::Fits { piece, error });
+            return Ok(Outcome::Fits { piece, error, reach: f.error });
         }
         let shape = Shape::of(job.g, frame.q);
         let sharp = if shape.sharp { self.sharpest(from, to, shape.length) } else { None };
@@ -363,7 +352,6 @@ impl<C: Curve> Stepper<'_, C> {
     /// at what is near the tolerance or may be sharp.
     #[inline(never)]
     fn judge(&self, job: &mut Job<'_>, f: &Fit) -> Result<f64, Point> {
-        let check = *self.checked(job)?;
         let frame = &job.frame;
         let z = &f.z;
         let mut s0 = [0.0; 8];
@@ -379,6 +367,15 @@ impl<C: Curve> Stepper<'_, C> {
             d0 = frame.distances(job.g, z.a, z.b, &mut s0, 2);
             error = fit::largest(&d0).sqrt();
         }
+        let trusted = self.algebra.is_none() && !job.careful;
+        if trusted && error <= EASY * self.tolerance && !self.opaque() {
+            let error = fit::larger(job.amid(z, &s0, &d0), error);
+            if error <= EASY * self.tolerance {
+                return Ok(EIGHT * error);
+            }
+        }
+        let check = *self.checked(job)?;
+        let frame = &job.frame;
         let mut s1 = between(&s0);
         let d1 = frame.distances(&check, z.a, z.b, &mut s1, 1);
         let error = error.max(fit::largest(&d1).sqrt());
@@ -388,34 +385,32 @@ impl<C: Curve> Stepper<'_, C> {
         if self.algebra.is_some() {
             return self.proven(job, z, [&s0, &s1], error);
         }
-        if !job.careful && error <= PLAIN * self.tolerance && job.sound(&check, z, &s0, &s1) {
+        let feet = interleaved(&s0, &s1, 1.0);
+        let (sound, even) = job.sound(&check, z, &s0, &s1);
+        if trusted && sound && error <= RISEN * self.tolerance {
             if error <= SURE * self.tolerance {
                 return Ok(error);
             }
-            let between = error + STEEPER * (between_samples(&d0, &d1) - error);
-            if between <= RISEN * self.tolerance {
-                return Ok(between.max(error));
+            let errors = interleaved(&d0, &d1, 0.0).map(f64::sqrt);
+            let sixteen = foreseen(&errors);
+            if sixteen <= RISEN * self.tolerance {
+                return Ok(sixteen);
+            }
+            if even
+                && let Some(closer) =
+                    verify::halfway(self.source, &job.candidate(z), &feet, &errors, SURE * self.tolerance)?
+                && closer <= DENSE * self.tolerance
+            {
+                return Ok(closer);
             }
         }
-        if !self.opaque() {
-            let told = self.told(job, &check, z, [&s0, &s1])?;
-            if told <= DENSE * self.tolerance {
-                return Ok(told.max(error));
-            }
-        }
-        self.dense(job, z, &s0, &s1, error)
+        self.dense(job, z, &feet, error)
     }
 
     #[inline(never)]
-    fn dense(&self, job: &Job<'_>, z: &State, s0: &Lane, s1: &Lane, error: f64) -> Result<f64, Point> {
+    fn dense(&self, job: &Job<'_>, z: &State, feet: &Feet, error: f64) -> Result<f64, Point> {
         let c = job.candidate(z);
-        let mut feet = [0.0; 18];
-        feet[17] = 1.0;
-        for i in 0..8 {
-            feet[FITTED[i] as usize] = s0[i];
-            feet[CHECKED[i] as usize] = s1[i];
-        }
-        let mut e = verify::dense(self.source, &c, &feet, self.slow, self.tolerance)?.max(error);
+        let mut e = verify::dense(self.source, &c, feet, self.slow, self.tolerance)?.max(error);
         if self.source.single().is_none() && self.careful {
             // Joints have corners in their curvature, which no parabola follows.
             e = (e * CORNERS).max(verify::thorough(self.source, &c, self.slow, self.tolerance)?);

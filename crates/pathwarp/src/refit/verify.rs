@@ -1,6 +1,7 @@
 //! Dense checks of a fitted piece against the true image, both ways.
 
 use super::fit::{self, Frame};
+use super::samples::foreseen;
 use super::source::{Curve, Lane, Lanes};
 use super::split::Slow;
 use kurbo::{Point, Vec2};
@@ -56,6 +57,53 @@ impl Candidate {
     }
 }
 
+/// As [`foreseen`], with samples halfway between those of more than `sure` too; `None` where there are too many. `errors` go with
+/// `feet`.
+pub(super) fn halfway(
+    source: &impl Curve,
+    c: &Candidate,
+    feet: &Feet,
+    errors: &Feet,
+    sure: f64,
+) -> Result<Option<f64>, Point> {
+    /// Places looked at.
+    const MOST: usize = 16;
+    let mut all = [0.0; 2 * FEET - 1];
+    let mut gaps = [0; MOST];
+    let mut n = 0;
+    for (j, w) in errors.windows(2).enumerate() {
+        if w[0].max(w[1]) > sure {
+            if n == MOST {
+                return Ok(None);
+            }
+            gaps[n] = j;
+            n += 1;
+        }
+    }
+    for (j, e) in errors.iter().enumerate() {
+        all[2 * j] = *e;
+    }
+    for gaps in gaps[..n].chunks(8) {
+        let tau = std::array::from_fn(|i| (gaps[i.min(gaps.len() - 1)] as f64 + 0.5) / (FEET - 1) as f64);
+        let squares = looked(source, c, feet, &tau, 2)?;
+        for (j, d) in gaps.iter().zip(squares) {
+            all[2 * j + 1] = d.sqrt();
+        }
+    }
+    // What is larger than `sure` has both its neighbours; of the rest, nothing comes near.
+    for e in &mut all {
+        *e = e.max(sure);
+    }
+    Ok(Some(foreseen(&all)))
+}
+
+/// Squared distances at further places.
+fn looked(source: &impl Curve, c: &Candidate, feet: &Feet, tau: &Lane, steps: usize) -> Result<Lane, Point> {
+    let mut s: Lane = tau.map(|t| guess(feet, t));
+    let g = c.images(source, tau)?;
+    Ok(c.frame.distances(&g, c.a, c.b, &mut s, steps))
+}
+
 /// The distance between the candidate and the image over its stretch, by many samples, more of them around slow spots.
 /// `feet` are first guesses.
 pub(super) fn dense(
@@ -71,12 +119,7 @@ pub(super) fn dense(
     let walk = |tau: &Lane, worst: &mut f64, last: &mut Foot, depth: u32| -> Result<(bool, Lane), Point> {
         walk(source, c, feet, tau, worst, last, depth)
     };
-    // Squared distances at further places.
-    let looked = |tau: &Lane, steps: usize| -> Result<Lane, Point> {
-        let mut s: Lane = tau.map(|t| guess(feet, t));
-        let g = c.images(source, tau)?;
-        Ok(c.frame.distances(&g, c.a, c.b, &mut s, steps))
-    };
+    let looked = |tau: &Lane, steps: usize| looked(source, c, feet, tau, steps);
     let mut even = [[0.0; 8]; BATCHES];
     for (k, squares) in even.iter_mut().enumerate() {
         let tau: Lane = std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (BATCHES * 8) as f64);
@@ -132,7 +175,7 @@ fn peak(squares: &[f64], most: f64) -> f64 {
 }
 
 /// How high the parabola through three neighbours rises, of which the middle one is the largest.
-pub(super) fn vertex(a: f64, b: f64, c: f64) -> f64 {
+fn vertex(a: f64, b: f64, c: f64) -> f64 {
     let bend = 2.0 * b - a - c;
     if bend > 0.0 { b + (c - a).powi(2) / (8.0 * bend) } else { b }
 }
@@ -296,8 +339,8 @@ pub(super) fn thorough(source: &impl Curve, c: &Candidate, slow: &Slow, toleranc
         let mut tau = taus[i];
         let h = c.t1 - c.t0;
         // Farther than what is already known to be the error only if Newton finds nothing nearer.
-        if best > worst {
-            for _ in 0..4 {
+        for _ in 0..4 {
+            if best > worst {
                 let (p, d) = source.image(c.param(tau));
                 let (r, v) = (p.to_vec2() - origin - *q, d * h);
                 best = best.min(r.hypot2());
