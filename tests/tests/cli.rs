@@ -136,6 +136,9 @@ fn wrong_usage_is_2_and_names_the_fault() {
         (&["shaper", "--shaper", "--explain"], "--shaper"),
         (&["shaper", "--shaper", CAGE, "+", "list"], "list"),
         (&["list", "+", "affine"], "chains deformations"),
+        (&["shaper", "--shaper", CAGE, "+", "affine", "--out", "b.svg"], "multiple times"),
+        (&["shaper", "--shaper", CAGE, "+", "affine", "--into", "b.xcf"], "cannot be used with"),
+        (&["shaper", "--shaper", CAGE, "+", "affine", "in.svg"], "in.svg"),
         (&["affine", "--matrix", "1,0,0,1,0"], "6 are wanted"),
         (&["affine", "--rotate", "30 parsecs"], "parsecs"),
     ] {
@@ -416,6 +419,16 @@ fn chains_equal_their_parts_one_after_another() {
     let first = run(&[&perspective[..], &fine].concat(), SQUARE.as_bytes());
     let both = run(&[&bend[..], &fine].concat(), &first);
     let chained = run(&[&perspective[..], &fine, &["+"], &bend].concat(), SQUARE.as_bytes());
+    // The common options may stand in any part.
+    let last = run(&[&perspective[..], &["+"], &bend, &fine].concat(), SQUARE.as_bytes());
+    assert!(last == chained);
+    let apart =
+        run(&[&perspective[..], &fine[..2], &["+"], &bend, &fine[2..], &["-o", "-"]].concat(), SQUARE.as_bytes());
+    assert!(apart == chained);
+    fs::write(dir.path().join("-in.svg"), SQUARE).unwrap();
+    let named = [&perspective[..], &["--", "-in.svg", "+"], &bend, &fine, &["-o", "named.svg"]].concat();
+    assert!(run(&named, b"").is_empty());
+    assert!(fs::read(dir.path().join("named.svg")).unwrap() == chained);
     fs::write(dir.path().join("a.svg"), both).unwrap();
     fs::write(dir.path().join("b.svg"), chained).unwrap();
     let out = run(&["compare", "--json", "a.svg", "b.svg"], b"");

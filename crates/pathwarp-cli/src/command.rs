@@ -26,7 +26,7 @@ const AFTER: &str = "Path references (PATHREF), wherever an option takes a path:
   'x,y x,y …'     plain points; 50%,0% counts from the frame's left and top
 
 Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
-Everything is composed before any curve is fitted.
+Everything is composed before any curve is fitted. Inputs are named in the first part; the common options may stand in any.
 
 Exit codes: 0 all done; 1 done, but something was left as it was; 2 wrong usage; 3 input unreadable;
 4 the geometry forbids it. On 2, 3 and 4 no output file is touched.";
@@ -167,34 +167,45 @@ fn read(p: &Param, m: &ArgMatches, args: &mut Args) {
     }
 }
 
-/// A step after a `+`: a deformation and its own options, nothing else.
-fn chained_step(registry: &Registry, words: &[OsString]) -> Result<Step, Failure> {
+/// A step after a `+`: a deformation with its own options, and those of `shared`.
+fn chained_step(registry: &Registry, words: &[OsString], shared: &[Arg]) -> Result<(Step, ArgMatches), Failure> {
     let mut c = Command::new("pathwarp … +")
         .no_binary_name(true)
         .disable_help_flag(true)
         .disable_help_subcommand(true)
         .subcommand_required(true);
     for e in registry.entries() {
-        c = c.subcommand(Command::new(e.info().name).about(e.info().title).args(own_args(e.info())));
+        c = c.subcommand(Command::new(e.info().name).about(e.info().title).args(own_args(e.info())).args(shared));
     }
-    let m = c.try_get_matches_from(words)?;
-    m.subcommand()
-        .map(|(name, sub)| step(registry, name, sub))
+    let mut m = c.try_get_matches_from(words)?;
+    m.remove_subcommand()
+        .map(|(name, sub)| (step(registry, &name, &sub), sub))
         .ok_or_else(|| Failure::usage("a deformation must follow `+`"))
 }
 
-/// A deformation's matches and the parts after each `+`, as a recipe.
-pub(crate) fn recipe(
-    registry: &Registry,
-    name: &str,
-    m: &ArgMatches,
-    rest: &[Vec<OsString>],
-) -> Result<Recipe, Failure> {
-    let mut steps = vec![step(registry, name, m)];
+/// The steps after each `+`, and the common options among them, which count for all of the chain: to be read with the first
+/// part's.
+pub(crate) fn chain(registry: &Registry, rest: &[Vec<OsString>]) -> Result<(Vec<Step>, Vec<OsString>), Failure> {
+    let shared: Vec<Arg> = common::options().collect();
+    let (mut steps, mut words) = (Vec::new(), Vec::new());
     for part in rest {
-        steps.push(chained_step(registry, part)?);
+        let (step, m) = chained_step(registry, part, &shared)?;
+        steps.push(step);
+        words.extend(common::as_typed(&m));
     }
-    Ok(Recipe { steps })
+    Ok((steps, words))
+}
+
+/// A deformation's matches and the steps after it, as a recipe.
+pub(crate) fn recipe(registry: &Registry, name: &str, m: &ArgMatches, rest: Vec<Step>) -> Recipe {
+    let mut steps = vec![step(registry, name, m)];
+    steps.extend(rest);
+    Recipe { steps }
+}
+
+/// The steps after each `+`, with no options but their own.
+pub(crate) fn bare_chain(registry: &Registry, rest: &[Vec<OsString>]) -> Result<Vec<Step>, Failure> {
+    rest.iter().map(|part| chained_step(registry, part, &[]).map(|(step, _)| step)).collect()
 }
 
 /// `pathwarp list`: a menu.

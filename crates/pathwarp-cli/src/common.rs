@@ -5,6 +5,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use pathwarp::kurbo::Rect;
 use pathwarp_svg::LetteringFrame;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// The default tolerance as a part of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
@@ -188,6 +189,32 @@ const OF_THE_RUN: [&str; 12] = [
     "quiet",
     "inverse",
 ];
+
+/// All but the inputs.
+pub(crate) fn options() -> impl Iterator<Item = Arg> {
+    args().into_iter().filter(|a| a.get_id() != "INPUT")
+}
+
+/// The common options of a command line, as words that say the same.
+pub(crate) fn as_typed(m: &ArgMatches) -> Vec<OsString> {
+    let mut out = Vec::new();
+    for a in options() {
+        let id = a.get_id().as_str();
+        if m.value_source(id) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        if !a.get_action().takes_values() {
+            out.push(format!("--{id}").into());
+            continue;
+        }
+        for value in m.get_raw(id).into_iter().flatten() {
+            let mut word = OsString::from(format!("--{id}="));
+            word.push(value);
+            out.push(word);
+        }
+    }
+    out
+}
 
 /// The options that a recipe may hold, with their help.
 pub(crate) fn recipe_options() -> impl Iterator<Item = (String, String)> {

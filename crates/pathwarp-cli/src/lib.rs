@@ -39,6 +39,7 @@ mod unwarp;
 
 pub use picture::Bender;
 
+use clap::ArgMatches;
 use failure::Failure;
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
@@ -82,13 +83,25 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
 fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> {
     // `A … + B …`: every part after a lone + is a command line of its own, all but the first without inputs.
     let mut parts = args.split(|a| a == "+").map(<[OsString]>::to_vec);
-    let first = parts.next().unwrap_or_default();
+    let mut first = parts.next().unwrap_or_default();
     let rest: Vec<_> = parts.collect();
-    let matches = command::build(registry).try_get_matches_from(&first)?;
+    let mut matches = command::build(registry).try_get_matches_from(&first)?;
+    let is_deformation = |m: &ArgMatches| m.subcommand_name().is_some_and(|name| registry.get(name).is_some());
+    let mut steps = Vec::new();
+    if is_deformation(&matches) {
+        let words;
+        (steps, words) = command::chain(registry, &rest)?;
+        if !words.is_empty() {
+            // Behind the deformation's name: what follows a lone -- are inputs.
+            let at = first.len().min(2);
+            first.splice(at..at, words);
+            matches = command::build(registry).try_get_matches_from(&first)?;
+        }
+    }
     let Some((name, sub)) = matches.subcommand() else {
         return Err(Failure::usage("no command is given; `pathwarp list` shows the deformations"));
     };
-    if registry.get(name).is_none() && name != "map" && !rest.is_empty() {
+    if !is_deformation(&matches) && name != "map" && !rest.is_empty() {
         return Err(Failure::usage(format!("`+` chains deformations; {name} is none")));
     }
     match name {
@@ -109,6 +122,6 @@ fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Outcome, Failure> 
         }
         "map" => query::run(registry, sub, &rest),
         "compare" => compare::run(sub),
-        _ => deform::run(registry, &command::recipe(registry, name, sub, &rest)?, sub),
+        _ => deform::run(registry, &command::recipe(registry, name, sub, steps), sub),
     }
 }

@@ -1,6 +1,6 @@
 //! `pathwarp map DEFORMATION … --points FILE`: plain points through a map, for scripts and for checking.
 
-use crate::command::{own_args, recipe};
+use crate::command::{bare_chain, own_args, recipe};
 use crate::failure::Failure;
 use crate::reference::References;
 use crate::{Outcome, deform, output};
@@ -58,7 +58,7 @@ pub(crate) fn command(registry: &Registry) -> Command {
 
 pub(crate) fn run(registry: &Registry, m: &ArgMatches, rest: &[Vec<OsString>]) -> Result<Outcome, Failure> {
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is needed")) };
-    let mut recipe = recipe(registry, name, m, rest)?;
+    let mut recipe = recipe(registry, name, m, bare_chain(registry, rest)?);
     References::new(None).resolve(registry, &mut recipe)?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = deform::read(&file)?;
