@@ -6,6 +6,7 @@ use crate::source::{self, Source};
 use crate::unfold;
 use pathwarp::Error;
 use std::borrow::Cow;
+use std::fs::File;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -142,13 +143,9 @@ pub(crate) fn tree(
         usvg::Options::default()
     };
     let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..base };
-    if options.base_dir.is_none() {
-        // Relative links would otherwise be looked for in the current folder.
-        usvg.image_href_resolver.resolve_string = Box::new(|_, _| None);
-    }
     let refused = Refused::default();
     if pictured {
-        bound_drawings(&mut usvg, name, options, &refused);
+        usvg.image_href_resolver = images(name, options, &refused);
     }
     let tree = usvg::Tree::from_xmltree(xml, &usvg).map_err(|e| {
         let problem = match e {
@@ -173,9 +170,10 @@ pub(crate) fn tree(
 /// Why a drawing shown as an image is not taken.
 type Refused = Arc<Mutex<Option<Error>>>;
 
-/// Holds drawings shown as images to the same bounds as the drawing itself.
-fn bound_drawings<'a>(usvg: &mut usvg::Options<'a>, name: &'a str, options: &'a ReadOptions, refused: &Refused) {
-    let refuses = move |refused: &Refused, data: &[u8], what: &str| {
+/// Images by their links and data: drawings among them are held to the same bounds as the drawing itself.
+fn images<'a>(name: &'a str, options: &'a ReadOptions, refused: &Refused) -> usvg::ImageHrefResolver<'a> {
+    let refused = refused.clone();
+    let refuses = move |data: &[u8], what: &str| {
         let place = format!("{name}: {what}");
         let checked = text(data, &place, options).ok().map(|t| match source::xml(&t, &place) {
             Ok(xml) => unfold::check(&xml, &place),
@@ -188,18 +186,35 @@ fn bound_drawings<'a>(usvg: &mut usvg::Options<'a>, name: &'a str, options: &'a 
         }
         true
     };
-    let resolver = std::mem::take(&mut usvg.image_href_resolver);
-    let (data_of, file_of) = (resolver.resolve_data, resolver.resolve_string);
-    let also = refused.clone();
-    usvg.image_href_resolver.resolve_data = Box::new(move |mime, data, usvg| {
-        let drawing = matches!(mime, "image/svg+xml" | "text/plain");
-        if drawing && refuses(&also, &data, "the drawing in an image") { None } else { data_of(mime, data, usvg) }
+    let known = usvg::ImageHrefResolver::default_data_resolver();
+    let take = Arc::new(move |mime: &str, data: Arc<Vec<u8>>, what: &str, usvg: &usvg::Options<'_>| {
+        let drawing = matches!(mime, "image/svg+xml" | ANY);
+        if drawing && refuses(&data, what) { None } else { known(mime, data, usvg) }
     });
-    let also = refused.clone();
-    usvg.image_href_resolver.resolve_string = Box::new(move |link, usvg| {
-        let data = link.contains(".svg").then(|| std::fs::read(usvg.get_abs_path(Path::new(link))).ok()).flatten();
-        if data.is_some_and(|d| refuses(&also, &d, link)) { None } else { file_of(link, usvg) }
-    });
+    let also = take.clone();
+    usvg::ImageHrefResolver {
+        resolve_data: Box::new(move |mime, data, usvg| also(mime, data, "the drawing in an image", usvg)),
+        resolve_string: Box::new(move |link, usvg| {
+            // Without a folder of its own, a drawing's relative links would be looked for in the current one.
+            options.base_dir.as_ref()?;
+            take(ANY, Arc::new(linked(&usvg.get_abs_path(Path::new(link)))?), link, usvg)
+        }),
+    }
+}
+
+/// The type of data that is told by looking at it.
+const ANY: &str = "text/plain";
+
+/// The bytes of a linked image. A link may name anything that the file system holds; what is no plain file, or larger than
+/// images are, is not read.
+fn linked(file: &Path) -> Option<Vec<u8>> {
+    const MOST: u64 = 1 << 28;
+    let plain = std::fs::metadata(file).ok()?.is_file();
+    let mut data = Vec::new();
+    if plain {
+        File::open(file).ok()?.take(MOST + 1).read_to_end(&mut data).ok()?;
+    }
+    (plain && data.len() as u64 <= MOST).then_some(data)
 }
 
 /// Reads any SVG or svgz data into usvg's tree, with the same fonts and bounds as [`crate::Document::read`].

@@ -100,6 +100,19 @@ fn linked_drawings_are_geometry_too() {
     assert!(!w.svg.contains("<image") && w.svg.contains("<g id='i'"), "{}", w.svg);
 }
 
+/// A link may name anything the file system holds; without a folder, nothing.
+#[test]
+fn what_is_no_plain_file_is_not_read() {
+    let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples");
+    let with = ReadOptions { base_dir: Some(samples.into()), ..options() };
+    let links = ["/dev/zero", "../samples", "no-such.svg", "../../../samples/logo.svg?"];
+    for (link, with) in links.map(|l| (l, &with)).into_iter().chain([("samples/logo.svg", &options())]) {
+        let svg = drawing(&format!("<image id='i' x='10' y='10' width='80' height='80' href='{link}'/>"));
+        let w = Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &warp_options()).unwrap();
+        assert!(w.svg.contains("<image id='i'"), "{link}: {}", w.svg);
+    }
+}
+
 /// SVG 2, section 12.3: what an image shows is cut at the edge of its drawing. (The renderer forgets that, so truth is a group
 /// with such a clip path.)
 #[test]
