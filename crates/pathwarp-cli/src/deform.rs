@@ -399,7 +399,7 @@ fn tell(r: &report::Input) {
         terminal::warning(&of(w));
     }
     for s in r.skipped.iter().take(SHOWN) {
-        terminal::warning(&of(&format!("{} is left as it was: {}", s.id, s.why)));
+        terminal::warning(&of(&format!("{} is not warped: {}", s.id, s.why)));
     }
     for s in r.shapes.iter().filter(|s| !s.over_budget.is_empty()).take(SHOWN) {
         let [x, y] = s.over_budget[0];

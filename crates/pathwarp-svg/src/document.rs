@@ -2,7 +2,7 @@
 
 use crate::geometry::Reader;
 use crate::letters;
-use crate::read::{self, ReadOptions};
+use crate::read::{self, Missed, ReadOptions};
 use crate::resolve::{self, Tiling};
 use crate::scene::{self, Role, Scene};
 use crate::select::{self, Selection};
@@ -21,7 +21,7 @@ pub struct Document {
     /// What is painted; where the stack may be small, it is worked out when it is first asked for.
     scene: OnceLock<Scene>,
     shapes: OnceLock<Vec<Shape>>,
-    pub(crate) missing_fonts: Vec<String>,
+    pub(crate) missed: Missed,
     pub(crate) page: Size,
     /// Whether walking it takes little stack.
     pub(crate) shallow: bool,
@@ -81,24 +81,24 @@ impl Document {
         let (source, read) = Source::read(text, name, |source, xml| {
             let shallow = read::is_shallow(source);
             let resolve = || {
-                let (tree, missing_fonts) = read::tree(xml, name, options)?;
+                let (tree, missed) = read::tree(xml, name, options)?;
                 let letters = letters::owners(source, name, options)?;
                 let scene = OnceLock::new();
                 if !shallow {
                     scene.get_or_init(|| resolve::build(&tree, source, &letters, dpi, None));
                 }
-                Ok((tree, letters, missing_fonts, scene))
+                Ok((tree, letters, missed, scene))
             };
             Ok((if shallow { resolve()? } else { read::with_stack(name, resolve)? }, shallow))
         })?;
-        let ((tree, letters, missing_fonts, scene), shallow) = read;
+        let ((tree, letters, missed, scene), shallow) = read;
         Ok(Self {
             name: name.to_owned(),
             packed,
             source: Arc::new(source),
             scene,
             shapes: OnceLock::new(),
-            missing_fonts,
+            missed,
             page: Size::new(f64::from(tree.size().width()), f64::from(tree.size().height())),
             shallow,
             tree: Arc::new(tree),
@@ -164,7 +164,7 @@ impl Document {
             source: self.source.clone(),
             scene: scene.into(),
             shapes: OnceLock::new(),
-            missing_fonts: self.missing_fonts.clone(),
+            missed: self.missed.clone(),
             page: self.page,
             shallow: self.shallow,
             tree: self.tree.clone(),

@@ -99,7 +99,7 @@ fn similar(family: &str, db: &Database) -> String {
     format!("there are {}", names.join(", "))
 }
 
-/// Families that were asked for and not found.
+/// What was asked for and not found.
 pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
 /// The fonts to look in. The system's are read once per process.

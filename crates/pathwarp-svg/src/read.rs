@@ -111,13 +111,22 @@ pub(crate) fn with_stack<T: Send>(name: &str, f: impl FnOnce() -> Result<T, Erro
     })
 }
 
-/// usvg's tree, and the font families that were asked for and not found.
+/// What a drawing asked for and did not get.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Missed {
+    /// Font families.
+    pub(crate) fonts: Vec<String>,
+    /// Links to images; of embedded ones as far as their type.
+    pub(crate) images: Vec<String>,
+}
+
+/// usvg's tree, and what was not found for it.
 pub(crate) fn tree(
     xml: &roxmltree::Document<'_>,
     name: &str,
     options: &ReadOptions,
-) -> Result<(usvg::Tree, Vec<String>), Error> {
-    let missing = Missing::default();
+) -> Result<(usvg::Tree, Missed), Error> {
+    let (missing, unread) = (Missing::default(), Missing::default());
     let text = xml.input_text();
     // Reading the machine's fonts takes longer than most drawings do. An embedded SVG image may hold text of its own.
     let (mut lettered, mut pictured, mut referring, mut markers) = (false, false, false, 0);
@@ -145,7 +154,7 @@ pub(crate) fn tree(
     let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..base };
     let refused = Refused::default();
     if pictured {
-        usvg.image_href_resolver = images(name, options, &refused);
+        usvg.image_href_resolver = images(name, options, &refused, &unread);
     }
     let tree = usvg::Tree::from_xmltree(xml, &usvg).map_err(|e| {
         let problem = match e {
@@ -163,16 +172,27 @@ pub(crate) fn tree(
     if let Some(e) = refused.lock().ok().and_then(|mut r| r.take()) {
         return Err(e);
     }
-    let missing = missing.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
-    Ok((tree, missing))
+    let [fonts, images] = [missing, unread].map(|m| m.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default());
+    Ok((tree, Missed { fonts, images }))
 }
 
 /// Why a drawing shown as an image is not taken.
 type Refused = Arc<Mutex<Option<Error>>>;
 
 /// Images by their links and data: drawings among them are held to the same bounds as the drawing itself.
-fn images<'a>(name: &'a str, options: &'a ReadOptions, refused: &Refused) -> usvg::ImageHrefResolver<'a> {
+fn images<'a>(
+    name: &'a str,
+    options: &'a ReadOptions,
+    refused: &Refused,
+    unread: &Missing,
+) -> usvg::ImageHrefResolver<'a> {
     let refused = refused.clone();
+    let [not_this, nor_this] = [unread.clone(), unread.clone()];
+    let miss = |unread: &Missing, link: String| {
+        if let Ok(mut u) = unread.lock() {
+            u.insert(link);
+        }
+    };
     let refuses = move |data: &[u8], what: &str| {
         let place = format!("{name}: {what}");
         let checked = text(data, &place, options).ok().map(|t| match source::xml(&t, &place) {
@@ -193,14 +213,28 @@ fn images<'a>(name: &'a str, options: &'a ReadOptions, refused: &Refused) -> usv
     });
     let also = take.clone();
     usvg::ImageHrefResolver {
-        resolve_data: Box::new(move |mime, data, usvg| also(mime, data, "the drawing in an image", usvg)),
+        resolve_data: Box::new(move |mime, data, usvg| {
+            let image = also(mime, data, "the drawing in an image", usvg);
+            // Of the kinds that are known, none stands for all of its kind.
+            if image.is_none() && !matches!(mime, "image/svg+xml" | ANY) {
+                miss(&not_this, format!("{DATA}{mime}"));
+            }
+            image
+        }),
         resolve_string: Box::new(move |link, usvg| {
             // Without a folder of its own, a drawing's relative links would be looked for in the current one.
-            options.base_dir.as_ref()?;
-            take(ANY, Arc::new(linked(&usvg.get_abs_path(Path::new(link)))?), link, usvg)
+            let file = options.base_dir.as_ref().map(|_| usvg.get_abs_path(Path::new(link)));
+            let image = file.and_then(|f| linked(&f)).and_then(|data| take(ANY, Arc::new(data), link, usvg));
+            if image.is_none() {
+                miss(&nor_this, link.to_owned());
+            }
+            image
         }),
     }
 }
+
+/// What links to embedded data begin with.
+pub(crate) const DATA: &str = "data:";
 
 /// The type of data that is told by looking at it.
 const ANY: &str = "text/plain";

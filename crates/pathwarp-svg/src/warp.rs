@@ -28,7 +28,7 @@ pub struct Warped {
     pub svg: String,
     /// What was done, per shape in painting order.
     pub shapes: Vec<ShapeReport>,
-    /// What was left as it was.
+    /// What was not warped.
     pub skipped: Vec<Skipped>,
     /// What the owner should know.
     pub warnings: Vec<String>,
@@ -60,7 +60,7 @@ pub struct ShapeReport {
     pub pictures: usize,
 }
 
-/// Something that was left as it was.
+/// Something that was not warped: left as it was, or out of a drawing written anew where it cannot be.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Skipped {
     /// The source's id, or a readable stand-in.
@@ -256,8 +256,8 @@ impl Document {
             out.warnings
                 .push("images and what filters work on are not repeated; they follow the row as a whole".into());
         }
-        if !self.missing_fonts.is_empty() {
-            let names = self.missing_fonts.join(", ");
+        if !self.missed.fonts.is_empty() {
+            let names = self.missed.fonts.join(", ");
             out.warnings
                 .push(format!("text is set in another font, for want of {names}; install it or outline the text"));
         }
@@ -278,6 +278,7 @@ impl Document {
 
     fn write(&self, job: &write::Job<'_>, out: &mut Warped) -> Result<(), Error> {
         let structure = job.options.structure;
+        let unread = self.unread(&job.options.selection);
         let mut notes = Notes::default();
         for (what, whom) in &self.scene().notes {
             notes.add(what, whom);
@@ -288,7 +289,10 @@ impl Document {
             _ => Some(keep::write(job, &mut out.skipped, &mut notes)),
         };
         out.svg = match (kept, structure) {
-            (Some(Ok(svg)), _) => svg,
+            (Some(Ok(svg)), _) => {
+                out.skipped.extend(unread);
+                svg
+            }
             (Some(Err(why)), Structure::Keep) => {
                 return Err(Error::input(&self.name, format!("the file's structure cannot be kept: {why}")));
             }
@@ -296,12 +300,28 @@ impl Document {
                 if let Some(Err(why)) = kept {
                     out.warnings.push(format!("the file is written anew, its structure could not be kept: {why}"));
                 }
+                out.skipped.extend(unread.map(|s| Skipped { why: s.why + "; it is left out", ..s }));
                 write::flat(job, &mut out.skipped, &mut notes)
             }
         };
         out.warnings.extend(notes.lines());
         out.overhang = job.overhang();
         Ok(())
+    }
+
+    /// The chosen elements whose pictures could not be read.
+    fn unread(&self, selection: &Selection) -> impl Iterator<Item = Skipped> {
+        let source = &self.source;
+        let chosen = if self.missed.images.is_empty() { Vec::new() } else { selection.resolve(source) };
+        let images = chosen.into_iter().enumerate().filter(|(e, chosen)| *chosen && source.elements[*e].tag == "image");
+        images.filter_map(|(e, _)| {
+            let own = source.link(e)?;
+            let is_own =
+                |link: &&String| **link == *own || link.starts_with(read::DATA) && own.starts_with(link.as_str());
+            let link = self.missed.images.iter().find(is_own)?;
+            let reason = if link.contains("://") { "is no file of this machine" } else { "cannot be read" };
+            Some(Skipped { id: source.display_name(e), why: format!("its picture, {link}, {reason}") })
+        })
     }
 
     /// Where filtered groups and images go: the affine fit of the map over each.

@@ -6,7 +6,7 @@ mod common;
 
 use common::{Bend, check, curved, drawing, oblique, options, read, warp, warp_options};
 use pathwarp::kurbo::Affine;
-use pathwarp_svg::{Document, ReadOptions, Structure, WarpOptions};
+use pathwarp_svg::{Document, ReadOptions, Selection, Structure, WarpOptions};
 
 /// A drawing as a link, percent-encoded.
 fn link(svg: &str) -> String {
@@ -105,11 +105,22 @@ fn linked_drawings_are_geometry_too() {
 fn what_is_no_plain_file_is_not_read() {
     let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples");
     let with = ReadOptions { base_dir: Some(samples.into()), ..options() };
-    let links = ["/dev/zero", "../samples", "no-such.svg", "../../../samples/logo.svg?"];
+    let links = ["/dev/zero", "../samples", "no-such.svg", "../../../samples/logo.svg?", "data:image/bmp,"];
     for (link, with) in links.map(|l| (l, &with)).into_iter().chain([("samples/logo.svg", &options())]) {
         let svg = drawing(&format!("<image id='i' x='10' y='10' width='80' height='80' href='{link}'/>"));
         let w = Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &warp_options()).unwrap();
         assert!(w.svg.contains("<image id='i'"), "{link}: {}", w.svg);
+        let [left] = &w.skipped[..] else { panic!("{link}: {:?}", w.skipped) };
+        assert!(left.id == "i" && left.why.contains(link.trim_end_matches(',')), "{left:?}");
+        // Nor is it told of where it was not meant, and written anew it is gone.
+        let other = Selection { exclude: vec!["#i".into()], ..Selection::default() };
+        let options = WarpOptions { selection: other, ..warp_options() };
+        assert!(
+            Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &options).unwrap().skipped.is_empty()
+        );
+        let options = WarpOptions { structure: Structure::Flatten, ..warp_options() };
+        let anew = Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &options).unwrap();
+        assert!(!anew.svg.contains("<image") && anew.skipped.iter().any(|s| s.why.contains("left out")));
     }
 }
 
