@@ -2,7 +2,8 @@
 
 use super::super::chebyshev::SAMPLES;
 use super::super::fit::Frame;
-use super::super::samples::between;
+use super::super::samples::{CHECKED, FITTED, between};
+use super::tables::Basis;
 use super::*;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
