@@ -189,6 +189,18 @@ impl Frame {
         best
     }
 
+    /// The distances whose squares these are, with the sign of the side of the cubic that the samples are on.
+    #[inline(always)]
+    pub(super) fn sided(&self, g: &Lanes, a: f64, b: f64, s: &Lane, squares: &Lane) -> Lane {
+        let c = self.power(a, b);
+        let mut out = [0.0; 8];
+        for i in 0..8 {
+            let (rx, ry, dx, dy) = at(&c, s[i], g.x[i], g.y[i]);
+            out[i] = squares[i].sqrt().copysign(fma(rx, dy, -(ry * dx)));
+        }
+        out
+    }
+
     /// The other handle on the curve of equal area through `z` whose first handle is `a`.
     pub(super) fn slide(&self, z: &State, a: f64) -> f64 {
         let k2 = 0.5 * self.t1.cross(self.t0);

@@ -15,6 +15,8 @@ const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
 const PACE: f64 = 100.0;
 /// Where only eight are looked at, by this (squared): an image that slows down more may turn between two of them.
 const EVEN_PACE: f64 = 25.0;
+/// Where a fit to the eight that are looked at is taken by them alone, by this (squared).
+const EASY_PACE: f64 = 6.25;
 /// What residuals at the fitted samples make of those at 8/17 and 9/17, in the widest gap between them, if they are v²·(polynomial
 /// of degree seven), v = τ(1−τ). The second is the first read backwards.
 const AMID: Lane = {
@@ -36,6 +38,8 @@ const AMID: Lane = {
     }
     out
 };
+/// What errors rise by between these samples is taken for so many times what a parabola rises; halfway between, half as many.
+pub(super) const STEEPER: f64 = 2.5;
 /// Spacing.
 pub(super) const UNIT: f64 = 1.0 / 17.0;
 
@@ -190,16 +194,14 @@ impl Job<'_> {
     #[inline(always)]
     pub(super) fn amid(&self, z: &State, s0: &Lane, squares: &Lane) -> f64 {
         let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
-        if self.seen(z, s0, (&next, &neighbours(s0), &neighbours(&FITTED))) >= EVEN_PACE {
+        if self.seen(z, s0, (&next, &neighbours(s0), &neighbours(&FITTED))) >= EASY_PACE {
             return f64::INFINITY;
         }
-        let power = self.frame.power(z.a, z.b);
+        let n = self.frame.sided(self.g, z.a, z.b, s0, squares);
         let (mut left, mut right) = ([0.0; 8], [0.0; 8]);
         for i in 0..8 {
-            let (rx, ry, dx, dy) = at(&power, s0[i], self.g.x[i], self.g.y[i]);
-            let n = squares[i].sqrt().copysign(fma(rx, dy, -(ry * dx)));
-            left[i] = n * AMID[i];
-            right[i] = n * AMID[7 - i];
+            left[i] = n[i] * AMID[i];
+            right[i] = n[i] * AMID[7 - i];
         }
         fit::larger(fit::sum(&left).abs(), fit::sum(&right).abs())
     }
@@ -270,19 +272,26 @@ pub(super) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> Feet {
     v
 }
 
-/// The largest of the errors and of what they may rise to between the samples. A parabola through a top and its neighbours rises
-/// by an eighth of its second difference at most; corners and faster swings rise more.
-pub(super) fn foreseen(errors: &[f64]) -> f64 {
-    /// So many times as much as a parabola is allowed for.
-    const STEEPER: f64 = 2.5;
-    let mut most = 0.0;
-    for w in errors.windows(3) {
-        let [a, b, c] = [w[0], w[1], w[2]];
-        if b >= a && b >= c {
-            most = fit::larger(b + (STEEPER / 8.0) * (2.0 * b - a - c), most);
-        }
+/// Whether the feet step from sample to sample about as the samples do. Where one leaps, image or cubic nearly stops in between,
+/// and the distance has a corner there that may be far higher than the errors on both sides.
+#[inline(always)]
+pub(super) fn steady(feet: &Feet) -> bool {
+    /// The longest step, in spacings.
+    const LONGEST: f64 = 1.6;
+    let mut longest = 0.0;
+    for i in 1..18 {
+        longest = fit::larger(feet[i] - feet[i - 1], longest);
     }
-    most
+    longest < LONGEST * UNIT
+}
+
+/// What an error may rise to beside a sample where it is larger than at both neighbours; elsewhere nothing. Errors have the sign
+/// of the side they are on. A parabola through a top and its neighbours rises by an eighth of its second difference at most;
+/// corners and faster swings rise more, `steeper` times as much.
+#[inline(always)]
+pub(super) fn foreseen([before, top, after]: [f64; 3], steeper: f64) -> f64 {
+    let (a, b, c) = (before.copysign(before * top), top.abs(), after.copysign(after * top));
+    if b >= a && b >= c { b + (steeper / 8.0) * (2.0 * b - a - c) } else { 0.0 }
 }
 
 /// What the polyline through the samples looks like.

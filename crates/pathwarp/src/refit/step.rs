@@ -5,18 +5,20 @@ use super::certify::{self, Algebra};
 use super::fit::{self, Fit, Frame, State, fma};
 use super::sampled::Sampled;
 use super::samples::{
-    CHECKED, FITTED, Glance, Job, Shape, UNIT, between, foreseen, hermite_exact, interleaved, straight,
+    CHECKED, FITTED, Glance, Job, STEEPER, Shape, UNIT, between, foreseen, hermite_exact, interleaved, steady, straight,
 };
 use super::source::{Curve, End, Lane, Lanes};
 use super::split::Slow;
 use super::verify::{self, Candidate, Feet};
 use kurbo::{Line, Point, Vec2};
 
-/// Below this share of the tolerance what sampled errors may rise by in between is not asked for: between sixteen samples a residual
-/// of the leading form s²(1−s)²((s−½)²−c) rises by four percent at most, others by little more.
+/// Below this share of the tolerance errors are small: between sixteen samples a residual of the leading form s²(1−s)²((s−½)²−c)
+/// rises by four percent at most, others by little more.
 const SURE: f64 = 0.7;
-/// Up to this share what they are foreseen to rise to is let pass.
+/// Up to this share of the tolerance what errors are foreseen to rise to is let pass.
 const RISEN: f64 = 0.97;
+/// An error halfway between two samples that is farther than this share from their mean was not to be foreseen by them.
+const ASTRAY: f64 = 0.3;
 /// The same for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
 const DENSE: f64 = 0.995;
 /// The longest proof loses more than the rest of the tolerance.
@@ -387,21 +389,20 @@ impl<C: Curve> Stepper<'_, C> {
         }
         let feet = interleaved(&s0, &s1, 1.0);
         let (sound, even) = job.sound(&check, z, &s0, &s1);
-        if trusted && sound && error <= RISEN * self.tolerance {
-            if error <= SURE * self.tolerance {
-                return Ok(error);
-            }
-            let errors = interleaved(&d0, &d1, 0.0).map(f64::sqrt);
-            let sixteen = foreseen(&errors);
+        if trusted && sound && steady(&feet) && error <= RISEN * self.tolerance {
+            let frame = &job.frame;
+            let [e0, e1] = [(job.g, &s0, &d0), (&check, &s1, &d1)].map(|(g, s, d)| frame.sided(g, z.a, z.b, s, d));
+            let errors = interleaved(&e0, &e1, 0.0);
+            let sixteen = errors.windows(3).map(|w| foreseen([w[0], w[1], w[2]], STEEPER)).fold(error, f64::max);
             if sixteen <= RISEN * self.tolerance {
                 return Ok(sixteen);
             }
+            let limits = [SURE, RISEN, ASTRAY].map(|share| share * self.tolerance);
             if even
-                && let Some(closer) =
-                    verify::halfway(self.source, &job.candidate(z), &feet, &errors, SURE * self.tolerance)?
+                && let Some(closer) = verify::halfway(self.source, &job.candidate(z), &feet, &errors, limits)?
                 && closer <= DENSE * self.tolerance
             {
-                return Ok(closer);
+                return Ok(closer.max(error));
             }
         }
         self.dense(job, z, &feet, error)

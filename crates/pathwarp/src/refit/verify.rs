@@ -1,7 +1,7 @@
 //! Dense checks of a fitted piece against the true image, both ways.
 
 use super::fit::{self, Frame};
-use super::samples::foreseen;
+use super::samples::{STEEPER, foreseen};
 use super::source::{Curve, Lane, Lanes};
 use super::split::Slow;
 use kurbo::{Point, Vec2};
@@ -57,22 +57,31 @@ impl Candidate {
     }
 }
 
-/// As [`foreseen`], with samples halfway between those of more than `sure` too; `None` where there are too many. `errors` go with
-/// `feet`.
+/// What the errors of sixteen samples may rise to between them; where a sample or that is above its limit, by samples halfway
+/// beside it. `None` where that is nearly everywhere, or the errors halfway have nothing to do with those beside them. `errors` go
+/// with `feet`, and have the sign of their side; the third limit is how far they may be from the mean of their neighbours.
 pub(super) fn halfway(
     source: &impl Curve,
     c: &Candidate,
     feet: &Feet,
     errors: &Feet,
-    sure: f64,
+    limits: [f64; 3],
 ) -> Result<Option<f64>, Point> {
     /// Places looked at.
     const MOST: usize = 16;
     let mut all = [0.0; 2 * FEET - 1];
+    let mut in_doubt = [false; FEET];
+    let mut most = 0.0f64;
+    for j in 1..FEET - 1 {
+        let rises = foreseen([errors[j - 1], errors[j], errors[j + 1]], STEEPER);
+        in_doubt[j] = errors[j].abs() > limits[0] || rises > limits[1];
+        most = most.max(if in_doubt[j] { 0.0 } else { rises });
+        all[2 * j] = errors[j];
+    }
     let mut gaps = [0; MOST];
     let mut n = 0;
-    for (j, w) in errors.windows(2).enumerate() {
-        if w[0].max(w[1]) > sure {
+    for j in 0..FEET - 1 {
+        if in_doubt[j] || in_doubt[j + 1] {
             if n == MOST {
                 return Ok(None);
             }
@@ -80,28 +89,34 @@ pub(super) fn halfway(
             n += 1;
         }
     }
-    for (j, e) in errors.iter().enumerate() {
-        all[2 * j] = *e;
-    }
-    for gaps in gaps[..n].chunks(8) {
+    let gaps = &gaps[..n];
+    for gaps in gaps.chunks(8) {
         let tau = std::array::from_fn(|i| (gaps[i.min(gaps.len() - 1)] as f64 + 0.5) / (FEET - 1) as f64);
-        let squares = looked(source, c, feet, &tau, 2)?;
-        for (j, d) in gaps.iter().zip(squares) {
-            all[2 * j + 1] = d.sqrt();
+        let (g, s, squares) = looked(source, c, feet, &tau, 2)?;
+        let sided = c.frame.sided(&g, c.a, c.b, &s, &squares);
+        for (j, e) in gaps.iter().zip(sided) {
+            all[2 * j + 1] = e;
+            if (e - 0.5 * (errors[*j] + errors[j + 1])).abs() > limits[2] {
+                return Ok(None);
+            }
         }
     }
-    // What is larger than `sure` has both its neighbours; of the rest, nothing comes near.
-    for e in &mut all {
-        *e = e.max(sure);
-    }
-    Ok(Some(foreseen(&all)))
+    let tops = gaps.iter().map(|j| 2 * j + 1).chain((1..FEET - 1).filter(|j| in_doubt[*j]).map(|j| 2 * j));
+    Ok(Some(tops.map(|k| foreseen([all[k - 1], all[k], all[k + 1]], 0.5 * STEEPER)).fold(most, f64::max)))
 }
 
-/// Squared distances at further places.
-fn looked(source: &impl Curve, c: &Candidate, feet: &Feet, tau: &Lane, steps: usize) -> Result<Lane, Point> {
+/// Images at further places, their feet, and the squared distances.
+fn looked(
+    source: &impl Curve,
+    c: &Candidate,
+    feet: &Feet,
+    tau: &Lane,
+    steps: usize,
+) -> Result<(Lanes, Lane, Lane), Point> {
     let mut s: Lane = tau.map(|t| guess(feet, t));
     let g = c.images(source, tau)?;
-    Ok(c.frame.distances(&g, c.a, c.b, &mut s, steps))
+    let squares = c.frame.distances(&g, c.a, c.b, &mut s, steps);
+    Ok((g, s, squares))
 }
 
 /// The distance between the candidate and the image over its stretch, by many samples, more of them around slow spots.
@@ -119,7 +134,7 @@ pub(super) fn dense(
     let walk = |tau: &Lane, worst: &mut f64, last: &mut Foot, depth: u32| -> Result<(bool, Lane), Point> {
         walk(source, c, feet, tau, worst, last, depth)
     };
-    let looked = |tau: &Lane, steps: usize| looked(source, c, feet, tau, steps);
+    let looked = |tau: &Lane, steps: usize| looked(source, c, feet, tau, steps).map(|(_, _, squares)| squares);
     let mut even = [[0.0; 8]; BATCHES];
     for (k, squares) in even.iter_mut().enumerate() {
         let tau: Lane = std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (BATCHES * 8) as f64);
@@ -137,11 +152,20 @@ pub(super) fn dense(
         if even[i] < NEAR * worst || even[i] < before || even[i] < after {
             continue;
         }
-        let at = (i as f64 + 0.5) * STEP;
-        let tau = spread(at - STEP, at + STEP).map(|t| t.clamp(0.0, 1.0));
-        let d = looked(&tau, 3)?;
-        let largest = fit::largest(&d);
-        tops = tops.max(largest.sqrt()).max(peak(&d, largest));
+        // Closer and closer while it rises.
+        let (mut at, mut w) = ((i as f64 + 0.5) * STEP, STEP);
+        for _ in 0..ZOOMS {
+            let tau = spread(at - w, at + w).map(|t| t.clamp(0.0, 1.0));
+            let d = looked(&tau, 3)?;
+            let top = (0..8).fold(0, |k, j| if d[j] > d[k] { j } else { k });
+            let (highest, rise) = (d[top].sqrt(), peak(&d, d[top]));
+            let news = highest.max(rise) > RISES * tops;
+            tops = tops.max(highest).max(rise);
+            if !news {
+                break;
+            }
+            (at, w) = (tau[top], 0.25 * w);
+        }
     }
     for t in slow.all() {
         let at = (t - c.t0) / (c.t1 - c.t0);
@@ -164,6 +188,9 @@ pub(super) fn dense(
 
 /// A sample whose square is below this share of the largest is no top.
 const NEAR: f64 = 0.64;
+/// A top that is this many times as high as what was seen before is looked at closer, so often at most.
+const RISES: f64 = 1.001;
+const ZOOMS: usize = 4;
 /// Between samples.
 const STEP: f64 = 1.0 / (BATCHES * 8) as f64;
 
