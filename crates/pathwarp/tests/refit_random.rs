@@ -125,7 +125,7 @@ proptest! {
 /// What such tests have found.
 #[test]
 fn errors_between_the_samples_are_seen() {
-    let all = cases::risen_between_samples().into_iter().chain([
+    let all = cases::risen_between_samples().into_iter().chain(cases::leaps_between_samples()).chain([
         cases::hook_at_a_cusp(),
         cases::slow_between_samples(),
         cases::hidden_in_the_middle(),
