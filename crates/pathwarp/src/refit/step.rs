@@ -15,7 +15,8 @@ use kurbo::{Line, Point, Vec2};
 /// Below this share of the tolerance errors are small: between sixteen samples a residual of the leading form s²(1−s)²((s−½)²−c)
 /// rises by four percent at most, others by little more.
 const SURE: f64 = 0.7;
-/// Up to this share of the tolerance what errors are foreseen to rise to is let pass.
+/// Up to this share of the tolerance what errors are foreseen to rise to is let pass; up to the other where the
+/// pace is uneven or nothing is known of the map.
 const RISEN: f64 = 0.97;
 /// An error halfway between two samples that is farther than this share from their mean was not to be foreseen by them.
 const ASTRAY: f64 = 0.3;
@@ -394,7 +395,7 @@ impl<C: Curve> Stepper<'_, C> {
             let [e0, e1] = [(job.g, &s0, &d0), (&check, &s1, &d1)].map(|(g, s, d)| frame.sided(g, z.a, z.b, s, d));
             let errors = interleaved(&e0, &e1, 0.0);
             let sixteen = errors.windows(3).map(|w| foreseen([w[0], w[1], w[2]], STEEPER)).fold(error, f64::max);
-            if sixteen <= RISEN * self.tolerance {
+            if sixteen <= if even && !self.opaque() { RISEN } else { SURE } * self.tolerance {
                 return Ok(sixteen);
             }
             let limits = [SURE, RISEN, ASTRAY].map(|share| share * self.tolerance);
