@@ -278,11 +278,24 @@ pub(super) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> Feet {
 pub(super) fn steady(feet: &Feet) -> bool {
     /// The longest step, in spacings.
     const LONGEST: f64 = 1.6;
-    let mut longest = 0.0;
-    for i in 1..18 {
-        longest = fit::larger(feet[i] - feet[i - 1], longest);
+    let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
+    for i in 0..8 {
+        first[i] = feet[i + 1] - feet[i];
+        second[i] = feet[i + 9] - feet[i + 8];
     }
-    longest < LONGEST * UNIT
+    let longest = fit::larger(fit::largest(&first), fit::largest(&second));
+    fit::larger(feet[17] - feet[16], longest) < LONGEST * UNIT
+}
+
+/// The most that [`foreseen`] says of sixteen samples.
+#[inline(always)]
+pub(super) fn most_foreseen(errors: &Feet) -> f64 {
+    let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
+    for i in 0..8 {
+        first[i] = foreseen([errors[i], errors[i + 1], errors[i + 2]], STEEPER);
+        second[i] = foreseen([errors[i + 8], errors[i + 9], errors[i + 10]], STEEPER);
+    }
+    fit::larger(fit::largest(&first), fit::largest(&second))
 }
 
 /// What an error may rise to beside a sample where it is larger than at both neighbours; elsewhere nothing. Errors have the sign
@@ -290,8 +303,11 @@ pub(super) fn steady(feet: &Feet) -> bool {
 /// corners and faster swings rise more, `steeper` times as much.
 #[inline(always)]
 pub(super) fn foreseen([before, top, after]: [f64; 3], steeper: f64) -> f64 {
-    let (a, b, c) = (before.copysign(before * top), top.abs(), after.copysign(after * top));
-    if b >= a && b >= c { b + (steeper / 8.0) * (2.0 * b - a - c) } else { 0.0 }
+    let side = 1.0f64.copysign(top);
+    let (a, b, c) = (before * side, top * side, after * side);
+    let rises = b + (steeper / 8.0) * (2.0 * b - a - c);
+    // Comparisons in this form become no jumps.
+    if (b >= a) & (b >= c) { rises } else { 0.0 }
 }
 
 /// What the polyline through the samples looks like.
