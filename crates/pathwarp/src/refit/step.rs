@@ -18,8 +18,6 @@ const SURE: f64 = 0.7;
 /// Up to this share of the tolerance what errors are foreseen to rise to is let pass; up to the other where the
 /// pace is uneven or nothing is known of the map.
 const RISEN: f64 = 0.97;
-/// Below this share of the tolerance the corners that an error has where the feet leap do not come near it.
-const LITTLE: f64 = 0.35;
 /// An error halfway between two samples that is farther than this share from their mean was not to be foreseen by them.
 const ASTRAY: f64 = 0.3;
 /// The same for the dense check, whose samples are four times as many, with parabolas through them: what those leave out.
@@ -392,7 +390,7 @@ impl<C: Curve> Stepper<'_, C> {
         }
         let feet = interleaved(&s0, &s1, 1.0);
         let (sound, even) = job.sound(&check, z, &s0, &s1);
-        if trusted && sound && (error <= LITTLE * self.tolerance || steady(&feet)) && error <= RISEN * self.tolerance {
+        if trusted && sound && steady(&feet) && error <= RISEN * self.tolerance {
             let frame = &job.frame;
             let [e0, e1] = [(job.g, &s0, &d0), (&check, &s1, &d1)].map(|(g, s, d)| frame.sided(g, z.a, z.b, s, d));
             let errors = interleaved(&e0, &e1, 0.0);
