@@ -151,6 +151,11 @@ pub(crate) fn run(root: &Path, program: &Path) -> Result<usize, Fault> {
     Ok(PAGES.iter().map(|p| p.jobs.len()).sum())
 }
 
+/// The command of every job, without its `pathwarp`.
+pub(crate) fn commands() -> impl Iterator<Item = &'static str> {
+    PAGES.iter().flat_map(|p| p.jobs).map(|j| j.command)
+}
+
 impl Page {
     fn folder(&self, root: &Path) -> PathBuf {
         root.join("docs").join(self.pictures)

@@ -49,7 +49,7 @@ pub(crate) fn run(root: &Path, program: Option<&Path>) -> Result<String, Fault> 
 }
 
 /// The program that draws the pictures.
-fn build(root: &Path) -> Result<std::path::PathBuf, Fault> {
+pub(crate) fn build(root: &Path) -> Result<std::path::PathBuf, Fault> {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["build", "--quiet", "--release", "--package", "pathwarp-cli", "--target-dir"]).arg(root.join("target"));
     let done = cargo.current_dir(root).status().map_err(|e| e.to_string())?;

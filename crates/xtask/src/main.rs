@@ -6,6 +6,7 @@ mod docs;
 mod guide;
 mod lettering;
 mod new_deformation;
+mod outputs;
 mod refit_report;
 mod svg_corpus;
 
@@ -108,6 +109,57 @@ fn main() -> ExitCode {
                 ),
         )
         .subcommand(
+            Command::new("outputs")
+                .about("Store a hash of everything the program writes, or compare with one stored")
+                .arg(
+                    Arg::new("store")
+                        .long("store")
+                        .value_name("FILE")
+                        .value_parser(value_parser!(PathBuf))
+                        .conflicts_with("check")
+                        .required_unless_present("check")
+                        .help("Run every example and write the hashes"),
+                )
+                .arg(
+                    Arg::new("check")
+                        .long("check")
+                        .value_name("FILE")
+                        .value_parser(value_parser!(PathBuf))
+                        .help("Run the commands of FILE again and name those that now write other bytes"),
+                )
+                .arg(
+                    Arg::new("drawings")
+                        .long("drawings")
+                        .value_name("FOLDER")
+                        .action(ArgAction::Append)
+                        .value_parser(value_parser!(PathBuf))
+                        .help("Also warp drawings of this folder; may be given several times"),
+                )
+                .arg(
+                    Arg::new("count")
+                        .long("count")
+                        .value_name("N")
+                        .value_parser(value_parser!(usize))
+                        .default_value("300")
+                        .help("Drawings taken from each folder"),
+                )
+                .arg(
+                    Arg::new("every")
+                        .long("every")
+                        .value_name("N")
+                        .value_parser(value_parser!(usize))
+                        .default_value("1")
+                        .help("Check one command of N"),
+                )
+                .arg(
+                    Arg::new("program")
+                        .long("program")
+                        .value_name("FILE")
+                        .value_parser(value_parser!(PathBuf))
+                        .help("The pathwarp to run [default: one is built]"),
+                ),
+        )
+        .subcommand(
             Command::new("docs").about("Write a page and a picture for every deformation, and the cookbook").arg(
                 Arg::new("program")
                     .long("program")
@@ -131,6 +183,17 @@ fn main() -> ExitCode {
             times: m.get_flag("times"),
         }),
         Some(("corpus", _)) => corpus::run().map(|()| "wrote corpus/icons.txt".to_owned()).map_err(|e| e.to_string()),
+        Some(("outputs", m)) => outputs::run(
+            &root,
+            &outputs::Task {
+                program: m.get_one("program").cloned(),
+                drawings: m.get_many("drawings").unwrap_or_default().cloned().collect(),
+                count: m.get_one("count").copied().unwrap_or(1),
+                file: m.get_one("store").or(m.get_one("check")).cloned().unwrap_or_default(),
+                check: m.contains_id("check"),
+                every: m.get_one("every").copied().unwrap_or(1),
+            },
+        ),
         Some(("docs", m)) => docs::run(&root, m.get_one::<PathBuf>("program").map(PathBuf::as_path)),
         Some(("refit-report", m)) => {
             match (m.get_one::<String>("path"), m.get_one::<f64>("tolerance"), m.get_one::<PathBuf>("out")) {
