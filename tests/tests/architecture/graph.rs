@@ -2,8 +2,9 @@
 //!
 //! Every path in the code is resolved to the file that *defines* the item, through re-exports and `use` aliases. Modules
 //! compiled only for tests are left out. Re-exports themselves (`pub use`) are no imports: a `mod.rs` may show what its
-//! children define. Code inside macro calls is not seen.
+//! children define.
 
+use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
 use syn::visit::{self, Visit};
 use syn::{Attribute, Item, UseTree, Visibility};
@@ -174,9 +175,42 @@ impl<'ast> Visit<'ast> for Paths<'_> {
         visit::visit_path(self, path);
     }
 
+    fn visit_macro(&mut self, call: &'ast syn::Macro) {
+        self.tokens(call.tokens.clone());
+        visit::visit_macro(self, call);
+    }
+
     fn visit_item_use(&mut self, _: &'ast syn::ItemUse) {}
 
     fn visit_item_mod(&mut self, _: &'ast syn::ItemMod) {}
+}
+
+impl Paths<'_> {
+    /// The paths within a macro's arguments, which are only tokens: names joined by `::`.
+    fn tokens(&mut self, tokens: TokenStream) {
+        let mut path: ModulePath = Vec::new();
+        let mut colons = 0;
+        for token in tokens {
+            match token {
+                TokenTree::Punct(p) if p.as_char() == ':' => colons += 1,
+                TokenTree::Ident(name) => {
+                    if colons != 2 {
+                        self.0.push(std::mem::take(&mut path));
+                    }
+                    path.push(name.to_string());
+                    colons = 0;
+                }
+                other => {
+                    self.0.push(std::mem::take(&mut path));
+                    colons = 0;
+                    if let TokenTree::Group(group) = other {
+                        self.tokens(group.stream());
+                    }
+                }
+            }
+        }
+        self.0.push(path);
+    }
 }
 
 /// Takes a `use` tree apart. What is not re-exported counts as used.
@@ -191,7 +225,6 @@ fn flatten(tree: &UseTree, front: &mut ModulePath, module: &mut Module, public: 
         UseTree::Glob(_) => module.globs.push(front.clone()),
         UseTree::Name(n) => alias(front, &n.ident.to_string(), &n.ident.to_string(), module, public),
         UseTree::Rename(r) => alias(front, &r.ident.to_string(), &r.rename.to_string(), module, public),
-        _ => {}
     }
 }
 

@@ -148,12 +148,12 @@ fn circles_are_found() {
         let files = files.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
         Crate::read(&files.collect()).arrows()
     };
-    // Through a re-export, a renamed import, a path in a body, and a grandchild.
+    // Through a re-export, a renamed import, a path in a macro, and a grandchild.
     let arrows = read(&[
         ("lib.rs", "mod a; mod b; mod c; pub use b::B;"),
         ("a.rs", "use crate::B as Other; pub struct A; fn f(_: Other) {}"),
         ("b/mod.rs", "mod deep; pub use deep::B;"),
-        ("b/deep.rs", "pub struct B; fn g() { crate::c::made(); }"),
+        ("b/deep.rs", "pub struct B; fn g() { vec![crate::c::made()]; }"),
         ("c.rs", "use super::a; pub fn made() -> a::A { a::A }"),
     ]);
     assert_eq!(circles(&arrows), [["a.rs", "b/deep.rs", "c.rs"]]);
