@@ -222,8 +222,8 @@ fn warp(
         },
         patterns: common.patterns,
         page: common.page,
-        copies: built.copies.clone(),
-        letters: LetterPlaces { places: built.letters.clone(), after: built.after.clone() },
+        copies: built.placement.copies.clone(),
+        letters: LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() },
         images: if common.images { Images::Warp(bender) } else { Images::Keep },
         ..WarpOptions::new(refit::Options {
             certify: common.certify,
@@ -245,11 +245,11 @@ fn warp(
             packed.then(|| compressed(&warped.svg)).transpose().map_err(|e| Failure::file(t, e.to_string()))?;
         output.push(Pending::new(t, packed.as_deref().unwrap_or(warped.svg.as_bytes()))?);
     }
-    for (file, text) in space::files(&doc, &recipe, &built, &options)? {
+    for (file, text) in space::files(&doc, &built, &options)? {
         output.push(Pending::new(&file, text.as_bytes())?);
     }
-    for (file, text) in built.steps.iter().flat_map(|s| &s.saves) {
-        output.push(Pending::new(Path::new(file), text.as_bytes())?);
+    for file in built.steps.iter().flat_map(|s| &s.saves) {
+        output.push(Pending::new(Path::new(&file.name), file.text.as_bytes())?);
     }
     if let Some(file) = &common.preview {
         output.push(Pending::new(file, &preview::draw(&doc, &warped.svg, &built, &read_options(input))?)?);
@@ -261,18 +261,18 @@ fn warp(
                 "frame: the artwork is lettering; its baseline, at {y:.6}, lies on the curve (--frame baseline-ascent)"
             ));
         }
-        notes.extend(built.steps.iter().flat_map(|s| s.notes.clone()));
+        notes.extend(built.steps.iter().flat_map(|s| s.explanation.notes.clone()));
     }
     let partly = !report.skipped.is_empty() || report.shapes.iter().any(|s| !s.over_budget.is_empty());
     let to_stdout = target.is_none().then(|| warped.svg.into_bytes());
     Ok(Job { report, output, to_stdout, notes, partly })
 }
 
-/// Whether a recipe's first step has a `--baseline` that was left at its default.
+/// Returns `true` if the recipe's first step has a baseline that was left at its default.
 fn wants_baseline(registry: &Registry, recipe: &Recipe) -> bool {
     let Some(step) = recipe.steps.first() else { return false };
-    let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
-    params.iter().any(|p| p.name == "baseline") && step.args.get("baseline").is_empty()
+    let baseline = registry.get(&step.deformation).and_then(|e| e.info().baseline);
+    baseline.is_some_and(|param| step.args.get(param).is_empty())
 }
 
 /// The frame that was chosen, with the letters in it.
@@ -306,7 +306,7 @@ fn report(
     target: Option<&Path>,
 ) -> report::Input {
     let folds = folds(doc, built, options);
-    let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
+    let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.explanation.warnings.clone()).collect();
     warnings.extend(warped.warnings.iter().cloned());
     warnings.extend(warped.overhang.map(beyond_the_page));
     // Parts of one text or `use` share an id, and are one shape in the report.
@@ -383,7 +383,7 @@ fn folds<'a>(doc: &'a Document, built: &BuiltRecipe, options: &WarpOptions) -> V
     let one = |(s, placed): (&'a pathwarp_svg::Shape, &Option<Outline>)| {
         let orientation = match placed {
             Some(outline) => fold::orientation(outline, s.filled, &built.after),
-            None => fold::orientation(&s.outline.repeated(&built.copies), s.filled, &built.map),
+            None => fold::orientation(&s.outline.repeated(&built.placement.copies), s.filled, &built.map),
         };
         (s.id.as_str(), orientation)
     };

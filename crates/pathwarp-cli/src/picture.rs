@@ -54,12 +54,12 @@ pub(crate) fn warp(
     let corners = [(0.0, 0.0), (area.x1, 0.0), (area.x1, area.y1), (0.0, area.y1)].map(Point::from);
     let artwork = Outline::from_points(&corners, true);
     let built = recipe.build(registry, Frame::new(frame), &[&artwork].into_iter()).map_err(Failure::of_recipe)?;
-    if !built.copies.is_empty() {
+    if !built.placement.copies.is_empty() {
         return Err(Failure::usage("a photograph cannot be repeated; --stretch repeat is for drawings"));
     }
     let map: Arc<dyn Map> = Arc::new(built.map.clone());
 
-    let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.warnings.clone()).collect();
+    let mut warnings: Vec<String> = built.steps.iter().flat_map(|s| s.explanation.warnings.clone()).collect();
     let nowhere = |p: Point| format!("the map is not defined on all of the picture, such as at {:.4},{:.4}", p.x, p.y);
     let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &*map, Affine::IDENTITY)
         .ok_or_else(|| Failure::Geometry(nowhere(area.center())))?;
@@ -88,10 +88,14 @@ pub(crate) fn warp(
         Some(t) => output.push(Pending::new(t, &out)?),
         None => to_stdout = Some(out),
     }
-    for (file, text) in built.steps.iter().flat_map(|s| &s.saves) {
-        output.push(Pending::new(Path::new(file), text.as_bytes())?);
+    for file in built.steps.iter().flat_map(|s| &s.saves) {
+        output.push(Pending::new(Path::new(&file.name), file.text.as_bytes())?);
     }
-    let notes = if common.explain { built.steps.iter().flat_map(|s| s.notes.clone()).collect() } else { Vec::new() };
+    let notes = if common.explain {
+        built.steps.iter().flat_map(|s| s.explanation.notes.clone()).collect()
+    } else {
+        Vec::new()
+    };
     let report = report::Input {
         file: display(input),
         output: target.map(|t| t.display().to_string()),

@@ -15,13 +15,13 @@ pub(crate) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &Rea
     let everything = Selection::default();
     // All there is to see, also what the warp has moved off the page.
     let artwork = [doc, &after].into_iter().filter_map(|d| d.artwork_box(&everything));
-    let guides = built.steps.iter().flat_map(|s| s.overlays.iter().map(|o| o.path.bounding_box()));
+    let guides = built.steps.iter().flat_map(|s| s.explanation.overlays.iter().map(|o| o.path.bounding_box()));
     let seen = artwork.chain(guides).filter(Rect::is_finite);
     let view = seen.fold(doc.view_box().union(after.view_box()), |all, r| all.union(r));
     let last = built.steps.len().saturating_sub(1);
     for (i, step) in built.steps.iter().enumerate() {
-        let has_target = step.overlays.iter().any(|o| o.role == Role::Target);
-        for o in &step.overlays {
+        let has_target = step.explanation.overlays.iter().any(|o| o.role == Role::Target);
+        for o in &step.explanation.overlays {
             // A middle step's guides lie in a plane that neither panel shows; a cage whose result goes to a Target is only a
             // pattern, and stands with the source.
             let (panel, kind) = match o.role {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use pathwarp::kurbo::Point;
 use pathwarp::map::Map;
-use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::recipe::BuiltRecipe;
 use pathwarp_mesh::Shape;
 use pathwarp_svg::{Document, WarpOptions};
 use std::path::PathBuf;
@@ -11,31 +11,28 @@ use std::path::PathBuf;
 /// The files that the recipe's steps ask for, with their text.
 pub(crate) fn files(
     doc: &Document,
-    recipe: &Recipe,
     built: &BuiltRecipe,
     options: &WarpOptions,
 ) -> Result<Vec<(PathBuf, String)>, Failure> {
     let mut out = Vec::new();
-    for (i, (step, b)) in recipe.steps.iter().zip(&built.steps).enumerate() {
+    for (i, b) in built.steps.iter().enumerate() {
         let Some(space) = &b.space else { continue };
         let before = &built.steps[..i];
-        let place = |p: Point| space(before.iter().fold(p, |q, s| s.map.point(q)));
+        let place = |p: Point| (space.place)(before.iter().fold(p, |q, s| s.map.point(q)));
         let shapes: Vec<_> = doc.selected(&options.selection).collect();
         let as_mesh = |filled: bool| -> Vec<Shape<'_>> {
             let wanted = shapes.iter().filter(|s| s.filled || !filled);
             wanted.map(|s| Shape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect()
         };
         let tolerance = options.refit.tolerance;
-        for (name, filled) in [("mesh", true), ("curves", false)] {
-            for file in step.args.get(name) {
-                let made = if filled {
-                    pathwarp_mesh::filled(&as_mesh(true), &place, tolerance)
-                } else {
-                    pathwarp_mesh::outlines(&as_mesh(false), &place, tolerance)
-                };
-                let text = made.map_err(|e| Failure::Geometry(format!("--{name}: {e}")))?;
-                out.push((PathBuf::from(file), text));
-            }
+        for file in &space.files {
+            let made = if file.filled {
+                pathwarp_mesh::filled(&as_mesh(true), &place, tolerance)
+            } else {
+                pathwarp_mesh::outlines(&as_mesh(false), &place, tolerance)
+            };
+            let text = made.map_err(|e| Failure::Geometry(format!("--{}: {e}", file.param)))?;
+            out.push((PathBuf::from(&file.name), text));
         }
     }
     Ok(out)

@@ -354,16 +354,14 @@ mod tests {
             (x + 1.0, y)
         }
     }
-    static BAD: Info = Info {
-        name: "bad",
-        title: "bad",
-        group: "Bad",
-        about: "Bad.",
-        source: "none",
-        params: &[Param::number("Loud", "No full stop").default("many")],
-        demo: &[],
-        examples: &[Example { what: "one only", command: "bad" }],
-        laws: &[
+    static BAD: Info = Info::new("bad", "bad")
+        .group("Bad")
+        .about("Bad.")
+        .source("none")
+        .params(&[Param::number("Loud", "No full stop").default("many")])
+        .demo(&[])
+        .examples(&[Example { what: "one only", command: "bad" }])
+        .laws(&[
             Law::Identity(&[]),
             Law::KeepsLines(&[]),
             Law::KeepsLinesAlong(&[], (1.0, 2.0)),
@@ -371,9 +369,8 @@ mod tests {
             Law::Area(&[], 7.0),
             Law::KeepsAngles(&[]),
             Law::Undoes(&[], &[]),
-        ],
-        cases: &[Case { args: &[], at: (0.0, 0.0), to: (1.0, 1.0), tolerance: 0.1 }],
-    };
+        ])
+        .cases(&[Case { args: &[], at: (0.0, 0.0), to: (1.0, 1.0), tolerance: 0.1 }]);
     impl Deformation for Bad {
         fn info(&self) -> &Info {
             &BAD

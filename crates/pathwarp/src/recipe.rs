@@ -1,6 +1,6 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
 
-use crate::deform::{Built, Overlay, Registry, Role};
+use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
@@ -41,11 +41,9 @@ pub struct BuiltRecipe {
     pub map: Chain,
     /// The steps one by one.
     pub steps: Vec<Built>,
-    /// Where the artwork stands before it is mapped ([`Built::copies`] of the first step). Empty: where it is.
-    pub copies: Vec<Affine>,
-    /// Where every letter of the frame goes instead of through the first step ([`Built::letters`]). Empty: all go through it.
-    pub letters: Vec<Vec<Affine>>,
-    /// The steps after the first, composed: what letters that are placed go through.
+    /// Copies of the artwork and letters placed one by one, by the first step.
+    pub placement: Placement,
+    /// The steps after the first, composed: the map for letters that were placed.
     pub after: Chain,
 }
 
@@ -62,8 +60,7 @@ impl Recipe {
     ) -> Result<BuiltRecipe, Error> {
         let mut map = Chain::default();
         let mut steps = Vec::with_capacity(self.steps.len());
-        let mut copies = Vec::new();
-        let mut letters: Vec<Vec<Affine>> = Vec::new();
+        let mut placement = Placement::default();
         let mut after = Chain::default();
         let first = frame.clone();
         for (i, step) in self.steps.iter().enumerate() {
@@ -75,17 +72,19 @@ impl Recipe {
                 }
             })?;
             if i > 0 {
-                let image = if letters.is_empty() {
-                    image_box(artwork.clone(), &copies, &map)
+                let image = if placement.letters.is_empty() {
+                    image_box(artwork.clone(), &placement.copies, &map)
                 } else {
-                    let placed = first.letters.iter().zip(&letters).map(|(l, p)| (&l.outline, p.as_slice()));
+                    let placed = first.letters.iter().zip(&placement.letters).map(|(l, p)| (&l.outline, p.as_slice()));
                     placed.filter_map(|(o, p)| image_box(std::iter::once(o), p, &after)).reduce(|a, b| a.union(b))
                 };
                 frame = image.map_or(frame, Frame::new);
             }
             let mut built = entry.build_from(&step.args, &frame)?;
-            let first_only =
-                [("repeats the artwork", !built.copies.is_empty()), ("places letters", !built.letters.is_empty())];
+            let first_only = [
+                ("repeats the artwork", !built.placement.copies.is_empty()),
+                ("places letters", !built.placement.letters.is_empty()),
+            ];
             for (what, _) in first_only.into_iter().filter(|(_, there)| *there) {
                 let problem = match (i, step.inverse) {
                     (0, false) => continue,
@@ -96,14 +95,13 @@ impl Recipe {
                 return Err(Error::Input { place, problem: format!("{what}, which {problem}") });
             }
             if i == 0 {
-                copies.clone_from(&built.copies);
-                letters.clone_from(&built.letters);
+                placement.clone_from(&built.placement);
             }
             if step.inverse {
-                if let Some([end, through]) = built.seam
-                    && let Some(at) = first_across(artwork.clone(), &copies, &map, end, through - end)
+                if let Some(Seam { end, through }) = built.seam
+                    && let Some(at) = first_across(artwork.clone(), &placement.copies, &map, end, through - end)
                 {
-                    built.warnings.push(format!(
+                    built.warn(format!(
                         "{}: the edges of what is undone meet on the ray from {} through {}: what crosses it, as at {}, is torn apart; \
                          turn the map or cut the artwork there",
                         step.deformation,
@@ -120,26 +118,25 @@ impl Recipe {
             map.push(Arc::clone(&built.map));
             steps.push(built);
         }
-        Ok(BuiltRecipe { map, steps, copies, letters, after })
+        Ok(BuiltRecipe { map, steps, placement, after })
     }
 }
 
 /// The same deformation turned round: by its own inverse, or by Newton's method over the frame.
-fn inverted(built: Built, frame: &Frame) -> Built {
+fn inverted(mut built: Built, frame: &Frame) -> Built {
     /// How far beyond the frame an answer may lie, as a share of its diagonal: strokes and handles reach over it.
     const REACH: f64 = 0.25;
     let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
     let map = built.map.inverse().unwrap_or_else(newton);
     // What was the source is now the result.
-    let overlays = built.overlays.into_iter().map(|o| {
-        let role = match o.role {
+    for Overlay { role, .. } in &mut built.explanation.overlays {
+        *role = match role {
             Role::Base => Role::Target,
             Role::Target => Role::Base,
             Role::Cage => Role::Cage,
         };
-        Overlay { role, ..o }
-    });
-    Built { map, overlays: overlays.collect(), ..built }
+    }
+    Built { map, ..built }
 }
 
 impl Recipe {

@@ -68,7 +68,8 @@ const TEMPLATE: &str = r#"//! One sentence: what NAME does to artwork.
 //! The formula, and where it comes from (paper and equation):
 //! x' = x, y' = y + h·sin(2π·x/l).
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{Formula, Real};
 use crate::param::{Axis, Param, Settings};
@@ -77,26 +78,22 @@ use std::sync::Arc;
 
 pub(super) struct TYPE;
 
-static INFO: Info = Info {
-    name: "NAME",
-    title: "one line for the menu",
-    group: "New",
-    about: "What it does and when to reach for it, in plain sentences.",
-    source: "paper and equation",
-    params: &[
+static INFO: Info = Info::new("NAME", "one line for the menu")
+    .group("New")
+    .about("What it does and when to reach for it, in plain sentences.")
+    .source("paper and equation")
+    .params(&[
         Param::length("height", Axis::Y, "Height of the wave.").default("10%").slider(0.0, 100.0),
         Param::length("length", Axis::X, "Length of the wave.").default("50%").within(1e-3, 1e9).slider(1.0, 1000.0),
-    ],
-    demo: &[],
-    examples: &[
+    ])
+    .examples(&[
         Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" },
         Example { what: "One long wave", command: "NAME samples/lettering.svg --length 100% --height 20% -o out.svg" },
-    ],
+    ])
     // What holds for every instance.
-    laws: &[Law::Identity(&[("height", "0")]), Law::Area(&[], 1.0)],
+    .laws(&[Law::Identity(&[("height", "0")]), Law::Area(&[], 1.0)])
     // Values known from elsewhere, in the frame 0,0,100,100: a quarter of the wave on, the crest.
-    cases: &[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }],
-};
+    .cases(&[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }]);
 
 impl Deformation for TYPE {
     fn info(&self) -> &Info {

@@ -17,30 +17,26 @@ fn main() -> std::process::ExitCode {
 
 struct RippleDeformation;
 
-static INFO: Info = Info {
-    name: "ripple",
-    title: "rings on water, spreading from a centre",
-    group: "Plug-ins",
-    about: "Pushes every point along its ray from the centre, outwards and inwards in turn.",
-    source: "this crate",
-    params: &[
+static INFO: Info = Info::new("ripple", "rings on water, spreading from a centre")
+    .group("Plug-ins")
+    .about("Pushes every point along its ray from the centre, outwards and inwards in turn.")
+    .source("this crate")
+    .params(&[
         Param::new("center", Kind::Point, "Where the rings start.").default("50%,50%"),
         Param::length("wavelength", Axis::Diagonal, "Distance from ring to ring.").default("20%").within(1e-3, 1e9),
         Param::length("height", Axis::Diagonal, "How far a point is pushed at most.").default("1%"),
-    ],
-    demo: &[],
-    examples: &[
+    ])
+    .examples(&[
         Example { what: "As it comes", command: "ripple samples/grid.svg -o out.svg" },
         Example { what: "From a corner", command: "ripple samples/logo.svg --center 0%,0% --height 2% -o out.svg" },
-    ],
-    laws: &[Law::Identity(&[("height", "0")])],
-    cases: &[Case {
+    ])
+    .laws(&[Law::Identity(&[("height", "0")])])
+    .cases(&[Case {
         args: &[("center", "50,50"), ("wavelength", "40"), ("height", "3")],
         at: (60.0, 50.0),
         to: (63.0, 50.0),
         tolerance: 1e-12,
-    }],
-};
+    }]);
 
 impl Deformation for RippleDeformation {
     fn info(&self) -> &Info {

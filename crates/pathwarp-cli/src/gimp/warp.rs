@@ -49,9 +49,7 @@ pub(crate) fn warp(
         }
     };
     let built = recipe.build(registry, Frame::new(frame), &outlines.iter()).map_err(Failure::of_recipe)?;
-    if built.steps.iter().any(|s| s.space.is_some())
-        && recipe.steps.iter().any(|s| ["mesh", "curves"].iter().any(|n| !s.args.get(n).is_empty()))
-    {
+    if built.steps.iter().filter_map(|s| s.space.as_ref()).any(|s| !s.files.is_empty()) {
         return Err(Failure::usage(
             "--mesh and --curves are for SVG files; give the paths as SVG (`pathwarp convert`)",
         ));
@@ -64,7 +62,8 @@ pub(crate) fn warp(
         shared: Arc::new(SharedEdges::among(outlines.iter())),
         ..refit::Options::new(tolerance)
     };
-    let places = if built.copies.is_empty() { vec![Affine::IDENTITY] } else { built.copies.clone() };
+    let places =
+        if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
     let one = |(&i, outline): (&usize, &Outline)| {
         let path = &input.file.paths[i];
         (warped(path, &places, &built.map, &options), fold::orientation(outline, false, &built.map))
@@ -77,7 +76,7 @@ pub(crate) fn warp(
         tolerance,
         shapes: Vec::new(),
         skipped: Vec::new(),
-        warnings: built.steps.iter().flat_map(|s| s.warnings.clone()).chain(input.damage.clone()).collect(),
+        warnings: built.steps.iter().flat_map(|s| s.explanation.warnings.clone()).chain(input.damage.clone()).collect(),
     };
     let all = results.iter().fold(Orientation::default(), |a, (_, o)| a.and(o));
     let mut strokes = Vec::with_capacity(meant.len());
@@ -109,7 +108,7 @@ pub(crate) fn warp(
     }
 
     // What has not been moved needs no rounding.
-    let exact = built.map.class() == Class::Affine(Affine::IDENTITY) && built.copies.is_empty();
+    let exact = built.map.class() == Class::Affine(Affine::IDENTITY) && built.placement.copies.is_empty();
     let decimals = common.precision.or((!exact).then(|| decimals(tolerance)));
     let with =
         |(i, strokes): &(usize, Vec<Stroke>)| GimpPath { strokes: strokes.clone(), ..input.file.paths[*i].clone() };
@@ -124,8 +123,8 @@ pub(crate) fn warp(
     } else if let Some(t) = target {
         output.push(Pending::new(t, text.as_bytes())?);
     }
-    for (file, text) in built.steps.iter().flat_map(|s| &s.saves) {
-        output.push(Pending::new(Path::new(file), text.as_bytes())?);
+    for file in built.steps.iter().flat_map(|s| &s.saves) {
+        output.push(Pending::new(Path::new(&file.name), file.text.as_bytes())?);
     }
     if let Some(file) = &common.preview {
         let before: Vec<GimpPath> = meant.iter().map(|&i| input.file.paths[i].clone()).collect();
@@ -133,7 +132,11 @@ pub(crate) fn warp(
         let doc = Document::read(before.as_bytes(), &report.file, &ReadOptions::default())?;
         output.push(Pending::new(file, &preview::draw(&doc, &after, &built, &ReadOptions::default())?)?);
     }
-    let notes = if common.explain { built.steps.iter().flat_map(|s| s.notes.clone()).collect() } else { Vec::new() };
+    let notes = if common.explain {
+        built.steps.iter().flat_map(|s| s.explanation.notes.clone()).collect()
+    } else {
+        Vec::new()
+    };
     let short = report.shapes.iter().any(|s| !s.over_budget.is_empty());
     let partly = !report.skipped.is_empty() || input.damage.is_some() || short;
     let to_stdout = (target.is_none() && common.into.is_none()).then(|| text.into_bytes());

@@ -2,7 +2,8 @@
 //!
 //! x' = a·x + c·y + e, y' = b·x + d·y + f. By parts, about a fixed point O: first scale, then skew, then rotate, then move.
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::map::AffineMap;
 use crate::param::{Axis, Kind, Param, Settings};
@@ -11,14 +12,12 @@ use std::sync::Arc;
 
 pub(super) struct AffineDeformation;
 
-static INFO: Info = Info {
-    name: "affine",
-    title: "scale, skew, rotate and move, or apply any matrix",
-    group: "Basics",
-    about: "Scales, skews, rotates and moves the artwork, in this order, about a point; or applies a matrix as SVG writes it. Control \
-points are moved exactly; no node is added.",
-    source: "SVG 2, section 8.5 (the transform property)",
-    params: &[
+static INFO: Info = Info::new("affine", "scale, skew, rotate and move, or apply any matrix")
+    .group("Basics")
+    .about("Scales, skews, rotates and moves the artwork, in this order, about a point; or applies a matrix as SVG writes it. Control \
+points are moved exactly; no node is added.")
+    .source("SVG 2, section 8.5 (the transform property)")
+    .params(&[
         Param::new("matrix", Kind::Numbers(6), "The matrix a,b,c,d,e,f as in SVG's matrix(); instead of the parts."),
         Param::number("scale-x", "Scale across.").default("1").slider(-2.0, 2.0),
         Param::number("scale-y", "Scale up and down.").default("1").slider(-2.0, 2.0),
@@ -29,9 +28,9 @@ points are moved exactly; no node is added.",
         Param::length("move-y", Axis::Y, "Shift downwards.").default("0"),
         Param::new("about", Kind::Point, "The point that scaling, skewing and rotating leave in place.")
             .default("50%,50%"),
-    ],
-    demo: &[("rotate", "20"), ("scale-x", "80%"), ("skew-x", "15")],
-    examples: &[
+    ])
+    .demo(&[("rotate", "20"), ("scale-x", "80%"), ("skew-x", "15")])
+    .examples(&[
         Example {
             what: "Lean lettering into an oblique",
             command: "affine samples/lettering.svg --skew-x -12 --about 0%,100% -o out.svg",
@@ -40,19 +39,18 @@ points are moved exactly; no node is added.",
             what: "A matrix as SVG writes it",
             command: "affine samples/icon.svg --matrix 0.8,0.2,-0.1,0.9,3,1 -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[]),
         Law::Identity(&[("rotate", "1turn"), ("about", "3,4")]),
         Law::Area(&[("scale-x", "2"), ("scale-y", "150%"), ("rotate", "33"), ("skew-x", "20")], 3.0),
         Law::Same(&[("scale-x", "-1"), ("scale-y", "-1")], &[("rotate", "180")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         Case { args: &[("matrix", "1 2 3 4 5 6")], at: (10.0, 100.0), to: (315.0, 426.0), tolerance: 1e-12 },
         Case { args: &[("rotate", "90"), ("about", "0,0")], at: (1.0, 0.0), to: (0.0, 1.0), tolerance: 1e-15 },
         Case { args: &[("skew-x", "45"), ("about", "0,0")], at: (0.0, 2.0), to: (2.0, 2.0), tolerance: 1e-14 },
-    ],
-};
+    ]);
 
 impl Deformation for AffineDeformation {
     fn info(&self) -> &Info {

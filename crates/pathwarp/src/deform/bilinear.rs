@@ -8,7 +8,8 @@
 //! twice the leading coefficient times u plus the middle one is −det F', so the root is chosen by the side of the fold that the
 //! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors};
 use crate::error::Error;
 use crate::map::{
@@ -20,22 +21,20 @@ use std::sync::Arc;
 
 pub(super) struct Bilinear;
 
-static INFO: Info = Info {
-    name: "bilinear",
-    title: "stretch artwork to four corners, its sides divided evenly",
-    group: "Envelopes",
-    about: "Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Uprights and levels stay straight \
+static INFO: Info = Info::new("bilinear", "stretch artwork to four corners, its sides divided evenly")
+    .group("Envelopes")
+    .about("Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Uprights and levels stay straight \
 and keep their even spacing, where projective would crowd them towards the far side; slanting lines become parabolas.\n\nBoth start \
-with the side that lies lowest on the screen, left to right, unless --base-as-drawn or --target-as-drawn say otherwise.",
-    source: "G. Wolberg, Digital Image Warping, 1990, section 3.6",
-    params: &[
+with the side that lies lowest on the screen, left to right, unless --base-as-drawn or --target-as-drawn say otherwise.")
+    .source("G. Wolberg, Digital Image Warping, 1990, section 3.6")
+    .params(&[
         Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
         Param::path("target", "Four anchors where they are to land.").default("0%,100% 100%,80% 100%,20% 0%,0%"),
         Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
-    ],
-    demo: &[("target", "0,100 95,90 75,20 15,5")],
-    examples: &[
+    ])
+    .demo(&[("target", "0,100 95,90 75,20 15,5")])
+    .examples(&[
         Example {
             what: "As it comes: a word that tapers, all letters equally wide",
             command: "bilinear samples/lettering.svg -o out.svg",
@@ -44,13 +43,13 @@ with the side that lies lowest on the screen, left to right, unless --base-as-dr
             what: "Four corners",
             command: "bilinear samples/logo.svg --target '0%,100% 90%,110% 100%,0% 15%,-10%' -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("target", "0,0 100,0 100,100 0,100")]),
         Law::KeepsLines(&[("target", "0,100 100,120 130,20 30,0")]),
         Law::Area(&[("target", "0,100 200,100 200,0 0,0")], 2.0),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         Case { args: FOUR, at: (0.0, 100.0), to: (0.0, 100.0), tolerance: 1e-12 },
         Case { args: FOUR, at: (100.0, 100.0), to: (95.0, 90.0), tolerance: 1e-12 },
         Case { args: FOUR, at: (100.0, 0.0), to: (75.0, 20.0), tolerance: 1e-12 },
@@ -58,10 +57,9 @@ with the side that lies lowest on the screen, left to right, unless --base-as-dr
         // The middle goes to the corners' mean, a side's quarter to its quarter.
         Case { args: FOUR, at: (50.0, 50.0), to: (46.25, 53.75), tolerance: 1e-12 },
         Case { args: FOUR, at: (25.0, 100.0), to: (23.75, 97.5), tolerance: 1e-12 },
-    ],
-};
+    ]);
 
-const FOUR: super::Pairs = &[("target", "0,100 95,90 75,20 15,5")];
+const FOUR: super::entry::Pairs = &[("target", "0,100 95,90 75,20 15,5")];
 
 impl Deformation for Bilinear {
     fn info(&self) -> &Info {
@@ -75,9 +73,9 @@ impl Deformation for Bilinear {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
         let mut built = Built::new(Arc::new(Chain::new([before, map.or_affine()])));
         if corners.iter().any(|d| *d > 0.0) && corners.iter().any(|d| *d < 0.0) {
-            built.warnings.push("bilinear: the Target is not convex: the artwork folds over itself".into());
+            built.warn("bilinear: the Target is not convex: the artwork folds over itself");
         }
-        built.overlays = overlays;
+        built.explanation.overlays = overlays;
         Ok(built)
     }
 }
@@ -245,8 +243,8 @@ mod tests {
 
     #[test]
     fn folds_are_told() {
-        assert!(build(FOUR).warnings.is_empty());
+        assert!(build(FOUR).explanation.warnings.is_empty());
         let dented = build(&[("target", "0,100 100,100 20,80 0,0"), ("target-as-drawn", "true")]);
-        assert!(dented.warnings[0].contains("folds"));
+        assert!(dented.explanation.warnings[0].contains("folds"));
     }
 }

@@ -5,7 +5,8 @@
 //! 2016, equations 11-13 and 26): see [`Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
 //! CAGD 2015.
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Explanation, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::lattice_file::{MOST_CELLS, MOST_DEGREE};
 use crate::map::{AffineMap, Birational, Class, Map, Rows};
@@ -16,18 +17,16 @@ use std::sync::Arc;
 
 pub(super) struct BirationalDeformation;
 
-static INFO: Info = Info {
-    name: "birational",
-    title: "bend artwork between two rows of points, uprights (or levels) kept straight",
-    group: "Envelopes",
-    about: "Draw where the top and the bottom of the artwork are to run, as two rows of equally many points from left to right: \
+static INFO: Info = Info::new("birational", "bend artwork between two rows of points, uprights (or levels) kept straight")
+    .group("Envelopes")
+    .about("Draw where the top and the bottom of the artwork are to run, as two rows of equally many points from left to right: \
 verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \
 then horizontals stay straight. The rows are curves that begin and end in their first and last points and are drawn towards the \
 others, as with any Bézier curve.\n\nAs long as the rows do not cross, the result does not fold over, and undoing it is exact and fast: no search is needed.\n\n\
 Each row's inner points must lie between the lines that join the rows' ends; --allow-poles does without that where the artwork \
-keeps off the places where the map is infinite. With --spline, rows of many points become B-splines and bend locally.",
-    source: "T. W. Sederberg, J. Zheng, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 2016",
-    params: &[
+keeps off the places where the map is infinite. With --spline, rows of many points become B-splines and bend locally.")
+    .source("T. W. Sederberg, J. Zheng, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 2016")
+    .params(&[
         Param::path(
             "top",
             "The top row, left to right: points x,y x,y …, or a path (its anchors; of a single curve its control points).",
@@ -51,9 +50,9 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
             "allow-poles",
             "Accept points outside the lines that join the rows' ends: the map is infinite somewhere then.",
         ),
-    ],
-    demo: &[("top", "0,10 30,-25 70,30 100,5"), ("bottom", "5,90 35,110 60,70 95,100")],
-    examples: &[
+    ])
+    .demo(&[("top", "0,10 30,-25 70,30 100,5"), ("bottom", "5,90 35,110 60,70 95,100")])
+    .examples(&[
         Example {
             what: "A word on a wave, its uprights kept straight",
             command: "birational samples/lettering.svg --top '0%,20% 30%,-60% 60%,90% 100%,0%' --bottom '0%,100% 35%,60% 60%,170% 100%,100%' -o out.svg",
@@ -66,8 +65,8 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
             what: "Many points: B-spline rows",
             command: "birational samples/grid.svg --spline 3 --top '0%,0% 20%,-20% 40%,10% 60%,-10% 80%,20% 100%,0%' --bottom '0%,100% 20%,90% 40%,115% 60%,90% 80%,110% 100%,100%' -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("top", "0,0 100,0"), ("bottom", "0,100 100,100")]),
         Law::Identity(&[("left", "0,0 0,25 0,50 0,75 0,100"), ("right", "100,0 100,25 100,50 100,75 100,100")]),
         Law::Identity(&[
@@ -87,8 +86,8 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
             &[("spline", "2"), ("top", "0,0 30,20 60,-20 100,0"), ("bottom", "0,90 30,90 60,80 100,100")],
             (0.0, 1.0),
         ),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // Corners on corners.
         Case { args: BENT, at: (0.0, 0.0), to: (0.0, 0.0), tolerance: 1e-12 },
         Case { args: BENT, at: (100.0, 100.0), to: (95.0, 110.0), tolerance: 1e-12 },
@@ -99,10 +98,9 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
             to: (50.0, -20.0),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
-const BENT: super::Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,100 60,70 95,110")];
+const BENT: super::entry::Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,100 60,70 95,110")];
 
 impl Deformation for BirationalDeformation {
     fn info(&self) -> &Info {
@@ -172,7 +170,7 @@ impl Deformation for BirationalDeformation {
             Class::Affine(m) => Arc::new(AffineMap(m)),
             _ => Arc::new(map),
         };
-        Ok(Built { notes, overlays, ..Built::new(map) })
+        Ok(Built::new(map).explained(Explanation { notes, overlays, ..Explanation::default() }))
     }
 }
 

@@ -9,7 +9,8 @@
 //!
 //! Both are smooth at the centre, being smooth in r². Elementary.
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Jet, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
@@ -19,15 +20,13 @@ use std::sync::Arc;
 
 pub(super) struct Bulge;
 
-static INFO: Info = Info {
-    name: "bulge",
-    title: "blow up the middle, or pinch it",
-    group: "Classics",
-    about: "Pushes artwork away from a centre, most in the middle and not at all at the radius; with a negative amount draws it in \
+static INFO: Info = Info::new("bulge", "blow up the middle, or pinch it")
+    .group("Classics")
+    .about("Pushes artwork away from a centre, most in the middle and not at all at the radius; with a negative amount draws it in \
 (pinch). Outside the radius nothing moves. --edge soft runs out without a kink at the rim; --edge sharp is rounder, and its pinch \
-undoes its bulge exactly.",
-    source: "elementary; see the formulas at the top of deform/bulge.rs",
-    params: &[
+undoes its bulge exactly.")
+    .source("elementary; see the formulas at the top of deform/bulge.rs")
+    .params(&[
         Param::number("amount", "At 1 the middle is twice as large, at -1 half as large (pinch).")
             .default("0.7")
             .within(-1.0, 1.0),
@@ -38,22 +37,22 @@ undoes its bulge exactly.",
             .slider(1.0, 1000.0),
         Param::new("edge", Kind::Choice(&["soft", "sharp"]), "How it ends at the rim: without a kink, or with one.")
             .default("soft"),
-    ],
-    demo: &[("amount", "1"), ("radius", "40")],
-    examples: &[
+    ])
+    .demo(&[("amount", "1"), ("radius", "40")])
+    .examples(&[
         Example { what: "As it comes", command: "bulge samples/logo.svg -o out.svg" },
         Example { what: "Pinch a word", command: "bulge samples/lettering.svg --amount -0.6 -o out.svg" },
         Example {
             what: "A bubble over a grid",
             command: "bulge samples/grid.svg --amount 1 --radius 25% --edge sharp -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("amount", "0")]),
         Law::Identity(&[("amount", "0"), ("edge", "sharp")]),
         Law::Undoes(&[("amount", "0.8"), ("edge", "sharp")], &[("amount", "-0.8"), ("edge", "sharp")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         Case { args: &[("radius", "40")], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 0.0 },
         Case { args: &[("radius", "40")], at: (90.0, 50.0), to: (90.0, 50.0), tolerance: 0.0 },
         // Half-way out, q = 1/4: sharp k = 2/√(7/4), soft k = 2^(9/16).
@@ -69,8 +68,7 @@ undoes its bulge exactly.",
             to: (50.0, 50.0 - 20.0 * 1.476_826_145_939_499_3),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
 impl Deformation for Bulge {
     fn info(&self) -> &Info {

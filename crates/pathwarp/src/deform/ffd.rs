@@ -9,7 +9,8 @@
 //! A region that is the artwork's own box has no outside: the pieces run on there, so that strokes and what else reaches over
 //! the outlines' box follow smoothly. Any other region ends in a border, beyond which nothing moves, unless `--extend` is given.
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Explanation, Overlay, Role, SavedFile};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::lattice_file::{self, MOST_CELLS, MOST_DEGREE};
 use crate::map::{self, AffineMap, Class, Lattice, LatticeMap, MOST_PINS, Map};
@@ -19,19 +20,17 @@ use std::sync::Arc;
 
 pub(super) struct Ffd;
 
-static INFO: Info = Info {
-    name: "ffd",
-    title: "pull artwork about by a grid of control points",
-    group: "Lattices and nets",
-    about: "A grid of control points lies over the artwork. Move some of them, and what lies near follows smoothly. Points are \
+static INFO: Info = Info::new("ffd", "pull artwork about by a grid of control points")
+    .group("Lattices and nets")
+    .about("A grid of control points lies over the artwork. Move some of them, and what lies near follows smoothly. Points are \
 named i,j: column from the left, row from the top, both from 0. A grid of degree 3x2 has 4 by 3 of them; higher degrees bend \
 more finely.\n\nOr say which points of the artwork are to go where (--pin), and the grid follows with the smallest change.\n\n\
 With a region of its own (--region) nothing moves outside it. So that the artwork does not tear at the region's border, leave \
-the outermost row or column of points there in its place (--freeze left:1); two keep it smooth, three keep its curvature.",
-    source: "T. W. Sederberg, S. R. Parry, Free-form deformation of solid geometric models, SIGGRAPH 1986; T. W. Sederberg, \
+the outermost row or column of points there in its place (--freeze left:1); two keep it smooth, three keep its curvature.")
+    .source("T. W. Sederberg, S. R. Parry, Free-form deformation of solid geometric models, SIGGRAPH 1986; T. W. Sederberg, \
 Computer Aided Geometric Design, chapter 14; for --pin: W. M. Hsu, J. F. Hughes, H. Kaufman, Direct manipulation of free-form \
-deformations, SIGGRAPH 1992",
-    params: &[
+deformations, SIGGRAPH 1992")
+    .params(&[
         Param::new("degree", Kind::Text("MxN"), "Degrees along x and y, 1 to 10 each: one less than the control points there.").default("3x3"),
         Param::new(
             "region",
@@ -54,9 +53,9 @@ control points. Default with --spline: 4x4."),
         Param::new("lattice", Kind::File, "Start from a saved grid (JSON) instead of --degree and a regular one; with --region it is \
 laid onto that."),
         Param::new("save-lattice", Kind::Save, "Save the grid with everything that was moved, to use it again."),
-    ],
-    demo: &[("degree", "3x2"), ("move", "1,0:5,25"), ("move", "2,1:15,-20"), ("move", "0,2:-10,5"), ("weight", "1,1:2")],
-    examples: &[
+    ])
+    .demo(&[("degree", "3x2"), ("move", "1,0:5,25"), ("move", "2,1:15,-20"), ("move", "0,2:-10,5"), ("weight", "1,1:2")])
+    .examples(&[
         Example {
             what: "Pull the middle of a logo upwards",
             command: "ffd samples/logo.svg --degree 2x2 --move 1,1:0,-60% -o out.svg",
@@ -73,8 +72,8 @@ laid onto that."),
             what: "A finer grid whose points act locally, saved for use again",
             command: "ffd samples/grid.svg --spline --degree 3x3 --cells 5x5 --move 3,3:25,20 --move 5,5:-25,10 --save-lattice out.json -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[]),
         Law::Identity(&[("degree", "10x1"), ("region", "10,20,30,40")]),
         Law::Identity(&[("degree", "3x2"), ("spline", "true"), ("extend", "true")]),
@@ -90,8 +89,8 @@ laid onto that."),
             &[("region", "20,30,50,40"), ("spline", "true"), ("cells", "3x2"), ("pin", "40,50:44,52"), ("freeze", "left:1,right:1,top:1,bottom:1")],
             [20.0, 30.0, 70.0, 70.0],
         ),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // The middle of degree 2×2: the middle point counts a quarter.
         Case { args: &[("degree", "2x2"), ("move", "1,1:10,-8")], at: (50.0, 50.0), to: (52.5, 48.0), tolerance: 1e-13 },
         // With weight 5 it counts 5/8 instead of 2/8: (3·50 + 5·60)/8.
@@ -99,8 +98,7 @@ laid onto that."),
         Case { args: &[("pin", "30,40:37,35")], at: (30.0, 40.0), to: (37.0, 35.0), tolerance: 1e-12 },
         // Halfway in a uniform quadratic B-spline of two cells the two middle points count a half each, along x and y.
         Case { args: &[("degree", "2x2"), ("cells", "2x2"), ("move", "1,1:8,0")], at: (50.0, 50.0), to: (52.0, 50.0), tolerance: 1e-13 },
-    ],
-};
+    ]);
 
 impl Deformation for Ffd {
     fn info(&self) -> &Info {
@@ -154,8 +152,11 @@ impl Deformation for Ffd {
         let regular = Lattice::regular(r, lattice.degree(), lattice.cells());
         let overlays =
             vec![Overlay { role: Role::Base, path: net(&regular) }, Overlay { role: Role::Cage, path: net(&lattice) }];
-        let file = s.texts("save-lattice").last().map(|f| ((*f).to_owned(), lattice_file::write(&lattice)));
-        Ok(Built { notes, overlays, warnings, saves: file.into_iter().collect(), ..Built::new(map) })
+        let mut built = Built::new(map).explained(Explanation { notes, overlays, warnings });
+        if let Some(name) = s.texts("save-lattice").last() {
+            built.saves.push(SavedFile { name: (*name).to_owned(), text: lattice_file::write(&lattice) });
+        }
+        Ok(built)
     }
 }
 

@@ -14,7 +14,8 @@
 //! Kannala & Brandt, *A generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses*, IEEE
 //! PAMI 28 (2006), equations (1)–(5).
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Kind, Param, Settings};
@@ -26,16 +27,14 @@ pub(super) struct Lens;
 
 const LENSES: &[&str] = &["rectilinear", "stereographic", "equidistant", "equisolid", "orthographic"];
 
-static INFO: Info = Info {
-    name: "lens",
-    title: "look through a fisheye, or straighten what was seen through one",
-    group: "Classics",
-    about: "Redraws the artwork as another lens would have taken it. From rectilinear to one of the fisheyes, straight lines bow \
+static INFO: Info = Info::new("lens", "look through a fisheye, or straighten what was seen through one")
+    .group("Classics")
+    .about("Redraws the artwork as another lens would have taken it. From rectilinear to one of the fisheyes, straight lines bow \
 outwards and the middle swells; the other way a fisheye picture is straightened. --field says how wide the view is from corner to \
-corner of the artwork's box: the wider, the stronger.",
-    source: "J. Kannala and S. Brandt, A generic camera model and calibration method for conventional, wide-angle, and fish-eye \
-lenses, IEEE PAMI 28, 2006, equations (1)-(5)",
-    params: &[
+corner of the artwork's box: the wider, the stronger.")
+    .source("J. Kannala and S. Brandt, A generic camera model and calibration method for conventional, wide-angle, and fish-eye \
+lenses, IEEE PAMI 28, 2006, equations (1)-(5)")
+    .params(&[
         Param::new("from", Kind::Choice(LENSES), "The lens that the artwork is drawn with.").default("rectilinear"),
         Param::new("to", Kind::Choice(LENSES), "The lens to draw it with.").default("equisolid"),
         Param::angle("field", "The angle of view across the diagonal of the artwork's box.")
@@ -48,9 +47,9 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)",
             "What keeps its size: the corners stay in place (corners), or the scale in the middle is kept (middle).",
         )
         .default("corners"),
-    ],
-    demo: &[],
-    examples: &[
+    ])
+    .demo(&[])
+    .examples(&[
         Example { what: "As it comes: a fisheye", command: "lens samples/grid.svg -o out.svg" },
         Example {
             what: "Straighten a picture taken with a fisheye",
@@ -60,8 +59,8 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)",
             what: "The middle to scale, the rest shrinking outwards",
             command: "lens samples/logo.svg --keep middle --field 150 -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("from", "equisolid"), ("to", "equisolid")]),
         Law::KeepsLines(&[("from", "orthographic"), ("to", "orthographic")]),
         Law::Undoes(
@@ -72,8 +71,8 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)",
             &[("from", "orthographic"), ("to", "equidistant"), ("center", "40,45"), ("field", "100")],
             &[("from", "equidistant"), ("to", "orthographic"), ("center", "40,45"), ("field", "100")],
         ),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         Case { args: &[], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 0.0 },
         Case { args: &[], at: (100.0, 0.0), to: (100.0, 0.0), tolerance: 1e-12 },
         // A right angle of view: tan θ = 1/2 half-way to the corner; to equidistant, θ / 45° of the way.
@@ -83,8 +82,7 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)",
             to: (50.0 + 50.0 * 0.590_334_470_601_733, 50.0 + 50.0 * 0.590_334_470_601_733),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
 impl Deformation for Lens {
     fn info(&self) -> &Info {
@@ -117,7 +115,7 @@ impl Deformation for Lens {
         let f1 = if s.choice("keep")? == "middle" { f } else { corner / to.radius(half) };
         let map = LensMap { center: s.point("center")?, from, to, f, f1 };
         let mut built = Built::new(Arc::new(map));
-        built.notes.push(format!("focal lengths {f:.6} and {f1:.6}"));
+        built.note(format!("focal lengths {f:.6} and {f1:.6}"));
         Ok(built)
     }
 }

@@ -12,7 +12,8 @@
 //! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
 //! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors;
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Formula, Real};
@@ -22,15 +23,13 @@ use std::sync::Arc;
 
 pub(super) struct Mls;
 
-static INFO: Info = Info {
-    name: "mls",
-    title: "move points of the artwork, and let the rest follow",
-    group: "Points",
-    about: "Say where points of the artwork are to go; everything else follows smoothly, most where it is near. --pair moves a \
+static INFO: Info = Info::new("mls", "move points of the artwork, and let the rest follow")
+    .group("Points")
+    .about("Say where points of the artwork are to go; everything else follows smoothly, most where it is near. --pair moves a \
 point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \
-it can, similar also lets them grow and shrink, affine lets them shear as well (it needs three pairs that are not on one line).",
-    source: "S. Schaefer, T. McPhail, J. Warren, Image deformation using moving least squares, SIGGRAPH 2006",
-    params: &[
+it can, similar also lets them grow and shrink, affine lets them shear as well (it needs three pairs that are not on one line).")
+    .source("S. Schaefer, T. McPhail, J. Warren, Image deformation using moving least squares, SIGGRAPH 2006")
+    .params(&[
         Param::new("pair", Kind::Text("X,Y:X,Y"), "A point of the artwork and where it goes; may be given many times.")
             .repeated(),
         Param::new("pin", Kind::Text("X,Y"), "A point that stays; may be given many times.").repeated(),
@@ -40,9 +39,9 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
         Param::number("alpha", "How local: the influence of a pair falls off with this power of the squared distance.")
             .default("1")
             .within(1.0, 4.0),
-    ],
-    demo: &[("pin", "10,90"), ("pin", "90,90"), ("pair", "50,15:60,5"), ("pair", "52,55:45,48")],
-    examples: &[
+    ])
+    .demo(&[("pin", "10,90"), ("pin", "90,90"), ("pair", "50,15:60,5"), ("pair", "52,55:45,48")])
+    .examples(&[
         Example {
             what: "Hold the bottom corners, pull the top to the right",
             command: "mls samples/logo.svg --pin 0%,100% --pin 100%,100% --pair '50%,0%:65%,-10%' -o out.svg",
@@ -55,8 +54,8 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
             what: "The anchors of one path to those of another",
             command: "mls samples/grid.svg --from samples/anchors.svg#base4 --to samples/anchors.svg#target4 --kind affine --fit grow -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("pin", "10,10"), ("pin", "90,20"), ("pin", "40,80")]),
         Law::Identity(&[("pin", "10,10"), ("pin", "90,20"), ("pin", "40,80"), ("kind", "affine")]),
         // A motion, a similitude, an affine map are reproduced by the kind that holds them.
@@ -65,8 +64,8 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
         Law::KeepsLines(&[("kind", "affine"), ("pair", "0,0:5,5"), ("pair", "90,0:70,33"), ("pair", "0,80:20,99")]),
         Law::Same(&[("pair", "1,2:3,4")], &[("pair", "50,60:52,62")]),
         Law::KeepsAngles(&[("pair", "0,0:0,0"), ("pair", "10,0:20,20"), ("kind", "similar")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // Handles land to the last bit.
         Case { args: THREE, at: (50.0, 50.0), to: (60.0, 45.0), tolerance: 0.0 },
         Case { args: THREE, at: (10.0, 20.0), to: (10.0, 20.0), tolerance: 0.0 },
@@ -79,10 +78,9 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
             to: (-8.0, 6.0),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
-const THREE: super::Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")];
+const THREE: super::entry::Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")];
 
 /// More handles than this would make every point a day's work.
 const MOST: usize = 1000;
@@ -131,7 +129,7 @@ impl Deformation for Mls {
         let crosses = |pick: fn(&(Point, Point)) -> Point| {
             crosses(handles.iter().map(pick), s.frame().extent(Axis::Diagonal) / 100.0)
         };
-        built.overlays = vec![
+        built.explanation.overlays = vec![
             Overlay { role: Role::Base, path: crosses(|h| h.0) },
             Overlay { role: Role::Target, path: crosses(|h| h.1) },
         ];

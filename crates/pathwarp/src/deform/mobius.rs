@@ -11,7 +11,8 @@
 //! rational of degree 2n, exactly. The inverse is (d·w − b)/(a − c·w). Ahlfors, *Complex Analysis* (3rd ed. 1979), §3.3;
 //! Needham, *Visual Complex Analysis* (1997), chapter 3.
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Explanation, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors;
 use crate::error::{Error, GeometryError, show};
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real, bernstein::Scaled};
@@ -21,15 +22,13 @@ use std::sync::Arc;
 
 pub(super) struct Mobius;
 
-static INFO: Info = Info {
-    name: "mobius",
-    title: "take circles to circles, by a pole, three points or coefficients",
-    group: "Classics",
-    about: "Straight lines become arcs of circles, circles stay circles, and angles are kept: small squares stay small squares. The \
+static INFO: Info = Info::new("mobius", "take circles to circles, by a pole, three points or coefficients")
+    .group("Classics")
+    .about("Straight lines become arcs of circles, circles stay circles, and angles are kept: small squares stay small squares. The \
 simplest way in is the pole, the point that goes to infinity: artwork grows towards it and shrinks away from it. Or say where three \
-points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d), z = x + iy.\n\nArtwork must keep clear of the pole.",
-    source: "L. Ahlfors, Complex Analysis, 3rd edition 1979, section 3.3",
-    params: &[
+points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d), z = x + iy.\n\nArtwork must keep clear of the pole.")
+    .source("L. Ahlfors, Complex Analysis, 3rd edition 1979, section 3.3")
+    .params(&[
         Param::new(
             "pole",
             Kind::Point,
@@ -38,9 +37,9 @@ points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d),
         Param::path("from", "Three anchors in the source; with --to, instead of --pole."),
         Param::path("to", "Three anchors where they are to land."),
         Param::new("coefficients", Kind::Numbers(8), "Real and imaginary parts of a, b, c, d; instead of --pole."),
-    ],
-    demo: &[("pole", "60,250")],
-    examples: &[
+    ])
+    .demo(&[("pole", "60,250")])
+    .examples(&[
         Example { what: "As it comes", command: "mobius samples/logo.svg --fit grow -o out.svg" },
         Example {
             what: "Both ends of a word up, its middle kept",
@@ -50,8 +49,8 @@ points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d),
             what: "A grid of circles",
             command: "mobius samples/grid.svg --pole 130%,-40% --fit page -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("from", "0,0 50,20 100,0"), ("to", "0,0 50,20 100,0")]),
         Law::KeepsAngles(&[]),
         Law::KeepsAngles(&[("from", "0,100 50,100 100,100"), ("to", "0,100 50,80 100,100")]),
@@ -59,8 +58,8 @@ points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d),
         Law::Same(&[("pole", "50,250")], &[("coefficients", "-50,150 0,5000 -1,0 50,250")]),
         Law::Same(&[("coefficients", "0,1 3,4 0,0 2,0")], &[("coefficients", "0,-2 -6,-8 0,0 -4,0")]),
         Law::KeepsLines(&[("from", "0,0 50,0 100,0"), ("to", "0,0 50,50 100,100")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         Case { args: &[("pole", "50,250")], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 1e-12 },
         // Half-way to the pole, as far again as the pole.
         Case { args: &[("pole", "50,250")], at: (50.0, 150.0), to: (50.0, 250.0), tolerance: 1e-11 },
@@ -72,8 +71,7 @@ points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d),
             to: (50.0, 80.0),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
 /// The artwork must keep this share of the frame's diagonal away from the pole.
 const CLEAR: f64 = 0.02;
@@ -130,13 +128,13 @@ impl Deformation for Mobius {
         let Some(pole) = near else {
             let (a, b) = (div(a, d), div(b, d));
             let m = Affine::new([a.x, a.y, -a.y, a.x, b.x, b.y]);
-            return Ok(Built { overlays, ..Built::new(Arc::new(AffineMap(m))) });
+            return Ok(Built::new(Arc::new(AffineMap(m))).explained(Explanation { overlays, ..Explanation::default() }));
         };
         let mut built = Built::new(Arc::new(MobiusMap { m, clear: CLEAR * diagonal }));
-        built.overlays = overlays;
-        built.notes.push(format!("pole at {}", show(pole)));
+        built.explanation.overlays = overlays;
+        built.note(format!("pole at {}", show(pole)));
         if frame.contains(pole) {
-            built.warnings.push(format!(
+            built.warn(format!(
                 "mobius: the pole {} lies within the artwork's box: shapes around it are turned inside out",
                 show(pole)
             ));
@@ -290,7 +288,7 @@ mod tests {
         assert!(build(&[("from", "0,0 1,0 0,0"), ("to", "0,0 1,0 2,0")]).is_err());
         assert!(build(&[("pole", "50,50")]).is_err());
         let b = build(&[("pole", "50,80")]).unwrap();
-        assert!(b.warnings[0].contains("pole 50,80"));
+        assert!(b.explanation.warnings[0].contains("pole 50,80"));
         let art = crate::Outline::from_svg("M0,80 H100").unwrap();
         let e = crate::refit::warp_path(&art, &*b.map, &crate::refit::Options::new(0.1)).unwrap_err();
         assert!(e.to_string().contains("infinity at 4"), "{e}");

@@ -12,7 +12,8 @@
 //! direction, exact up to the ray opposite the middle. A whole turn meets itself there; what crosses it is cut and drawn on by a
 //! straight line, and the recipe warns of it. Elementary.
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::{Built, Seam};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
@@ -22,15 +23,13 @@ use std::sync::Arc;
 
 pub(super) struct Polar;
 
-static INFO: Info = Info {
-    name: "polar",
-    title: "bend artwork into an arch or a whole ring",
-    group: "Bends",
-    about: "Uprights become rays, levels become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
+static INFO: Info = Info::new("polar", "bend artwork into an arch or a whole ring")
+    .group("Bends")
+    .about("Uprights become rays, levels become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
 --inner and --outer set the radii instead. A negative sweep bends downwards (a smile). The middle of the artwork stays where it is, \
-unless --center says where the centre lies. With --spacing conformal, squares stay squares: heights grow with the width.",
-    source: "elementary (polar coordinates; the complex exponential)",
-    params: &[
+unless --center says where the centre lies. With --spacing conformal, squares stay squares: heights grow with the width.")
+    .source("elementary (polar coordinates; the complex exponential)")
+    .params(&[
         Param::angle("sweep", "The angle that the artwork's width is bent into; negative bends downwards.")
             .default("60")
             .within(-360.0, 360.0),
@@ -48,23 +47,23 @@ unless --center says where the centre lies. With --spacing conformal, squares st
             "How heights become radii: even, or conformal (angles are kept).",
         )
         .default("even"),
-    ],
-    demo: &[("turn", "15")],
-    examples: &[
+    ])
+    .demo(&[("turn", "15")])
+    .examples(&[
         Example { what: "An arch", command: "polar samples/lettering.svg --fit grow -o out.svg" },
         Example {
             what: "A whole ring about the middle",
             command: "polar samples/grid.svg --sweep 360 --inner 15% --outer 50% --center 50%,50% -o out.svg",
         },
         Example { what: "A smile", command: "polar samples/logo.svg --sweep -90 --fit grow -o out.svg" },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("sweep", "0")]),
         Law::KeepsAngles(&[("spacing", "conformal"), ("sweep", "200")]),
         Law::KeepsAngles(&[("spacing", "conformal"), ("sweep", "-77"), ("turn", "10")]),
         Law::Same(&[("sweep", "-360"), ("inner", "10"), ("outer", "60")], SMILE),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // A ring about 0,0: bottom middle at the top of the inner circle, the top's right end at the bottom of the outer one.
         Case { args: RING, at: (50.0, 100.0), to: (0.0, -10.0), tolerance: 1e-12 },
         Case { args: RING, at: (75.0, 0.0), to: (60.0, 0.0), tolerance: 1e-12 },
@@ -81,12 +80,11 @@ unless --center says where the centre lies. With --spacing conformal, squares st
         // A smile: the top is the inner edge and the middle of the bottom lies straight below the centre.
         Case { args: SMILE_AT_0, at: (50.0, 100.0), to: (0.0, 60.0), tolerance: 1e-12 },
         Case { args: SMILE_AT_0, at: (100.0, 0.0), to: (10.0, 0.0), tolerance: 1e-12 },
-    ],
-};
+    ]);
 
-const RING: super::Pairs = &[("sweep", "360"), ("inner", "10"), ("outer", "60"), ("center", "0,0")];
-const SMILE: super::Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
-const SMILE_AT_0: super::Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
+const RING: super::entry::Pairs = &[("sweep", "360"), ("inner", "10"), ("outer", "60"), ("center", "0,0")];
+const SMILE: super::entry::Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
+const SMILE_AT_0: super::entry::Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
 
 impl Deformation for Polar {
     fn info(&self) -> &Info {
@@ -145,9 +143,9 @@ impl Deformation for Polar {
         let mut built = Built::new(Arc::new(map));
         if map.is_whole() {
             let c = map.centre();
-            built.seam = Some([c, c + map.turned(Vec2::new(0.0, up))]);
+            built.seam = Some(Seam { end: c, through: c + map.turned(Vec2::new(0.0, up)) });
         }
-        built.notes.push(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
+        built.note(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
         Ok(built)
     }
 }
@@ -347,7 +345,7 @@ mod tests {
                 apart = apart.max(near);
             }
             assert!(apart < 0.0101, "{apart}");
-            (built.steps[0].warnings.clone(), warped.report.segments_out)
+            (built.steps[0].explanation.warnings.clone(), warped.report.segments_out)
         };
         let (warnings, segments) = unroll("M-31.37,40 H8.63 V80 H-31.37 Z");
         assert!(warnings.len() == 1 && warnings[0].contains("torn apart"), "{warnings:?}");

@@ -3,7 +3,8 @@
 //! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
 //! Image Warping*, 1989, §2.2). Straight lines stay straight.
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::{Built, Explanation};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors;
 use crate::error::Error;
 use crate::map::{AffineMap, Class, Map};
@@ -12,22 +13,20 @@ use std::sync::Arc;
 
 pub(super) struct Projective;
 
-static INFO: Info = Info {
-    name: "projective",
-    title: "put artwork in perspective: four points to four points, lines stay straight",
-    group: "Perspective and anamorphosis",
-    about: "Takes the four anchors of the Base (by default the corners of the artwork's box) to the four anchors of the Target. \
+static INFO: Info = Info::new("projective", "put artwork in perspective: four points to four points, lines stay straight")
+    .group("Perspective and anamorphosis")
+    .about("Takes the four anchors of the Base (by default the corners of the artwork's box) to the four anchors of the Target. \
 Straight lines stay straight and keep their two nodes.\n\nBoth start with the side that lies lowest on the screen, left to right, \
-unless --base-as-drawn or --target-as-drawn say otherwise.",
-    source: "P. Heckbert, Fundamentals of Texture Mapping and Image Warping, 1989, section 2.2",
-    params: &[
+unless --base-as-drawn or --target-as-drawn say otherwise.")
+    .source("P. Heckbert, Fundamentals of Texture Mapping and Image Warping, 1989, section 2.2")
+    .params(&[
         Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
         Param::path("target", "Four anchors where they are to land.").needed(),
         Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
-    ],
-    demo: &[("target", "0,100 100,90 75,20 15,5")],
-    examples: &[
+    ])
+    .demo(&[("target", "0,100 100,90 75,20 15,5")])
+    .examples(&[
         Example {
             what: "Lettering on a floor",
             command: "projective samples/lettering.svg --target '0%,100% 100%,100% 75%,0% 25%,0%' -o out.svg",
@@ -36,13 +35,13 @@ unless --base-as-drawn or --target-as-drawn say otherwise.",
             what: "Straighten a photographed sign",
             command: "projective samples/badge.svg --base '2%,90% 95%,98% 90%,5% 8%,10%' --target '0%,100% 100%,100% 100%,0% 0%,0%' -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("target", "0,0 100,0 100,100 0,100")]),
         Law::KeepsLines(&[("target", "0,100 100,90 75,20 15,5")]),
         Law::Area(&[("target", "0,200 200,200 200,0 0,0")], 4.0),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // The diagonals' crossing goes to the diagonals' crossing: here a symmetric trapezoid, diagonals (0,100)-(75,0), (100,100)-(25,0).
         Case {
             args: &[("target", "0,100 100,100 75,0 25,0")],
@@ -51,8 +50,7 @@ unless --base-as-drawn or --target-as-drawn say otherwise.",
             tolerance: 1e-12,
         },
         Case { args: &[("target", "0,100 100,100 75,0 25,0")], at: (100.0, 0.0), to: (75.0, 0.0), tolerance: 1e-12 },
-    ],
-};
+    ]);
 
 impl Deformation for Projective {
     fn info(&self) -> &Info {
@@ -66,6 +64,6 @@ impl Deformation for Projective {
             Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
             _ => Arc::new(map),
         };
-        Ok(Built { overlays, ..Built::new(map) })
+        Ok(Built::new(map).explained(Explanation { overlays, ..Explanation::default() }))
     }
 }

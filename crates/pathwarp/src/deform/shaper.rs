@@ -7,7 +7,8 @@
 //!
 //! The net is numbered p\[r\]\[s\]: row 0 is the bottom side run left to right, column 0 the left side run upwards.
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Explanation, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors, Arrangement};
 use crate::error::{Error, GeometryError};
 use crate::map::net::{self, Net};
@@ -19,18 +20,16 @@ use std::sync::Arc;
 
 pub(super) struct Shaper;
 
-static INFO: Info = Info {
-    name: "shaper",
-    title: "bend artwork into a closed path of four curved sides",
-    group: "Envelopes",
-    about: "Draw a closed path with four anchors: that is the shape. The artwork's box (or the Base) is laid onto it, sides on \
+static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four curved sides")
+    .group("Envelopes")
+    .about("Draw a closed path with four anchors: that is the shape. The artwork's box (or the Base) is laid onto it, sides on \
 sides, and everything inside follows smoothly. With a Target, the shaper's corners are then brought there, so that its own \
 size and place do not matter.\n\nWhich side is the bottom? The one that lies lowest on the screen, run left to right; --bottom \
 and --reverse-shaper overrule that, and --explain tells what was chosen. Two-anchor Bases and Targets are turned left to right, \
 four-anchor ones start with their lowest side; --base-as-drawn and --target-as-drawn take them as they were drawn.\n\nA Base of \
-two anchors fixes only the bottom side: artwork twice as tall as the Base is wide reaches past the shaper's top.",
-    source: "Markku Koppinen, A plane transformation from 16 control points, equations (1)-(10)",
-    params: &[
+two anchors fixes only the bottom side: artwork twice as tall as the Base is wide reaches past the shaper's top.")
+    .source("Markku Koppinen, A plane transformation from 16 control points, equations (1)-(10)")
+    .params(&[
         Param::path("shaper", "The closed path of four sides (lines, curves or arcs) to bend the artwork into."),
         Param::path(
             "net",
@@ -52,9 +51,9 @@ corners of the artwork's box.",
         Param::flag("reverse-shaper", "Run the bottom side the other way (right to left): the result is mirrored."),
         Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
-    ],
-    demo: &[("shaper", "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z")],
-    examples: &[
+    ])
+    .demo(&[("shaper", "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z")])
+    .examples(&[
         Example {
             what: "Bend a logo into a path of another file",
             command: "shaper samples/logo.svg --shaper samples/banner.svg -o out.svg",
@@ -67,8 +66,8 @@ corners of the artwork's box.",
             what: "A cage typed in place, and what was made of it",
             command: "shaper samples/monogram.svg --shaper 'M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z' --explain -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("shaper", "0,0 100,0 100,100 0,100")]),
         Law::Identity(&[("shaper", "M0,100 L0,0 L100,0 L100,100 Z")]),
         Law::Identity(&[("shaper", "0,0 10,0 10,10 0,10"), ("target", "0,100 100,100")]),
@@ -84,8 +83,8 @@ corners of the artwork's box.",
             &[("shaper", "M 90,15 L 95,85 Q 40,110 10,90 L 5,10 Z")],
         ),
         Law::KeepsLines(&[("shaper", "0,0 100,0 100,100 0,100"), ("target", "0,100 100,90 80,20 10,0")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // Corners on corners; the bottom side's middle on the bottom arc's middle (a quadratic: (10+2·40+95)/4, ...).
         Case { args: CASE, at: (0.0, 100.0), to: (10.0, 90.0), tolerance: 1e-12 },
         Case { args: CASE, at: (100.0, 100.0), to: (95.0, 85.0), tolerance: 1e-12 },
@@ -93,10 +92,9 @@ corners of the artwork's box.",
         Case { args: CASE, at: (50.0, 100.0), to: (46.25, 98.75), tolerance: 1e-12 },
         // The middle of a Coons patch: half the sum of the sides' middles less the corners' mean.
         Case { args: CASE, at: (50.0, 50.0), to: (46.875, 55.625), tolerance: 1e-12 },
-    ],
-};
+    ]);
 
-const CASE: super::Pairs = &[("shaper", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z")];
+const CASE: super::entry::Pairs = &[("shaper", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z")];
 
 impl Deformation for Shaper {
     fn info(&self) -> &Info {
@@ -163,7 +161,7 @@ impl Deformation for Shaper {
 
         let mut overlays = vec![Overlay { role: Role::Cage, path: cage }, overlay(Role::Base, &base)];
         overlays.extend(target.iter().map(|t| overlay(Role::Target, t)));
-        Ok(Built { notes, overlays, ..Built::new(map) })
+        Ok(Built::new(map).explained(Explanation { notes, overlays, ..Explanation::default() }))
     }
 }
 

@@ -9,7 +9,8 @@
 //! r is kept, so areas are kept (the map is a shear in r²/2 and θ) and the inverse is the same swirl with −α. Elementary; the
 //! twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius for the axis.
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
@@ -18,14 +19,12 @@ use std::sync::Arc;
 
 pub(super) struct Swirl;
 
-static INFO: Info = Info {
-    name: "swirl",
-    title: "turn the middle, and keep the rim",
-    group: "Classics",
-    about: "Turns artwork about a centre by an angle that falls off to nothing at the radius. Circles about the centre stay what \
-they are, no area changes, and outside the radius nothing moves (with --falloff endless, hardly anything).",
-    source: "elementary; the twist of A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984, in the plane",
-    params: &[
+static INFO: Info = Info::new("swirl", "turn the middle, and keep the rim")
+    .group("Classics")
+    .about("Turns artwork about a centre by an angle that falls off to nothing at the radius. Circles about the centre stay what \
+they are, no area changes, and outside the radius nothing moves (with --falloff endless, hardly anything).")
+    .source("elementary; the twist of A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984, in the plane")
+    .params(&[
         Param::angle("angle", "How far the middle is turned, clockwise on the screen.").default("45").slider(-360.0, 360.0),
         Param::new("center", Kind::Point, "The point it turns about.").default("50%,50%"),
         Param::length("radius", Axis::Diagonal, "Where the swirl ends; 50% reaches the artwork's corners.")
@@ -38,24 +37,24 @@ they are, no area changes, and outside the radius nothing moves (with --falloff 
             "How the angle falls off: soft at centre and rim, sharp (evenly, with a kink at the rim), or endless (a bell curve).",
         )
         .default("soft"),
-    ],
-    demo: &[("angle", "120"), ("radius", "40"), ("falloff", "sharp")],
-    examples: &[
+    ])
+    .demo(&[("angle", "120"), ("radius", "40"), ("falloff", "sharp")])
+    .examples(&[
         Example { what: "As it comes", command: "swirl samples/logo.svg --fit grow -o out.svg" },
         Example {
             what: "A whole turn of the middle only",
             command: "swirl samples/grid.svg --angle 1turn --radius 30% -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("angle", "0")]),
         Law::Area(&[], 1.0),
         Law::Area(&[("falloff", "sharp")], 1.0),
         Law::Area(&[("falloff", "endless"), ("angle", "-400")], 1.0),
         Law::Undoes(&[("angle", "200"), ("center", "30,40")], &[("angle", "-200"), ("center", "30,40")]),
         Law::Undoes(&[("falloff", "endless")], &[("falloff", "endless"), ("angle", "-45")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // The centre and the rim stay; half-way out, sharp turns by half the angle and soft by 9/16 of it.
         Case { args: &[("radius", "40")], at: (50.0, 50.0), to: (50.0, 50.0), tolerance: 0.0 },
         Case { args: &[("radius", "40")], at: (90.0, 50.0), to: (90.0, 50.0), tolerance: 0.0 },
@@ -73,8 +72,7 @@ they are, no area changes, and outside the radius nothing moves (with --falloff 
             to: (50.0 + 40.0 * 0.939_180_971_610_258_4, 50.0 + 40.0 * 0.343_422_629_663_816_7),
             tolerance: 1e-9,
         },
-    ],
-};
+    ]);
 
 impl Deformation for Swirl {
     fn info(&self) -> &Info {

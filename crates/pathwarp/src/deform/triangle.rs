@@ -9,7 +9,8 @@
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::map::TriangleNet;
 use crate::map::triangle::indices;
@@ -18,20 +19,18 @@ use kurbo::{BezPath, Point, Rect, Vec2};
 
 pub(super) struct Triangle;
 
-static INFO: Info = Info {
-    name: "triangle",
-    title: "pull artwork about by a triangular net of control points",
-    group: "Lattices and nets",
-    about: "Lays a triangle over the artwork, with control points along its sides and inside it, and lets the artwork follow where \
+static INFO: Info = Info::new("triangle", "pull artwork about by a triangular net of control points")
+    .group("Lattices and nets")
+    .about("Lays a triangle over the artwork, with control points along its sides and inside it, and lets the artwork follow where \
 they are moved. Degree 1 has the three corners; degree 2 the middles of the sides too; degree 3 one more in the middle. The higher \
 the degree, the more local each point's pull. A triangle bends less stiffly than a rectangular net of the same degree, and treats \
 all directions alike.\n\nA control point is named by three numbers I,J,K that add up to the degree: how near it lies to the first, \
 second and third corner. 2,0,0 is the first corner of a triangle of degree 2, 0,1,1 the middle of the side opposite.\n\nOutside the \
 triangle nothing moves, unless --extend is given. Where a side's control points stay in their places, inside and outside join \
-without a gap; if not, a warning tells.",
-    source: "G. Farin, Triangular Bernstein-Bézier patches, CAGD 3, 1986; J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form \
-Deformation, CAGD 46, 2016",
-    params: &[
+without a gap; if not, a warning tells.")
+    .source("G. Farin, Triangular Bernstein-Bézier patches, CAGD 3, 1986; J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form \
+Deformation, CAGD 46, 2016")
+    .params(&[
         Param::new(
             "reference",
             Kind::Text("X,Y X,Y X,Y"),
@@ -54,9 +53,9 @@ first corner at the top, its second at the bottom left.",
             "extend",
             "Let the map run on outside the triangle instead of leaving everything there in its place.",
         ),
-    ],
-    demo: &[("move", "0,1,1:10,15"), ("weight", "1,1,0:2")],
-    examples: &[
+    ])
+    .demo(&[("move", "0,1,1:10,15"), ("weight", "1,1,0:2")])
+    .examples(&[
         Example {
             what: "Pull the bottom down in the middle",
             command: "triangle samples/lettering.svg --move 0,1,1:0,60% -o out.svg",
@@ -69,15 +68,15 @@ first corner at the top, its second at the bottom left.",
             what: "Six points, two of them moved, with no edge",
             command: "triangle samples/grid.svg --move 1,1,0:-30%,30% --move 1,0,1:30%,30% --extend -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[]),
         Law::Identity(&[("degree", "7"), ("reference", "0,0 90,10 20,80"), ("extend", "true")]),
         Law::Identity(&[("weight", "1,0,1:1"), ("move", "1,0,1:0,0")]),
         Law::KeepsLines(&[("degree", "1"), ("move", "1,0,0:10,-20"), ("weight", "0,1,0:1.5"), ("extend", "true")]),
         Law::Area(&[("degree", "1"), ("reference", "0,0 100,0 0,100"), ("at", "0,1,0:200,0"), ("extend", "true")], 2.0),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // The middle of a side: a quarter of its ends and half of its middle point.
         Case { args: SIX, at: (50.0, 0.0), to: (50.0, 15.0), tolerance: 1e-12 },
         // u = (½, ¼, ¼): B110 = 2·½·¼ = ¼ of the shift.
@@ -98,10 +97,9 @@ first corner at the top, its second at the bottom left.",
             to: (43.75 / 1.375, 0.0),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
-const SIX: super::Pairs = &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30")];
+const SIX: super::entry::Pairs = &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30")];
 
 impl Deformation for Triangle {
     fn info(&self) -> &Info {
@@ -148,7 +146,7 @@ impl Deformation for Triangle {
             let torn =
                 (0..3).filter(|&k| !net.side_is_fixed(k) && meets(s.frame().rect, corners[k], corners[(k + 1) % 3]));
             for k in torn {
-                built.warnings.push(format!(
+                built.warn(format!(
                     "the side between the {} corner runs through the artwork's box and has control points moved: what crosses it \
 is torn apart; keep that side's points in place, choose a larger --reference, or give --extend",
                     names[k]
@@ -163,8 +161,8 @@ is torn apart; keep that side's points in place, choose a larger --reference, or
             path.close_path();
             path
         };
-        built.overlays.push(Overlay { role: Role::Base, path: outline(corners) });
-        built.overlays.push(Overlay { role: Role::Cage, path: cage(&net) });
+        built.overlay(Role::Base, outline(corners));
+        built.overlay(Role::Cage, cage(&net));
         Ok(built)
     }
 }
@@ -331,16 +329,20 @@ mod tests {
     fn a_fixed_side_joins_and_a_torn_one_is_told() {
         let reference = ("reference", "10,20 90,30 40,90");
         let inner = build(&[reference, ("degree", "3"), ("move", "1,1,1:8,-6")]).unwrap();
-        assert!(inner.warnings.is_empty(), "{:?}", inner.warnings);
+        assert!(inner.explanation.warnings.is_empty(), "{:?}", inner.explanation.warnings);
         let b = inner.map.branch(Point::new(45.0, 45.0)).unwrap();
         for t in [0.0, 0.2, 0.7, 1.0] {
             let p = Point::new(10.0, 20.0).lerp(Point::new(90.0, 30.0), t);
             assert!(b.point(p).distance(p) < 1e-13);
         }
         let torn = build(&[reference, ("move", "1,1,0:8,-6")]).unwrap();
-        assert!(torn.warnings.len() == 1 && torn.warnings[0].contains("first and second"), "{:?}", torn.warnings);
+        assert!(
+            torn.explanation.warnings.len() == 1 && torn.explanation.warnings[0].contains("first and second"),
+            "{:?}",
+            torn.explanation.warnings
+        );
         let large = build(&[("move", "0,1,1:0,10")]).unwrap();
-        assert!(large.warnings.is_empty(), "{:?}", large.warnings);
+        assert!(large.explanation.warnings.is_empty(), "{:?}", large.explanation.warnings);
     }
 
     #[test]

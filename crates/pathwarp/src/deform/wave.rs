@@ -9,7 +9,8 @@
 //! The shear leaves s alone: its determinant is 1, and its inverse is the same wave with −h. Both are elementary; waves of this
 //! kind are in A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, as profiles of offsets along an axis.
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{Class, Formula, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
@@ -19,15 +20,13 @@ use std::sync::Arc;
 
 pub(super) struct Wave;
 
-static INFO: Info = Info {
-    name: "wave",
-    title: "wave artwork like water, or like a flag in the wind",
-    group: "Classics",
-    about: "Pushes the artwork up and down in a sine wave that runs from left to right, or in any direction. Lines across the wave \
+static INFO: Info = Info::new("wave", "wave artwork like water, or like a flag in the wind")
+    .group("Classics")
+    .about("Pushes the artwork up and down in a sine wave that runs from left to right, or in any direction. Lines across the wave \
 stay straight, and no area changes. With --grow the wave is nothing at the start and full at the end: a flag at its pole. \
---kind push moves points along the wave instead of across it: the artwork is squeezed and stretched in turns.",
-    source: "elementary; offsets along an axis as in A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984",
-    params: &[
+--kind push moves points along the wave instead of across it: the artwork is squeezed and stretched in turns.")
+    .source("elementary; offsets along an axis as in A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984")
+    .params(&[
         Param::length("height", Axis::Y, "How far a crest is from the middle.").default("10%").slider(0.0, 100.0),
         Param::length("length", Axis::X, "From crest to crest.").default("60%").within(1e-3, 1e9).slider(1.0, 1000.0),
         Param::angle("angle", "Where the wave runs: 0 to the right, 90 downwards.").default("0"),
@@ -37,24 +36,24 @@ stay straight, and no area changes. With --grow the wave is nothing at the start
             .within(0.0, 1.0),
         Param::new("kind", Kind::Choice(&["shear", "push"]), "Move points across the wave (shear) or along it (push).")
             .default("shear"),
-    ],
-    demo: &[("angle", "20"), ("phase", "30"), ("grow", "0.5")],
-    examples: &[
+    ])
+    .demo(&[("angle", "20"), ("phase", "30"), ("grow", "0.5")])
+    .examples(&[
         Example { what: "As it comes", command: "wave samples/logo.svg -o out.svg" },
         Example {
             what: "A flag at its pole",
             command: "wave samples/badge.svg --grow 1 --height 12% --length 70% -o out.svg",
         },
         Example { what: "From side to side", command: "wave samples/grid.svg --angle 90 --length 100% -o out.svg" },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("height", "0")]),
         Law::Area(&[("angle", "33"), ("phase", "50")], 1.0),
         Law::Area(&[("grow", "1"), ("angle", "-70")], 1.0),
         Law::Undoes(&[("height", "13"), ("angle", "20")], &[("height", "-13"), ("angle", "20")]),
         Law::Same(&[("height", "7"), ("phase", "180")], &[("height", "-7")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // A quarter of the wave on, the crest; half of it, the middle; with grow, half the height half-way.
         Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 2.0), tolerance: 1e-12 },
         Case { args: &[("length", "40"), ("height", "3")], at: (20.0, 5.0), to: (20.0, 5.0), tolerance: 1e-12 },
@@ -70,8 +69,7 @@ stay straight, and no area changes. With --grow the wave is nothing at the start
             to: (7.0, 13.0),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
 impl Deformation for Wave {
     fn info(&self) -> &Info {
@@ -98,7 +96,7 @@ impl Deformation for Wave {
         };
         let mut built = Built::new(Arc::new(map));
         if push && (height / length).abs() * TAU > 1.0 {
-            built.warnings.push(format!(
+            built.warn(format!(
                 "wave: with --kind push the artwork folds over itself where --height is more than --length/2π = {:.6}",
                 length / TAU
             ));
@@ -163,7 +161,11 @@ mod tests {
             Wave.build_from(&Args::from_pairs(&[("kind", "push"), ("length", "40"), ("height", h)]), &check::frame())
         };
         let (gentle, steep) = (build("6").unwrap(), build("7").unwrap());
-        assert!(gentle.warnings.is_empty() && steep.warnings[0].contains("folds"), "{:?}", steep.warnings);
+        assert!(
+            gentle.explanation.warnings.is_empty() && steep.explanation.warnings[0].contains("folds"),
+            "{:?}",
+            steep.explanation.warnings
+        );
         assert!(gentle.map.inverse().is_none());
         // The determinant changes sign just where the warning says: 1 + h·2π/λ·cos is negative half a wave on.
         let det = |b: &Built| b.map.jet(Point::new(20.0, 0.0)).det();

@@ -27,7 +27,8 @@ mod onto;
 #[cfg(test)]
 mod tests;
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, InSpace, Role, SpaceFile};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::anamorph::Camera;
 use crate::map::surface::{Anamorphosis, Radial, Surface};
@@ -40,11 +41,9 @@ use std::sync::Arc;
 
 pub(super) struct Anamorph;
 
-static INFO: Info = Info {
-    name: "anamorph",
-    title: "draw what looks right from one place: road markings, mugs, domes",
-    group: "Perspective and anamorphosis",
-    about: "Stretches the artwork so that it looks as drawn to an eye at one place.\n\n\
+static INFO: Info = Info::new("anamorph", "draw what looks right from one place: road markings, mugs, domes")
+    .group("Perspective and anamorphosis")
+    .about("Stretches the artwork so that it looks as drawn to an eye at one place.\n\n\
 On a surface: say where the eye is (--distance, --eye or --eye-height) and what the artwork is thrown onto (--onto). The result is \
 that surface laid flat, true to size, to be painted, cut or printed:\n  \
 plane:floor            the ground under the artwork's bottom edge\n  \
@@ -60,9 +59,9 @@ Add `,inside` to a cylinder, cone or sphere to see it from within, `,level` to a
 sees, which is the artwork itself; --view what is seen from elsewhere.\n\n\
 In the plane: without --distance the eye lies in the drawing, and control points are pushed towards it or away from it (--push, \
 --away, --at, --point). They lie over a --reference triangle or box. With --distance the same pushes bend a sheet in front of the eye: \
-flat for a triangle of degree 1, else to be looked at with --view.",
-    source: "J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form Deformation, CAGD 46, 2016",
-    params: &[
+flat for a triangle of degree 1, else to be looked at with --view.")
+    .source("J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form Deformation, CAGD 46, 2016")
+    .params(&[
         Param::new("eye", Kind::Point, "Where the eye is, in the drawing or straight in front of this place.")
             .default("50%,50%"),
         Param::length("distance", Axis::X, "How far in front of the drawing the eye is. Without it the eye lies in the drawing.")
@@ -113,9 +112,9 @@ a held side: the first side of a triangle, the edge of a box if --local.",
         Param::new("mesh", Kind::Save, "Write the filled artwork on the surface as a mesh in 3D (OBJ), for printing and CAD; needs --distance."),
         Param::new("curves", Kind::Save, "Write the artwork's outlines on the surface as polylines in 3D (OBJ); needs --distance."),
         Param::flag("local", "Move only what lies inside the reference."),
-    ],
-    demo: &[("distance", "300"), ("onto", "cylinder:radius=80")],
-    examples: &[
+    ])
+    .demo(&[("distance", "300"), ("onto", "cylinder:radius=80")])
+    .examples(&[
         Example {
             what: "A word on the floor that seems to stand upright",
             command: "anamorph samples/lettering.svg --eye-height 350 --distance 400 --onto plane:floor --fit page -o out.svg",
@@ -144,8 +143,8 @@ a held side: the first side of a triangle, the edge of a box if --local.",
             what: "Swell a word away from an eye below it",
             command: "anamorph samples/lettering.svg --eye 50%,250% --degree 2x1 --push 1,0:140% --fit grow -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[]),
         Law::Identity(&[("distance", "120"), ("onto", "cylinder:radius=90"), ("seen", "true")]),
         Law::Identity(&[("distance", "400"), ("onto", "cone:top=90,bottom=70"), ("eye", "40,70"), ("seen", "true")]),
@@ -164,8 +163,8 @@ a held side: the first side of a triangle, the edge of a box if --local.",
             &[("eye", "-30,20"), ("push", "1,1:2")],
             &[("eye", "-30,20"), ("away", "1,1:152.6433752247"), ("reference", "100,100 0,0")],
         ),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // A hundred wide, its top 100 above the floor, the eye 400 above it and 500 away: the top lands 500·100/300 further and
         // 400/300 times as wide.
         Case { args: FLOOR, at: (0.0, 0.0), to: (50.0 - 50.0 * 4.0 / 3.0, 100.0 - 500.0 / 3.0), tolerance: 1e-11 },
@@ -190,12 +189,11 @@ a held side: the first side of a triangle, the edge of a box if --local.",
         // The same locally: the first side stays, and so does what lies outside.
         Case { args: LOCAL, at: (30.0, 100.0), to: (30.0, 100.0), tolerance: 1e-12 },
         Case { args: LOCAL, at: (5.0, 40.0), to: (5.0, 40.0), tolerance: 0.0 },
-    ],
-};
+    ]);
 
-const FLOOR: super::Pairs = &[("distance", "500"), ("eye-height", "400"), ("onto", "plane:floor")];
-const PUSHED: super::Pairs = &[("eye", "0,0"), ("reference", "0,0 100,0 0,100"), ("push", "0,1,0:200%")];
-const LOCAL: super::Pairs =
+const FLOOR: super::entry::Pairs = &[("distance", "500"), ("eye-height", "400"), ("onto", "plane:floor")];
+const PUSHED: super::entry::Pairs = &[("eye", "0,0"), ("reference", "0,0 100,0 0,100"), ("push", "0,1,0:200%")];
+const LOCAL: super::entry::Pairs =
     &[("eye", "50,200"), ("reference", "0,100 100,100 50,0"), ("point", "50,40:1.25"), ("local", "true")];
 
 /// The artwork at the size at which it seems to stand, and the eye.
@@ -240,8 +238,8 @@ fn in_plane(s: &Settings<'_>) -> Result<Built, Error> {
     if local {
         net::tell_torn_sides(&dilation, scene.frame, &mut built);
     }
-    built.overlays.push(Overlay { role: Role::Base, path: dilation.outline() });
-    built.overlays.push(Overlay { role: Role::Cage, path: still });
+    built.overlay(Role::Base, dilation.outline());
+    built.overlay(Role::Cage, still);
     Ok(built)
 }
 
@@ -288,14 +286,18 @@ fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
     let mut built =
         Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
     let (scale, solid) = (scene.scale, cast.clone());
-    built.space = Some(Arc::new(move |p| {
+    let place = Arc::new(move |p| {
         let p = scale * p;
         (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
-    }));
-    built.notes.push(scene.size(&*map));
-    built.overlays.push(Overlay { role: Role::Base, path: s.frame().rect.to_path(0.1) });
+    });
+    let asked = |param: &'static str, filled: bool| {
+        s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
+    };
+    built.space = Some(InSpace { place, files: asked("mesh", true).chain(asked("curves", false)).collect() });
+    built.note(scene.size(&*map));
+    built.overlay(Role::Base, s.frame().rect.to_path(0.1));
     if let Some(path) = scene.outline(&*map) {
-        built.overlays.push(Overlay { role: Role::Target, path });
+        built.overlay(Role::Target, path);
     }
     Ok(built)
 }

@@ -1,6 +1,7 @@
 //! The control points and where they are pushed.
 
-use super::{Built, Scene};
+use super::Scene;
+use crate::deform::built::Built;
 use crate::error::{Error, GeometryError};
 use crate::map::dilation::{Dilation, Reference};
 use crate::map::surface::SpacePlane;
@@ -136,7 +137,7 @@ pub(super) fn tell_torn_sides(d: &Dilation, frame: Rect, built: &mut Built) {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
         let meets = Rect::from_points(a, b).bounding_box().overlaps(inner);
         if meets && !d.side_is_fixed(k) {
-            built.warnings.push(format!(
+            built.warn(format!(
                 "the side of the reference from {} to {} has control points moved: what crosses it is torn apart; keep that side's \
 points in place, choose another --reference, or leave out --local",
                 crate::error::show(a),

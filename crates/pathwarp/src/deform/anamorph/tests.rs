@@ -406,7 +406,7 @@ fn a_prescribed_place_gets_there_and_torn_sides_are_told() {
         // The first side joins; at degree 4 all do.
         let inside = m.map.branch((45.0, 60.0).into()).unwrap();
         assert!(inside.point((20.0, 100.0).into()).distance((20.0, 100.0).into()) < 1e-12);
-        assert_eq!(m.warnings.is_empty(), degree == "4", "{:?}", m.warnings);
+        assert_eq!(m.explanation.warnings.is_empty(), degree == "4", "{:?}", m.explanation.warnings);
     }
 }
 

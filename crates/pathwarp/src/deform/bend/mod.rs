@@ -20,7 +20,8 @@ mod piece;
 mod skeleton;
 mod spline;
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, show};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Vec2};
@@ -31,11 +32,10 @@ use std::sync::Arc;
 
 pub(super) struct Bend;
 
-static INFO: Info = Info {
-    name: "bend",
-    title: "bend artwork along a path",
-    group: "Bends",
-    about: "The artwork follows a path, the skeleton: what is level runs along it, what is upright stands on it. The skeleton may \
+static INFO: Info = Info::new("bend", "bend artwork along a path")
+    .baseline("baseline")
+    .group("Bends")
+    .about("The artwork follows a path, the skeleton: what is level runs along it, what is upright stands on it. The skeleton may \
 have any number of lines, curves and arcs, open or closed. Nothing is stretched unless you ask: --stretch scale sizes the artwork \
 to the skeleton, fit stretches it lengthwise only. --stretch repeat sets copies of it side by side, as many as the skeleton has \
 room for, and spreads them evenly.\n\nAn open skeleton is run left to right and a closed one clockwise, so that up \
@@ -48,9 +48,9 @@ They have their own size then, times --width; --stretch fit spreads them out fro
 half the height of the artwork instead of on the skeleton, so that letters do not crowd inside a bend nor drift apart outside.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
-left away). A handle says where the artwork's height goes.",
-    source: "Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994",
-    params: &[
+left away). A handle says where the artwork's height goes.")
+    .source("Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994")
+    .params(&[
         Param::path("along", "The skeleton: one connected path.").needed(),
         Param::new(
             "stretch",
@@ -99,9 +99,9 @@ left away). A handle says where the artwork's height goes.",
         .default("baseline"),
         Param::flag("as-drawn", "Take the skeleton in the direction it was drawn, a closed one from its start."),
         Param::flag("reverse", "Run the skeleton the other way."),
-    ],
-    demo: &[("along", "M-10,60 Q25,35 50,45 T110,50")],
-    examples: &[
+    ])
+    .demo(&[("along", "M-10,60 Q25,35 50,45 T110,50")])
+    .examples(&[
         Example {
             what: "Along a curve, true to size",
             command: "bend samples/lettering.svg --along 'M20,170 C180,60 356,60 516,170' -o out.svg --preview out.png",
@@ -122,8 +122,8 @@ left away). A handle says where the artwork's height goes.",
             what: "A grid along a winding path, by the paper's polynomial map",
             command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% --fit grow -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("along", "0,50 100,50")]),
         Law::Identity(&[("along", "0,50 100,50"), ("by", "parameter")]),
         Law::Identity(&[("along", "100,100 70,100 20,100 0,100"), ("baseline", "0"), ("stretch", "fit")]),
@@ -140,8 +140,8 @@ left away). A handle says where the artwork's height goes.",
         Law::Same(&[("along", "0,60 40,20 90,90"), ("spline", "1")], &[("along", "0,60 40,20 90,90")]),
         // The upper half of a circle, wherever the circle begins and whichever way it was drawn.
         Law::Same(&[("along", ARC), ("baseline", "0")], &[("along", CIRCLE), ("baseline", "0")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // Half a circle of radius 50 about 50,50: 45 degrees from the top, on it and 20 above.
         Case { args: ON_ARC, at: (50.0, 100.0), to: (50.0, 0.0), tolerance: 1e-11 },
         Case { args: ON_ARC, at: (EIGHTH, 100.0), to: (50.0 + 50.0 * R2, 50.0 - 50.0 * R2), tolerance: 1e-11 },
@@ -152,14 +152,13 @@ left away). A handle says where the artwork's height goes.",
         // The polynomial map: C(1/2) + S(1/2)/2 of a quadratic with legs (30,-40) and (30,40), their normals (-.8,-.6), (.8,-.6).
         Case { args: PARAMETER, at: (50.0, 50.0), to: (30.0, -20.0), tolerance: 1e-12 },
         Case { args: PARAMETER, at: (50.0, 0.0), to: (30.0, -50.0), tolerance: 1e-12 },
-    ],
-};
+    ]);
 
 const ARC: &str = "M0,50 A50,50 0 0 1 100,50";
 const CIRCLE: &str = "M100,50 A50,50 0 1 1 0,50 A50,50 0 1 1 100,50 Z";
-const ON_ARC: super::Pairs = &[("along", ARC), ("baseline", "0")];
-const CORNER: super::Pairs = &[("along", "0,0 50,0 50,50"), ("align", "start")];
-const PARAMETER: super::Pairs = &[("along", "M0,0 Q30,-40 60,0"), ("by", "parameter"), ("stretch", "fit")];
+const ON_ARC: super::entry::Pairs = &[("along", ARC), ("baseline", "0")];
+const CORNER: super::entry::Pairs = &[("along", "0,0 50,0 50,50"), ("align", "start")];
+const PARAMETER: super::entry::Pairs = &[("along", "M0,0 Q30,-40 60,0"), ("by", "parameter"), ("stretch", "fit")];
 const EIGHTH: f64 = 50.0 + 50.0 * std::f64::consts::FRAC_PI_4;
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
@@ -272,38 +271,42 @@ impl Deformation for Bend {
         let map = BendMap { pieces, length, closed, place, reach };
 
         let mut built = Built::new(map.simplest());
-        built.notes.push(format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" }));
-        built.notes.extend(joined.notes);
+        built.note(format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" }));
+        built.explanation.notes.extend(joined.notes);
         for c in joined.corners {
-            built.warnings.push(format!(
+            built.warn(format!(
                 "bend: the skeleton has a corner at {} (it turns by {:.1}°): the artwork is mitred there; round it for a smooth bend",
                 show(c.at),
                 c.turn.to_degrees().abs()
             ));
         }
         if stretch == "repeat" {
-            built.notes.push(format!("artwork repeated: {} times, one every {:.6}", row.count, row.spacing));
-            built.copies = (0..row.count).map(|i| Affine::translate((row.spacing * i as f64, 0.0))).collect();
+            built.note(format!("artwork repeated: {} times, one every {:.6}", row.count, row.spacing));
+            built.placement.copies = (0..row.count).map(|i| Affine::translate((row.spacing * i as f64, 0.0))).collect();
         }
         if k * rect.width() > length * (1.0 + 1e-9) {
             let what = if closed { "runs over itself" } else { "runs straight on beyond its ends" };
-            built.warnings.push(format!(
+            built.warn(format!(
                 "bend: the artwork is {:.6} wide, the skeleton only {length:.6} long: it {what}; see --stretch",
                 k * rect.width()
             ));
         }
         match setting {
             Some(setting) => {
-                built.letters = letters::places(&map, setting, &s.frame().letters, &built.copies, stretch == "fit");
-                built.warnings.extend(letters::warnings(&s.frame().letters, &built.letters));
+                built.placement.letters =
+                    letters::places(&map, setting, &s.frame().letters, &built.placement.copies, stretch == "fit");
+                built.explanation.warnings.extend(letters::warnings(&s.frame().letters, &built.placement.letters));
             }
             // A frame round lettering says nothing of the letters' own heights.
             None if s.frame().baseline.is_some() && !s.frame().letters.is_empty() => {
-                built.warnings.extend(map.fold(letters::points(&s.frame().letters, &built.copies)));
+                built
+                    .explanation
+                    .warnings
+                    .extend(map.fold(letters::points(&s.frame().letters, &built.placement.copies)));
             }
-            None => built.warnings.extend(map.fold(map::edges(rect).map(|p| (p, None)))),
+            None => built.explanation.warnings.extend(map.fold(map::edges(rect).map(|p| (p, None)))),
         }
-        built.overlays.push(Overlay { role: Role::Cage, path: path.outline.to_bez_path(1e-4 * size) });
+        built.overlay(Role::Cage, path.outline.to_bez_path(1e-4 * size));
         Ok(built)
     }
 }

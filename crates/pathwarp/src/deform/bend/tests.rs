@@ -66,7 +66,7 @@ fn joints_do_not_tear() {
     for by in ["arclength", "parameter"] {
         let along = "M0,50 L40,20 Q60,10 70,40 C80,70 100,80 120,60 A30,30 0 0 1 150,60";
         let b = build(&[("along", along), ("by", by), ("align", "start")]).unwrap();
-        assert!(b.warnings.iter().any(|w| w.contains("corner")), "{:?}", b.warnings);
+        assert!(b.explanation.warnings.iter().any(|w| w.contains("corner")), "{:?}", b.explanation.warnings);
         let mut creases = Creases::default();
         b.map.creases(&mut creases);
         assert!(creases.items().len() >= 4);
@@ -84,11 +84,11 @@ fn joints_do_not_tear() {
 fn folds_are_told_with_the_radius() {
     // A circle of radius 30, up outside: the bottom of the box reaches 50 inwards.
     let ring = "M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z";
-    let w = build(&[("along", ring)]).unwrap().warnings;
+    let w = build(&[("along", ring)]).unwrap().explanation.warnings;
     assert!(w.iter().any(|w| w.contains("folds") && w.contains("more than 30.0000")), "{w:?}");
-    let w = build(&[("along", ring), ("baseline", "0")]).unwrap().warnings;
+    let w = build(&[("along", ring), ("baseline", "0")]).unwrap().explanation.warnings;
     assert!(w.is_empty(), "{w:?}");
-    let w = build(&[("along", "M0,0 L50,0")]).unwrap().warnings;
+    let w = build(&[("along", "M0,0 L50,0")]).unwrap().explanation.warnings;
     assert!(w.iter().any(|w| w.contains("straight on")), "{w:?}");
 }
 
@@ -133,10 +133,10 @@ fn handles_from_a_file() {
 
     let two = [("along", "M0,50 Q25,20 50,50 T100,50"), ("stretch", "fit"), ("by", "parameter")];
     let smooth = r#"{"pieces":[{"levels":[[[0,-9],[4,-12]]]},{"levels":[[[4,-12],[8,-15]]]}]}"#;
-    let notes = with_handles(&two, smooth).unwrap().notes.join("\n");
+    let notes = with_handles(&two, smooth).unwrap().explanation.notes.join("\n");
     assert!(notes.contains("joint at 50,50 is C¹"), "{notes}");
     let kinked = r#"{"pieces":[{"levels":[[[0,-9],[4,-12]]]},{"levels":[[[4,-12],[0,-15]]]}]}"#;
-    let notes = with_handles(&two, kinked).unwrap().notes.join("\n");
+    let notes = with_handles(&two, kinked).unwrap().explanation.notes.join("\n");
     assert!(notes.contains("on the skeleton only"), "{notes}");
 
     for (json, part) in [
@@ -165,8 +165,8 @@ fn skeletons_that_cannot_be_followed_are_refused() {
 fn artwork_is_repeated_as_often_as_there_is_room() {
     let row = |along: &str, gap: &str| {
         let b = build(&[("along", along), ("stretch", "repeat"), ("gap", gap), ("baseline", "0")]).unwrap();
-        let places: Vec<Point> = b.copies.iter().map(|m| b.map.point(*m * Point::new(0.0, 100.0))).collect();
-        (places, b.warnings)
+        let places: Vec<Point> = b.placement.copies.iter().map(|m| b.map.point(*m * Point::new(0.0, 100.0))).collect();
+        (places, b.explanation.warnings)
     };
     let near = |a: &[Point], b: &[(f64, f64)]| {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.distance(Point::from(*b)) < 1e-9)
@@ -237,7 +237,7 @@ fn letters_stand_on_a_circle() {
     let frame = || check::frame().on_baseline(90.0).with_letters([letter(20.0), letter(65.0)].into());
     let set = |how: &str| {
         let args = [("along", "M-100,0 A100,100 0 0 1 100,0"), ("glyphs", how)];
-        Bend.build_from(&Args::from_pairs(&args), &frame()).unwrap().letters
+        Bend.build_from(&Args::from_pairs(&args), &frame()).unwrap().placement.letters
     };
     for (k, middle) in [(0, 25.0), (1, 70.0)] {
         let (sin, cos) = ((middle - 50.0) / 100.0_f64).sin_cos();

@@ -9,7 +9,8 @@ mod faults;
 #[cfg(test)]
 mod tests;
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Explanation, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::map::{AffineMap, Class, Coons, Map, Pace, Side, Sides};
@@ -21,11 +22,9 @@ use std::sync::Arc;
 
 pub(super) struct Envelope;
 
-static INFO: Info = Info {
-    name: "envelope",
-    title: "put artwork into any closed shape, or between curves",
-    group: "Envelopes",
-    about: "The artwork's box is laid onto a shape with four sides, which may have any number of pieces, and what is inside \
+static INFO: Info = Info::new("envelope", "put artwork into any closed shape, or between curves")
+    .group("Envelopes")
+    .about("The artwork's box is laid onto a shape with four sides, which may have any number of pieces, and what is inside \
 follows. Name a closed path (--envelope, for instance an object of the drawing itself), or draw the sides one by one: --bottom and \
 --top, with --left and --right if they are to be curves as well, or --bottom alone with a --height.\n\nA closed path's corners are its \
 nodes, if it has just four and one lies in each quarter of its box; or its nodes that turn by 20° or more, if that is so of them. \
@@ -36,9 +35,9 @@ lettering is never mirrored; --bottom-side and --reverse overrule that. --explai
 evenly by length. --by parameter follows the curve's own pace instead (pieces share a side by their lengths); \
 with one cubic for every side that is the shaper's map. --by extent goes by even steps across the screen.\n\n--keep verticals makes \
 uprights straight lines between bottom and top, and truly upright where both curves span the same width; --keep horizontals does \
-the same for levels. Both need the two other sides to be straight. --keep lines keeps every line, which needs four straight sides: a projective map.",
-    source: "S. A. Coons, Surfaces for Computer-Aided Design of Space Forms, MIT 1967; Markku Koppinen, A plane transformation from 16 control points, equation (7)",
-    params: &[
+the same for levels. Both need the two other sides to be straight. --keep lines keeps every line, which needs four straight sides: a projective map.")
+    .source("S. A. Coons, Surfaces for Computer-Aided Design of Space Forms, MIT 1967; Markku Koppinen, A plane transformation from 16 control points, equation (7)")
+    .params(&[
         Param::path("envelope", "The closed path to put the artwork into."),
         Param::path("bottom", "Instead of --envelope, the bottom side, an open curve."),
         Param::path("top", "The top side."),
@@ -57,9 +56,9 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
         Param::flag("reverse", "Run the bottom the other way: the result is mirrored."),
         Param::new("keep", Kind::Choice(&["nothing", "verticals", "horizontals", "lines"]), "What is to stay straight.")
             .default("nothing"),
-    ],
-    demo: &[("envelope", "M8,78 Q30,96 50,84 T95,85 C85,60 105,40 90,15 L70,6 C50,-5 30,30 5,10 C15,40 0,60 8,78 Z"), ("corners", "1,3,4,6")],
-    examples: &[
+    ])
+    .demo(&[("envelope", "M8,78 Q30,96 50,84 T95,85 C85,60 105,40 90,15 L70,6 C50,-5 30,30 5,10 C15,40 0,60 8,78 Z"), ("corners", "1,3,4,6")])
+    .examples(&[
         Example {
             what: "A logo in a swallow-tailed pennant: the shape's corners and its bottom are found",
             command: "envelope samples/logo.svg --envelope samples/envelopes.svg#pennant --explain -o out.svg",
@@ -80,8 +79,8 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
             what: "A circle has no corners: they are taken where it comes nearest to its box's",
             command: "envelope samples/monogram.svg --envelope 'M200,100 A100,100 0 1 1 0,100 A100,100 0 1 1 200,100 Z' -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("envelope", "0,0 100,0 100,100 0,100")]),
         Law::Identity(&[("bottom", "0,100 100,100"), ("top", "0,0 30,0 100,0")]),
         Law::Identity(&[("bottom", "0,100 100,100")]),
@@ -104,8 +103,8 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
         Law::KeepsLinesAlong(&[("bottom", "M0,90 C30,130 60,60 100,95 L140,100"), ("top", "M5,10 Q60,-30 90,5"), ("keep", "verticals")], (0.0, 1.0)),
         Law::KeepsLinesAlong(&[("left", "M0,90 C30,60 -30,40 0,0"), ("right", "M100,110 L80,50 110,5"), ("keep", "horizontals")], (1.0, 0.0)),
         Law::KeepsLines(&[("envelope", "0,90 100,80 80,10 10,0"), ("keep", "lines")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // Half a circle of radius 50, and the same 40 higher: quarter of the way along is 45° round.
         Case { args: ARCH, at: (25.0, 100.0), to: (50.0 - 50.0 * R2, 100.0 - 50.0 * R2), tolerance: 1e-10 },
         Case { args: ARCH, at: (50.0, 0.0), to: (50.0, 10.0), tolerance: 1e-10 },
@@ -115,13 +114,12 @@ the same for levels. Both need the two other sides to be straight. --keep lines 
         // y = 100 − 1.6·x·(100−x)/100, upright: at x = 20 the curve is 25.6 higher.
         Case { args: UPRIGHT, at: (20.0, 100.0), to: (20.0, 74.4), tolerance: 1e-10 },
         Case { args: UPRIGHT, at: (20.0, 0.0), to: (20.0, 24.4), tolerance: 1e-10 },
-    ],
-};
+    ]);
 
 const CIRCLE: &str = "M100,50 A50,50 0 1 1 0,50 A50,50 0 1 1 100,50 Z";
-const ARCH: super::Pairs = &[("bottom", "M0,100 A50,50 0 0 1 100,100"), ("height", "40")];
-const CAGE: super::Pairs = &[("envelope", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("by", "parameter")];
-const UPRIGHT: super::Pairs = &[("bottom", "M0,100 Q50,20 100,100"), ("height", "50"), ("keep", "verticals")];
+const ARCH: super::entry::Pairs = &[("bottom", "M0,100 A50,50 0 0 1 100,100"), ("height", "40")];
+const CAGE: super::entry::Pairs = &[("envelope", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("by", "parameter")];
+const UPRIGHT: super::entry::Pairs = &[("bottom", "M0,100 Q50,20 100,100"), ("height", "50"), ("keep", "verticals")];
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Off the straight line by no more than this share of its length, a side is straight.
@@ -161,11 +159,8 @@ pub(super) fn over(ring: &Ring, s: &Settings<'_>, keep: &str, by: Option<&str>) 
         let corners = ring.sides.each_ref().map(|side| side.first().map_or(Point::ORIGIN, Seg::start));
         let anchors::Anchors::Four(from) = frame else { return Err(no_length("frame")) };
         notes.push("kept: every line, by the projective map of the four corners".into());
-        return Ok(Built {
-            notes,
-            overlays,
-            ..Built::new(Arc::new(anchors::projective("--envelope", from, corners)?))
-        });
+        let map = anchors::projective("--envelope", from, corners)?;
+        return Ok(Built::new(Arc::new(map)).explained(Explanation { notes, overlays, warnings }));
     }
 
     let sides = paced(ring, by, keep, &mut notes, &mut warnings)?;
@@ -177,7 +172,7 @@ pub(super) fn over(ring: &Ring, s: &Settings<'_>, keep: &str, by: Option<&str>) 
         Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
         _ => map,
     };
-    Ok(Built { notes, overlays, warnings, ..Built::new(map) })
+    Ok(Built::new(map).explained(Explanation { notes, overlays, warnings }))
 }
 
 const NAMES: [&str; 4] = ["bottom", "right", "top", "left"];

@@ -224,7 +224,7 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
 
 #[test]
 fn corners_by_the_stated_rule() {
-    let note = |pairs: &[(&str, &str)]| built(pairs).unwrap().notes.join("\n");
+    let note = |pairs: &[(&str, &str)]| built(pairs).unwrap().explanation.notes.join("\n");
     // A circle's are on its diagonals, an ellipse's on those of its box.
     let n = note(&[("envelope", "M200,100 A100,50 0 1 1 0,100 A100,50 0 1 1 200,100 Z")]);
     let (x, y) = (100.0 * R2, 50.0 * R2);
@@ -273,7 +273,7 @@ fn uprights_stay_upright_through_the_refit() {
     ];
     for pairs in cases {
         let b = built(pairs).unwrap();
-        assert!(b.warnings.is_empty(), "{:?}", b.warnings);
+        assert!(b.explanation.warnings.is_empty(), "{:?}", b.explanation.warnings);
         for i in 0..=20 {
             let x = 5.0 * f64::from(i);
             let art = Outline::from_svg(&format!("M{x},0 V100")).unwrap();
@@ -298,7 +298,7 @@ fn uprights_stay_upright_through_the_refit() {
         ("keep", "verticals"),
     ])
     .unwrap();
-    assert!(b.warnings.iter().any(|w| w.contains("lean by up to 90.0°")), "{:?}", b.warnings);
+    assert!(b.explanation.warnings.iter().any(|w| w.contains("lean by up to 90.0°")), "{:?}", b.explanation.warnings);
     let bent = |m: &dyn Map, x: f64| {
         let [a, b, c] = [0.0, 40.0, 100.0].map(|y| m.point(Point::new(x, y)));
         (b - a).cross(c - a).abs() / (c - a).hypot()
@@ -326,7 +326,7 @@ fn keep_says_when_nothing_can() {
 #[test]
 fn crossings_and_folds_are_named() {
     let warned = |pairs: &[(&str, &str)], what: &[&str]| {
-        let w = built(pairs).unwrap().warnings.join("\n");
+        let w = built(pairs).unwrap().explanation.warnings.join("\n");
         assert!(what.iter().all(|t| w.contains(t)), "{what:?}:\n{w}");
     };
     // A loop in the bottom; it crosses itself on its axis, x = 50.
@@ -346,8 +346,12 @@ fn crossings_and_folds_are_named() {
     // The bottom doubles back without crossing anything.
     let hook = [("bottom", "0,100 80,90 20,60 100,40"), ("top", "0,0 100,0")];
     warned(&hook, &["folds over near", "nearest to the bottom side"]);
-    assert_eq!(built(&hook).unwrap().warnings.len(), 1);
-    assert!(built(INFO.demo).unwrap().warnings.is_empty(), "{:?}", built(INFO.demo).unwrap().warnings);
+    assert_eq!(built(&hook).unwrap().explanation.warnings.len(), 1);
+    assert!(
+        built(INFO.demo).unwrap().explanation.warnings.is_empty(),
+        "{:?}",
+        built(INFO.demo).unwrap().explanation.warnings
+    );
 }
 
 #[test]

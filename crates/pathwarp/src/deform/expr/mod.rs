@@ -8,7 +8,8 @@ pub(super) mod calc;
 mod parse;
 mod program;
 
-use super::{Built, Case, Deformation, Example, Info, Law};
+use super::built::Built;
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
 use crate::param::{Frame, Kind, Param, Settings};
@@ -19,27 +20,25 @@ use std::sync::Arc;
 
 pub(super) struct Expr;
 
-static INFO: Info = Info {
-    name: "expr",
-    title: "move every point by a formula for x and y",
-    group: "Formulas",
-    about: "Write where x and y go; what is not given stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \
+static INFO: Info = Info::new("expr", "move every point by a formula for x and y")
+    .group("Formulas")
+    .about("Write where x and y go; what is not given stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \
 x y      the place, in user units, y downwards\n  \
 u v      the same within the artwork's box, from 0 to 1, from the left and the top\n  \
 w h      the box's width and height\n  \
 cx cy    its middle\n  \
 pi tau e the numbers; angles are in radians\n  \
 sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b) hypot(a,b)\n\n\
---let names a value for those after it. Where abs, min and max have their kinks, curves are split.",
-    source: "forward-mode differentiation of the formula itself; parsing after V. Pratt, Top down operator precedence, POPL 1973",
-    params: &[
+--let names a value for those after it. Where abs, min and max have their kinks, curves are split.")
+    .source("forward-mode differentiation of the formula itself; parsing after V. Pratt, Top down operator precedence, POPL 1973")
+    .params(&[
         Param::new("x", Kind::Text("FORMULA"), "Where x goes.").default("x"),
         Param::new("y", Kind::Text("FORMULA"), "Where y goes.").default("y"),
         Param::new("let", Kind::Text("NAME=FORMULA"), "A name for a value, used after it; may be given many times.")
             .repeated(),
-    ],
-    demo: &[("x", "x + 4*sin(y/16)"), ("y", "y + 3*cos(u*pi)^2 - x*y/500")],
-    examples: &[
+    ])
+    .demo(&[("x", "x + 4*sin(y/16)"), ("y", "y + 3*cos(u*pi)^2 - x*y/500")])
+    .examples(&[
         Example {
             what: "A ripple from side to side",
             command: "expr samples/logo.svg --x 'x + 4*sin(y/16)' -o out.svg",
@@ -52,8 +51,8 @@ sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b)
             what: "A roof, with its ridge in the middle",
             command: "expr samples/grid.svg --y 'y + 0.25*abs(x - cx) - 0.1*h' -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("x", "x")]),
         Law::Identity(&[("x", "w*u"), ("y", "v*h")]),
         Law::Identity(&[("x", "cx + hypot(x-cx, y-cy)*cos(atan2(y-cy, x-cx))"), ("y", "sqrt(y)^2")]),
@@ -64,8 +63,8 @@ sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b)
         Law::Same(&[("let", "a=2*pi"), ("let", "b=a*u"), ("y", "y+sin(b)")], &[("y", "y+sin(tau*x/w)")]),
         Law::Same(&[("x", "x+abs(y-30)")], &[("x", "x+max(y-30, 30-y)")]),
         Law::Same(&[("x", "-min(-x, -y)^2")], &[("x", "-(max(x, y)**2)")]),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         Case {
             args: &[("x", "x + 4*sin(y/16)")],
             at: (1.0, 8.0 * std::f64::consts::PI),
@@ -84,8 +83,7 @@ sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b)
             to: (15.5, 3.0),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
 impl Deformation for Expr {
     fn info(&self) -> &Info {

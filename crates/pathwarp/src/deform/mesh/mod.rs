@@ -7,7 +7,8 @@
 mod psd;
 mod quilt;
 
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Explanation, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Class, Map};
 use crate::param::{Kind, Param, Settings};
@@ -17,21 +18,19 @@ use std::sync::Arc;
 
 pub(super) struct Mesh;
 
-static INFO: Info = Info {
-    name: "mesh",
-    title: "bend artwork by a mesh of bicubic patches, or by a Photoshop warp",
-    group: "Lattices and nets",
-    about: "A quilt of patches, side by side in rows and columns, each with sixteen control points; neighbours share the points where \
+static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches, or by a Photoshop warp")
+    .group("Lattices and nets")
+    .about("A quilt of patches, side by side in rows and columns, each with sixteen control points; neighbours share the points where \
 they meet. Give it as a path with one line of curves per row of control points (--net: a path of 4 lines with one curve each is one \
 patch, of 7 lines with two curves each four), or as a file (--mesh, JSON or TOML): {\"region\": [x,y,w,h], \"points\": [[[x,y], …], \
 …]}, rows from the top, and optionally \"x\" and \"y\", where patches meet, as shares of the region.\n\n--psd takes the warp of a \
 layer of a Photoshop file: a style with its bend and distortions, sixteen points, or a quilt; it is laid onto the artwork's box. JSON of \
 your own will do: {\"style\": \"warpFlag\", \"value\": 50, \"perspective\": 0, \"perspective_other\": 0, \"vertical\": false} (value \
 and perspectives in percent), or {\"style\": \"warpCustom\", \"mesh\": {\"region\": …, \"points\": …}} with a mesh as above.\n\n\
---smooth evens out the joints, so that lines cross them without a kink.",
-    source: "Tensor product Bézier patches: G. Farin, Curves and Surfaces for CAGD, chapter 15; Adobe Photoshop File Formats \
-Specification, descriptor structure and placed layer data",
-    params: &[
+--smooth evens out the joints, so that lines cross them without a kink.")
+    .source("Tensor product Bézier patches: G. Farin, Curves and Surfaces for CAGD, chapter 15; Adobe Photoshop File Formats \
+Specification, descriptor structure and placed layer data")
+    .params(&[
         Param::path("net", "A path with 3·rows+1 subpaths of as many cubics as there are columns of patches."),
         Param::new("mesh", Kind::File, "A file of control points (JSON or TOML)."),
         Param::new("psd", Kind::File, "A Photoshop file with a warped layer, or JSON of such a warp."),
@@ -42,9 +41,9 @@ Specification, descriptor structure and placed layer data",
             "The box that the mesh is laid onto. Default: where a file says, else the artwork's.",
         ),
         Param::flag("smooth", "Make the joints smooth: points beside them move."),
-    ],
-    demo: &[("net", DEMO)],
-    examples: &[
+    ])
+    .demo(&[("net", DEMO)])
+    .examples(&[
         Example {
             what: "Two patches side by side, from a path",
             command: "mesh samples/logo.svg --net samples/meshes.svg#quilt --smooth -o out.svg",
@@ -53,8 +52,8 @@ Specification, descriptor structure and placed layer data",
             what: "A file, laid onto the artwork",
             command: "mesh samples/badge.svg --mesh samples/pinch.json --region artwork -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("net", REST)]),
         Law::Identity(&[("net", REST), ("smooth", "true")]),
         Law::Same(
@@ -64,15 +63,14 @@ Specification, descriptor structure and placed layer data",
                 "M0,0 C66.66666666666667,0 133.33333333333334,0 200,0 M0,66.66666666666667 C66.66666666666667,66.66666666666667 133.33333333333334,66.66666666666667 200,66.66666666666667 M0,133.33333333333334 C66.66666666666667,133.33333333333334 133.33333333333334,133.33333333333334 200,133.33333333333334 M0,200 C66.66666666666667,200 133.33333333333334,200 200,200",
             )],
         ),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // Joints and corners go where their control points are.
         Case { args: &[("net", DEMO)], at: (0.0, 0.0), to: (0.0, 10.0), tolerance: 1e-12 },
         Case { args: &[("net", DEMO)], at: (50.0, 0.0), to: (50.0, 0.0), tolerance: 1e-12 },
         Case { args: &[("net", DEMO)], at: (100.0, 100.0), to: (100.0, 110.0), tolerance: 1e-12 },
         Case { args: &[("net", DEMO)], at: (25.0, 0.0), to: (25.0, 5.0), tolerance: 1e-12 },
-    ],
-};
+    ]);
 
 /// How far artwork may reach beyond the mesh's box, in shares of it, before that is taken for a mistake.
 const BEYOND: f64 = 0.5;
@@ -140,22 +138,22 @@ fn built(s: &Settings<'_>, mut quilt: Quilt, mut notes: Vec<String>) -> Result<B
         Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, s.frame()))),
         Class::Projective(_) | Class::Smooth => map,
     };
-    let mut built = Built { notes, ..Built::new(map) };
+    let mut built = Built::new(map).explained(Explanation { notes, ..Explanation::default() });
     let (f, beyond) = (s.frame().rect, r.inflate(BEYOND * r.width(), BEYOND * r.height()));
     if !matches!(built.map.class(), Class::Affine(_)) && f.union(beyond) != beyond {
-        built.warnings.push(format!(
+        built.warn(format!(
             "mesh: its box {} {} to {} {} does not hold the artwork, which runs far beyond it, where a mesh says little: --region \
 artwork lays it onto the artwork",
             r.x0, r.y0, r.x1, r.y1
         ));
     }
     if kinks > 0 {
-        built.warnings.push(format!(
+        built.warn(format!(
             "mesh: {kinks} pairs of control points beside joints make kinks (by up to {:.0} % of the slope); --smooth evens them out",
             100.0 * most
         ));
     }
-    built.overlays =
+    built.explanation.overlays =
         vec![Overlay { role: Role::Base, path: r.to_path(0.1) }, Overlay { role: Role::Cage, path: quilt.curves() }];
     Ok(built)
 }

@@ -1,7 +1,7 @@
 //! Warps of Photoshop layers, as the command line hands them over: JSON made of the file's warp descriptors.
 
 use super::quilt::{File, Quilt};
-use crate::deform::Built;
+use crate::deform::built::Built;
 use crate::deform::warp::{self, style};
 use crate::error::Error;
 use crate::param::Settings;
@@ -86,6 +86,6 @@ pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
     };
     let net = style.net(region.width(), region.height(), &bent).map_err(|e| wrong(format!("its style {e}")))?;
     let mut built = warp::over(region, &net)?;
-    built.notes.push(format!("layer {}: style {}, bend {}%", warp.layer, style.name, warp.value));
+    built.note(format!("layer {}: style {}, bend {}%", warp.layer, style.name, warp.value));
     Ok(Found::Style(built))
 }

@@ -69,9 +69,9 @@ fn every_patch_is_its_net() {
 fn joints_are_smoothed() {
     let text = json(&points(), "\"region\": [0,0,120,60], \"x\": [0.25],");
     let rough = with("mesh", &text, &[]).unwrap();
-    assert!(rough.warnings[0].contains("--smooth"), "{:?}", rough.warnings);
+    assert!(rough.explanation.warnings[0].contains("--smooth"), "{:?}", rough.explanation.warnings);
     let smooth = with("mesh", &text, &[("smooth", "true")]).unwrap();
-    assert!(smooth.warnings.is_empty());
+    assert!(smooth.explanation.warnings.is_empty());
     let jump = |m: &dyn Map, p: (f64, f64), q: (f64, f64)| {
         let (a, b) = (m.branch(p.into()).unwrap(), m.branch(q.into()).unwrap());
         let at = Point::from(p).midpoint(Point::from(q));
@@ -152,7 +152,7 @@ fn warps_written_by_hand() {
 fn a_mesh_far_from_the_artwork_is_told() {
     let warned = |region: &str, more: &[(&str, &str)]| {
         let b = with("mesh", &json(&points(), region), more).unwrap();
-        b.warnings.iter().any(|w| w.contains("--region artwork"))
+        b.explanation.warnings.iter().any(|w| w.contains("--region artwork"))
     };
     assert!(warned("\"region\": [0,0,1,1],", &[]));
     assert!(!warned("\"region\": [0,0,1,1],", &[("region", "artwork")]));

@@ -7,8 +7,9 @@
 
 pub(crate) mod style;
 
+use super::built::{Built, Explanation, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use super::envelope::{self, corners::Ring};
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
 use crate::error::Error;
 use crate::map::net::Net;
 use crate::map::{AffineMap, BicubicNet, Class, Map};
@@ -39,21 +40,20 @@ const NAMES: &[&str] = &[
     "twist",
 ];
 
-static INFO: Info = Info {
-    name: "warp",
-    title: "bend artwork in one of fifteen styles: arc, flag, fisheye, …",
-    group: "Envelopes",
-    about: "The warp styles that drawing programs share, by the nets measured on the best known of them: arc, arc-lower, arc-upper, arch, bulge, \
+static INFO: Info = Info::new("warp", "bend artwork in one of fifteen styles: arc, flag, fisheye, …")
+    .gallery("style")
+    .group("Envelopes")
+    .about("The warp styles that drawing programs share, by the nets measured on the best known of them: arc, arc-lower, arc-upper, arch, bulge, \
 shell-lower, shell-upper, flag, wave, fish, rise, fisheye, inflate, squeeze, twist. --bend says how much and which way; \
 `pathwarp gallery` draws them all. Names as Photoshop writes them (warpArc) are known too.\n\nBends beyond 100% go on by the same \
 formula; those made of circles' arcs end at 190%. --horizontal and --vertical distort the result in addition, as if it leant away \
 to a side.\n\nA style of your own is a TOML or JSON file: rules that move the sixteen points of a net (row,column; 0,0 is the top left \
 one), formulas of w and h (the box), b (the bend), u and v (the point's place), and k, S, C for circles' arcs:\n\n  \
 name = \"roof\"\n  family = \"boundary\"   # or \"points\", \"frame\": what distortions act on\n  \
-moves = [{ at = \"0,1\", y = \"-b*h/2\" }, { at = \"0,2\", y = \"-b*h/2\" }]",
-    source: "Nets measured on Adobe Illustrator 2026, published with the OPuller editor, 2026; completion: K. Koppinen, A plane \
-transformation from 16 control points, equation (7)",
-    params: &[
+moves = [{ at = \"0,1\", y = \"-b*h/2\" }, { at = \"0,2\", y = \"-b*h/2\" }]")
+    .source("Nets measured on Adobe Illustrator 2026, published with the OPuller editor, 2026; completion: K. Koppinen, A plane \
+transformation from 16 control points, equation (7)")
+    .params(&[
         Param::new("style", Kind::NameOrFile(NAMES), "The style: a name, or a file of your own.").default("arc"),
         Param::number("bend", "How far it bends, and which way.").default("50%").slider(-1.0, 1.0),
         Param::new(
@@ -74,9 +74,9 @@ transformation from 16 control points, equation (7)",
             "What is to stay straight: the artwork is put between the style's sides by a map that keeps it, as `envelope --keep` does.",
         )
         .default("nothing"),
-    ],
-    demo: &[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")],
-    examples: &[
+    ])
+    .demo(&[("style", "arc"), ("bend", "40%"), ("horizontal", "15%"), ("vertical", "-20%")])
+    .examples(&[
         Example { what: "A word on an arc", command: "warp samples/lettering.svg --style arc --bend 50% --fit grow -o out.svg" },
         Example { what: "A logo on a flag", command: "warp samples/logo.svg --style flag --bend -30% -o out.svg" },
         Example {
@@ -91,8 +91,8 @@ transformation from 16 control points, equation (7)",
             what: "A style from a file",
             command: "warp samples/lettering.svg --style samples/roof.toml --bend 80% --fit grow -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("style", "arc"), ("bend", "0")]),
         Law::Identity(&[("style", "shell-upper"), ("bend", "0"), ("axis", "vertical")]),
         Law::Identity(&[("style", "twist"), ("bend", "0%")]),
@@ -103,8 +103,8 @@ transformation from 16 control points, equation (7)",
         Law::Area(&[("style", "flag"), ("bend", "30%")], 1.0),
         // On a square the box itself is its transpose.
         Law::KeepsLinesAlong(&[("style", "arch"), ("axis", "vertical")], (1.0, 0.0)),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         // A half circle: its middle lies the cubic's 3/4·(2/3·diameter) above the ends.
         Case { args: &[("style", "arch"), ("bend", "100%")], at: (50.0, 0.0), to: (50.0, -50.0), tolerance: 1e-12 },
         // The wings of a full fan are level.
@@ -123,8 +123,7 @@ transformation from 16 control points, equation (7)",
             to: (50.0, 0.0),
             tolerance: 1e-12,
         },
-    ],
-};
+    ]);
 
 impl Deformation for Warp {
     fn info(&self) -> &Info {
@@ -146,7 +145,7 @@ impl Deformation for Warp {
         let net = style.net(rect.width(), rect.height(), &bent).map_err(wrong)?;
         let keep = s.choice("keep")?;
         let mut built = if keep == "nothing" { over(rect, &net)? } else { kept(s, &style, keep, &net, &bent)? };
-        built.notes.push(format!(
+        built.note(format!(
             "style {}: bend {}%, {}{}",
             style.name,
             bend * 100.0,
@@ -238,7 +237,7 @@ pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
         Overlay { role: Role::Base, path: kurbo::Shape::to_path(&rect, 0.1) },
         Overlay { role: Role::Cage, path: super::shaper::rows_path(&net) },
     ];
-    Ok(Built { overlays, ..Built::new(map) })
+    Ok(Built::new(map).explained(Explanation { overlays, ..Explanation::default() }))
 }
 
 #[cfg(test)]

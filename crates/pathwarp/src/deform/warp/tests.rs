@@ -404,7 +404,7 @@ fn kept_verticals_are_upright() {
         for bend in ["-50%", "20%", "50%"] {
             let built = build(&[("style", style), ("bend", bend), ("keep", "verticals")]);
             let built = built.unwrap_or_else(|e| panic!("{style} {bend}: {e}"));
-            assert!(built.warnings.is_empty(), "{style} {bend}: {:?}", built.warnings);
+            assert!(built.explanation.warnings.is_empty(), "{style} {bend}: {:?}", built.explanation.warnings);
             let free = build(&[("style", style), ("bend", bend)]).unwrap().map;
             for i in 0..=20 {
                 let x = 10.0 * f64::from(i);

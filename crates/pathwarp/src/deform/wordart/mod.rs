@@ -7,7 +7,8 @@
 mod preset;
 
 use super::bend::Bend;
-use super::{Built, Case, Deformation, Example, Info, Law, Overlay, Role};
+use super::built::{Built, Overlay, Role};
+use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Along, Class, Guide, Map, Row, Tiled, ruled};
 use crate::outline::{Outline, Seg, Subpath};
@@ -62,11 +63,10 @@ const NAMES: &[&str] = &[
     "cascade-down",
 ];
 
-static INFO: Info = Info {
-    name: "wordart",
-    title: "put artwork into one of the forty text shapes of office programs",
-    group: "Envelopes",
-    about: "The text effects that word processors and presentations offer under Transform, from their published formulas: \
+static INFO: Info = Info::new("wordart", "put artwork into one of the forty text shapes of office programs")
+    .gallery("preset")
+    .group("Envelopes")
+    .about("The text effects that word processors and presentations offer under Transform, from their published formulas: \
 plain, triangle, chevron, arch-up, ring-inside, wave1, inflate, slant-up, cascade-up and the others below; \
 `pathwarp gallery --set wordart` draws them all. The names of \
 the menus are known too (\"Chevron Up\"), and those in files (textChevron).\n\nThe artwork's box is spanned between the guides; in \
@@ -74,9 +74,9 @@ arch-up, arch-down, circle and button it stands on them instead, scaled to their
 deflate-inflate-deflate, button and button-pour have three: made for as many lines of text. --split says where the artwork is \
 divided; otherwise it is divided evenly.\n\nA shape of your own is a TOML or JSON file of adjust values, formulas over w and h (the \
 box) and guides written like path data:\n\n  name = \"hill\"\n  adj = [{ name = \"adj\", default = 40000, least = 0, most = 80000 }]\n  \
-let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\"]]",
-    source: "ECMA-376, Office Open XML File Formats, Part 1, presetTextWarpDefinitions (DrawingML prstTxWarp, 20.1.9.19)",
-    params: &[
+let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\"]]")
+    .source("ECMA-376, Office Open XML File Formats, Part 1, presetTextWarpDefinitions (DrawingML prstTxWarp, 20.1.9.19)")
+    .params(&[
         Param::new("preset", Kind::NameOrFile(NAMES), "The shape: a name, or a file of your own.").needed(),
         Param::new(
             "adj",
@@ -92,9 +92,9 @@ their order.",
         )
         .default("arclength"),
         Param::new("split", Kind::Text("Y[,Y…]"), "The heights at which artwork is divided between bands, user units or %."),
-    ],
-    demo: &[("preset", "wave1"), ("adj", "adj1=15000"), ("adj", "adj2=4000")],
-    examples: &[
+    ])
+    .demo(&[("preset", "wave1"), ("adj", "adj1=15000"), ("adj", "adj2=4000")])
+    .examples(&[
         Example { what: "A word as a wave", command: "wordart samples/lettering.svg --preset wave1 -o out.svg" },
         Example {
             what: "A roof by the name that menus give it, steeper",
@@ -108,8 +108,8 @@ their order.",
             what: "Round a ring, by the curves' own parameters",
             command: "wordart samples/lettering.svg --preset circle-pour --adj adj2=70% --by parameter -o out.svg",
         },
-    ],
-    laws: &[
+    ])
+    .laws(&[
         Law::Identity(&[("preset", "plain")]),
         Law::Identity(&[("preset", "wave2"), ("adj", "0")]),
         Law::Identity(&[("preset", "slant-up"), ("adj", "0")]),
@@ -119,8 +119,8 @@ their order.",
         Law::KeepsLinesAlong(&[("preset", "slant-down")], (0.0, 1.0)),
         Law::KeepsLinesAlong(&[("preset", "slant-down")], (1.0, 0.0)),
         Law::Area(&[("preset", "slant-up"), ("adj", "40%")], 0.6),
-    ],
-    cases: &[
+    ])
+    .cases(&[
         Case { args: &[("preset", "triangle")], at: (0.0, 0.0), to: (0.0, 50.0), tolerance: 1e-12 },
         Case { args: &[("preset", "triangle")], at: (50.0, 0.0), to: (50.0, 0.0), tolerance: 1e-12 },
         Case { args: &[("preset", "triangle")], at: (75.0, 50.0), to: (75.0, 62.5), tolerance: 1e-12 },
@@ -137,8 +137,7 @@ their order.",
             to: (50.0 - 50.0 * R2, 50.0 - 50.0 * R2),
             tolerance: 1e-9,
         },
-    ],
-};
+    ]);
 
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
@@ -170,7 +169,7 @@ impl Deformation for WordArt {
         let cuts = cuts(s, rect, bands)?;
         let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
         let values = preset.adj.iter().zip(&adjusted).map(|(a, v)| format!("{} {v}", a.name)).collect::<Vec<_>>();
-        built.notes.push(format!("text shape {}: {}, {bands} band(s)", preset.name, values.join(", ")));
+        built.note(format!("text shape {}: {}, {bands} band(s)", preset.name, values.join(", ")));
         let place = Affine::translate(rect.origin().to_vec2());
         let moved = |segs: &[Seg]| -> Vec<Seg> { segs.iter().map(|g| g.transformed(place)).collect() };
         let band = |k: usize| {
@@ -182,7 +181,7 @@ impl Deformation for WordArt {
                 let along = if s.choice("by")? == "parameter" { Along::Parameter } else { Along::ArcLength };
                 let one = |(k, [top, bottom]): (usize, &[Vec<Seg>; 2])| {
                     let (top, bottom) = (moved(top), moved(bottom));
-                    built.overlays.extend([cage(&top, rect), cage(&bottom, rect)]);
+                    built.explanation.overlays.extend([cage(&top, rect), cage(&bottom, rect)]);
                     ruled::row(band(k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
                 };
                 pairs.iter().enumerate().map(one).collect()
@@ -191,9 +190,9 @@ impl Deformation for WordArt {
                 let mut rows = Vec::with_capacity(paths.len());
                 for (k, path) in paths.iter().enumerate() {
                     let path = moved(path);
-                    built.overlays.push(cage(&path, rect));
+                    built.explanation.overlays.push(cage(&path, rect));
                     let bent = standing(&path, band(k))?;
-                    built.warnings.extend(bent.warnings);
+                    built.explanation.warnings.extend(bent.explanation.warnings);
                     rows.push(Row { cuts: Vec::new(), maps: vec![bent.map] });
                 }
                 Some(rows)

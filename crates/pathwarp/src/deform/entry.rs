@@ -1,0 +1,200 @@
+//! A deformation as the registry sees it: the trait [`Deformation`] and the data that describes one.
+
+use super::built::Built;
+use crate::error::Error;
+use crate::param::{Args, Frame, Param, Settings};
+
+/// An entry of the registry: turns [`Args`] in a [`Frame`] into a map.
+///
+/// This is the textual road, taken by the command line and by recipes. Rust code that wants one particular deformation
+/// uses its typed constructor instead, such as [`Shaper`](super::Shaper).
+pub trait Deformation: Send + Sync {
+    /// Returns the deformation's description, for people and programs.
+    fn info(&self) -> &Info;
+
+    /// Builds the map for these settings.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for values that contradict each other, [`Error::Geometry`] where the anchors allow no such map.
+    fn build(&self, settings: &Settings<'_>) -> Result<Built, Error>;
+
+    /// Checks `args` against the parameter table and builds the map.
+    ///
+    /// # Errors
+    /// As [`Settings::new`] and [`Deformation::build`].
+    fn build_from(&self, args: &Args, frame: &Frame) -> Result<Built, Error> {
+        self.build(&Settings::new(self.info().params, args, frame)?)
+    }
+}
+
+/// The description of a deformation.
+///
+/// Written as a constant, so that help, recipes, schema and docs all come from one table:
+///
+/// ```
+/// use pathwarp::deform::Info;
+/// use pathwarp::param::{Axis, Param};
+///
+/// static INFO: Info = Info::new("ripple", "rings on water")
+///     .group("Plug-ins")
+///     .about("Pushes every point along its ray from the centre.")
+///     .params(&[Param::length("height", Axis::Diagonal, "Largest displacement.").default("1%")]);
+/// assert_eq!(INFO.params[0].name, "height");
+/// ```
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct Info {
+    /// The name, kebab-case: the subcommand.
+    pub name: &'static str,
+    /// One line for the menu.
+    pub title: &'static str,
+    /// The menu heading.
+    pub group: &'static str,
+    /// What the deformation does and when to reach for it, for help and docs: plain sentences.
+    pub about: &'static str,
+    /// The paper or program the mathematics comes from.
+    pub source: &'static str,
+    /// The parameters.
+    pub params: &'static [Param],
+    /// Values for the required parameters that show the effect on artwork in the frame 0,0,100,100.
+    pub demo: Pairs,
+    /// Command lines for help; the tests run every one.
+    pub examples: &'static [Example],
+    /// Properties of every instance; [`check::entry`](crate::check::entry) tests them.
+    pub laws: &'static [Law],
+    /// Values known from elsewhere; [`check::entry`](crate::check::entry) tests them.
+    pub cases: &'static [Case],
+    /// The parameter that puts a baseline on the deformation's curve, if there is one. While it is not given, a frame around
+    /// lettering takes its baseline from the lettering.
+    pub baseline: Option<&'static str>,
+    /// The parameter of kind [`NameOrFile`](crate::param::Kind::NameOrFile) whose names a gallery draws one by one.
+    pub gallery: Option<&'static str>,
+}
+
+impl Info {
+    /// Starts a description; the rest is empty until set.
+    #[must_use]
+    pub const fn new(name: &'static str, title: &'static str) -> Self {
+        Self {
+            name,
+            title,
+            group: "",
+            about: "",
+            source: "",
+            params: &[],
+            demo: &[],
+            examples: &[],
+            laws: &[],
+            cases: &[],
+            baseline: None,
+            gallery: None,
+        }
+    }
+
+    /// Sets the menu heading.
+    #[must_use]
+    pub const fn group(self, group: &'static str) -> Self {
+        Self { group, ..self }
+    }
+
+    /// Sets the text for help and docs.
+    #[must_use]
+    pub const fn about(self, about: &'static str) -> Self {
+        Self { about, ..self }
+    }
+
+    /// Sets the paper or program the mathematics comes from.
+    #[must_use]
+    pub const fn source(self, source: &'static str) -> Self {
+        Self { source, ..self }
+    }
+
+    /// Sets the parameters.
+    #[must_use]
+    pub const fn params(self, params: &'static [Param]) -> Self {
+        Self { params, ..self }
+    }
+
+    /// Sets the values for the required parameters that show the effect.
+    #[must_use]
+    pub const fn demo(self, demo: Pairs) -> Self {
+        Self { demo, ..self }
+    }
+
+    /// Sets the command lines for help.
+    #[must_use]
+    pub const fn examples(self, examples: &'static [Example]) -> Self {
+        Self { examples, ..self }
+    }
+
+    /// Sets the properties of every instance.
+    #[must_use]
+    pub const fn laws(self, laws: &'static [Law]) -> Self {
+        Self { laws, ..self }
+    }
+
+    /// Sets the values known from elsewhere.
+    #[must_use]
+    pub const fn cases(self, cases: &'static [Case]) -> Self {
+        Self { cases, ..self }
+    }
+
+    /// Names the parameter that puts a baseline on the deformation's curve.
+    #[must_use]
+    pub const fn baseline(self, param: &'static str) -> Self {
+        Self { baseline: Some(param), ..self }
+    }
+
+    /// Names the parameter whose names a gallery draws one by one.
+    #[must_use]
+    pub const fn gallery(self, param: &'static str) -> Self {
+        Self { gallery: Some(param), ..self }
+    }
+}
+
+/// A command line for help.
+#[derive(Debug, Clone, Copy)]
+pub struct Example {
+    /// A caption: what the command line does.
+    pub what: &'static str,
+    /// The words after `pathwarp`, run from the project's root, `-o out.svg` included.
+    pub command: &'static str,
+}
+
+/// Parameters' names and values, as a user would type them.
+pub type Pairs = &'static [(&'static str, &'static str)];
+
+/// A property of a deformation that [`check::entry`](crate::check::entry) tests.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum Law {
+    /// With these values nothing moves.
+    Identity(Pairs),
+    /// Both sets of values give the same map.
+    Same(Pairs, Pairs),
+    /// With these values straight lines stay straight.
+    KeepsLines(Pairs),
+    /// With these values straight lines in this direction stay straight.
+    KeepsLinesAlong(Pairs, (f64, f64)),
+    /// With these values nothing moves outside the box x0, y0, x1, y1.
+    FixedOutside(Pairs, [f64; 4]),
+    /// With these values every area is multiplied by this factor.
+    Area(Pairs, f64),
+    /// With these values angles between curves are kept, and nothing is mirrored.
+    KeepsAngles(Pairs),
+    /// The second set of values takes every point back to its place before the first.
+    Undoes(Pairs, Pairs),
+}
+
+/// A point whose image is known.
+#[derive(Debug, Clone, Copy)]
+pub struct Case {
+    /// The parameters, in the frame 0,0,100,100.
+    pub args: Pairs,
+    /// A point of the source.
+    pub at: (f64, f64),
+    /// Its image.
+    pub to: (f64, f64),
+    /// The largest distance between the computed image and [`to`](Self::to), user units.
+    pub tolerance: f64,
+}
