@@ -4,7 +4,7 @@
 
 #![allow(clippy::print_stdout)]
 
-use pathwarp::map::{Algebra, Formula, Real};
+use pathwarp::map::{Formula, RationalDegree, Real};
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Error, Outline};
 
@@ -19,8 +19,8 @@ impl Formula for Bulge {
     }
 
     // x·u²·v² is of degree five.
-    fn algebra(&self) -> Option<Algebra> {
-        Some(Algebra { degree: 5, rational: false })
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::polynomial(5))
     }
 }
 

@@ -169,7 +169,7 @@ fn exact_images(map: &dyn Map, faults: &mut Faults) {
         Seg::Arc(EllipticArc::new(Point::new(50.0, 50.0), Vec2::new(30.0, 5.0), Vec2::new(-4.0, 20.0), 0.3, 1.2)),
     ];
     for source in segs.iter().filter_map(RationalBezier::from_seg) {
-        if let Some(image) = map.image_of(&source) {
+        if let Some(image) = map.image(&source) {
             for i in 0..=12 {
                 let t = f64::from(i) / 12.0;
                 let (a, b) = (image.eval(t), map.point(source.eval(t)));
@@ -333,7 +333,7 @@ mod tests {
         fn points(&self, ps: &[Point], out: &mut [Point]) {
             out.copy_from_slice(ps);
         }
-        fn image_of(&self, c: &RationalBezier) -> Option<RationalBezier> {
+        fn image(&self, c: &RationalBezier) -> Option<RationalBezier> {
             Some(c.clone())
         }
         fn inverse(&self) -> Option<Arc<dyn Map>> {

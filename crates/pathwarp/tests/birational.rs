@@ -93,16 +93,16 @@ fn lines_of_constant_t_stay_straight_and_images_are_exact() {
     assert!(matches!(w.path.elements()[1], kurbo::PathEl::LineTo(_)), "{:?}", w.path);
     let cubic = Seg::Cubic(CubicBez::new((0.1, 0.1), (0.9, 0.0), (0.8, 0.7), (0.2, 0.9)));
     let source = RationalBezier::from_seg(&cubic).unwrap();
-    let image = map.image_of(&source).unwrap();
+    let image = map.image(&source).unwrap();
     assert_eq!(image.degree(), 3 * (1 + 3));
     let back = map.inverted();
-    let again = Map::image_of(&back, &image).unwrap();
+    let again = Map::image(&back, &image).unwrap();
     for i in 0..=20 {
         let t = f64::from(i) / 20.0;
         assert!(image.eval(t).distance(map.point(source.eval(t))) < 1e-12);
         assert!(again.eval(t).distance(source.eval(t)) < 1e-8);
     }
-    let direct = Map::image_of(&back, &RationalBezier::polynomial(&points(&[(10.0, 20.0), (50.0, 70.0)]))).unwrap();
+    let direct = Map::image(&back, &RationalBezier::polynomial(&points(&[(10.0, 20.0), (50.0, 70.0)]))).unwrap();
     assert_eq!(direct.degree(), 4);
     for i in 0..=20 {
         let t = f64::from(i) / 20.0;

@@ -120,7 +120,7 @@ fn iso_lines_are_exact() {
                 assert!(got.distance(want) < 1e-8, "{m}x{n} {s}: {got:?} {want:?}");
             }
             // The exact image says the same.
-            let exact = map.image_of(&RationalBezier::from_seg(&line).unwrap()).unwrap();
+            let exact = map.image(&RationalBezier::from_seg(&line).unwrap()).unwrap();
             assert_eq!(exact.degree(), (m + n).max(n));
             assert!(exact.eval(0.4).distance(expected.eval(0.4)) < 1e-11);
         }
@@ -135,7 +135,7 @@ fn exact_images_of_cubics_and_arcs() {
         let l = random([3, 2], [1, 1], 1.0, w, 9);
         let map = LatticeMap::new(&l, false);
         let source = RationalBezier::from_seg(&seg).unwrap();
-        let image = map.image_of(&source).unwrap();
+        let image = map.image(&source).unwrap();
         assert_eq!(image.degree(), degree);
         assert_eq!(image.is_polynomial(), w == 1.0);
         for i in 0..=20 {
@@ -146,9 +146,9 @@ fn exact_images_of_cubics_and_arcs() {
     // Across the border there is none; wholly outside it is the curve itself.
     let map = LatticeMap::new(&random([3, 2], [1, 1], 1.0, 1.0, 9), false);
     let across = RationalBezier::polynomial(&[Point::new(0.0, 30.0), Point::new(60.0, 40.0)]);
-    assert!(map.image_of(&across).is_none());
+    assert!(map.image(&across).is_none());
     let beyond = RationalBezier::polynomial(&[Point::new(0.0, 30.0), Point::new(10.0, 40.0)]);
-    assert_eq!(map.image_of(&beyond), Some(beyond.clone()));
+    assert_eq!(map.image(&beyond), Some(beyond.clone()));
 }
 
 /// What is outside stays, point by point and curve by curve; segments are split exactly at the border.

@@ -86,7 +86,7 @@ fn holds(seg: Seg, map: &dyn Map, options: &Options) -> Result<(), TestCaseError
     prop_assert!(out.len() < 2000);
     if w.report.over_budget.is_empty() {
         prop_assert!(w.report.max_error <= tolerance);
-        prop_assert!(!certify || map.algebra().is_none() || w.report.assurance >= Assurance::Certified);
+        prop_assert!(!certify || map.rational_degree().is_none() || w.report.assurance >= Assurance::Certified);
         let e = support::distance(&seg, map, &out, 1000, 0.9 * tolerance);
         prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} {:?}", e / tolerance, w.report);
     }

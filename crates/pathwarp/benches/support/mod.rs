@@ -4,7 +4,8 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, PathSeg, Point, Vec2};
-use pathwarp::map::{Algebra, Jet, Map};
+use pathwarp::map::batch::Lane;
+use pathwarp::map::{Jet, Map, RationalDegree};
 use pathwarp::{Outline, Seg};
 
 /// The box the icons and the maps live in.
@@ -91,8 +92,8 @@ fn slope(r: &[f64; 4], v: f64) -> f64 {
 }
 
 impl Map for Bicubic {
-    fn algebra(&self) -> Option<Algebra> {
-        Some(Algebra { degree: 6, rational: false })
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::polynomial(6))
     }
 
     #[inline]
@@ -114,7 +115,7 @@ impl Map for Bicubic {
         Point::new(at(&self.x), at(&self.y))
     }
 
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         for (x, y) in x.iter_mut().zip(y) {
             let p = self.point(Point::new(*x, *y));
             (*x, *y) = (p.x, p.y);
@@ -158,15 +159,13 @@ impl Default for Rational {
 }
 
 impl Map for Rational {
-    fn algebra(&self) -> Option<Algebra> {
-        Some(Algebra { degree: 4, rational: true })
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::rational(4))
     }
 
-    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
-        std::array::from_fn(|i| {
-            let (u, v) = (x[i] * (1.0 / BOX), y[i] * (1.0 / BOX));
-            horner(&self.c[2][0], v) + u * horner(&self.c[2][1], v)
-        })
+    fn denominator(&self, p: Point) -> f64 {
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
+        horner(&self.c[2][0], v) + u * horner(&self.c[2][1], v)
     }
 
     #[inline]
@@ -195,7 +194,7 @@ impl Map for Rational {
         Point::new(f(0) / w, f(1) / w)
     }
 
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         for (x, y) in x.iter_mut().zip(y) {
             let p = self.point(Point::new(*x, *y));
             (*x, *y) = (p.x, p.y);

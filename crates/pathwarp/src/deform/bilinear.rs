@@ -116,7 +116,7 @@ impl Formula for BilinearMap {
         (u * a.x + v * b.x + uv * c.x + p.x, u * a.y + v * b.y + uv * c.y + p.y)
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
         let (u, v, w) = (coordinate(0), coordinate(1), coordinate(2));
         let (uv, uw, vw, ww) = (u.times(&v), u.times(&w), v.times(&w), w.times(&w));
@@ -222,7 +222,7 @@ mod tests {
             }
         }
         let cubic = Seg::Cubic(kurbo::CubicBez::new((5.0, 5.0), (90.0, 5.0), (20.0, 80.0), (60.0, 60.0)));
-        assert_eq!(m.image_of(&RationalBezier::from_seg(&cubic).unwrap()).unwrap().degree(), 6);
+        assert_eq!(m.image(&RationalBezier::from_seg(&cubic).unwrap()).unwrap().degree(), 6);
     }
 
     #[test]

@@ -214,7 +214,7 @@ impl Formula for MobiusMap {
         out.push(Crease::edge(Level::Field(Arc::new(move |p| p.distance(pole) - clear))));
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [a, b, c, d] = self.m;
         let part = |f: &dyn Fn([f64; 3]) -> f64| Scaled::new(curve.points.iter().map(|p| f(*p)));
         let (nx, ny) = (part(&|[x, y, w]| x * a.x - y * a.y + w * b.x), part(&|[x, y, w]| x * a.y + y * a.x + w * b.y));

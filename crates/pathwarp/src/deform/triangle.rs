@@ -315,7 +315,7 @@ mod tests {
             let (shift, weight) = (format!("{node}:9,9"), format!("{node}:2"));
             for args in [vec![("move", &*shift)], vec![("move", &shift), ("weight", &weight)]] {
                 let m = build(&[args, vec![("degree", degree)]].concat()).unwrap().map;
-                let image = m.image_of(&source).unwrap();
+                let image = m.image(&source).unwrap();
                 assert_eq!(image.degree(), 3 * degree.parse::<usize>().unwrap());
                 for i in 0..=20 {
                     let t = f64::from(i) / 20.0;

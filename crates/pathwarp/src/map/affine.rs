@@ -1,6 +1,6 @@
 //! Affine maps.
 
-use super::{Algebra, Class, Jet, Map, RationalBezier};
+use super::{Class, Jet, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -44,13 +44,13 @@ impl Map for AffineMap {
         Class::Affine(self.0)
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [a, b, c, d, e, f] = self.0.as_coeffs();
         Some(curve.mapped(|[x, y, w]| [a * x + c * y + e * w, b * x + d * y + f * w, w]))
     }
 
-    fn algebra(&self) -> Option<Algebra> {
-        Some(Algebra { degree: 1, rational: false })
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::polynomial(1))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -273,9 +273,9 @@ impl Map for Birational {
     }
 
     /// A curve of degree d gives one of degree d·(1+n).
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         match self.pieces.as_slice() {
-            [one] => one.patch.image_of(curve),
+            [one] => one.patch.image(curve),
             _ => None,
         }
     }
@@ -388,7 +388,7 @@ impl Formula for BirationalInverse {
     }
 
     /// A curve of degree d gives one of degree d·(1+n): (s, t, 1) ~ (χ·f₀, β·(f₀−f₁), χ·(f₀−f₁)), χ = α + β.
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [piece] = self.forward.pieces.as_slice() else { return None };
         let [first, last] = piece.rows[0].lines();
         let line = |l: Ray, k: f64| {

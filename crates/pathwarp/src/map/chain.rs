@@ -1,6 +1,7 @@
 //! Maps one after another.
 
-use super::{AffineMap, Algebra, Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier};
+use super::batch::{Lane, WIDTH};
+use super::{AffineMap, Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -116,33 +117,22 @@ impl Map for Chain {
         }
     }
 
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        let mut all = RationalDegree::polynomial(1);
         for m in &self.steps {
-            m.lanes(x, y);
-        }
-    }
-
-    fn algebra(&self) -> Option<Algebra> {
-        let mut all = Algebra { degree: 1, rational: false };
-        for m in &self.steps {
-            let a = m.algebra()?;
-            all = Algebra { degree: all.degree.checked_mul(a.degree)?, rational: all.rational || a.rational };
+            let d = m.rational_degree()?;
+            all = RationalDegree { degree: all.degree.checked_mul(d.degree)?, rational: all.rational || d.rational };
         }
         Some(all)
     }
 
-    /// With F₁ = (X₁, Y₁)/W₁ and a second map of degree d₂, the chain's denominator is W₁^d₂ · (W₂ ∘ F₁).
-    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
-        let (mut x, mut y, mut all) = (*x, *y, [1.0; 8]);
-        for m in &self.steps {
-            let power = m.algebra().map_or(1, |a| a.degree) as i32;
-            let own = m.denominators(&x, &y);
-            for (w, o) in all.iter_mut().zip(own) {
-                *w = f64::powi(*w, power) * o;
-            }
-            m.lanes(&mut x, &mut y);
-        }
-        all
+    /// With F₁ = (X₁, Y₁)/W₁ and a second map of degree d₂, the denominator of the chain is W₁^d₂ · (W₂ ∘ F₁).
+    fn denominator(&self, p: Point) -> f64 {
+        let step = |(p, w): (Point, f64), m: &Arc<dyn Map>| {
+            let power = m.rational_degree().map_or(1, |d| d.degree) as i32;
+            (m.point(p), w.powi(power) * m.denominator(p))
+        };
+        self.steps.iter().fold((p, 1.0), step).1
     }
 
     fn class(&self) -> Class {
@@ -176,13 +166,32 @@ impl Map for Chain {
         any.then(|| Arc::new(Self { steps }) as Arc<dyn Map>)
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        self.steps.iter().try_fold(curve.clone(), |c, m| m.image_of(&c))
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        self.steps.iter().try_fold(curve.clone(), |c, m| m.image(&c))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let back: Option<Vec<_>> = self.steps.iter().rev().map(Map::inverse).collect();
         back.map(|steps| Arc::new(Self::new(steps)) as Arc<dyn Map>)
+    }
+
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
+        for m in &self.steps {
+            m.lanes(x, y);
+        }
+    }
+
+    fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
+        let (mut x, mut y, mut all) = (*x, *y, [1.0; WIDTH]);
+        for m in &self.steps {
+            let power = m.rational_degree().map_or(1, |d| d.degree) as i32;
+            let own = m.denominators(&x, &y);
+            for (w, o) in all.iter_mut().zip(own) {
+                *w = f64::powi(*w, power) * o;
+            }
+            m.lanes(&mut x, &mut y);
+        }
+        all
     }
 }
 
@@ -238,6 +247,31 @@ mod tests {
             let dx =
                 (c.point(ps[i] + kurbo::Vec2::new(h, 0.0)) - c.point(ps[i] - kurbo::Vec2::new(h, 0.0))) / (2.0 * h);
             assert!((dx - jets[i].dx).hypot() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn denominators_are_the_product_of_the_steps() {
+        let net = crate::map::BicubicNet::new(
+            &std::array::from_fn(|r| {
+                std::array::from_fn(|s| {
+                    Point::new(0.1 * s as f64 + 0.02 * (r * r) as f64, 0.1 * r as f64 - 0.01 * (s * r) as f64)
+                })
+            }),
+            Affine::IDENTITY,
+        );
+        let degree = net.rational_degree().unwrap().degree as i32;
+        let chain = Chain::new([Arc::new(tilt()) as Arc<dyn Map>, Arc::new(net.clone()), Arc::new(tilt())]);
+        assert_eq!(chain.rational_degree(), Some(RationalDegree::rational(degree as usize)));
+        let (x, y): (Lane, Lane) =
+            (std::array::from_fn(|i| 0.1 * i as f64), std::array::from_fn(|i| 0.7 - 0.09 * i as f64));
+        for (i, w) in chain.denominators(&x, &y).into_iter().enumerate() {
+            let p = Point::new(x[i], y[i]);
+            let expected = tilt().w(p).powi(degree) * tilt().w(net.point(tilt().point(p)));
+            assert!(
+                (w - expected).abs() < 1e-14 * expected.abs() && (w - 1.0).abs() > 1e-6 * f64::from(p != Point::ORIGIN)
+            );
+            assert_eq!(w, chain.denominator(p));
         }
     }
 

@@ -1,6 +1,7 @@
 //! The short way to write a map: one formula, any number type.
 
-use super::{Algebra, Class, Creases, Dual, Jet, Map, RationalBezier, Real};
+use super::batch::Lane;
+use super::{Class, Creases, Dual, Jet, Map, RationalBezier, RationalDegree, Real};
 use kurbo::Point;
 use std::sync::Arc;
 
@@ -39,19 +40,19 @@ pub trait Formula: Send + Sync {
         None
     }
 
-    /// See [`Map::image_of`].
-    fn image_of(&self, _curve: &RationalBezier) -> Option<RationalBezier> {
+    /// See [`Map::image`].
+    fn image(&self, _curve: &RationalBezier) -> Option<RationalBezier> {
         None
     }
 
-    /// See [`Map::algebra`].
-    fn algebra(&self) -> Option<Algebra> {
+    /// See [`Map::rational_degree`].
+    fn rational_degree(&self) -> Option<RationalDegree> {
         None
     }
 
-    /// See [`Map::denominators`].
-    fn denominators(&self, _x: &[f64; 8], _y: &[f64; 8]) -> [f64; 8] {
-        [1.0; 8]
+    /// See [`Map::denominator`].
+    fn denominator(&self, _p: Point) -> f64 {
+        1.0
     }
 
     /// See [`Map::inverse`].
@@ -72,7 +73,7 @@ impl<F: Formula> Map for F {
         self.f(p.x, p.y).into()
     }
 
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         for (x, y) in x.iter_mut().zip(y) {
             (*x, *y) = self.f(*x, *y);
         }
@@ -90,16 +91,16 @@ impl<F: Formula> Map for F {
         Formula::branch(self, inside)
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        Formula::image_of(self, curve)
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        Formula::image(self, curve)
     }
 
-    fn algebra(&self) -> Option<Algebra> {
-        Formula::algebra(self)
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Formula::rational_degree(self)
     }
 
-    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
-        Formula::denominators(self, x, y)
+    fn denominator(&self, p: Point) -> f64 {
+        Formula::denominator(self, p)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -1,6 +1,7 @@
 //! Projective maps of the plane.
 
-use super::{Algebra, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
+use super::batch::Lane;
+use super::{Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -119,7 +120,7 @@ impl Map for Homography {
         Point::new((m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r, (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r)
     }
 
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         for (x, y) in x.iter_mut().zip(y) {
             let p = self.point(Point::new(*x, *y));
             (*x, *y) = (p.x, p.y);
@@ -137,16 +138,16 @@ impl Map for Homography {
         }
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         Some(curve.mapped(|v| mul_vec(&self.m, v)))
     }
 
-    fn algebra(&self) -> Option<Algebra> {
-        Some(Algebra { degree: 1, rational: true })
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::rational(1))
     }
 
-    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
-        std::array::from_fn(|i| self.w(Point::new(x[i], y[i])))
+    fn denominator(&self, p: Point) -> f64 {
+        self.w(p)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

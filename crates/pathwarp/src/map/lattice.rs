@@ -304,10 +304,6 @@ impl LatticeMap {
             from = to;
         }
     }
-
-    fn denominator(&self, p: Point) -> f64 {
-        self.cell(p).map_or(1.0, |c| self.patches[c].denominator(p))
-    }
 }
 
 impl Map for LatticeMap {
@@ -331,6 +327,10 @@ impl Map for LatticeMap {
             Some(m) => m.points(&ps[run.clone()], &mut out[run]),
             None => out[run.clone()].copy_from_slice(&ps[run]),
         });
+    }
+
+    fn denominator(&self, p: Point) -> f64 {
+        self.cell(p).map_or(1.0, |c| self.patches[c].denominator(p))
     }
 
     fn class(&self) -> Class {
@@ -381,9 +381,9 @@ impl Map for LatticeMap {
     }
 
     /// Where the curve's control points, and so the curve, lie in one piece.
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         if self.extended && self.patches.len() == 1 {
-            return self.patches[0].image_of(curve);
+            return self.patches[0].image(curve);
         }
         let mut hull: Option<Rect> = None;
         for p in &curve.points {
@@ -398,7 +398,7 @@ impl Map for LatticeMap {
             return Some(curve.clone());
         }
         let cell = self.cell(h.origin())?;
-        (self.cell(Point::new(h.x1, h.y1)) == Some(cell)).then(|| self.patches[cell].image_of(curve))?
+        (self.cell(Point::new(h.x1, h.y1)) == Some(cell)).then(|| self.patches[cell].image(curve))?
     }
 
     /// By Newton's method, over the region (half its size beyond it if the map is extended); see [`NewtonInverse`].

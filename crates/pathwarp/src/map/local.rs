@@ -82,12 +82,12 @@ impl Map for Local {
     }
 
     /// Where the curve's control points, and so the curve, lie on one side.
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let points: Option<Vec<Point>> =
             curve.points.iter().map(|p| (p[2] > 0.0).then(|| Point::new(p[0] / p[2], p[1] / p[2]))).collect();
         let points = points?;
         if points.iter().all(|p| self.holds(*p)) {
-            return self.inside.image_of(curve);
+            return self.inside.image(curve);
         }
         let beyond = |[a, b, c]: [f64; 3]| points.iter().all(|p| a * p.x + b * p.y + c < -self.reach);
         self.sides.iter().any(|s| beyond(s.0)).then(|| curve.clone())
@@ -217,9 +217,9 @@ mod tests {
     fn curves_on_one_side_have_exact_images_and_crossings_are_exact() {
         let m = Local::new(&[(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)].map(Point::from), Arc::new(AffineMap::IDENTITY));
         let curve = |ps: &[(f64, f64)]| RationalBezier::polynomial(&ps.iter().map(|p| (*p).into()).collect::<Vec<_>>());
-        assert!(m.image_of(&curve(&[(1.0, 1.0), (2.0, 1.0)])).is_some());
-        assert!(m.image_of(&curve(&[(3.0, 3.0), (4.0, 3.0)])).is_some());
-        assert!(m.image_of(&curve(&[(1.0, 1.0), (4.0, 3.0)])).is_none());
+        assert!(m.image(&curve(&[(1.0, 1.0), (2.0, 1.0)])).is_some());
+        assert!(m.image(&curve(&[(3.0, 3.0), (4.0, 3.0)])).is_some());
+        assert!(m.image(&curve(&[(1.0, 1.0), (4.0, 3.0)])).is_none());
         let mut creases = Creases::default();
         m.creases(&mut creases);
         let seg = crate::outline::Seg::Line(kurbo::Line::new((-1.0, 1.0), (9.0, 1.0)));

@@ -6,6 +6,8 @@
 mod affine;
 pub mod anamorph;
 pub(crate) mod arclength;
+#[doc(hidden)]
+pub mod batch;
 pub(crate) mod bernstein;
 mod birational;
 pub(crate) mod bspline;
@@ -30,6 +32,7 @@ pub mod ruled;
 mod side;
 pub mod surface;
 mod tiled;
+mod traits;
 pub mod triangle;
 
 pub use affine::AffineMap;
@@ -53,10 +56,10 @@ pub use rational::RationalBezier;
 pub use ruled::{Along, Guide};
 pub use side::{Pace, Side};
 pub use tiled::{Row, Tiled};
+pub use traits::Map;
 pub use triangle::TriangleNet;
 
-use kurbo::{Affine, Point};
-use std::sync::Arc;
+use kurbo::Affine;
 
 /// What kind of map it is: the kinds that keep lines need no refitting, and fold in a [`Chain`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,126 +72,25 @@ pub enum Class {
     Smooth,
 }
 
-/// A differentiable map of the plane, in root user units, y down.
-///
-/// Only [`Map::jet`] is required. The others tell the refitter more (exactness, where the map is not smooth) or let it
-/// go faster (batches).
-pub trait Map: Send + Sync {
-    /// Value and both partial derivatives at `p`, in one evaluation. On a crease, either side's.
-    fn jet(&self, p: Point) -> Jet;
-
-    /// The value alone.
-    fn point(&self, p: Point) -> Point {
-        self.jet(p).p
-    }
-
-    /// A batch of jets: one virtual call, and a loop the compiler sees whole. `out` has the length of `ps`.
-    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        for (p, o) in ps.iter().zip(out) {
-            *o = self.jet(*p);
-        }
-    }
-
-    /// A batch of values. `out` has the length of `ps`.
-    fn points(&self, ps: &[Point], out: &mut [Point]) {
-        for (p, o) in ps.iter().zip(out) {
-            *o = self.point(*p);
-        }
-    }
-
-    /// Eight values in place, coordinates apart: the layout the compiler turns into vector instructions. The refitter
-    /// samples through this.
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
-        let mut source = [Point::ORIGIN; 8];
-        for (p, (x, y)) in source.iter_mut().zip(x.iter().zip(y.iter())) {
-            *p = Point::new(*x, *y);
-        }
-        let mut image = [Point::ORIGIN; 8];
-        self.points(&source, &mut image);
-        for (p, (x, y)) in image.iter().zip(x.iter_mut().zip(y)) {
-            (*x, *y) = (p.x, p.y);
-        }
-    }
-
-    /// The kind of map.
-    fn class(&self) -> Class {
-        Class::Smooth
-    }
-
-    /// Adds the places where the map is not smooth, and the edges of where it is defined.
-    fn creases(&self, _out: &mut Creases) {}
-
-    /// For a map with creases: the smooth map that agrees with this one on the piece of the plane, cut at the creases, that
-    /// holds `inside`. Evaluated on the piece's edge it gives the limit from inside. `None`: the map itself is smooth.
-    fn branch(&self, _inside: Point) -> Option<Arc<dyn Map>> {
-        None
-    }
-
-    /// The exact image of a (rational) Bézier curve, where it is one again.
-    fn image_of(&self, _curve: &RationalBezier) -> Option<RationalBezier> {
-        None
-    }
-
-    /// If the map is a quotient of polynomials, of what kind: enough to prove error bounds without writing the image out.
-    fn algebra(&self) -> Option<Algebra> {
-        None
-    }
-
-    /// The denominators of an [`Algebra`] map at eight places.
-    fn denominators(&self, _x: &[f64; 8], _y: &[f64; 8]) -> [f64; 8] {
-        [1.0; 8]
-    }
-
-    /// The inverse map, where there is one.
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        None
-    }
-}
-
 /// (x, y) ↦ (X/W, Y/W) with polynomials X, Y, W.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Algebra {
+pub struct RationalDegree {
     /// The largest total degree (exponents of x and y together) of X, Y and W.
     pub degree: usize,
-    /// Whether W is anything but 1. [`Map::denominators`] gives its values.
+    /// `true` if W is not the constant 1. [`Map::denominator`] gives its values.
     pub rational: bool,
 }
 
-impl<M: Map + ?Sized> Map for Arc<M> {
-    fn jet(&self, p: Point) -> Jet {
-        (**self).jet(p)
+impl RationalDegree {
+    /// A polynomial map: W = 1.
+    #[must_use]
+    pub const fn polynomial(degree: usize) -> Self {
+        Self { degree, rational: false }
     }
-    fn point(&self, p: Point) -> Point {
-        (**self).point(p)
-    }
-    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        (**self).jets(ps, out);
-    }
-    fn points(&self, ps: &[Point], out: &mut [Point]) {
-        (**self).points(ps, out);
-    }
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
-        (**self).lanes(x, y);
-    }
-    fn class(&self) -> Class {
-        (**self).class()
-    }
-    fn creases(&self, out: &mut Creases) {
-        (**self).creases(out);
-    }
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        (**self).branch(inside)
-    }
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        (**self).image_of(curve)
-    }
-    fn algebra(&self) -> Option<Algebra> {
-        (**self).algebra()
-    }
-    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
-        (**self).denominators(x, y)
-    }
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        (**self).inverse()
+
+    /// A map with a denominator.
+    #[must_use]
+    pub const fn rational(degree: usize) -> Self {
+        Self { degree, rational: true }
     }
 }

@@ -3,8 +3,9 @@
 //! F₀(u,v) = Σᵣ Σₛ B³ₛ(u) B³ᵣ(v) pᵣₛ (Koppinen, *A plane transformation from 16 control points*, equation 3), with (u,v) an
 //! affine function of the source point. Evaluated in power form, where a completed net loses its four highest terms.
 
+use super::batch::Lane;
 use super::bernstein::Scaled;
-use super::{Algebra, Class, Jet, Map, RationalBezier};
+use super::{Class, Jet, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point, Vec2};
 
 /// Rows r = 0..3 (v) of columns s = 0..3 (u).
@@ -115,18 +116,18 @@ impl Map for BicubicNet {
         (((r[3] * v + r[2]) * v + r[1]) * v + r[0]).to_point()
     }
 
-    fn lanes(&self, x: &mut [f64; 8], y: &mut [f64; 8]) {
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         for (x, y) in x.iter_mut().zip(y) {
             let p = self.point(Point::new(*x, *y));
             (*x, *y) = (p.x, p.y);
         }
     }
 
-    fn algebra(&self) -> Option<Algebra> {
+    fn rational_degree(&self) -> Option<RationalDegree> {
         let rows = self.c.iter().enumerate();
         let terms = rows.flat_map(|(j, r)| r.iter().enumerate().map(move |(i, v)| (i + j, *v)));
         let degree = terms.filter(|t| t.1 != Vec2::ZERO).map(|t| t.0).max().unwrap_or(0).max(1);
-        Some(Algebra { degree, rational: false })
+        Some(RationalDegree::polynomial(degree))
     }
 
     fn class(&self) -> Class {
@@ -142,8 +143,8 @@ impl Map for BicubicNet {
 
     /// Substituting a curve of degree n gives one of degree 4n for a completed net (three in one variable with one in the
     /// other), 6n for a general one, less where terms are missing.
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let curve = super::AffineMap(self.pre).image_of(curve)?;
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        let curve = super::AffineMap(self.pre).image(curve)?;
         let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
         let terms = || {
             let rows = self.c.iter().enumerate();
@@ -248,7 +249,7 @@ mod tests {
         {
             let m = BicubicNet::new(&net, pre);
             let source = RationalBezier::from_seg(&seg).unwrap();
-            let image = m.image_of(&source).unwrap();
+            let image = m.image(&source).unwrap();
             assert_eq!(image.degree(), degree);
             for i in 0..=20 {
                 let t = f64::from(i) / 20.0;

@@ -130,12 +130,6 @@ impl Patch {
         !self.is_polynomial() && (self.may_vanish || !self.bounded)
     }
 
-    /// The denominator at `p`: positive where the map is defined.
-    #[must_use]
-    pub fn denominator(&self, p: Point) -> f64 {
-        if self.w.is_empty() { 1.0 } else { self.values::<1, 0>(&self.w, &self.local([p]))[0] }
-    }
-
     #[inline(always)]
     fn local<const L: usize>(&self, p: [Point; L]) -> [[f64; L]; 2] {
         let mut out = [[0.0; L]; 2];
@@ -371,6 +365,11 @@ impl Map for Patch {
         }
     }
 
+    /// Positive where the map is defined.
+    fn denominator(&self, p: Point) -> f64 {
+        if self.w.is_empty() { 1.0 } else { self.values::<1, 0>(&self.w, &self.local([p]))[0] }
+    }
+
     fn class(&self) -> Class {
         let terms = self.terms();
         if !self.is_polynomial() || terms.iter().any(|(i, j, _)| i + j > 1) {
@@ -394,7 +393,7 @@ impl Map for Patch {
     }
 
     /// Substituting a curve of degree d gives one of degree d·(m+n), less where the highest terms are missing.
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let (c, k) = (self.centre, self.k);
         let local = |f: &dyn Fn(&[f64; 3]) -> f64| Scaled::new(curve.points.iter().map(f));
         let terms = self.terms();

@@ -8,7 +8,7 @@
 
 use super::bernstein::Scaled;
 use super::inverse::NewtonInverse;
-use super::{AffineMap, Algebra, Class, Crease, Creases, Formula, Homography, Level, Map, RationalBezier, Real};
+use super::{AffineMap, Class, Crease, Creases, Formula, Homography, Level, Map, RationalBezier, RationalDegree, Real};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
@@ -177,16 +177,6 @@ impl Quotient {
         self.w.0.is_empty()
     }
 
-    /// The denominator at `p`: positive where the map is defined.
-    #[must_use]
-    pub fn denominator(&self, p: Point) -> f64 {
-        if self.is_polynomial() {
-            return 1.0;
-        }
-        let q = self.pre * p;
-        self.w.at(q.x, q.y)
-    }
-
     /// The matrix of a map of degree one, row by row, on (x, y, 1).
     fn matrix(&self) -> Option<Homography> {
         if self.degree > 1 {
@@ -249,7 +239,7 @@ impl Formula for Quotient {
         let own = Arc::new(self.clone());
         if !self.sound {
             let own = Arc::clone(&own);
-            out.push(Crease::edge(Level::Field(Arc::new(move |p| own.denominator(p)))));
+            out.push(Crease::edge(Level::Field(Arc::new(move |p| Formula::denominator(&*own, p)))));
         }
         if self.guard.is_some() {
             out.push(Crease::edge(Level::Field(Arc::new(move |p| {
@@ -259,15 +249,15 @@ impl Formula for Quotient {
         }
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         if let Some(h) = self.matrix() {
             return match Formula::class(self) {
-                Class::Affine(m) => AffineMap(m).image_of(curve),
-                _ => h.image_of(curve),
+                Class::Affine(m) => AffineMap(m).image(curve),
+                _ => h.image(curve),
             };
         }
         let total = self.degree;
-        let local = AffineMap(self.pre).image_of(curve)?;
+        let local = AffineMap(self.pre).image(curve)?;
         let of = |c: &RationalBezier, k: usize| Scaled::new(c.points.iter().map(|p| p[k]));
         let (a, b, w) = (of(&local, 0).powers(total), of(&local, 1).powers(total), of(&local, 2).powers(total));
         let degree = curve.degree() * total;
@@ -289,12 +279,16 @@ impl Formula for Quotient {
         Some(RationalBezier { points: points.map(|((x, y), w)| [x, y, if polynomial { 1.0 } else { w }]).collect() })
     }
 
-    fn algebra(&self) -> Option<Algebra> {
-        Some(Algebra { degree: self.degree, rational: !self.is_polynomial() })
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree { degree: self.degree, rational: !self.is_polynomial() })
     }
 
-    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
-        std::array::from_fn(|i| self.denominator(Point::new(x[i], y[i])))
+    fn denominator(&self, p: Point) -> f64 {
+        if self.is_polynomial() {
+            return 1.0;
+        }
+        let q = self.pre * p;
+        self.w.at(q.x, q.y)
     }
 
     /// By a matrix for degree one, by Newton's method near the reference otherwise.

@@ -185,7 +185,7 @@ impl Map for Strip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Algebra, Creases};
+    use crate::map::{Creases, RationalDegree};
     use crate::outline::{EllipticArc, Outline};
     use kurbo::ParamCurveArclen;
 
@@ -258,7 +258,7 @@ mod tests {
         assert!(creases.items()[0].level.at(source(0.5, 0.3)).abs() < 1e-12);
         for u in [0.2, 0.8] {
             let piece = m.branch(source(u, 0.5)).unwrap();
-            assert!(matches!(piece.algebra(), Some(Algebra { rational: false, .. })));
+            assert!(matches!(piece.rational_degree(), Some(RationalDegree { rational: false, .. })));
             assert!(piece.point(source(u, 0.4)).distance(m.point(source(u, 0.4))) < 1e-12);
         }
         // A circle by its angle and by its length is the same guide.

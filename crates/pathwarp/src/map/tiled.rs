@@ -127,7 +127,7 @@ impl Map for Tiled {
     }
 
     /// Where the control points, and so the curve, lie in one tile.
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let mut place = None;
         for p in &curve.points {
             if p[2] <= 0.0 {
@@ -139,7 +139,7 @@ impl Map for Tiled {
             }
         }
         let (j, i) = place?;
-        self.rows[j].maps[i].image_of(curve)
+        self.rows[j].maps[i].image(curve)
     }
 
     /// By Newton's method in every tile, half the region's size beyond it.

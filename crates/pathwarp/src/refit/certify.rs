@@ -59,7 +59,7 @@ pub(super) struct Algebra {
 
 impl Algebra {
     /// `map` is what the source's map says of itself. `None`: nothing is known, the image can only be checked.
-    pub(super) fn of(source: &Source<'_>, map: Option<crate::map::Algebra>) -> Option<Self> {
+    pub(super) fn of(source: &Source<'_>, map: Option<crate::map::RationalDegree>) -> Option<Self> {
         let (degree, rational) = source.degree()?;
         let out = if let Some(a) = map {
             let below = if a.rational || rational { a.degree * degree } else { 0 };
@@ -68,7 +68,7 @@ impl Algebra {
             if rational {
                 return None;
             }
-            let image = source.map.image_of(&RationalBezier::from_seg(source.seg)?)?;
+            let image = source.map.image(&RationalBezier::from_seg(source.seg)?)?;
             let n = image.degree();
             let weights = (!image.is_polynomial()).then(|| image.points.iter().map(|p| p[2]).collect::<Vec<_>>());
             Self { degree: n, below: if weights.is_some() { n } else { 0 }, weights, power: 1, blur: 0.0 }

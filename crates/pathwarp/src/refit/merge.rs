@@ -40,7 +40,7 @@ type Leg = (usize, usize, bool);
 pub(super) struct Merger<'a> {
     pub(super) map: &'a dyn Map,
     /// What kind of quotient of polynomials the map is.
-    pub(super) algebra: Option<crate::map::Algebra>,
+    pub(super) algebra: Option<crate::map::RationalDegree>,
     pub(super) options: &'a Options,
 }
 

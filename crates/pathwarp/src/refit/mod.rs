@@ -246,7 +246,7 @@ fn warp_subpath(
     // Where each segment's pieces begin.
     let mut bounds = Vec::with_capacity(if options.merge { sub.segs.len() + 1 } else { 0 });
     bounds.push(0);
-    let job = Job { map, algebra: map.algebra(), creases, options };
+    let job = Job { map, algebra: map.rational_degree(), creases, options };
     for (i, seg) in sub.segs.iter().enumerate() {
         finite(seg)?;
         if let Some(at) = creases.first_undefined(seg) {
@@ -318,7 +318,7 @@ const MOST_RATIONAL: f64 = 2.2;
 struct Job<'a> {
     map: &'a dyn Map,
     /// What kind of quotient of polynomials the map is.
-    algebra: Option<crate::map::Algebra>,
+    algebra: Option<crate::map::RationalDegree>,
     creases: &'a Creases,
     options: &'a Options,
 }
@@ -395,7 +395,7 @@ impl Job<'_> {
     fn cover(
         &self,
         source: &Source<'_>,
-        known: Option<crate::map::Algebra>,
+        known: Option<crate::map::RationalDegree>,
         blur: f64,
         slow: &split::Slow,
         [from, to]: [&End; 2],
@@ -467,7 +467,7 @@ impl Job<'_> {
             if torn0 {
                 pieces.push(Piece::Line(Line::new(from.1, e0.p)));
             }
-            self.cover(source, source.map.algebra(), blur, slow, [&e0, &e1], pieces, report)?;
+            self.cover(source, source.map.rational_degree(), blur, slow, [&e0, &e1], pieces, report)?;
             if torn1 {
                 pieces.push(Piece::Line(Line::new(e1.p, to.1)));
             }

@@ -6,7 +6,7 @@ use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 
 /// Eight numbers side by side: what one pass of the fit works on (two AVX registers of four, or four SSE2 ones of two).
-pub(super) type Lane = [f64; 8];
+pub(super) type Lane = crate::map::batch::Lane;
 
 /// Eight points.
 #[derive(Debug, Clone, Copy, Default)]

@@ -69,7 +69,7 @@ pub(super) struct Stepper<'a, C> {
     /// What proofs need, if there are to be any.
     pub(super) algebra: Option<Algebra>,
     /// What the map says of itself, where the ends of the pieces lie on its image.
-    pub(super) known: Option<crate::map::Algebra>,
+    pub(super) known: Option<crate::map::RationalDegree>,
     /// Whether to look at every piece closely.
     pub(super) careful: bool,
     pub(super) attempts: usize,

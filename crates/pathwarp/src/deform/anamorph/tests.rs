@@ -236,7 +236,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
     // A cubic stays a cubic, with weights.
     let cubic = Seg::Cubic(kurbo::CubicBez::new((5.0, 5.0), (90.0, 5.0), (20.0, 80.0), (60.0, 60.0)));
     let source = RationalBezier::from_seg(&cubic).unwrap();
-    let image = bezier.simplest().image_of(&source).unwrap();
+    let image = bezier.simplest().image(&source).unwrap();
     assert_eq!(image.degree(), 3);
     for p in grid() {
         // Straight from the paper: Σ uᵢ (bᵢ, δᵢ) in coordinates about the eye.
@@ -343,7 +343,7 @@ fn views_are_central_projections_and_exact_where_they_can_be() {
             }
         }
         let line = RationalBezier::polynomial(&[Point::new(10.0, 20.0), Point::new(90.0, 60.0)]);
-        match (&cast.surface, view.image_of(&line)) {
+        match (&cast.surface, view.image(&line)) {
             (Surface::Plane(_), Some(image)) => assert_eq!(image.degree(), 1),
             (Surface::Radial(_), Some(image)) => {
                 assert_eq!(image.degree(), [2, 2, 3][k - 8]);

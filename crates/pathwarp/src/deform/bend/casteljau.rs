@@ -80,7 +80,7 @@ impl Ribbon {
     }
 
     /// The exact image of a curve in (u, v): of degree n times the curve's.
-    pub(super) fn image_of(&self, curve: &RationalBezier) -> RationalBezier {
+    pub(super) fn image(&self, curve: &RationalBezier) -> RationalBezier {
         let n = self.degree();
         let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
         let (u, v, w) = (coordinate(0), coordinate(1), coordinate(2));
@@ -256,7 +256,7 @@ mod tests {
             RationalBezier::polynomial(&[Point::new(0.1, 0.0), Point::new(0.9, 0.7)]),
             RationalBezier { points: vec![[0.1, 0.2, 1.0], [0.5, 0.1, 0.7], [0.4, 0.9, 1.3]] },
         ] {
-            let image = r.image_of(&source);
+            let image = r.image(&source);
             assert_eq!(image.degree(), 3 * source.degree());
             for i in 0..=10 {
                 let t = f64::from(i) / 10.0;

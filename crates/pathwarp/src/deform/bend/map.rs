@@ -172,14 +172,14 @@ impl Map for OnPiece {
         self.affine().map_or(Class::Smooth, Class::Affine)
     }
 
-    fn image_of(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         if let Some(m) = self.affine() {
-            return AffineMap(m).image_of(curve);
+            return AffineMap(m).image(curve);
         }
         let Shape::Ribbon { ribbon, unit, table: None } = &self.piece.shape else { return None };
         let Place { k, origin, up, base } = self.place;
         let (length, v) = (self.piece.length, up / unit);
         let to_uv = Affine::new([k / length, 0.0, 0.0, -v, (origin - self.begin) / length, base * v]);
-        Some(ribbon.image_of(&AffineMap(to_uv).image_of(curve)?))
+        Some(ribbon.image(&AffineMap(to_uv).image(curve)?))
     }
 }

@@ -111,7 +111,7 @@ fn the_polynomial_mode_has_exact_images() {
         .unwrap()
         .map;
     let source = RationalBezier::from_seg(&Seg::Line(kurbo::Line::new((5.0, 10.0), (40.0, 90.0)))).unwrap();
-    let image = m.branch(Point::new(20.0, 50.0)).unwrap().image_of(&source).unwrap();
+    let image = m.branch(Point::new(20.0, 50.0)).unwrap().image(&source).unwrap();
     assert_eq!(image.degree(), 3);
     for i in 0..=10 {
         let t = f64::from(i) / 10.0;

@@ -174,7 +174,7 @@ fn branches_and_creases() {
             }
         }
         // By parameter the cells are polynomials, and say so.
-        let known = m.branch(Point::new(20.0, 80.0)).unwrap().algebra().is_some();
+        let known = m.branch(Point::new(20.0, 80.0)).unwrap().rational_degree().is_some();
         assert_eq!(known, by == "parameter");
     }
 }

@@ -57,10 +57,10 @@ impl Test {
 }
 
 impl Map for Test {
-    fn algebra(&self) -> Option<crate::map::Algebra> {
-        Some(crate::map::Algebra { degree: self.degree, rational: self.rational })
+    fn rational_degree(&self) -> Option<crate::map::RationalDegree> {
+        Some(crate::map::RationalDegree { degree: self.degree, rational: self.rational })
     }
-    fn denominators(&self, x: &[f64; 8], y: &[f64; 8]) -> [f64; 8] {
+    fn denominators(&self, x: &Lane, y: &Lane) -> Lane {
         std::array::from_fn(|i| Self::poly(&self.w, x[i], y[i])[0])
     }
     fn jet(&self, p: Point) -> Jet {
@@ -111,7 +111,7 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
             _ => Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3])),
         };
         let source = Source::new(&seg, &map);
-        let known = map.algebra();
+        let known = map.rational_degree();
         let (t0, t1) = (0.4 + 0.3 * r.next(), 0.9 + 0.1 * r.next());
         let (Some(algebra), Ok(from), Ok(to)) = (Algebra::of(&source, known), source.end(t0), source.end(t1)) else {
             continue;
@@ -212,8 +212,8 @@ impl Swing {
 }
 
 impl Map for Swing {
-    fn algebra(&self) -> Option<crate::map::Algebra> {
-        Some(crate::map::Algebra { degree: self.zeros.len() + 4, rational: false })
+    fn rational_degree(&self) -> Option<crate::map::RationalDegree> {
+        Some(crate::map::RationalDegree { degree: self.zeros.len() + 4, rational: false })
     }
     fn jet(&self, p: Point) -> Jet {
         let h = 1e-6;
@@ -228,7 +228,7 @@ impl Map for Swing {
 fn of_swing(map: &Swing) -> ([f64; 2], f64) {
     let seg = Seg::Line(Line::new((0.0, 0.0), (1.0, 0.0)));
     let source = Source::new(&seg, map);
-    let algebra = Algebra::of(&source, map.algebra()).unwrap();
+    let algebra = Algebra::of(&source, map.rational_degree()).unwrap();
     let unit = Vec2::new(1.0, 0.0);
     let hermite = [1.0 / 3.0; 2];
     let frame = Frame { q: unit, t0: unit, t1: unit, floor: [0.0; 2], size: 1.0, home: hermite, pull: 0.0 };
