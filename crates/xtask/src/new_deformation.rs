@@ -1,53 +1,69 @@
-//! `cargo xtask new-deformation NAME`: a deformation that works, to be changed into the one that is wanted.
+//! `cargo xtask new-deformation NAME`: writes a working deformation as a starting point.
 
-use crate::Fault;
+use crate::chore::{Chore, Failure, at, path_option, workspace};
+use clap::{Arg, ArgMatches, Command};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// A line in `deform/mod.rs` before which the registry's new line goes.
+/// See the module.
+pub(crate) const CHORE: Chore = Chore { command, run };
+
+/// The end of the list in `deform/mod.rs`; the new entry goes before it.
 const END_OF_LIST: &str = "    ]\n}\n";
 
-/// Writes the file and the two lines; says what was done.
-pub(crate) fn run(root: &Path, name: &str) -> Result<String, Fault> {
+fn command() -> Command {
+    Command::new("new-deformation")
+        .about("Write the file of a new deformation with its test, and register it")
+        .arg(Arg::new("NAME").required(true).help("A name in kebab-case, such as swirl or square-wave"))
+        .arg(path_option("root", "DIR").help("The workspace to write to [default: this one]"))
+}
+
+fn run(arguments: &ArgMatches) -> Result<String, Failure> {
+    let root = arguments.get_one::<PathBuf>("root").cloned().unwrap_or_else(workspace);
+    create(&root, arguments.get_one::<String>("NAME").map_or("", String::as_str))
+}
+
+/// Writes the file and the two lines of the registry, and returns a summary.
+fn create(root: &Path, name: &str) -> Result<String, Failure> {
     let kebab = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
     if !name.split('-').all(kebab) || name.starts_with(|c: char| c.is_ascii_digit()) {
-        return Err(format!("`{name}` is not kebab-case, such as swirl or square-wave"));
+        return Err(format!("`{name}` is not in kebab-case, such as swirl or square-wave"));
     }
     let module = name.replace('-', "_");
     if ["mod", "self", "super", "crate", "type", "match", "move", "loop", "box", "fn", "let"].contains(&module.as_str())
     {
-        return Err(format!("`{name}` is a word of Rust's own; choose another"));
+        return Err(format!("`{name}` is a keyword of Rust; choose another name"));
     }
     let folder = root.join("crates/pathwarp/src/deform");
     let file = folder.join(format!("{module}.rs"));
     let list_file = folder.join("mod.rs");
     if file.exists() {
-        return Err(format!("{} is there already", file.display()));
+        return Err(format!("{} already exists", file.display()));
     }
-    let read = |p: &Path| fs::read_to_string(p).map_err(|e| format!("{}: {e}", p.display()));
+    let read = |p: &Path| fs::read_to_string(p).map_err(at(p));
     let list = register(&read(&list_file)?, &module, &type_name(name))?;
     let text = TEMPLATE.replace("NAME", name).replace("MODULE", &module).replace("TYPE", &type_name(name));
-    fs::write(&file, text).map_err(|e| format!("{}: {e}", file.display()))?;
-    fs::write(&list_file, list).map_err(|e| format!("{}: {e}", list_file.display()))?;
+    fs::write(&file, text).map_err(at(&file))?;
+    fs::write(&list_file, list).map_err(at(&list_file))?;
     Ok(format!(
-        "wrote {}\nadded two lines to {}\n\nIt bends artwork into a wave already: see `cargo run -- {name} samples/logo.svg -o out.svg`.\n\
-         Change the formula, the parameters, the cases; `cargo test -p pathwarp {module}` checks them.",
+        "wrote {}\nadded two lines to {}\n\nIt already bends artwork into a wave: try `cargo run -- {name} samples/logo.svg -o out.svg`.\n\
+         Change the formula, the parameters and the cases; `cargo test -p pathwarp {module}` checks them.",
         file.display(),
         list_file.display()
     ))
 }
 
-/// The list with the module's and the entry's line added.
-fn register(list: &str, module: &str, ty: &str) -> Result<String, Fault> {
-    let lost = "deform/mod.rs does not look as it should: add `mod` and the entry by hand";
+/// Returns the text of `deform/mod.rs` with a line for the module and one for the entry.
+fn register(list: &str, module: &str, ty: &str) -> Result<String, Failure> {
+    let unknown = "deform/mod.rs has an unexpected layout: add the `mod` line and the entry by hand";
     let mut mods: Vec<&str> = list.lines().filter(|l| l.starts_with("mod ")).collect();
-    let (first, last) = (*mods.first().ok_or(lost)?, *mods.last().ok_or(lost)?);
-    let start = list.find(first).ok_or(lost)?;
-    let end = list.find(last).ok_or(lost)? + last.len();
+    let (first, last) = (*mods.first().ok_or(unknown)?, *mods.last().ok_or(unknown)?);
+    let start = list.find(first).ok_or(unknown)?;
+    let end = list.find(last).ok_or(unknown)? + last.len();
     let line = format!("mod {module};");
     mods.push(&line);
     mods.sort_unstable();
-    let at = list[end..].find(END_OF_LIST).ok_or(lost)? + end;
+    let at = list[end..].find(END_OF_LIST).ok_or(unknown)? + end;
     Ok(format!(
         "{}{}{}        Arc::new({module}::{ty}),\n{}",
         &list[..start],
@@ -57,15 +73,15 @@ fn register(list: &str, module: &str, ty: &str) -> Result<String, Fault> {
     ))
 }
 
-/// `square-wave` to `SquareWave`.
+/// Converts `square-wave` to `SquareWave`.
 fn type_name(name: &str) -> String {
     let word = |w: &str| w[..1].to_uppercase() + &w[1..];
     name.split('-').map(word).collect()
 }
 
-const TEMPLATE: &str = r#"//! One sentence: what NAME does to artwork.
+const TEMPLATE: &str = r#"//! One sentence that says what NAME does to artwork.
 //!
-//! The formula, and where it comes from (paper and equation):
+//! The formula and its source (paper and equation):
 //! x' = x, y' = y + h·sin(2π·x/l).
 
 use super::built::Built;
@@ -80,7 +96,7 @@ pub(super) struct TYPE;
 
 static INFO: Info = Info::new("NAME", "one line for the menu")
     .group("New")
-    .about("What it does and when to reach for it, in plain sentences.")
+    .about("Say in plain sentences what it does and when to use it.")
     .source("paper and equation")
     .params(&[
         Param::length("height", Axis::Y, "Height of the wave.").default("10%").slider(0.0, 100.0),
@@ -90,9 +106,9 @@ static INFO: Info = Info::new("NAME", "one line for the menu")
         Example { what: "As it comes", command: "NAME samples/logo.svg -o out.svg" },
         Example { what: "One long wave", command: "NAME samples/lettering.svg --length 100% --height 20% -o out.svg" },
     ])
-    // What holds for every instance.
+    // Properties of every instance.
     .laws(&[Law::Identity(&[("height", "0")]), Law::Area(&[], 1.0)])
-    // Values known from elsewhere, in the frame 0,0,100,100: a quarter of the wave on, the crest.
+    // Known values in the frame 0,0,100,100: the crest, a quarter of the wave along.
     .cases(&[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }]);
 
 impl Deformation for TYPE {
@@ -106,7 +122,7 @@ impl Deformation for TYPE {
     }
 }
 
-/// The map itself; derivatives follow from the formula.
+/// The map; its derivatives follow from the formula.
 struct TYPEMap {
     height: f64,
     length: f64,
@@ -133,40 +149,36 @@ mod tests {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::process::Command;
+    use std::process;
 
-    fn repository() -> std::path::PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-    }
-
-    /// The whole promise: in a copy of the workspace, the new deformation compiles, is registered, and passes its tests.
+    /// In a copy of the workspace, the new deformation compiles, is registered, and passes its tests.
     #[test]
     fn the_new_deformation_passes_its_tests() {
-        let root = repository();
+        let root = workspace();
         let copy = tempfile::tempdir().unwrap();
         let here = copy.path();
         let pathwarp = here.join("crates/pathwarp");
         copy_folder(&root.join("crates/pathwarp"), &pathwarp);
-        // A workspace of this one crate.
+        // Reduce the workspace to this crate.
         let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
         let own: Vec<&str> = manifest.lines().filter(|l| !l.contains("crates/pathwarp-")).collect();
         let own = own.join("\n").replace(&members(&manifest), "members = [\"crates/pathwarp\"]");
         fs::write(here.join("Cargo.toml"), own).unwrap();
         fs::copy(root.join("Cargo.lock"), here.join("Cargo.lock")).unwrap();
 
-        run(here, "square-wave").unwrap();
-        let test = Command::new(env!("CARGO"))
+        create(here, "square-wave").unwrap();
+        let test = process::Command::new(env!("CARGO"))
             .args(["test", "--quiet", "-p", "pathwarp", "--lib", "--test", "registry"])
             .arg("--target-dir")
             .arg(root.join("target/new-deformation"))
             .current_dir(here)
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&test.stdout).into_owned() + &String::from_utf8_lossy(&test.stderr);
-        assert!(test.status.success(), "{said}");
+        let output = String::from_utf8_lossy(&test.stdout).into_owned() + &String::from_utf8_lossy(&test.stderr);
+        assert!(test.status.success(), "{output}");
 
-        assert!(run(here, "square-wave").unwrap_err().contains("already"));
-        assert!(run(here, "Square").is_err() && run(here, "").is_err() && run(here, "a--b").is_err());
+        assert!(create(here, "square-wave").unwrap_err().contains("already"));
+        assert!(create(here, "Square").is_err() && create(here, "").is_err() && create(here, "a--b").is_err());
     }
 
     fn members(manifest: &str) -> String {

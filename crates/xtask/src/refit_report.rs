@@ -1,33 +1,65 @@
-//! `cargo xtask refit-report`: a picture of what refitting does along a path: pieces, nodes, handles, and the error.
+//! `cargo xtask refit-report`: draws the pieces, nodes, handles and error of a refitted path.
 
-use crate::Fault;
+use crate::chore::{Chore, Failure, at, path_option};
+use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::{ParamCurve, ParamCurveDeriv, PathSeg, Point, Rect, Vec2};
+use pathwarp::kurbo::{ParamCurve, ParamCurveArclen as _, ParamCurveDeriv, PathSeg, Point, Rect, Vec2};
 use pathwarp::map::Map;
 use pathwarp::param::{Args, Frame};
 use pathwarp::refit::{self, Options};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The path that is warped: a line, a whole turn, a sharp bend, an inflection.
-pub(crate) const PATH: &str = "M8,88 L88,92 C104,93 96,60 70,66 A16,16 0 1 1 70,34 C100,40 20,-10 30,40 S60,10 10,14";
-/// The cage it is warped by.
+/// See the module.
+pub(crate) const CHORE: Chore = Chore { command, run };
+
+/// The default path: a line, a full turn, a sharp bend and an inflection.
+const PATH: &str = "M8,88 L88,92 C104,93 96,60 70,66 A16,16 0 1 1 70,34 C100,40 20,-10 30,40 S60,10 10,14";
+/// The cage of the shaper that warps the path.
 const CAGE: &str = "M 10,92 C 45,125 60,60 98,85 C 80,60 112,40 92,10 C 60,-20 40,45 4,8 C 20,40 -8,60 10,92 Z";
-/// Samples per piece of the error curve.
+/// Samples per piece in the chart of the error.
 const SAMPLES: usize = 60;
-/// Side of the picture's upper part; the chart below takes a third of it.
+/// Side of the square above the chart.
 const SIDE: f64 = 640.0;
+/// Height of the chart of the error.
 const CHART: f64 = 200.0;
+/// Colours of the pieces, taken in turn.
 const COLOURS: [&str; 2] = ["#0072b2", "#d55e00"];
 
-/// Writes the picture to `out`.
-pub(crate) fn run(path: &str, tolerance: f64, out: &Path) -> Result<String, Fault> {
-    let source = Outline::from_svg(path)?;
+fn command() -> Command {
+    Command::new("refit-report")
+        .about("Draw the pieces, nodes and error of a refitted path")
+        .arg(Arg::new("path").long("path").value_name("DATA").default_value(PATH).help("SVG path data"))
+        .arg(
+            Arg::new("tolerance")
+                .long("tolerance")
+                .value_name("D")
+                .value_parser(value_parser!(f64))
+                .default_value("0.05")
+                .help("Maximum distance from the true image, in user units"),
+        )
+        .arg(path_option("out", "FILE.svg").default_value("docs/images/refit.svg").help("The drawing to write"))
+}
+
+fn run(arguments: &ArgMatches) -> Result<String, Failure> {
+    match (
+        arguments.get_one::<String>("path"),
+        arguments.get_one::<f64>("tolerance"),
+        arguments.get_one::<PathBuf>("out"),
+    ) {
+        (Some(path), Some(tolerance), Some(out)) if *tolerance > 0.0 => draw(path, *tolerance, out),
+        _ => Err("the tolerance must be a positive number".into()),
+    }
+}
+
+/// Refits the path, writes the drawing to `out`, and returns a summary.
+fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, Failure> {
+    let source = Outline::from_svg(path).map_err(|e| e.to_string())?;
     let frame = Frame::new(source.bounding_box().ok_or("the path is empty")?);
     let registry = Registry::builtin();
-    let shaper = registry.get("shaper").ok_or("there is no shaper")?;
+    let shaper = registry.get("shaper").ok_or("the registry has no shaper")?;
     let map = shaper.build_from(&Args::from_pairs(&[("shaper", CAGE)]), &frame).map_err(|e| e.to_string())?.map;
     let warped = refit::warp_path(&source, &map, &Options::new(tolerance)).map_err(|e| e.to_string())?;
     let pieces: Vec<PathSeg> = warped.path.segments().collect();
@@ -51,9 +83,9 @@ pub(crate) fn run(path: &str, tolerance: f64, out: &Path) -> Result<String, Faul
     }
     let worst = draw_error(&mut svg, &pieces, &source, &*map, tolerance);
     svg.push_str("</svg>\n");
-    fs::write(out, svg).map_err(|e| format!("{}: {e}", out.display()))?;
+    fs::write(out, svg).map_err(at(out))?;
     Ok(format!(
-        "{} segments in, {} out; largest error seen {worst:.3e} of {tolerance:e} ({:.3e} reported); wrote {}",
+        "{} segments in, {} out; largest sampled error {worst:.3e} of {tolerance:e} ({:.3e} reported); wrote {}",
         warped.report.segments_in,
         warped.report.segments_out,
         warped.report.max_error,
@@ -61,7 +93,7 @@ pub(crate) fn run(path: &str, tolerance: f64, out: &Path) -> Result<String, Faul
     ))
 }
 
-/// The true image, broad and pale.
+/// Draws the true image as a broad pale line.
 fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, place: &impl Fn(Point) -> Point) {
     for seg in source.segs() {
         let points: Vec<String> = (0..=400)
@@ -76,7 +108,7 @@ fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, place: &impl Fn
     }
 }
 
-/// One piece with its end nodes and handles.
+/// Draws one piece with its end nodes and handles.
 fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, place: &impl Fn(Point) -> Point) {
     let c = piece.to_cubic();
     let [a, b, d, e] = [c.p0, c.p1, c.p2, c.p3].map(place);
@@ -104,9 +136,8 @@ fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, place: &impl Fn(P
     }
 }
 
-/// The signed distance from the output to the true image along the output, as a share of the tolerance; gives the largest.
+/// Charts the signed error along the output in units of the tolerance, and returns the largest absolute error.
 fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn Map, tolerance: f64) -> f64 {
-    use pathwarp::kurbo::ParamCurveArclen;
     let lengths: Vec<f64> = pieces.iter().map(|p| p.arclen(1e-6)).collect();
     let total: f64 = lengths.iter().sum();
     let (left, width, middle, height) = (40.0, SIDE - 80.0, SIDE + CHART / 2.0, CHART * 0.38);
@@ -142,7 +173,7 @@ fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn 
     worst
 }
 
-/// How far the output lies to the left of the true image at `t`.
+/// Signed distance from the true image to the output at `t`, positive to the left.
 fn signed_error(piece: &PathSeg, t: f64, source: &Outline, map: &dyn Map) -> f64 {
     let p = piece.eval(t);
     let tangent: Vec2 = match piece {
@@ -155,7 +186,7 @@ fn signed_error(piece: &PathSeg, t: f64, source: &Outline, map: &dyn Map) -> f64
     (p - foot).cross(tangent) / tangent.hypot().max(f64::MIN_POSITIVE)
 }
 
-/// The nearest point of a segment's true image: by samples, then on the chord between them, halved until it is exact.
+/// Distance to the nearest point of a segment's true image, and that point: dense sampling, then golden-section search.
 fn nearest(seg: &Seg, map: &dyn Map, p: Point) -> (f64, Point) {
     const COARSE: usize = 200;
     let at = |t: f64| map.point(seg.eval(t));
@@ -178,10 +209,10 @@ mod tests {
     fn the_error_in_the_picture_is_within_the_tolerance() {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("r.svg");
-        let said = run(PATH, 0.05, &out).unwrap();
-        let worst: f64 = said.split("seen ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
-        assert!(worst <= 0.05 && worst > 1e-4, "{said}");
+        let summary = draw(PATH, 0.05, &out).unwrap();
+        let worst: f64 = summary.split("sampled error ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        assert!(worst <= 0.05 && worst > 1e-4, "{summary}");
         assert!(fs::read_to_string(out).unwrap().contains("polyline"));
-        assert!(run("M0 0", 0.05, dir.path()).is_err() && run("nonsense", 0.05, dir.path()).is_err());
+        assert!(draw("M0 0", 0.05, dir.path()).is_err() && draw("nonsense", 0.05, dir.path()).is_err());
     }
 }

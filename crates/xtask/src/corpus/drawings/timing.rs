@@ -1,6 +1,6 @@
-//! Reading and writing, timed beside usvg's own.
+//! Times reading and writing against usvg.
 
-use super::checks::Still;
+use super::maps::Identity;
 use pathwarp::kurbo::Affine;
 use pathwarp::refit;
 use pathwarp_svg::{Document, ReadOptions, Structure, WarpOptions};
@@ -8,19 +8,19 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Timed rounds per file; the best one counts.
+/// Timed rounds per file; the fastest counts.
 const ROUNDS: usize = 15;
 
-/// Times all files, one program after the other: in all, and file by file.
+/// Times all files and reports totals and the distribution of ratios.
 pub(super) fn report(files: &[PathBuf], options: &ReadOptions, out: &mut String) {
     let mut warp = WarpOptions::new(refit::Options::new(0.01));
-    let ways = [
-        ("as it is by default", Structure::Auto, Vec::new()),
-        ("written anew", Structure::Flatten, Vec::new()),
-        // "A copy where it stands" leads past the short cut for maps that move nothing.
+    let modes = [
+        ("default structure", Structure::Auto, Vec::new()),
+        ("flattened", Structure::Flatten, Vec::new()),
+        // A copy in place bypasses the shortcut for maps that move nothing.
         ("patched, every control point moved", Structure::Auto, vec![Affine::IDENTITY]),
     ];
-    for (what, structure, copies) in ways {
+    for (mode, structure, copies) in modes {
         warp.structure = structure;
         warp.copies = copies;
         let times: Vec<(f64, f64)> = files.iter().filter_map(|f| timed(f, options, &warp)).collect();
@@ -30,8 +30,8 @@ pub(super) fn report(files: &[PathBuf], options: &ReadOptions, out: &mut String)
         let at = |share: f64| ratios.get((share * ratios.len() as f64) as usize).copied().unwrap_or(f64::NAN);
         let _ = writeln!(
             out,
-            "reading and writing, {what}, {} files: {:.1} ms, usvg's own {:.1} ms: {:.3} of it; by file 10 % below {:.2}, \
-             half below {:.2}, 90 % below {:.2}",
+            "reading and writing, {mode}, {} files: {:.1} ms, usvg {:.1} ms, ratio {:.3}; ratio by file: 10 % below {:.2}, \
+             50 % below {:.2}, 90 % below {:.2}",
             times.len(),
             ours * 1e3,
             theirs * 1e3,
@@ -43,9 +43,10 @@ pub(super) fn report(files: &[PathBuf], options: &ReadOptions, out: &mut String)
     }
 }
 
+/// Best times of pathwarp and of usvg for one file, in seconds; `None` if the file is not suited.
 fn timed(file: &Path, options: &ReadOptions, warp: &WarpOptions) -> Option<(f64, f64)> {
     let text = String::from_utf8(std::fs::read(file).ok()?).ok()?;
-    // Reading fonts is the same work for both, and larger than all the rest. Drawings within drawings may hold text.
+    // Loading fonts would dominate both times. Nested drawings may hold text.
     if text.contains("<text") || text.contains("data:image/svg") {
         return None;
     }
@@ -59,7 +60,7 @@ fn timed(file: &Path, options: &ReadOptions, warp: &WarpOptions) -> Option<(f64,
     let mut best = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
         let started = Instant::now();
-        let written = Document::read(text.as_bytes(), "the file", &options).ok()?.warp(&Still, warp).ok()?;
+        let written = Document::read(text.as_bytes(), "the file", &options).ok()?.warp(&Identity, warp).ok()?;
         best.0 = best.0.min(started.elapsed().as_secs_f64());
         let started = Instant::now();
         let again = usvg::Tree::from_str(&text, &theirs).ok()?.to_string(&usvg::WriteOptions::default());

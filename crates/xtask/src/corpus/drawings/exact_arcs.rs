@@ -1,22 +1,22 @@
-//! The same drawing with its arcs written more precisely.
+//! Rewrites a drawing with more precise arcs.
 //!
-//! usvg turns circles, ellipses, round corners and arcs into cubics within 0.1 user units before anything is drawn or measured
-//! along them. Here they become cubics within [`EXACT`] in the source, which usvg takes as they are; nothing else changes. This
-//! uses nothing of pathwarp's own: arcs are read by svgtypes and approximated by kurbo.
+//! usvg converts circles, ellipses, round corners and arcs to cubics within 0.1 user units before it draws or measures them.
+//! This module rewrites them in the source as cubics within [`EXACT`], which usvg keeps, and changes nothing else. It is
+//! independent of pathwarp's own arcs: svgtypes reads them and kurbo approximates them.
 
 use pathwarp::kurbo::{Arc, Point, SvgArc, Vec2};
 use std::fmt::Write as _;
 use svgtypes::{PathParser, PathSegment};
 use usvg::roxmltree::{self, Node};
 
-/// The largest distance between an arc and its cubics, user units.
+/// Maximum distance between an arc and its cubics, in user units.
 const EXACT: f64 = 1e-6;
 const SVG: &str = "http://www.w3.org/2000/svg";
 
-/// The drawing with exact arcs, if it has any that can be told.
-pub(super) fn refined(text: &str) -> Option<String> {
-    // Inside entities there are no places to write to; and usvg puts markers on the joints of its cubics, of which there would be
-    // more.
+/// Returns the drawing with exact arcs; `None` if it has none or they cannot be located.
+pub(super) fn with_exact_arcs(text: &str) -> Option<String> {
+    // Text inside entities cannot be edited in place. usvg puts markers on the joints of its cubics, and there would be more
+    // joints.
     if text.contains("<!ENTITY") || text.contains("marker-") {
         return None;
     }
@@ -29,7 +29,7 @@ pub(super) fn refined(text: &str) -> Option<String> {
             if let Some(exact) = without_arcs(d.value()) {
                 edits.push((d.range_value(), exact));
             }
-        } else if let Some(exact) = shape(e).filter(|_| may_be_a_path(text, e.tag_name().name())) {
+        } else if let Some(exact) = shape(e).filter(|_| can_become_path(text, e.tag_name().name())) {
             edits.extend(as_path(text, e, &exact)?);
         }
     }
@@ -44,18 +44,18 @@ pub(super) fn refined(text: &str) -> Option<String> {
     Some(out)
 }
 
-/// Whether a shape looks the same as a path: no style sheet speaks of its name.
-fn may_be_a_path(text: &str, tag: &str) -> bool {
+/// Returns `true` if no style sheet names the element, so that it looks the same as a `path`.
+fn can_become_path(text: &str, tag: &str) -> bool {
     let sheets = text.match_indices("<style").filter_map(|(at, _)| text.get(at..)?.split("</style").next());
     !sheets.into_iter().any(|s| s.contains(tag))
 }
 
-/// The edits that make a `path` of an element: its name, its data, its closing name.
+/// The edits that turn an element into a `path`: its name, its data, its closing name.
 fn as_path(text: &str, e: Node<'_, '_>, data: &str) -> Option<Vec<(std::ops::Range<usize>, String)>> {
     let whole = e.range();
     let tag = e.tag_name().name();
     let inside = text.get(whole.clone())?;
-    // There may be a prefix.
+    // Skip a namespace prefix.
     let name = whole.start + inside.find(tag)?;
     let mut edits = vec![(name..name + tag.len(), format!("path d=\"{data}\""))];
     if let Some(close) = inside.rfind("</") {
@@ -65,8 +65,8 @@ fn as_path(text: &str, e: Node<'_, '_>, data: &str) -> Option<Vec<(std::ops::Ran
     Some(edits)
 }
 
-/// The path of a circle, an ellipse or a rectangle with round corners, as SVG 2 (chapter 10, Basic Shapes) runs through it, where
-/// its lengths are plain numbers.
+/// The equivalent path of a circle, an ellipse or a rectangle with round corners (SVG 2, chapter 10, Basic Shapes). `None` if a
+/// length is not a plain number.
 fn shape(e: Node<'_, '_>) -> Option<String> {
     let length = |name: &str| match e.attribute(name) {
         None => Some(0.0),
@@ -83,7 +83,7 @@ fn shape(e: Node<'_, '_>) -> Option<String> {
             (None, None) => (0.0, 0.0),
         })
     };
-    let mut out = Cubics::default();
+    let mut out = PathData::default();
     match e.tag_name().name() {
         tag @ ("circle" | "ellipse") => {
             let (rx, ry) = if tag == "circle" { (length("r")?, length("r")?) } else { radii()? };
@@ -120,14 +120,14 @@ fn shape(e: Node<'_, '_>) -> Option<String> {
     Some(out.data)
 }
 
-/// Path data in the making.
+/// Path data under construction.
 #[derive(Default)]
-struct Cubics {
+struct PathData {
     data: String,
     at: Point,
 }
 
-impl Cubics {
+impl PathData {
     fn move_to(&mut self, to: (f64, f64)) {
         let _ = write!(self.data, "M{} {}", to.0, to.1);
         self.at = to.into();
@@ -149,14 +149,14 @@ impl Cubics {
         });
     }
 
-    /// An arc, from where the path is.
+    /// Appends an arc that starts at the current point.
     fn arc(&mut self, arc: SvgArc) {
         let to = arc.to;
         match Arc::from_svg_arc(&arc) {
             Some(exact) => {
                 let mut pieces = Vec::new();
                 exact.to_cubic_beziers(EXACT, |a, b, c| pieces.push((a, b, c)));
-                // Its end is where the source says, not where the angles lead.
+                // Use the end point of the source, not the one computed from angles.
                 if let Some(last) = pieces.last_mut() {
                     last.2 = to;
                 }
@@ -170,13 +170,13 @@ impl Cubics {
     }
 }
 
-/// Path data in which every arc is cubics, in absolute coordinates; nothing if there was no arc. It ends where an error stands.
+/// Converts path data to absolute coordinates with cubics for arcs, up to the first error. `None` if there is no arc.
 fn without_arcs(d: &str) -> Option<String> {
     let segments: Vec<PathSegment> = PathParser::from(d).map_while(Result::ok).collect();
     if !segments.iter().any(|s| matches!(s, PathSegment::EllipticalArc { .. })) {
         return None;
     }
-    let mut out = Cubics::default();
+    let mut out = PathData::default();
     let mut start = Point::ORIGIN;
     let mut after_arc = false;
     for s in segments {
@@ -207,7 +207,7 @@ fn without_arcs(d: &str) -> Option<String> {
             PathSegment::HorizontalLineTo { x, .. } => out.line_to((x + base.x, out.at.y)),
             PathSegment::VerticalLineTo { y, .. } => out.line_to((out.at.x, y + base.y)),
             PathSegment::CurveTo { x1, y1, x2, y2, x, y, .. } => out.points('C', &[p(x1, y1), p(x2, y2), p(x, y)]),
-            // What goes on smoothly after an arc starts straight at its end; after the arc's cubics it would not.
+            // A smooth curve after an arc has no reflected control point; after the arc's cubics it would get one.
             PathSegment::SmoothCurveTo { x2, y2, x, y, .. } if was_arc => {
                 out.points('C', &[out.at, p(x2, y2), p(x, y)]);
             }
@@ -231,7 +231,7 @@ fn without_arcs(d: &str) -> Option<String> {
     Some(out.data)
 }
 
-impl Cubics {
+impl PathData {
     fn points(&mut self, command: char, points: &[Point]) {
         self.data.push(command);
         for p in points {
@@ -247,7 +247,7 @@ mod tests {
     use pathwarp::kurbo::{BezPath, ParamCurve as _};
 
     fn data(svg: &str) -> BezPath {
-        let text = refined(svg).expect("there is an arc");
+        let text = with_exact_arcs(svg).expect("there is an arc");
         let document = roxmltree::Document::parse(&text).expect("well formed");
         let path = document.descendants().find(|n| n.has_tag_name((SVG, "path"))).expect("a path");
         BezPath::from_svg(path.attribute("d").expect("data")).expect("path data")
@@ -262,7 +262,7 @@ mod tests {
     fn circles_and_arcs_are_exact() {
         let circle = data("<svg xmlns='http://www.w3.org/2000/svg'><circle cx='3' cy='4' r='500'>\n</circle></svg>");
         assert!(off_circle(&circle, Point::new(3.0, 4.0), 500.0) <= 1.1e-6);
-        // usvg's own: coarse.
+        // usvg's own cubics are coarser.
         let arcs = data(
             "<svg xmlns='http://www.w3.org/2000/svg'><path d='m503 4a500 500 0 1 1-1000 0 500 500 0 0 1 1000 0z'/></svg>",
         );
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_an_arc_stays() {
+    fn curves_after_an_arc_are_unchanged() {
         let smooth = without_arcs("M0 0A5 5 0 0 1 10 0s10 10 20 0t10 0z l1 1").expect("an arc");
         let exact = BezPath::from_svg(&smooth).expect("path data");
         let plain = BezPath::from_svg("M10 0C10 0 20 10 30 0").expect("path data");
@@ -294,14 +294,14 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_arc_or_cannot_be_told_is_left() {
+    fn shapes_without_arcs_or_with_unknown_lengths_are_left_alone() {
         for body in [
             "<path d='M0 0C1 1 2 2 3 3'/>",
             "<rect width='3' height='4'/>",
             "<circle r='2em'/>",
             "<style>circle { fill: red }</style><circle r='2'/>",
         ] {
-            assert_eq!(refined(&format!("<svg xmlns='http://www.w3.org/2000/svg'>{body}</svg>")), None);
+            assert_eq!(with_exact_arcs(&format!("<svg xmlns='http://www.w3.org/2000/svg'>{body}</svg>")), None);
         }
     }
 }

@@ -1,10 +1,8 @@
-//! Pictures of drawings, and how far they differ.
+//! Pictures of drawings and their differences.
 
-use super::checks::LEVELS;
-use pathwarp::deform::Registry;
-use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
+use super::scale::{self, Scales};
+use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::{Map, NewtonInverse};
-use pathwarp::param::{Args, Frame};
 use pathwarp_raster::{ImageWarp, Pixmap, Size, compare, diff_image, render, shown, warp_image};
 use pathwarp_svg::Document;
 use resvg::tiny_skia::{Color, PixmapPaint, PremultipliedColorU8, Transform};
@@ -12,56 +10,10 @@ use std::path::Path;
 use std::sync::Arc;
 use usvg::Tree;
 
-/// Side of the largest picture of a whole drawing, pixels as drawn.
-const LARGE: f64 = 2400.0;
-/// The width that a stroke must have, pixels as drawn, to be drawn by the area it covers; thinner ones are paled.
-const WIDE: f64 = 1.1;
-/// The smallest stretch of the affine map, a little less.
-const SQUEEZE: f64 = 0.6;
-/// How many times as large pictures are drawn before their pixels are averaged. The renderer cuts a pixel's edge into four and
-/// draws a stroke's edge to a quarter of a pixel, so that edges in the same place may differ by a fifth of all levels.
-const FINER: u32 = 3;
-/// The same for pictures that must agree pixel by pixel. A circle's edge drawn without smoothing, and the corners of dashes, which
-/// the renderer draws to a quarter of a pixel as well, are averaged to within a few levels then.
-const FINEST: u32 = 8;
-/// How much larger still is the picture that is bent.
+/// Pixels differ if a channel differs by more than this.
+pub(super) const LEVELS: u8 = 16;
+/// Extra scale of the picture that is bent, relative to its result.
 const SHARPER: f64 = 2.0;
-
-/// Scales, pixels per px.
-pub(super) struct Fine {
-    /// Of the whole picture.
-    pub(super) whole: f64,
-    /// At which the thinnest stroke is wide enough.
-    pub(super) needed: f64,
-    /// How many times as large they are drawn.
-    pub(super) n: u32,
-}
-
-/// The scales for a drawing that is at least drawn at `least`.
-pub(super) fn fine(document: &Document, least: f64) -> Fine {
-    /// Beyond this magnification f32 shows its grain.
-    const MOST: f64 = 400.0;
-    let size = document.size_px();
-    let n = finest(document);
-    let largest = LARGE / f64::from(n) / size.width.max(size.height);
-    let thinnest = thinnest(document.tree().root()).unwrap_or(f64::INFINITY);
-    let needed = (WIDE / (SQUEEZE * thinnest) / f64::from(n)).max(least);
-    Fine { whole: needed.min(largest), needed: needed.min(MOST * largest), n }
-}
-
-/// The width of the thinnest stroke, px.
-fn thinnest(group: &usvg::Group) -> Option<f64> {
-    let of = |node: &usvg::Node| match node {
-        usvg::Node::Group(g) => thinnest(g),
-        usvg::Node::Text(t) => thinnest(t.flattened()),
-        usvg::Node::Path(p) => p.stroke().map(|s| {
-            let (x, y) = p.abs_transform().get_scale();
-            f64::from(s.width().get() * x.min(y))
-        }),
-        usvg::Node::Image(_) => None,
-    };
-    group.children().iter().filter_map(of).filter(|w| *w > 0.0).min_by(f64::total_cmp)
-}
 
 #[expect(clippy::cast_possible_truncation, reason = "the renderer's own precision")]
 fn transform(m: Affine) -> Transform {
@@ -69,23 +21,13 @@ fn transform(m: Affine) -> Transform {
     Transform::from_row(a, b, c, d, e, f)
 }
 
-/// How many times as large pictures of a bent drawing are drawn. Filters take too long on large ones.
-pub(super) fn finer(document: &Document) -> u32 {
-    if document.tree().filters().is_empty() { FINER } else { 1 }
-}
-
-/// How many times as large pictures under the affine map are drawn.
-fn finest(document: &Document) -> u32 {
-    if document.tree().filters().is_empty() { FINEST } else { FINER }
-}
-
-/// The whole page.
+/// Draws the whole page.
 #[expect(clippy::cast_possible_truncation, reason = "the renderer's own precision")]
 pub(super) fn whole(tree: &Tree, scale: f64) -> Option<Pixmap> {
     render(tree, Size::Scale(scale as f32)).ok()
 }
 
-/// Two drawings that should look the same: `a` moved by an affine map of its px, and `b`.
+/// Two drawings that should look the same: `a` under an affine map of its px, and `b`.
 pub(super) struct Pair<'a> {
     pub(super) a: &'a Tree,
     pub(super) moved: Affine,
@@ -93,60 +35,63 @@ pub(super) struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Both, whole.
-    pub(super) fn pictures(&self, fine: &Fine) -> Option<(Pixmap, Pixmap)> {
-        let drawn = fine.whole * f64::from(fine.n);
+    /// Draws both as whole pictures.
+    pub(super) fn pictures(&self, scales: &Scales) -> Option<(Pixmap, Pixmap)> {
+        let drawn = scales.whole * f64::from(scales.oversampling);
         let b = whole(self.b, drawn)?;
         let mut a = Pixmap::new(b.width(), b.height())?;
         resvg::render(self.a, transform(Affine::scale(drawn) * self.moved), &mut a.as_mut());
-        Some((smaller(&a, fine.n)?, smaller(&b, fine.n)?))
+        Some((reduced(&a, scales.oversampling)?, reduced(&b, scales.oversampling)?))
     }
 
-    /// The share of pixels that differ. Where the whole picture is too small for the thinnest stroke, the places where it
-    /// differs most are looked at again, as large as needed.
-    pub(super) fn share(&self, fine: &Fine) -> (f64, String) {
-        let Some((a, b)) = self.pictures(fine) else { return (1.0, "no picture".into()) };
+    /// The share of pixels that differ, with a remark. If the whole picture is too small for the thinnest stroke, draws the
+    /// places that differ most again at the scale they need.
+    pub(super) fn share(&self, scales: &Scales) -> (f64, String) {
+        let Some((a, b)) = self.pictures(scales) else { return (1.0, "no picture".into()) };
         let difference = match compare(&a, &b) {
             Ok(d) => d,
             Err(e) => return (1.0, e.to_string()),
         };
         let share = difference.share_over(LEVELS);
-        let word = format!("{:.2} % of pixels", 100.0 * share);
-        if share == 0.0 || fine.whole == fine.needed {
-            return (share, word);
+        let remark = format!("{:.2} % of pixels", 100.0 * share);
+        if share == 0.0 || scales.whole == scales.needed {
+            return (share, remark);
         }
-        let closer = fine.needed / fine.whole;
+        let closer = scales.needed / scales.whole;
         let windows = worst(&a, &b);
         let (mut off, mut of) = (0, 0);
         for at in &windows {
-            let Some((a, b)) = self.window(*at, fine) else { continue };
+            let Some((a, b)) = self.window(*at, scales) else { continue };
             let Ok(d) = compare(&a, &b) else { continue };
             off += d.pixels_over(LEVELS);
             of += u64::from(d.width) * u64::from(d.height);
         }
         let near = off as f64 / (of as f64).max(1.0);
-        (share.min(near), format!("{word}, {:.2} % where they differ most at {closer:.0} times the size", 100.0 * near))
+        (
+            share.min(near),
+            format!("{remark}, {:.2} % in the places that differ most, {closer:.0} times as large", 100.0 * near),
+        )
     }
 
-    /// Both as they look around a place of the whole picture.
-    fn window(&self, at: Point, fine: &Fine) -> Option<(Pixmap, Pixmap)> {
+    /// Draws both around a point of the whole picture.
+    fn window(&self, at: Point, scales: &Scales) -> Option<(Pixmap, Pixmap)> {
         const SIDE: u32 = 320;
         let half = f64::from(SIDE) / 2.0;
-        let place = Affine::scale(f64::from(fine.n))
+        let place = Affine::scale(f64::from(scales.oversampling))
             * Affine::translate((half, half))
-            * Affine::scale(fine.needed / fine.whole)
+            * Affine::scale(scales.needed / scales.whole)
             * Affine::translate(-at.to_vec2())
-            * Affine::scale(fine.whole);
+            * Affine::scale(scales.whole);
         let draw = |tree, m| {
-            let mut out = Pixmap::new(SIDE * fine.n, SIDE * fine.n)?;
+            let mut out = Pixmap::new(SIDE * scales.oversampling, SIDE * scales.oversampling)?;
             resvg::render(tree, transform(m), &mut out.as_mut());
-            smaller(&out, fine.n)
+            reduced(&out, scales.oversampling)
         };
         Some((draw(self.a, place * self.moved)?, draw(self.b, place)?))
     }
 }
 
-/// The places where two pictures differ most: the middles of the differing pixels of the blocks that have most of them.
+/// Finds the places where two pictures differ most: the centroids of differing pixels in the blocks with most of them.
 fn worst(a: &Pixmap, b: &Pixmap) -> Vec<Point> {
     const BLOCK: usize = 48;
     const MOST: usize = 12;
@@ -169,27 +114,14 @@ fn channels(p: PremultipliedColorU8) -> [u8; 4] {
     [p.red(), p.green(), p.blue(), p.alpha()]
 }
 
-/// A shaper whose sides all swing by a fifth of the page.
-pub(super) fn shaper(page: Rect) -> Option<Arc<dyn Map>> {
-    const CAGE: &str = "M0.04,0.92 C0.3,0.7 0.6,1.12 0.95,0.84 C1.12,0.6 0.82,0.36 0.96,0.1 C0.7,-0.04 0.34,0.26 0.06,0.08 \
-                        C-0.08,0.36 0.2,0.66 0.04,0.92 Z";
-    let mut cage = BezPath::from_svg(CAGE).ok()?;
-    cage.apply_affine(
-        Affine::translate(page.origin().to_vec2()) * Affine::scale_non_uniform(page.width(), page.height()),
-    );
-    debug_assert!(cage.bounding_box().area() > 0.0);
-    let args = Args::from_pairs(&[("shaper", &cage.to_svg())]);
-    Some(Registry::builtin().get("shaper")?.build_from(&args, &Frame::new(page)).ok()?.map)
-}
-
-/// The bent drawing's picture, the drawing's picture bent, and one that is solid where the page's image is.
+/// Draws the bent drawing, bends a picture of the drawing, and draws a mask that is solid where the image of the page is.
 pub(super) fn bent(
     document: &Document,
     after: &Tree,
     map: &Arc<dyn Map>,
     scale: f64,
 ) -> Option<(Pixmap, Pixmap, Pixmap)> {
-    /// How far beyond the page answers count: its pixels' edges.
+    /// Margin around the page in which the inverse is accepted: the pixels at its edges reach outside.
     const REACH: f64 = 0.02;
     let inverse = NewtonInverse::over(Arc::clone(map), document.view_box(), REACH);
     let to_user = document.user_to_px().inverse();
@@ -205,20 +137,20 @@ pub(super) fn bent(
         };
         warp_image(&warp).ok()
     };
-    let n = finer(document);
+    let n = scale::oversampling(document);
     let fine = f64::from(n) * scale;
     let ours = whole(after, fine)?;
     let size = (ours.width(), ours.height());
     let expected = bend(&whole(document.tree(), SHARPER * fine)?, SHARPER * fine, fine, size)?;
-    let (ours, expected) = (smaller(&ours, n)?, smaller(&expected, n)?);
+    let (ours, expected) = (reduced(&ours, n)?, reduced(&expected, n)?);
     let mut solid = whole(document.tree(), scale)?;
     solid.fill(Color::BLACK);
     let inside = bend(&solid, scale, scale, (ours.width(), ours.height()))?;
     Some((ours, expected, inside))
 }
 
-/// Every so many pixels, along either side, averaged into one.
-fn smaller(p: &Pixmap, n: u32) -> Option<Pixmap> {
+/// Averages blocks of `n` by `n` pixels into one.
+fn reduced(p: &Pixmap, n: u32) -> Option<Pixmap> {
     if n == 1 {
         return Some(p.clone());
     }
@@ -239,7 +171,7 @@ fn smaller(p: &Pixmap, n: u32) -> Option<Pixmap> {
     Some(out)
 }
 
-/// The mean difference over the artwork: where either picture shows anything, and all of the pixel comes from the page.
+/// The mean difference over pixels that lie wholly on the page and where either picture shows something.
 pub(super) fn mean_inside(a: &Pixmap, b: &Pixmap, inside: &Pixmap) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for ((a, b), inside) in a.pixels().iter().zip(b.pixels()).zip(inside.pixels()) {
@@ -252,7 +184,7 @@ pub(super) fn mean_inside(a: &Pixmap, b: &Pixmap, inside: &Pixmap) -> Option<f64
     (count > 0.0).then(|| sum / count)
 }
 
-/// Writes two pictures and their difference on white.
+/// Writes two pictures and their difference side by side on white.
 pub(super) fn side_by_side(a: &Pixmap, b: &Pixmap, file: &Path) {
     let draw = || {
         let third = a.width() + 4;
@@ -265,6 +197,6 @@ pub(super) fn side_by_side(a: &Pixmap, b: &Pixmap, file: &Path) {
         }
         out.save_png(file).ok()
     };
-    // Only for looking at; the figures do not depend on it.
+    // The picture is for inspection only; ignore a failure to write it.
     let _ = draw();
 }

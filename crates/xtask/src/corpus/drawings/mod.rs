@@ -1,0 +1,165 @@
+//! Warps whole drawings with the program's own reader, maps and writers, and compares them with resvg's rendering of the
+//! originals.
+//!
+//! Every file goes through
+//!
+//! 1. the identity, with its structure flattened and kept: the pictures must match. Once as a declared affine map, which moves
+//!    control points, and once hidden from the fitter;
+//! 2. a hidden affine map: the picture must match resvg's drawing of the original under that transform, and of the original with
+//!    its arcs written more precisely ([`exact_arcs`]);
+//! 3. a strong shaper: the picture must match a large picture of the original bent pixel by pixel;
+//! 4. a comparison of ids, classes, titles and nesting before and after;
+//! 5. reading and writing, timed against usvg.
+//!
+//! A panic, or more than a minute for one map of one file, counts as a failure.
+
+mod case;
+mod exact_arcs;
+mod facts;
+mod finding;
+mod maps;
+mod pictures;
+mod scale;
+mod timing;
+
+use crate::chore::{Failure, at};
+use case::CheckOptions;
+use finding::Finding;
+use pathwarp_svg::{GenericFamilies, ReadOptions};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, mpsc};
+use std::time::Duration;
+
+/// Time limit for all checks of one file, including its pictures.
+const TIME_LIMIT: Duration = Duration::from_secs(300);
+
+/// The checks that can be run alone. The one of names and nesting uses the result of the affine map.
+pub(super) const CHECKS: [&str; 3] = ["identity", "affine", "shaper"];
+
+/// The options of a run over a corpus.
+pub(super) struct CorpusRun {
+    /// Folders of SVG files.
+    pub(super) folders: Vec<PathBuf>,
+    /// A folder of fonts for text, instead of the system's.
+    pub(super) fonts: Option<PathBuf>,
+    /// Measure every Nth file.
+    pub(super) every: usize,
+    /// Folder for pictures of failures.
+    pub(super) pictures: Option<PathBuf>,
+    /// Run these of [`CHECKS`] without timing; if empty, run all with timing.
+    pub(super) only: Vec<String>,
+    /// Take times only.
+    pub(super) times: bool,
+}
+
+/// Measures all folders and returns a report.
+pub(super) fn measure(run: &CorpusRun) -> Result<String, Failure> {
+    let mut out = String::new();
+    for folder in &run.folders {
+        let mut files = Vec::new();
+        collect(folder, &mut files).map_err(at(folder))?;
+        files.sort();
+        let files: Vec<PathBuf> = files.into_iter().step_by(run.every.max(1)).collect();
+        let options = ReadOptions {
+            // The families that resvg's test suite uses.
+            generic_families: GenericFamilies {
+                serif: Some("Noto Serif".into()),
+                sans_serif: Some("Noto Sans".into()),
+                cursive: Some("Yellowtail".into()),
+                fantasy: Some("Sedgwick Ave Display".into()),
+                monospace: Some("Noto Mono".into()),
+            },
+            system_fonts: run.fonts.is_none(),
+            fonts: run.fonts.iter().cloned().collect(),
+            ..ReadOptions::default()
+        };
+        if !run.times {
+            let checks = CheckOptions { read: options.clone(), pictures: run.pictures.clone(), only: run.only.clone() };
+            let found = check_all(&files, &checks);
+            report(folder, &files, &found, &mut out);
+        }
+        if run.only.is_empty() {
+            timing::report(&files, &options, &mut out);
+        }
+    }
+    Ok(out)
+}
+
+/// Checks all files on threads of its own: a thread of rayon's pool that waited here could not serve the warp.
+fn check_all(files: &[PathBuf], options: &CheckOptions) -> Vec<Vec<Finding>> {
+    let next = AtomicUsize::new(0);
+    let found: Vec<Mutex<Vec<Finding>>> = files.iter().map(|_| Mutex::default()).collect();
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some((file, slot)) = files.iter().zip(&found).nth(next.fetch_add(1, Ordering::Relaxed)) {
+                    let findings = check_guarded(file, options);
+                    if let Ok(mut slot) = slot.lock() {
+                        *slot = findings;
+                    }
+                }
+            });
+        }
+    });
+    found.into_iter().map(|m| m.into_inner().unwrap_or_default()).collect()
+}
+
+/// Collects the SVG files below a folder.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            collect(&path, files)?;
+        } else if path.extension().is_some_and(|e| e == "svg" || e == "svgz") {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Checks one file on a thread that may panic or be abandoned.
+fn check_guarded(file: &Path, options: &CheckOptions) -> Vec<Finding> {
+    let (send, receive) = mpsc::channel();
+    let (path, options) = (file.to_owned(), options.clone());
+    /// resvg needs a deep stack for some of librsvg's files.
+    const STACK: usize = 256 << 20;
+    let thread = std::thread::Builder::new().stack_size(STACK).spawn(move || {
+        // The receiver may have timed out.
+        let _ = send.send(case::check(&path, &options));
+    });
+    let failed = |remark: &str| vec![Finding::failed(case::ALIVE, remark)];
+    if thread.is_err() {
+        return failed("no thread");
+    }
+    match receive.recv_timeout(TIME_LIMIT) {
+        Ok(found) => found,
+        Err(mpsc::RecvTimeoutError::Timeout) => failed("timed out, pictures included"),
+        Err(mpsc::RecvTimeoutError::Disconnected) => failed("panic"),
+    }
+}
+
+/// Reports the share of files that pass each check, and lists the others.
+fn report(folder: &Path, files: &[PathBuf], found: &[Vec<Finding>], out: &mut String) {
+    let mut checks: Vec<&'static str> = Vec::new();
+    for finding in found.iter().flatten() {
+        if !checks.contains(&finding.check) {
+            checks.push(finding.check);
+        }
+    }
+    let _ = writeln!(out, "\n{}: {} files", folder.display(), files.len());
+    for check in checks {
+        let findings: Vec<(&PathBuf, &Finding)> = files
+            .iter()
+            .zip(found)
+            .flat_map(|(file, all)| all.iter().filter(|f| f.check == check).map(move |f| (file, f)))
+            .collect();
+        let (passed, all) = (findings.iter().filter(|(_, f)| f.passed).count(), findings.len());
+        let _ = writeln!(out, "{check}: {passed} of {all} ({:.2} %)", 100.0 * passed as f64 / all as f64);
+        for (file, finding) in findings.iter().filter(|(_, f)| !f.passed) {
+            let name = file.strip_prefix(folder).unwrap_or(file).display();
+            let _ = writeln!(out, "    {name}: {}", finding.remark);
+        }
+    }
+}

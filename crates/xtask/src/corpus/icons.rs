@@ -1,0 +1,96 @@
+//! The icon paths that refitting is measured on, one path per line.
+//!
+//! Fetches two icon sets with `npm pack`, takes every Nth file of each in the order of their names, scales them to a box of
+//! 0..1000, and writes them to `corpus/icons.txt`. Arcs become cubics of at most a quarter turn, so that every program that reads
+//! the file measures the same curves.
+
+use crate::chore::workspace;
+use pathwarp::Outline;
+use pathwarp::kurbo::Affine;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A package of icons on npm.
+struct IconSet {
+    package: &'static str,
+    /// Folder of its SVG files.
+    folder: &'static str,
+    /// Side of their square view box.
+    side: f64,
+    /// Take every Nth file.
+    every: usize,
+}
+
+/// Together they give some 23,000 segments.
+const SETS: [IconSet; 2] = [
+    IconSet { package: "simple-icons", folder: "package/icons", side: 24.0, every: 10 },
+    IconSet { package: "bootstrap-icons", folder: "package/icons", side: 16.0, every: 15 },
+];
+
+/// Side of the box that icons are scaled to.
+const BOX: f64 = 1000.0;
+
+/// Tolerance for arcs: any, which gives one cubic per quarter turn.
+const ARC_TOLERANCE: f64 = f64::INFINITY;
+
+/// Fetches the icons, writes `corpus/icons.txt` beside the workspace's `Cargo.toml`, and returns a summary.
+pub(super) fn fetch_all() -> io::Result<String> {
+    let folder = workspace().join("corpus");
+    std::fs::create_dir_all(&folder)?;
+    let mut lines = Vec::new();
+    for set in &SETS {
+        let work = folder.join(set.package);
+        std::fs::create_dir_all(&work)?;
+        fetch(set.package, &work)?;
+        let mut files: Vec<PathBuf> = std::fs::read_dir(work.join(set.folder))?
+            .map(|e| e.map(|e| e.path()))
+            .collect::<io::Result<Vec<_>>>()?
+            .into_iter()
+            .filter(|p| p.extension().is_some_and(|e| e == "svg"))
+            .collect();
+        files.sort();
+        for file in files.iter().step_by(set.every) {
+            let text = std::fs::read_to_string(file)?;
+            lines.extend(path_data(&text).map(|d| normalised(d, BOX / set.side)).filter(|d| !d.is_empty()));
+        }
+    }
+    let mut out = io::BufWriter::new(std::fs::File::create(folder.join("icons.txt"))?);
+    for line in &lines {
+        writeln!(out, "{line}")?;
+    }
+    out.flush()?;
+    Ok("wrote corpus/icons.txt".to_owned())
+}
+
+/// Unpacks a package into `work`, unless it is there already.
+fn fetch(package: &str, work: &Path) -> io::Result<()> {
+    if work.join("package").is_dir() {
+        return Ok(());
+    }
+    let packed = output_of(Command::new("npm").args(["pack", "--silent", package]).current_dir(work))?;
+    let archive = packed.lines().last().unwrap_or_default().trim().to_owned();
+    output_of(Command::new("tar").args(["xzf", &archive]).current_dir(work))?;
+    std::fs::remove_file(work.join(archive))
+}
+
+/// Runs a command and returns its standard output.
+fn output_of(command: &mut Command) -> io::Result<String> {
+    let output = command.output()?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        Err(io::Error::other(format!("{command:?}: {message}")))
+    }
+}
+
+/// The values of the `d` attributes in an SVG file.
+fn path_data(svg: &str) -> impl Iterator<Item = &str> {
+    svg.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next())
+}
+
+/// Scales path data and converts its arcs to cubics.
+fn normalised(d: &str, scale: f64) -> String {
+    Outline::from_svg_lossy(d).transformed(Affine::scale(scale)).to_bez_path(ARC_TOLERANCE).to_svg()
+}

@@ -1,0 +1,114 @@
+//! The pages of `docs/deformations`: one for every deformation, from its own table, illustrated by its first example.
+
+use crate::chore::{Failure, at};
+use crate::shell;
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::Kind;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// Folder of the pages.
+const PAGES: &str = "docs/deformations";
+
+/// Writes all pages and returns how many there are.
+pub(super) fn write(root: &Path) -> Result<usize, Failure> {
+    let folder = root.join(PAGES);
+    fs::create_dir_all(&folder).map_err(at(&folder))?;
+    let pages = pages();
+    for (name, text) in &pages {
+        let file = folder.join(name);
+        fs::write(&file, text).map_err(at(&file))?;
+    }
+    Ok(pages.len())
+}
+
+/// Draws the picture of every page.
+pub(super) fn draw(root: &Path, program: &Path) -> Result<(), Failure> {
+    let folder = root.join(PAGES);
+    for e in Registry::builtin().entries() {
+        let Some(example) = e.info().examples.first() else { continue };
+        shell::preview(root, program, example.command, &folder.join(format!("{}.png", e.info().name)))?;
+    }
+    Ok(())
+}
+
+/// File name and text of every page.
+fn pages() -> Vec<(String, String)> {
+    let registry = Registry::builtin();
+    let infos: Vec<&Info> = registry.entries().iter().map(|e| e.info()).collect();
+    let mut all: Vec<(String, String)> = infos.iter().map(|i| (format!("{}.md", i.name), page(i))).collect();
+    all.push(("README.md".into(), index(&infos)));
+    all
+}
+
+fn index(infos: &[&Info]) -> String {
+    let mut out = String::from("# Deformations\n\nMade by `cargo xtask docs` from the deformations' own tables.\n");
+    let mut groups: Vec<&str> = Vec::new();
+    for i in infos {
+        if !groups.contains(&i.group) {
+            groups.push(i.group);
+        }
+    }
+    for g in groups {
+        let _ = write!(out, "\n## {g}\n\n| | |\n|---|---|\n");
+        for i in infos.iter().filter(|i| i.group == g) {
+            let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", i.name, i.title);
+        }
+    }
+    out
+}
+
+fn page(i: &Info) -> String {
+    let mut out = format!("# {}: {}\n\n", i.name, i.title);
+    if let Some(first) = i.examples.first() {
+        let _ = write!(out, "![{}]({}.png)\n\n", first.what, i.name);
+    }
+    let _ = write!(out, "{}\n\n## Examples\n", i.about);
+    for e in i.examples {
+        let _ = write!(out, "\n{}:\n\n```sh\npathwarp {}\n```\n", e.what, e.command);
+    }
+    out.push_str("\n## Options\n\n| option | value | default | |\n|---|---|---|---|\n");
+    for p in i.params {
+        let value = match p.kind {
+            Kind::Flag => String::new(),
+            Kind::Choice(words) => words.join(", "),
+            Kind::NameOrFile(words) => format!("{}, or a file", words.join(", ")),
+            _ => p.value_name(),
+        };
+        let default =
+            if p.needed { "needed".to_owned() } else { p.default.map(|d| format!("`{d}`")).unwrap_or_default() };
+        let times = if p.repeat { " May be given several times." } else { "" };
+        let _ = writeln!(out, "| `--{}` | {value} | {default} | {}{times} |", p.name, cell(p.help));
+    }
+    out.push_str("| `--inverse` | | | The inverse map, where there is one. |\n");
+    let _ = write!(
+        out,
+        "\nThe options that all deformations share are in `pathwarp help {}`.\n\n## Source\n\n{}\n",
+        i.name, i.source
+    );
+    out
+}
+
+/// Escapes text for a cell of a Markdown table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pages in the repository match the registry.
+    #[test]
+    fn pages_are_up_to_date() {
+        let folder = crate::chore::workspace().join(PAGES);
+        for (name, text) in pages() {
+            let stored = fs::read_to_string(folder.join(&name)).unwrap_or_default();
+            assert!(stored == text, "{PAGES}/{name} is out of date: run `cargo xtask docs`");
+        }
+        for e in Registry::builtin().entries() {
+            assert!(folder.join(format!("{}.png", e.info().name)).is_file(), "{} has no picture", e.info().name);
+        }
+    }
+}
