@@ -1,21 +1,21 @@
-//! What ends a run, and with which exit code.
+//! Failures: the errors that end a run, each with its exit code.
 
 use crate::terminal;
 use std::fmt::Display;
 use std::path::Path;
 
-/// Why the program stops.
+/// An error that ends the run.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// clap's own message: wrong usage, or help asked for.
+    /// clap's own message: wrong usage, or a request for help.
     Clap(clap::Error),
     /// Wrong usage.
     Usage(String),
-    /// A file cannot be read, understood or written.
+    /// A file cannot be read, parsed or written.
     Input(String),
-    /// Neither can one beside the artwork (a cage, a style, a mesh), which the message names.
-    Beside(String),
-    /// The geometry forbids it.
+    /// The same for a file other than the artwork (a cage, a style, a mesh); the message names that file.
+    SideFile(String),
+    /// The geometry does not allow it.
     Geometry(String),
 }
 
@@ -24,42 +24,44 @@ impl Failure {
         Self::Usage(message.into())
     }
 
-    /// Something about a file.
-    pub(crate) fn file(path: &Path, what: impl Display) -> Self {
-        Self::Input(format!("{}: {what}", path.display()))
+    /// A problem with the file `path`.
+    pub(crate) fn file(path: &Path, problem: impl Display) -> Self {
+        Self::Input(format!("{}: {problem}", path.display()))
     }
 
-    /// Standard output is closed, or full.
+    /// A failed write to standard output.
     pub(crate) fn stdout(e: &std::io::Error) -> Self {
         Self::Input(format!("standard output: {e}"))
     }
 
+    /// The exit code.
     pub(crate) fn code(&self) -> u8 {
         match self {
             Self::Clap(e) => u8::try_from(e.exit_code()).unwrap_or(2),
             Self::Usage(_) => 2,
-            Self::Input(_) | Self::Beside(_) => 3,
+            Self::Input(_) | Self::SideFile(_) => 3,
             Self::Geometry(_) => 4,
         }
     }
 
+    /// Prints the message.
     pub(crate) fn show(&self) {
         match self {
-            // clap chooses the stream (help goes to standard output); a closed pipe there is nobody's fault.
+            // clap picks the stream: help goes to standard output. Ignore a closed pipe.
             Self::Clap(e) => drop(e.print()),
-            Self::Usage(m) | Self::Input(m) | Self::Beside(m) | Self::Geometry(m) => terminal::error(m),
+            Self::Usage(m) | Self::Input(m) | Self::SideFile(m) | Self::Geometry(m) => terminal::error(m),
         }
     }
 
-    /// What is wrong with a recipe: its input errors are those of the files that it names.
+    /// An error from a recipe. Its input errors name the side file they occurred in, so the artwork's name is not added to them.
     pub(crate) fn of_recipe(e: pathwarp::Error) -> Self {
         match Self::from(e) {
-            Self::Input(m) => Self::Beside(m),
+            Self::Input(m) => Self::SideFile(m),
             other => other,
         }
     }
 
-    /// The same failure, said to concern `input`.
+    /// The same failure with the name of the input in front, unless the message starts with it already.
     pub(crate) fn about(self, input: &str) -> Self {
         let with = |m: String| if m.starts_with(input) { m } else { format!("{input}: {m}") };
         match self {

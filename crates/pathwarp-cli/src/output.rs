@@ -1,38 +1,38 @@
-//! Output files, written whole or not at all.
+//! Output: files, each written completely or not at all, and standard output.
 
 use crate::failure::Failure;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A file that is ready to be written: nothing is visible under its name before [`Pending::commit_all`].
-pub(crate) struct Pending {
+/// An output file with its content. Nothing appears under its name before [`PendingFile::commit_all`].
+pub(crate) struct PendingFile {
     content: Content,
     to: PathBuf,
 }
 
 enum Content {
-    /// To be renamed.
+    /// A temporary file, to be renamed.
     File(tempfile::NamedTempFile),
-    /// For what is no file (`/dev/null`, `/dev/stdout`, a pipe): renaming would put a file in its place.
+    /// The bytes for a device or pipe (`/dev/null`, `/dev/stdout`): renaming would replace it by a file.
     Bytes(Vec<u8>),
 }
 
-impl Pending {
+impl PendingFile {
     /// Writes `bytes` to a temporary file beside `to`.
     pub(crate) fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
         if is_device(to) {
             return Ok(Self { content: Content::Bytes(bytes.to_vec()), to: to.to_owned() });
         }
-        Self::written(to, |file| file.write_all(bytes).map_err(|e| format!("cannot be written: {e}")))
+        Self::with_writer(to, |file| file.write_all(bytes).map_err(|e| format!("cannot be written: {e}")))
     }
 
-    /// Has `write` write a temporary file beside `to`.
-    pub(crate) fn written(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
+    /// Calls `write` with a temporary file beside `to`.
+    pub(crate) fn with_writer(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
         if is_device(to) {
-            return Err(Failure::file(to, "is no file; name one"));
+            return Err(Failure::file(to, "is a device, not a file; name a file"));
         }
-        // A link stays one: what it leads to is replaced.
+        // Keep a symbolic link and replace the file it points to.
         let to = &to.canonicalize().unwrap_or_else(|_| to.to_owned());
         let folder = match to.parent() {
             Some(p) if !p.as_os_str().is_empty() => p,
@@ -42,14 +42,14 @@ impl Pending {
             return Err(Failure::file(to, "is a folder; name a file, or use --out-dir"));
         }
         if !folder.is_dir() {
-            return Err(Failure::file(folder, "there is no such folder to write to"));
+            return Err(Failure::file(folder, "does not exist; create the folder first"));
         }
         let make = || -> std::io::Result<tempfile::NamedTempFile> {
             let mut builder = tempfile::Builder::new();
             builder.prefix(".pathwarp-");
             #[cfg(unix)]
             {
-                // As if created by any other program: the umask takes away what it takes away.
+                // The permissions of any newly created file; the umask applies.
                 use std::os::unix::fs::PermissionsExt;
                 builder.permissions(std::fs::Permissions::from_mode(0o666));
             }
@@ -60,7 +60,7 @@ impl Pending {
         Ok(Self { content: Content::File(file), to: to.to_owned() })
     }
 
-    /// Renames all of them to their names.
+    /// Renames all files to their final names.
     pub(crate) fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
         for p in all {
             let written = match p.content {
@@ -75,12 +75,20 @@ impl Pending {
     }
 }
 
-/// Whether this is something to write to that is no file: a pipe, a terminal.
+/// Returns `true` if `to` exists and is neither a file nor a folder: a pipe, a terminal.
 fn is_device(to: &Path) -> bool {
     to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
 
-/// Writes to standard output; a reader that has had enough is no fault.
+/// Writes one result: to the file `target`, or to standard output if there is none.
+pub(crate) fn write(target: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
+    match target {
+        Some(to) => PendingFile::commit_all(vec![PendingFile::new(to, bytes)?]),
+        None => to_stdout(bytes),
+    }
+}
+
+/// Writes to standard output. The reader may close the pipe early; ignore that.
 pub(crate) fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {

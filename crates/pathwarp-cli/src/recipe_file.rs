@@ -1,4 +1,4 @@
-//! Recipes as files.
+//! Recipe files.
 //!
 //! ```toml
 //! pathwarp = 1
@@ -12,7 +12,9 @@
 //! reverse-shaper = true
 //! ```
 
+use crate::advice;
 use crate::failure::Failure;
+use crate::options::Given;
 use pathwarp::deform::Registry;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
@@ -23,9 +25,13 @@ use toml::Value;
 /// The version of the format.
 const VERSION: i64 = 1;
 
+/// Keys of a step that are not parameters of its deformation.
+const DEFORMATION: &str = "deformation";
+const INVERSE: &str = "inverse";
+
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct RecipeFile {
     pathwarp: i64,
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
     options: toml::Table,
@@ -33,58 +39,56 @@ struct File {
     step: Vec<toml::Table>,
 }
 
-/// A recipe with the common options it was saved with.
-pub(crate) struct Saved {
+/// A recipe with the common options stored in its file.
+pub(crate) struct SavedRecipe {
     pub(crate) recipe: Recipe,
-    /// As words of a command line.
-    pub(crate) options: Vec<String>,
+    pub(crate) options: Given,
 }
 
-/// Reads a recipe file.
-pub(crate) fn read(registry: &Registry, file: &Path) -> Result<Saved, Failure> {
+/// Reads a recipe file. Relative paths in it refer to the file's folder.
+pub(crate) fn read(registry: &Registry, file: &Path) -> Result<SavedRecipe, Failure> {
     let text = std::fs::read_to_string(file).map_err(|e| Failure::file(file, format!("cannot be read: {e}")))?;
     parse(registry, &text, file.parent().unwrap_or(Path::new(""))).map_err(|e| Failure::file(file, e))
 }
 
-/// Reads a recipe's text; its files lie relative to `folder`.
-pub(crate) fn parse(registry: &Registry, text: &str, folder: &Path) -> Result<Saved, String> {
-    let file: File = toml::from_str(text).map_err(|e| e.to_string())?;
+fn parse(registry: &Registry, text: &str, folder: &Path) -> Result<SavedRecipe, String> {
+    let file: RecipeFile = toml::from_str(text).map_err(|e| e.to_string())?;
     if file.pathwarp != VERSION {
-        return Err(format!("is of version {}; this program knows version {VERSION}", file.pathwarp));
+        return Err(format!("has version {}; this program reads version {VERSION}", file.pathwarp));
     }
     if file.step.is_empty() {
         return Err("has no [[step]]".into());
     }
-    let mut options = Vec::new();
+    let mut options = Given::default();
     for (name, value) in &file.options {
-        for v in texts(value).ok_or_else(|| format!("[options] {name}: is no value of a command-line option"))? {
-            match v.as_str() {
-                "true" => options.push(format!("--{name}")),
-                "false" => {}
-                v => options.extend([format!("--{name}"), v.to_owned()]),
-            }
+        let texts =
+            texts(value).ok_or_else(|| format!("[options] {name}: must be a text, number, switch or list of them"))?;
+        // `false` leaves an option at its default.
+        for text in texts.iter().filter(|t| *t != "false") {
+            options.push(name, text).map_err(|e| format!("[options] {name}: {e}"))?;
         }
     }
     let step = |(i, t): (usize, &toml::Table)| step(registry, t, folder).map_err(|e| format!("step {}: {e}", i + 1));
     let steps: Result<Vec<Step>, String> = file.step.iter().enumerate().map(step).collect();
-    Ok(Saved { recipe: Recipe { steps: steps? }, options })
+    Ok(SavedRecipe { recipe: Recipe { steps: steps? }, options })
 }
 
 fn step(registry: &Registry, table: &toml::Table, folder: &Path) -> Result<Step, String> {
-    let name = table.get("deformation").and_then(Value::as_str).ok_or("has no `deformation = \"NAME\"`")?;
-    let entry = registry.get(name).ok_or_else(|| format!("there is no deformation `{name}`"))?;
+    let name = table.get(DEFORMATION).and_then(Value::as_str).ok_or("has no `deformation = \"NAME\"`")?;
+    let known = registry.entries().iter().map(|e| e.info().name);
+    let entry = registry.get(name).ok_or_else(|| advice::unknown("deformation", name, known))?;
     let mut step = Step::new(name, Args::new());
     for (key, value) in table {
         match key.as_str() {
-            "deformation" => {}
-            "inverse" => step.inverse = value.as_bool().ok_or("inverse is true or false")?,
+            DEFORMATION => {}
+            INVERSE => step.inverse = value.as_bool().ok_or("inverse must be true or false")?,
             key => {
                 let params = entry.info().params;
                 let param = params.iter().find(|p| p.name == key).ok_or_else(|| {
                     let known: Vec<_> = params.iter().map(|p| p.name).collect();
-                    format!("{name} has no parameter `{key}`; it has {}", known.join(", "))
+                    format!("{name} has no parameter `{key}`; its parameters are {}", known.join(", "))
                 })?;
-                for v in texts(value).ok_or_else(|| format!("{key}: is no text, number, switch or list of them"))? {
+                for v in texts(value).ok_or_else(|| format!("{key}: must be a text, number, switch or list of them"))? {
                     if param.kind == Kind::Flag && v == "false" {
                         continue;
                     }
@@ -96,9 +100,9 @@ fn step(registry: &Registry, table: &toml::Table, folder: &Path) -> Result<Step,
     Ok(step)
 }
 
-/// A value as it would be typed.
+/// The values of a key as they would be typed on the command line.
 fn texts(value: &Value) -> Option<Vec<String>> {
-    let one = |v: &Value| match v {
+    let text = |v: &Value| match v {
         Value::String(s) => Some(s.clone()),
         Value::Integer(i) => Some(i.to_string()),
         Value::Float(f) => Some(f.to_string()),
@@ -106,12 +110,12 @@ fn texts(value: &Value) -> Option<Vec<String>> {
         _ => None,
     };
     match value {
-        Value::Array(list) => list.iter().map(one).collect(),
-        v => one(v).map(|v| vec![v]),
+        Value::Array(list) => list.iter().map(text).collect(),
+        v => text(v).map(|v| vec![v]),
     }
 }
 
-/// Whether a value names a file whose place matters.
+/// Returns `true` if a value names a file, so that its meaning depends on the folder.
 fn names_file(param: &Param, value: &str) -> bool {
     match param.kind {
         Kind::File | Kind::Save => true,
@@ -129,35 +133,20 @@ fn from_folder(param: &Param, value: String, folder: &Path) -> String {
     }
 }
 
-/// The text of a recipe file in `folder` for these steps and common options.
-pub(crate) fn write(
-    registry: &Registry,
-    recipe: &Recipe,
-    options: &[(String, Vec<String>)],
-    folder: &Path,
-) -> Result<String, String> {
-    let here = std::env::current_dir().map_err(|e| e.to_string())?;
+/// The text of a recipe file in `folder` with these steps and the options that recipes store.
+pub(crate) fn write(registry: &Registry, recipe: &Recipe, given: &Given, folder: &Path) -> Result<String, Failure> {
+    let here = std::env::current_dir().map_err(|e| Failure::Input(e.to_string()))?;
     let same_place = folder.as_os_str().is_empty()
         || matches!((folder.canonicalize(), here.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    let value = |mut v: Vec<String>| match v.pop() {
-        Some(only) if v.is_empty() => {
-            if only == "true" {
-                Value::Boolean(true)
-            } else {
-                Value::String(only)
-            }
-        }
-        last => Value::Array(v.into_iter().chain(last).map(Value::String).collect()),
-    };
-    let mut file = File { pathwarp: VERSION, options: toml::Table::new(), step: Vec::new() };
-    for (name, values) in options {
-        file.options.insert(name.clone(), value(values.clone()));
+    let mut file = RecipeFile { pathwarp: VERSION, options: toml::Table::new(), step: Vec::new() };
+    for (name, values) in given.stored() {
+        file.options.insert(name.to_owned(), value(values));
     }
     for s in &recipe.steps {
         let mut t = toml::Table::new();
-        t.insert("deformation".into(), Value::String(s.deformation.clone()));
+        t.insert(DEFORMATION.into(), Value::String(s.deformation.clone()));
         if s.inverse {
-            t.insert("inverse".into(), Value::Boolean(true));
+            t.insert(INVERSE.into(), Value::Boolean(true));
         }
         let params = registry.get(&s.deformation).map_or(&[][..], |e| e.info().params);
         for (name, values) in s.args.iter() {
@@ -170,5 +159,19 @@ pub(crate) fn write(
         }
         file.step.push(t);
     }
-    toml::to_string(&file).map_err(|e| e.to_string())
+    toml::to_string(&file).map_err(|e| Failure::Input(e.to_string()))
+}
+
+/// Typed values as TOML: a single one as a string or `true`, several as a list.
+fn value(mut values: Vec<String>) -> Value {
+    match values.pop() {
+        Some(only) if values.is_empty() => {
+            if only == "true" {
+                Value::Boolean(true)
+            } else {
+                Value::String(only)
+            }
+        }
+        last => Value::Array(values.into_iter().chain(last).map(Value::String).collect()),
+    }
 }

@@ -1,4 +1,4 @@
-//! Messages for people, on standard error; colour only on a terminal.
+//! Messages on standard error; coloured only on a terminal.
 
 use anstyle::{AnsiColor, Style};
 
@@ -6,18 +6,18 @@ const ERROR: Style = AnsiColor::Red.on_default().bold();
 const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const NOTE: Style = AnsiColor::Cyan.on_default().bold();
 
-fn say(style: Style, label: &str, message: &str) {
+fn print(style: Style, label: &str, message: &str) {
     anstream::eprintln!("{style}{label}{style:#}: {message}");
 }
 
 pub(crate) fn error(message: &str) {
-    say(ERROR, "error", message);
+    print(ERROR, "error", message);
 }
 
 pub(crate) fn warning(message: &str) {
-    say(WARNING, "warning", message);
+    print(WARNING, "warning", message);
 }
 
 pub(crate) fn note(message: &str) {
-    say(NOTE, "note", message);
+    print(NOTE, "note", message);
 }

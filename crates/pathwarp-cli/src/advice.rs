@@ -1,0 +1,41 @@
+//! Advice in flags: what the user can do about an error or warning of the libraries, which know no command line.
+
+use crate::decimals::three_figures;
+use pathwarp_svg::Overhang;
+
+/// Describes artwork that extends past the page, with the options that change it.
+pub(crate) fn overhang(o: Overhang) -> String {
+    let names = ["left", "top", "right", "bottom"];
+    let sides: Vec<&str> = names.iter().zip(o.by).filter(|(_, by)| *by > 0.0).map(|(name, _)| *name).collect();
+    let most = o.by.into_iter().fold(0.0, f64::max);
+    format!(
+        "the artwork leaves the page by up to {} units ({} %; {}); --fit grow makes room for it, --fit page fits the page to it",
+        three_figures(most),
+        three_figures(100.0 * o.share),
+        sides.join(", ")
+    )
+}
+
+/// Says that there is no `what` called `name`, and which of the known names is most like it.
+pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    /// Names less alike than this have nothing to do with each other.
+    const LIKELY: f64 = 0.8;
+    let likeness = known.map(|k| (strsim::jaro_winkler(name, k), k)).filter(|(l, _)| *l >= LIKELY);
+    match likeness.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((_, likely)) => format!("there is no {what} `{name}`; did you mean `{likely}`?"),
+        None => format!("there is no {what} `{name}`"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn likely_names_are_suggested_and_others_are_not() {
+        let known = ["tolerance", "strokes", "select"];
+        let said = |name: &str| unknown("option", name, known.into_iter());
+        assert!(said("tolerence").ends_with("did you mean `tolerance`?"), "{}", said("tolerence"));
+        assert_eq!(said("xyz"), "there is no option `xyz`");
+    }
+}

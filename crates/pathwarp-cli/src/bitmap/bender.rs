@@ -1,0 +1,106 @@
+//! [`Bender`]: warps the bitmaps in drawings and paints bent gradients.
+
+use super::inverse::{ROUNDING, inverse};
+use pathwarp::kurbo::Rect;
+use pathwarp::map::Map;
+use pathwarp_raster::{ImageWarp, Picture, PictureFormat, Shade, extent, shade, shown, warp_image};
+use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper};
+use std::sync::Arc;
+
+/// Pixels per inch of a drawing at 100 %.
+const PX_PER_INCH: f64 = 96.0;
+
+/// Bends the bitmaps and gradients of drawings by one map.
+pub struct Bender {
+    map: Arc<dyn Map>,
+    /// Pixels per inch; `None`: as many as keep every detail.
+    dpi: Option<f64>,
+}
+
+impl Bender {
+    /// Creates a bender for `map` at `dpi` pixels per inch of the drawing; `None` uses as many as keep every detail.
+    #[must_use]
+    pub fn new(map: Arc<dyn Map>, dpi: Option<f64>) -> Self {
+        Self { map, dpi }
+    }
+}
+
+impl ImageWarper for Bender {
+    fn warp(&self, r: &ImageRequest<'_>) -> Result<BentImage, String> {
+        /// Largest growth of the pixel count: where the map compresses the image, keeping every detail takes more pixels.
+        const GROWTH: f64 = 4.0;
+        /// Largest pixel count: the file holds the pixels as text.
+        const MOST: f64 = 16e6;
+        let picture = Picture::read_stored(r.data).map_err(|e| e.to_string())?;
+        let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
+        let nowhere = "the map is not defined on all of it";
+        let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
+        let (width, height) = (e.bounds.width(), e.bounds.height());
+        if !(width > 0.0 && height > 0.0) {
+            return Err("nothing is left of its area".to_owned());
+        }
+        let most = (GROWTH * area.area()).clamp(1.0, MOST);
+        let finest = (most / (width * height)).sqrt();
+        let wanted = match self.dpi {
+            Some(dpi) => {
+                let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+                (dpi / PX_PER_INCH * unit).min((MOST / (width * height)).sqrt())
+            }
+            None => (1.0 / e.squeeze).min(finest),
+        };
+        let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
+        let size = (pixels(width), pixels(height));
+        let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area));
+        let warp = ImageWarp {
+            source: &picture.pixmap,
+            placed: r.placed,
+            map: r.map,
+            inverse: &*inverse,
+            shown: r.after.inverse() * shown(e.bounds, (size.0 as u32, size.1 as u32)),
+            size: (size.0 as u32, size.1 as u32),
+        };
+        let pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
+        let png = Picture { pixmap, profile: picture.profile }.write(PictureFormat::Png).map_err(|e| e.to_string())?;
+        Ok(BentImage { png, area: e.bounds })
+    }
+}
+
+impl GradientPainter for Bender {
+    fn paint(&self, r: &GradientRequest<'_>) -> Result<BentImage, String> {
+        /// Samples per pixel of the drawing in each direction: the resolution of a screen of twice the density.
+        const DENSITY: f64 = 2.0;
+        /// Fewest samples along the longer side: small drawings are often shown enlarged.
+        const LEAST: f64 = 256.0;
+        /// Most samples in a picture: the file holds them as text.
+        const MOST: f64 = 2e6;
+        /// Most samples in all pictures of a drawing.
+        const MOST_TOGETHER: f64 = 64e6;
+        /// Margin around the shape in pixels, for renderers that interpolate.
+        const MARGIN: f64 = 2.0;
+        let (width, height) = (r.target.width(), r.target.height());
+        if !(width > 0.0 && height > 0.0 && (width + height).is_finite()) {
+            return Err("nothing is left of the shape's area".to_owned());
+        }
+        let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+        let wanted = match self.dpi {
+            Some(dpi) => dpi / PX_PER_INCH * unit,
+            None => (DENSITY * unit).max(LEAST / width.max(height)),
+        };
+        let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64);
+        let wanted = wanted.min((most / (width * height)).sqrt()).min(most / width.max(height));
+        let pixels = |length: f64| (length * wanted + 2.0 * MARGIN).ceil().clamp(1.0, MOST);
+        let size = (pixels(width), pixels(height));
+        let target = Rect::from_center_size(r.target.center(), (size.0 / wanted, size.1 / wanted));
+        let size = (size.0 as u32, size.1 as u32);
+        let inverse = inverse(&self.map, r.placed.transform_rect_bbox(r.area));
+        let pixmap = shade(&Shade {
+            color: r.color,
+            placed: r.placed,
+            inverse: &*inverse,
+            shown: r.after.inverse() * shown(target, size),
+            size,
+        });
+        let picture = Picture { pixmap: pixmap.map_err(|e| e.to_string())?, profile: None };
+        Ok(BentImage { png: picture.write(PictureFormat::Png).map_err(|e| e.to_string())?, area: target })
+    }
+}

@@ -1,0 +1,184 @@
+//! `pathwarp compare A.svg B.svg`: measures the distance between two drawings, path by path and pixel by pixel.
+
+use super::file_args;
+use crate::failure::Failure;
+use crate::status::Status;
+use crate::{input, output};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::distance;
+use pathwarp_raster::{Color, RenderOptions, Size};
+use pathwarp_svg::{Document, NamedPath};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+/// Smallest visible difference of a colour channel, of 255.
+const VISIBLE: u8 = 16;
+
+pub(super) const NAME: &str = "compare";
+
+pub(super) fn command() -> Command {
+    let limit = |name: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name(value).value_parser(value_parser!(f64)).help(help)
+    };
+    Command::new(NAME)
+        .about("Measure how far two drawings are apart, path by path and pixel by pixel")
+        .arg(file_args::file("A", "An SVG file"))
+        .arg(file_args::file("B", "An SVG file"))
+        .arg(
+            Arg::new("width")
+                .long("width")
+                .value_name("PX")
+                .value_parser(value_parser!(u32).range(1..))
+                .default_value("1000")
+                .help("Width of the pictures that are compared"),
+        )
+        .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more, in user units"))
+        .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this share of the pixels differs visibly (0 to 1)"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("As JSON"))
+        .after_help(
+            "Paths of the same id are compared, paths without one in their order within the group of an id: the largest distance from a point of one to the other, both ways. A pixel \
+             differs visibly when a channel is off by more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
+        )
+}
+
+#[derive(Serialize)]
+struct Comparison {
+    paths: Vec<PathPair>,
+    only_in_a: Vec<String>,
+    only_in_b: Vec<String>,
+    max_distance: f64,
+    pixels: Pixels,
+}
+
+#[derive(Serialize)]
+struct PathPair {
+    id: String,
+    segments_a: usize,
+    segments_b: usize,
+    /// `None` if either path is empty.
+    distance: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Pixels {
+    width: u32,
+    height: u32,
+    max_channel: u8,
+    mean: f64,
+    visible_share: f64,
+}
+
+pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
+    let document = |name: &str| input::document(file_args::given(m, name)?);
+    let (a, b) = (document("A")?, document("B")?);
+    let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
+    let result = compare(&a, &b, size)?;
+    let text = if m.get_flag("json") {
+        serde_json::to_string_pretty(&result).map_err(|e| Failure::usage(e.to_string()))? + "\n"
+    } else {
+        table(&result)
+    };
+    output::to_stdout(text.as_bytes())?;
+    let over = |name: &str, value: f64| m.get_one::<f64>(name).is_some_and(|most| value > *most);
+    let apart = over("max-distance", result.max_distance) || over("max-pixels", result.pixels.visible_share);
+    Ok(Status::partial_if(apart))
+}
+
+fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure> {
+    let (paths_a, paths_b) = (a.paths(), b.paths());
+    let counterparts = counterparts(&paths_a, &paths_b);
+    let pairs: Vec<PathPair> = paths_a
+        .par_iter()
+        .zip(&counterparts)
+        .filter_map(|(p, i)| i.map(|i| (p, &paths_b[i])))
+        .map(|(p, q)| PathPair {
+            id: p.id.clone(),
+            segments_a: p.outline.segs().count(),
+            segments_b: q.outline.segs().count(),
+            distance: distance::symmetric(&p.outline, &q.outline),
+        })
+        .collect();
+    let paired: HashSet<usize> = counterparts.iter().flatten().copied().collect();
+    let paired_ids: HashSet<&str> = paired.iter().map(|&i| paths_b[i].id.as_str()).collect();
+    let unpaired = paths_a.iter().zip(&counterparts).filter(|(_, i)| i.is_none());
+    let only_in_a = unpaired.map(|(p, _)| p.id.clone()).collect();
+    // A repeated id counts only once.
+    let repeated = |p: &NamedPath| p.group.is_none() && paired_ids.contains(p.id.as_str());
+    let unpaired = paths_b.iter().enumerate().filter(|(i, p)| !paired.contains(i) && !repeated(p));
+    let only_in_b = unpaired.map(|(_, p)| p.id.clone()).collect();
+    let render = |d: &Document| RenderOptions { size, background: Some(Color::WHITE) }.render(d.tree());
+    let difference = pathwarp_raster::compare(&render(a)?, &render(b)?)?;
+    Ok(Comparison {
+        max_distance: pairs.iter().filter_map(|p| p.distance).fold(0.0, f64::max),
+        only_in_a,
+        only_in_b,
+        paths: pairs,
+        pixels: Pixels {
+            width: difference.width,
+            height: difference.height,
+            max_channel: difference.max_channel,
+            mean: difference.mean_abs,
+            visible_share: difference.share_over(VISIBLE),
+        },
+    })
+}
+
+/// For every path of `a` the index of the path of `b` that it is compared with: the first with the same id, which is the one
+/// that every SVG reader uses. Paths without an id are matched by their order within the closest ancestor that has one; if
+/// that element holds a different number of them in each drawing, they are matched by their place in the file.
+fn counterparts(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
+    let unnamed = |paths: &[NamedPath]| {
+        let mut out: HashMap<Arc<str>, Vec<usize>> = HashMap::new();
+        for (i, p) in paths.iter().enumerate() {
+            if let Some(g) = &p.group {
+                out.entry(g.clone()).or_default().push(i);
+            }
+        }
+        out
+    };
+    let others = unnamed(b);
+    let mut out = vec![None; a.len()];
+    let mut counted = HashSet::new();
+    for (group, own) in unnamed(a) {
+        for (i, j) in others.get(&group).filter(|o| o.len() == own.len()).into_iter().flat_map(|o| own.iter().zip(o)) {
+            out[*i] = Some(*j);
+            counted.insert(*j);
+        }
+    }
+    let rest = b.iter().enumerate().rev().filter(|(j, _)| !counted.contains(j));
+    let by_id: HashMap<(bool, &str), usize> = rest.map(|(j, q)| ((q.group.is_none(), q.id.as_str()), j)).collect();
+    for (counterpart, p) in out.iter_mut().zip(a) {
+        *counterpart = counterpart.or_else(|| by_id.get(&(p.group.is_none(), p.id.as_str())).copied());
+    }
+    out
+}
+
+fn table(c: &Comparison) -> String {
+    let mut out = String::new();
+    let width = c.paths.iter().map(|p| p.id.chars().count()).max().unwrap_or(0).max(4);
+    let _ = writeln!(out, "{:width$}  segments      distance", "id");
+    for p in &c.paths {
+        let d = p.distance.map_or_else(|| "empty".to_owned(), |d| format!("{d:.6}"));
+        let _ = writeln!(out, "{:width$}  {:>4} {:>4}  {d:>12}", p.id, p.segments_a, p.segments_b);
+    }
+    for (name, ids) in [("first", &c.only_in_a), ("second", &c.only_in_b)] {
+        if !ids.is_empty() {
+            let _ = writeln!(out, "only in the {name}: {}", ids.join(", "));
+        }
+    }
+    let _ = writeln!(out, "largest distance: {:.6}", c.max_distance);
+    let p = &c.pixels;
+    let _ = writeln!(
+        out,
+        "pixels ({} x {}): {:.4} % differ visibly, mean {:.4}/255, largest {}/255",
+        p.width,
+        p.height,
+        p.visible_share * 100.0,
+        p.mean,
+        p.max_channel
+    );
+    out
+}

@@ -1,0 +1,29 @@
+//! Arguments for files that several subcommands share.
+
+use crate::failure::Failure;
+use clap::{Arg, ArgMatches, value_parser};
+use std::path::{Path, PathBuf};
+
+/// The id of the option for the output file.
+const OUT: &str = "out";
+
+/// A required file.
+pub(super) fn file(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).required(true).value_parser(value_parser!(PathBuf)).help(help)
+}
+
+/// The file given for the required argument `name`.
+pub(super) fn given<'a>(m: &'a ArgMatches, name: &str) -> Result<&'a Path, Failure> {
+    let file = m.get_one::<PathBuf>(name).map(PathBuf::as_path);
+    file.ok_or_else(|| Failure::usage(format!("{name} is required")))
+}
+
+/// `-o, --out`.
+pub(super) fn out(value_name: &'static str, help: &'static str) -> Arg {
+    Arg::new(OUT).short('o').long(OUT).value_name(value_name).value_parser(value_parser!(PathBuf)).help(help)
+}
+
+/// The output file; `None` is standard output.
+pub(super) fn target(m: &ArgMatches) -> Option<&Path> {
+    m.get_one::<PathBuf>(OUT).map(PathBuf::as_path).filter(|o| o.as_os_str() != "-")
+}

@@ -1,0 +1,122 @@
+//! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
+
+use crate::failure::Failure;
+use crate::options::rect;
+use crate::status::Status;
+use crate::{input, output, references, steps};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::map::{Creases, Jet, Map};
+use pathwarp::outline::Outline;
+use pathwarp::param::Frame;
+use pathwarp::recipe::Recipe;
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+pub(super) const NAME: &str = "map";
+
+pub(super) fn command(registry: &Registry) -> Command {
+    let mut c = Command::new(NAME)
+        .about("Map plain points, one x y a line, by a deformation")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .after_help(
+            "Every line of the points gives a line of the result: x' y', with --jacobian also the four partial derivatives \
+             x'x y'x x'y y'y. Where the map has no value the line is nan nan, and the exit code 1. Empty lines and lines \
+             that start with # are passed over.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
+             0,0,100,100 --points -",
+        );
+    for e in registry.entries() {
+        c = c.subcommand(
+            Command::new(e.info().name)
+                .about(e.info().title)
+                .args(steps::args(e.info()))
+                .arg(
+                    Arg::new("points")
+                        .long("points")
+                        .value_name("FILE")
+                        .value_parser(value_parser!(PathBuf))
+                        .default_value("-")
+                        .help("The points; - is standard input"),
+                )
+                .arg(
+                    Arg::new("jacobian")
+                        .long("jacobian")
+                        .action(ArgAction::SetTrue)
+                        .help("Also the partial derivatives"),
+                )
+                .arg(
+                    Arg::new("frame")
+                        .long("frame")
+                        .value_name("X,Y,W,H")
+                        .allow_hyphen_values(true)
+                        .help("The box that percentages and defaults refer to [default: the points' own]"),
+                ),
+        );
+    }
+    c
+}
+
+/// Runs `map`; `later` holds the parts of the chain after each `+`.
+pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
+    let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
+    let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
+    recipe.steps.extend(steps::parts(registry, later, false)?.into_iter().map(|part| part.step));
+    references::resolve(registry, &mut recipe, |name| Err(input::no_document(name)))?;
+    let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
+    let bytes = input::bytes(&file)?;
+    let points = parse(&String::from_utf8_lossy(&bytes))
+        .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
+    let cloud = Outline::from_points(&points, false);
+    let frame = match m.get_one::<String>("frame") {
+        Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?,
+        None => cloud.bounding_box().unwrap_or(Rect::ZERO),
+    };
+    let map = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud)).map_err(Failure::of_recipe)?.map;
+    let mut creases = Creases::default();
+    map.creases(&mut creases);
+    let mut jets = vec![Jet::default(); points.len()];
+    map.jets(&points, &mut jets);
+    let mut out = String::new();
+    let mut status = Status::Complete;
+    for (p, j) in points.iter().zip(&jets) {
+        if creases.defined_at(*p) && j.p.is_finite() {
+            let _ = write!(out, "{} {}", j.p.x, j.p.y);
+        } else {
+            status = Status::Partial;
+            out.push_str("nan nan");
+        }
+        if m.get_flag("jacobian") {
+            let _ = write!(out, " {} {} {} {}", j.dx.x, j.dx.y, j.dy.x, j.dy.y);
+        }
+        out.push('\n');
+    }
+    output::to_stdout(out.as_bytes())?;
+    Ok(status)
+}
+
+/// Parses points, one `x y` a line. The error starts with the line's number.
+fn parse(text: &str) -> Result<Vec<Point>, String> {
+    let mut out = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let numbers: Result<Vec<f64>, _> =
+            line.split([' ', ',', '\t']).filter(|w| !w.is_empty()).map(str::parse::<f64>).collect();
+        match numbers.as_deref() {
+            Ok(&[x, y]) if x.is_finite() && y.is_finite() => out.push(Point::new(x, y)),
+            _ => {
+                return Err(format!(
+                    "{}: `{}` is not two numbers x y",
+                    i + 1,
+                    line.chars().take(60).collect::<String>()
+                ));
+            }
+        }
+    }
+    Ok(out)
+}

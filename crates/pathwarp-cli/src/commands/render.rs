@@ -1,0 +1,60 @@
+//! `pathwarp render IN.svg -o OUT.png`.
+
+use super::file_args;
+use crate::failure::Failure;
+use crate::status::Status;
+use crate::{input, output};
+use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use pathwarp_raster::{Color, RenderOptions, Size, encode_png};
+
+pub(super) const NAME: &str = "render";
+
+pub(super) fn command() -> Command {
+    let pixels = |name: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name("PX").value_parser(value_parser!(u32).range(1..)).help(help)
+    };
+    Command::new(NAME)
+        .about("Draw an SVG file as a PNG")
+        .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
+        .arg(file_args::out("OUT.png", "Where to write the picture; - or none writes to standard output"))
+        .arg(pixels("width", "Width in pixels"))
+        .arg(pixels("height", "Height in pixels"))
+        .arg(
+            Arg::new("scale")
+                .long("scale")
+                .value_name("S")
+                .value_parser(value_parser!(f32))
+                .help("Pixels per px of the drawing"),
+        )
+        .group(ArgGroup::new("size").args(["width", "height", "scale"]))
+        .arg(
+            Arg::new("background")
+                .long("background")
+                .value_name("white|black|none")
+                .value_parser(["white", "black", "none"])
+                .hide_possible_values(true)
+                .default_value("none")
+                .help("What shows through"),
+        )
+        .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
+}
+
+pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
+    let file = file_args::given(m, "INPUT")?;
+    let size = if let Some(&w) = m.get_one::<u32>("width") {
+        Size::Width(w)
+    } else if let Some(&h) = m.get_one::<u32>("height") {
+        Size::Height(h)
+    } else {
+        m.get_one::<f32>("scale").map_or(Size::Native, |s| Size::Scale(*s))
+    };
+    let background = match m.get_one::<String>("background").map(String::as_str) {
+        Some("white") => Some(Color::WHITE),
+        Some("black") => Some(Color::BLACK),
+        _ => None,
+    };
+    let tree = pathwarp_svg::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
+    let png = encode_png(&RenderOptions { size, background }.render(&tree)?)?;
+    output::write(file_args::target(m), &png)?;
+    Ok(Status::Complete)
+}

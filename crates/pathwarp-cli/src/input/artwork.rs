@@ -1,0 +1,70 @@
+//! [`Artwork`]: what the pipeline asks of every kind of input.
+
+use crate::failure::Failure;
+use crate::options::{CommonOptions, FrameChoice};
+use crate::output::PendingFile;
+use crate::report::{ShapeReport, SkippedShape};
+use pathwarp::kurbo::Rect;
+use pathwarp::param::Frame;
+use pathwarp::recipe::BuiltRecipe;
+use pathwarp::{Error, Outline};
+use std::path::Path;
+
+/// Artwork of one kind, read and ready to be warped.
+pub(crate) trait Artwork {
+    /// The name of the file in reports.
+    fn file_name(&self) -> String;
+
+    /// The path that the reference `#NAME` means.
+    fn path_named(&self, name: &str) -> Result<Outline, Error>;
+
+    /// Removes the paths that serve as guides from the artwork. Called once, before anything below.
+    fn remove_guides(&mut self, guides: Vec<String>);
+
+    /// The bounding box of the artwork; `None` if there is none.
+    fn bounding_box(&self) -> Option<Rect>;
+
+    /// The frame for building the first step. `bounds` is the artwork's bounding box; `on_baseline` says that the step has a
+    /// baseline and leaves it at its default.
+    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, on_baseline: bool) -> Result<Frame, Failure>;
+
+    /// The outlines of the artwork.
+    fn outlines(&self) -> Vec<&Outline>;
+
+    /// Warps the artwork.
+    fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure>;
+}
+
+/// A warp of one input.
+pub(crate) struct WarpRequest<'a> {
+    pub(crate) built: &'a BuiltRecipe,
+    pub(crate) options: &'a CommonOptions,
+    /// User units.
+    pub(crate) tolerance: f64,
+    /// `None`: standard output, or the copy that `--into` names.
+    pub(crate) target: Option<&'a Path>,
+    /// The recipe file's text, to be embedded in the result.
+    pub(crate) embedded_recipe: Option<String>,
+}
+
+/// The outcome of a warp. Nothing is written yet.
+pub(crate) struct WarpedArtwork {
+    pub(crate) result: WarpedResult,
+    pub(crate) shapes: Vec<ShapeReport>,
+    pub(crate) skipped: Vec<SkippedShape>,
+    pub(crate) warnings: Vec<String>,
+    /// Files besides the result.
+    pub(crate) files: Vec<PendingFile>,
+    /// The PNG of `--preview`.
+    pub(crate) preview: Option<Vec<u8>>,
+    /// Something was left out besides the skipped shapes.
+    pub(crate) partial: bool,
+}
+
+/// The warped file.
+pub(crate) enum WarpedResult {
+    /// To be written to the target or to standard output.
+    Bytes(Vec<u8>),
+    /// Written to its own place.
+    File(PendingFile),
+}

@@ -1,0 +1,242 @@
+//! GIMP paths as artwork: warped, and written in a format that GIMP reads.
+
+use super::artwork::{Artwork, WarpRequest, WarpedArtwork, WarpedResult};
+use super::folds::{self, Fold};
+use super::gimp_file::GimpFile;
+use super::gimp_format::{GimpFormat, format};
+use super::gimp_stroke::{WarpedStrokes, single_precision_error, warp_strokes};
+use super::read::display;
+use super::{preview, surface};
+use crate::failure::Failure;
+use crate::options::{CommonOptions, FrameChoice};
+use crate::output::PendingFile;
+use crate::report::{ShapeReport, SkippedShape, assurance_word};
+use pathwarp::fold::{self, Orientation};
+use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::map::{Class, Map};
+use pathwarp::param::Frame;
+use pathwarp::recipe::BuiltRecipe;
+use pathwarp::refit::{self, Assurance, SharedEdges};
+use pathwarp::{Error, GeometryError, Outline};
+use pathwarp_gimp::{GimpPath, Stroke, to_json, to_svg};
+use pathwarp_svg::{Document, OnError, ReadOptions};
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The paths of a GIMP file. Their plane is the canvas, in pixels.
+pub(crate) struct GimpArtwork {
+    file: GimpFile,
+    format: GimpFormat,
+    select: Vec<String>,
+    exclude: Vec<String>,
+    /// The indices of the paths to warp.
+    selected: Vec<usize>,
+    /// The outlines of those paths.
+    outlines: Vec<Outline>,
+}
+
+impl GimpArtwork {
+    /// The paths of `file` that the options select.
+    pub(super) fn new(file: GimpFile, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
+        let format = format(options, &file, target)?;
+        let (select, exclude) = (options.select.clone(), options.exclude.clone());
+        Ok(Self { file, format, select, exclude, selected: Vec::new(), outlines: Vec::new() })
+    }
+
+    fn path(&self, i: usize) -> &GimpPath {
+        &self.file.file.paths[i]
+    }
+
+    /// Returns `true` if a path is to be warped: selected, not a guide, and not empty.
+    fn is_selected(&self, p: &GimpPath, guides: &[String]) -> bool {
+        let names = |list: &[String], name: &str| list.iter().any(|s| s.strip_prefix('#').unwrap_or(s) == name);
+        !p.strokes.is_empty()
+            && self.file.only.as_ref().is_none_or(|o| *o == p.name)
+            && (self.select.is_empty() || names(&self.select, &p.name))
+            && !names(&self.exclude, &p.name)
+            && !guides.contains(&p.name)
+    }
+
+    /// Writes the warped paths in the format chosen.
+    fn write(&self, warped: &WarpedPaths, request: &WarpRequest<'_>) -> Result<WarpedResult, Failure> {
+        let canvas = self.file.canvas();
+        let built = request.built;
+        // Coordinates that have not moved are not rounded.
+        let unmoved = built.map.class() == Class::Affine(Affine::IDENTITY) && built.placement.copies.is_empty();
+        let precision = request.options.precision.or((!unmoved).then(|| decimals_for(request.tolerance)));
+        Ok(match (self.format, &request.options.into) {
+            (GimpFormat::IntoXcf, Some(copy)) => {
+                WarpedResult::File(copy_with_paths(&self.file.path, copy, &warped.strokes)?)
+            }
+            (GimpFormat::Json, _) => WarpedResult::Bytes(to_json(Some(canvas), &warped.paths(self)).into_bytes()),
+            _ => WarpedResult::Bytes(to_svg(canvas, &warped.paths(self), precision).into_bytes()),
+        })
+    }
+
+    fn preview(&self, warped: &WarpedPaths, built: &BuiltRecipe) -> Result<Vec<u8>, Failure> {
+        let canvas = self.file.canvas();
+        let before: Vec<GimpPath> = self.selected.iter().map(|&i| self.path(i).clone()).collect();
+        let (before, after) = (to_svg(canvas, &before, None), to_svg(canvas, &warped.paths(self), None));
+        let doc = Document::read(before.as_bytes(), &self.file_name(), &ReadOptions::default())?;
+        preview::draw(&doc, &after, built, &ReadOptions::default())
+    }
+}
+
+impl Artwork for GimpArtwork {
+    fn file_name(&self) -> String {
+        display(&self.file.path)
+    }
+
+    fn path_named(&self, name: &str) -> Result<Outline, Error> {
+        Ok(self.file.path_named(name)?.outline())
+    }
+
+    fn remove_guides(&mut self, guides: Vec<String>) {
+        let paths = self.file.file.paths.iter().enumerate();
+        self.selected = paths.filter(|(_, p)| self.is_selected(p, &guides)).map(|(i, _)| i).collect();
+        self.outlines = self.selected.iter().map(|&i| self.path(i).outline()).collect();
+    }
+
+    fn bounding_box(&self) -> Option<Rect> {
+        self.outlines.iter().filter_map(Outline::bounding_box).reduce(|a, b| a.union(b))
+    }
+
+    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, _on_baseline: bool) -> Result<Frame, Failure> {
+        let [width, height] = self.file.canvas();
+        let canvas = Rect::new(0.0, 0.0, width, height);
+        match choice {
+            FrameChoice::Default | FrameChoice::Artwork => Ok(Frame::new(bounds.unwrap_or(canvas))),
+            FrameChoice::ViewBox => Ok(Frame::new(canvas)),
+            FrameChoice::Rect(r) => Ok(Frame::new(r)),
+            FrameChoice::Lettering(_) => {
+                Err(Failure::usage("--frame: GIMP paths do not store their baseline; give X,Y,W,H"))
+            }
+        }
+    }
+
+    fn outlines(&self) -> Vec<&Outline> {
+        self.outlines.iter().collect()
+    }
+
+    fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
+        let WarpRequest { built, options, .. } = request;
+        if let Some(param) = surface::requested(built) {
+            return Err(Failure::usage(format!(
+                "--{param} is for SVG files; convert the paths to SVG first (`pathwarp convert`)"
+            )));
+        }
+        let warped = self.warp_paths(request)?;
+        Ok(WarpedArtwork {
+            result: self.write(&warped, request)?,
+            files: Vec::new(),
+            preview: options.preview.is_some().then(|| self.preview(&warped, built)).transpose()?,
+            shapes: warped.shapes,
+            skipped: warped.skipped,
+            warnings: warped.warnings,
+            partial: self.file.damage.is_some(),
+        })
+    }
+}
+
+/// The selected paths under the map.
+struct WarpedPaths {
+    /// The new strokes of every selected path, by its index in the file.
+    strokes: Vec<(usize, Vec<Stroke>)>,
+    shapes: Vec<ShapeReport>,
+    skipped: Vec<SkippedShape>,
+    warnings: Vec<String>,
+}
+
+impl WarpedPaths {
+    fn paths(&self, artwork: &GimpArtwork) -> Vec<GimpPath> {
+        let path =
+            |(i, strokes): &(usize, Vec<Stroke>)| GimpPath { strokes: strokes.clone(), ..artwork.path(*i).clone() };
+        self.strokes.iter().map(path).collect()
+    }
+}
+
+impl GimpArtwork {
+    fn warp_paths(&self, request: &WarpRequest<'_>) -> Result<WarpedPaths, Failure> {
+        let WarpRequest { built, options, .. } = request;
+        let refit = refit::Options {
+            certify: options.certify,
+            merge: options.merge,
+            shared: Arc::new(SharedEdges::among(self.outlines.iter())),
+            ..refit::Options::new(request.tolerance)
+        };
+        let places =
+            if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
+        let warp = |(&i, outline): (&usize, &Outline)| {
+            (warp_strokes(self.path(i), &places, &built.map, &refit), fold::orientation(outline, false, &built.map))
+        };
+        let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> =
+            self.selected.par_iter().zip(&self.outlines).map(warp).collect();
+
+        let all = results.iter().fold(Orientation::default(), |a, (_, o)| a.and(o));
+        let mut out = WarpedPaths {
+            strokes: Vec::with_capacity(results.len()),
+            shapes: Vec::with_capacity(results.len()),
+            skipped: Vec::new(),
+            warnings: self.file.damage.iter().cloned().collect(),
+        };
+        for (&i, (result, orientation)) in self.selected.iter().zip(results) {
+            let path = self.path(i);
+            match result {
+                Ok(mut warped) => {
+                    let fold = Fold::of(&orientation, &all);
+                    out.warnings.extend(fold.at.map(|at| folds::warning(&path.name, at)));
+                    if self.format == GimpFormat::IntoXcf {
+                        warped.max_error += warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
+                    }
+                    out.shapes.push(shape_report(&path.name, places.len(), &warped, &fold));
+                    out.strokes.push((i, warped.strokes));
+                }
+                Err(e) => {
+                    let e = e.on_shape(&path.name);
+                    if options.on_error == OnError::Stop {
+                        return Err(Failure::Geometry(e.to_string()));
+                    }
+                    out.skipped.push(SkippedShape { id: path.name.clone(), why: e.to_string() });
+                    out.strokes.push((i, path.strokes.clone()));
+                }
+            }
+        }
+        Ok(out)
+    }
+}
+
+fn shape_report(name: &str, copies: usize, warped: &WarpedStrokes, fold: &Fold) -> ShapeReport {
+    ShapeReport {
+        id: name.to_owned(),
+        copies,
+        segments_in: warped.segments_in,
+        segments_out: warped.segments_out,
+        max_error: warped.max_error,
+        certified: warped.assurance != Assurance::Checked,
+        assurance: assurance_word(warped.assurance),
+        folds: fold.count,
+        folded_at: fold.place(),
+        over_budget: warped.over_budget.iter().map(|p| [p.x, p.y]).collect(),
+        paint_residual: None,
+        pictures: 0,
+    }
+}
+
+/// Number of decimals that keeps rounding below a hundredth of the tolerance.
+fn decimals_for(tolerance: f64) -> u8 {
+    const MOST: f64 = 12.0;
+    (2.0 - tolerance.log10()).ceil().clamp(0.0, MOST) as u8
+}
+
+/// Copies the XCF `from` to `copy` with new strokes for some paths.
+fn copy_with_paths(from: &Path, copy: &Path, strokes: &[(usize, Vec<Stroke>)]) -> Result<PendingFile, Failure> {
+    let source = File::open(from).map_err(|e| Failure::file(from, format!("cannot be read: {e}")))?;
+    PendingFile::with_writer(copy, |file| {
+        let mut to = BufWriter::new(file);
+        pathwarp_gimp::rewrite(source, &mut to, strokes).map_err(|e| e.to_string())?;
+        to.flush().map_err(|e| format!("cannot be written: {e}"))
+    })
+}

@@ -1,0 +1,45 @@
+//! [`Input`]: the kinds of artwork, told apart by content.
+
+use super::artwork::Artwork;
+use super::gimp::GimpArtwork;
+use super::gimp_file::GimpFile;
+use super::picture::PictureArtwork;
+use super::read::{bytes, display};
+use super::svg::SvgArtwork;
+use crate::failure::Failure;
+use crate::options::CommonOptions;
+use pathwarp_raster::Picture;
+use std::path::Path;
+
+/// An input file.
+pub(crate) enum Input {
+    Svg(Box<SvgArtwork>),
+    Gimp(GimpArtwork),
+    Picture(PictureArtwork),
+}
+
+impl Input {
+    /// Opens an input and checks that the options and the target suit its kind.
+    pub(crate) fn open(input: &Path, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
+        if let Some(file) = GimpFile::open(input, options.salvage)? {
+            return Ok(Self::Gimp(GimpArtwork::new(file, options, target)?));
+        }
+        if options.into.is_some() {
+            let file = display(input);
+            return Err(Failure::usage(format!("--into copies an XCF with its paths warped; {file} is not an XCF")));
+        }
+        let bytes = bytes(input)?;
+        if Picture::is_one(&bytes) {
+            return Ok(Self::Picture(PictureArtwork::read(&bytes, input, options, target)?));
+        }
+        Ok(Self::Svg(Box::new(SvgArtwork::read(&bytes, input, options, target)?)))
+    }
+
+    pub(crate) fn artwork(&mut self) -> &mut dyn Artwork {
+        match self {
+            Self::Svg(a) => &mut **a,
+            Self::Gimp(a) => a,
+            Self::Picture(a) => a,
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Input files: the kinds of artwork and what the pipeline asks of each, and the readers of other files.
+
+mod artwork;
+mod data_file;
+mod folds;
+mod gimp;
+mod gimp_file;
+mod gimp_format;
+mod gimp_stroke;
+mod kind;
+mod picture;
+mod preview;
+mod read;
+mod reference_name;
+mod surface;
+mod svg;
+
+pub(crate) use artwork::{WarpRequest, WarpedResult};
+pub(crate) use data_file::read_data_file;
+pub(crate) use gimp_file::GimpFile;
+pub(crate) use gimp_format::{file_name, svg_name};
+pub(crate) use kind::Input;
+pub(crate) use read::{bytes, display, document, read_options};
+pub(crate) use reference_name::{no_document, split_reference};

@@ -1,0 +1,170 @@
+//! Photographs (PNG, JPEG) as artwork: warped pixel by pixel, by the same maps as a drawing.
+
+use super::artwork::{Artwork, WarpRequest, WarpedArtwork, WarpedResult};
+use super::read::display;
+use super::reference_name::no_document;
+use crate::bitmap::{ROUNDING, inverse};
+use crate::failure::Failure;
+use crate::options::{CommonOptions, FrameChoice};
+use pathwarp::kurbo::{Affine, Point, Rect};
+use pathwarp::map::Map;
+use pathwarp::param::Frame;
+use pathwarp::{Error, Outline};
+use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, shown, warp_image};
+use pathwarp_svg::OnError;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A photograph. Its plane is in pixels, with the origin at its top left corner.
+pub(crate) struct PictureArtwork {
+    name: String,
+    picture: Picture,
+    format: PictureFormat,
+    /// The picture's rectangle as an outline.
+    outline: Outline,
+}
+
+impl PictureArtwork {
+    pub(super) fn read(
+        bytes: &[u8],
+        input: &Path,
+        options: &CommonOptions,
+        target: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        let format = format(target)?;
+        let name = display(input);
+        for (given, option) in [
+            (!options.select.is_empty(), "select"),
+            (!options.exclude.is_empty(), "exclude"),
+            (options.embed_recipe, "embed-recipe"),
+            (options.preview.is_some(), "preview"),
+        ] {
+            if given {
+                return Err(Failure::usage(format!("--{option} is for SVG files; {name} is a picture")));
+            }
+        }
+        let picture = Picture::read(bytes)?;
+        let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
+        let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
+        Ok(Self { name, picture, format, outline: Outline::from_points(&corners, true) })
+    }
+
+    fn area(&self) -> Rect {
+        Rect::new(0.0, 0.0, f64::from(self.picture.pixmap.width()), f64::from(self.picture.pixmap.height()))
+    }
+}
+
+impl Artwork for PictureArtwork {
+    fn file_name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn path_named(&self, name: &str) -> Result<Outline, Error> {
+        Err(no_document(name))
+    }
+
+    fn remove_guides(&mut self, _guides: Vec<String>) {}
+
+    fn bounding_box(&self) -> Option<Rect> {
+        Some(self.area())
+    }
+
+    fn frame(&self, choice: FrameChoice, _bounds: Option<Rect>, _on_baseline: bool) -> Result<Frame, Failure> {
+        match choice {
+            FrameChoice::Default | FrameChoice::Artwork | FrameChoice::ViewBox => Ok(Frame::new(self.area())),
+            FrameChoice::Rect(r) => Ok(Frame::new(r)),
+            FrameChoice::Lettering(_) => {
+                Err(Failure::usage("--frame: a photograph has no lettering to put a frame around; give X,Y,W,H"))
+            }
+        }
+    }
+
+    fn outlines(&self) -> Vec<&Outline> {
+        vec![&self.outline]
+    }
+
+    fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
+        let WarpRequest { built, options, .. } = request;
+        if !built.placement.copies.is_empty() {
+            return Err(Failure::usage(
+                "the deformation repeats the artwork, which works for drawings only, not for pictures",
+            ));
+        }
+        let area = self.area();
+        let map: Arc<dyn Map> = Arc::new(built.map.clone());
+        let mut warnings = Vec::new();
+        let undefined_at =
+            |p: Point| format!("the map is not defined on all of the picture, such as at {:.4},{:.4}", p.x, p.y);
+        let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &*map, Affine::IDENTITY)
+            .ok_or_else(|| Failure::Geometry(undefined_at(area.center())))?;
+        if let Some(p) = undefined {
+            if options.on_error == OnError::Stop {
+                return Err(Failure::Geometry(format!("{}; --on-error skip leaves that part out", undefined_at(p))));
+            }
+            warnings.push(undefined_at(p));
+        }
+        let (visible, size) = size(bounds, options.image_size)?;
+        let inverse = inverse(&map, area);
+        let warp = ImageWarp {
+            source: &self.picture.pixmap,
+            placed: Affine::IDENTITY,
+            map: &*map,
+            inverse: &*inverse,
+            shown: shown(visible, size),
+            size,
+        };
+        let warped = Picture { pixmap: warp_image(&warp)?, profile: self.picture.profile.clone() };
+        Ok(WarpedArtwork {
+            result: WarpedResult::Bytes(warped.write(self.format)?),
+            shapes: Vec::new(),
+            skipped: Vec::new(),
+            warnings,
+            files: Vec::new(),
+            preview: None,
+            partial: undefined.is_some(),
+        })
+    }
+}
+
+/// Returns `true` if a file of this name would hold pixels.
+pub(super) fn is_named_picture(path: &Path) -> bool {
+    path.extension().is_some() && format(Some(path)).is_ok()
+}
+
+/// The format that the target's extension names; PNG without one.
+fn format(target: Option<&Path>) -> Result<PictureFormat, Failure> {
+    let Some(extension) = target.and_then(Path::extension) else { return Ok(PictureFormat::Png) };
+    match extension.to_string_lossy().to_ascii_lowercase().as_str() {
+        "png" => Ok(PictureFormat::Png),
+        "jpg" | "jpeg" => Ok(PictureFormat::Jpeg),
+        other => Err(Failure::usage(format!("a picture is written as .png or .jpg, not as .{other}"))),
+    }
+}
+
+/// The part of the plane that the result shows, and its size in pixels: by default one pixel per unit of the plane.
+fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>) -> Result<(Rect, (u32, u32)), Failure> {
+    let shown = match wanted {
+        None => Rect::new(
+            (bounds.x0 + ROUNDING).floor(),
+            (bounds.y0 + ROUNDING).floor(),
+            (bounds.x1 - ROUNDING).ceil(),
+            (bounds.y1 - ROUNDING).ceil(),
+        ),
+        Some(_) => bounds,
+    };
+    if shown.width() <= 0.0 || shown.height() <= 0.0 {
+        return Err(Failure::Geometry("the warped picture has no area".to_owned()));
+    }
+    let (width, height) = match wanted {
+        None => (shown.width(), shown.height()),
+        Some((w, Some(h))) => (f64::from(w), f64::from(h)),
+        Some((w, None)) => (f64::from(w), (f64::from(w) * shown.height() / shown.width()).round().max(1.0)),
+    };
+    if width * height > f64::from(pathwarp_raster::MAX_PIXELS) {
+        return Err(Failure::Geometry(format!(
+            "the warped picture would have {width:.0} x {height:.0} pixels, more than {}; give --image-size",
+            pathwarp_raster::MAX_PIXELS
+        )));
+    }
+    Ok((shown, (width as u32, height as u32)))
+}

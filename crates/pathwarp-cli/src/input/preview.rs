@@ -1,0 +1,38 @@
+//! `--preview`: the artwork with its guides beside the result.
+
+use crate::failure::Failure;
+use pathwarp::deform::Role;
+use pathwarp::kurbo::{Rect, Shape};
+use pathwarp::recipe::BuiltRecipe;
+use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview, encode_png};
+use pathwarp_svg::{Document, ReadOptions, Selection};
+
+/// Draws the PNG. Bases are drawn over the source; targets and cages over the result.
+pub(super) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &ReadOptions) -> Result<Vec<u8>, Failure> {
+    let after = Document::read(warped.as_bytes(), "the result", read)?;
+    let mut left = Panel::new(doc.tree(), doc.user_to_px(), doc.view_box());
+    let mut right = Panel::new(after.tree(), after.user_to_px(), after.view_box());
+    let everything = Selection::default();
+    // The view holds all artwork, including what the warp moved off the page.
+    let artwork = [doc, &after].into_iter().filter_map(|d| d.artwork_box(&everything));
+    let guides = built.steps.iter().flat_map(|s| s.explanation.overlays.iter().map(|o| o.path.bounding_box()));
+    let seen = artwork.chain(guides).filter(Rect::is_finite);
+    let view = seen.fold(doc.view_box().union(after.view_box()), |all, r| all.union(r));
+    let last = built.steps.len().saturating_sub(1);
+    for (i, step) in built.steps.iter().enumerate() {
+        let has_target = step.explanation.overlays.iter().any(|o| o.role == Role::Target);
+        for o in &step.explanation.overlays {
+            // The guides of a middle step lie in a plane that neither panel shows. A cage whose result goes to a target is
+            // only a pattern, so it is drawn over the source.
+            let (panel, kind) = match o.role {
+                Role::Base if i == 0 => (&mut left, OverlayKind::Base),
+                Role::Cage if i == 0 && has_target => (&mut left, OverlayKind::Cage),
+                Role::Cage if i == last => (&mut right, OverlayKind::Cage),
+                Role::Target if i == last => (&mut right, OverlayKind::Target),
+                _ => continue,
+            };
+            *panel = panel.clone().with(Overlay::new(kind, o.path.clone()));
+        }
+    }
+    Ok(encode_png(&Preview::new(left, right).view(view).render()?)?)
+}

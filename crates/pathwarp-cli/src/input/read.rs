@@ -1,0 +1,46 @@
+//! Reads input files, and standard input for `-`.
+
+use crate::failure::Failure;
+use pathwarp_svg::{Document, ReadOptions};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// The first bytes of an XCF.
+const XCF_MAGIC: &[u8] = b"gimp xcf ";
+
+/// Returns `true` if `input` stands for standard input.
+fn is_stdin(input: &Path) -> bool {
+    input.as_os_str() == "-"
+}
+
+/// The name of an input in messages and reports.
+pub(crate) fn display(input: &Path) -> String {
+    if is_stdin(input) { "standard input".into() } else { input.display().to_string() }
+}
+
+/// Reads all bytes of a file or of standard input.
+pub(crate) fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
+    if !is_stdin(input) {
+        return std::fs::read(input).map_err(|e| Failure::file(input, format!("cannot be read: {e}")));
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::Input(format!("standard input: {e}")))?;
+    if bytes.starts_with(XCF_MAGIC) {
+        return Err(Failure::Input("standard input: reading an XCF requires seeking; name the file instead".into()));
+    }
+    Ok(bytes)
+}
+
+/// Reads an SVG document. Linked images are looked up relative to its folder.
+pub(crate) fn document(input: &Path) -> Result<Document, Failure> {
+    Ok(Document::read(&bytes(input)?, &display(input), &read_options(input))?)
+}
+
+/// Options for reading `input` as SVG: linked images are looked up relative to its folder.
+pub(crate) fn read_options(input: &Path) -> ReadOptions {
+    let folder = match input.parent() {
+        Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
+        other => other.map(Path::to_path_buf),
+    };
+    ReadOptions { base_dir: folder, ..ReadOptions::default() }
+}

@@ -1,0 +1,42 @@
+//! The artwork on a surface in space, as OBJ files: a mesh of the filled shapes, or curves.
+
+use crate::failure::Failure;
+use pathwarp::kurbo::Point;
+use pathwarp::map::Map;
+use pathwarp::recipe::BuiltRecipe;
+use pathwarp_mesh::Shape;
+use pathwarp_svg::{Document, WarpOptions};
+use std::path::PathBuf;
+
+/// The first parameter that asks for such a file.
+pub(super) fn requested(built: &BuiltRecipe) -> Option<&'static str> {
+    built.steps.iter().filter_map(|s| s.space.as_ref()).find_map(|s| s.files.first()).map(|f| f.param)
+}
+
+/// The files that the recipe's steps ask for, with their text.
+pub(super) fn files(
+    doc: &Document,
+    built: &BuiltRecipe,
+    options: &WarpOptions,
+) -> Result<Vec<(PathBuf, String)>, Failure> {
+    let mut out = Vec::new();
+    for (i, step) in built.steps.iter().enumerate() {
+        let Some(space) = &step.space else { continue };
+        let before = &built.steps[..i];
+        let place = |p: Point| (space.place)(before.iter().fold(p, |q, s| s.map.point(q)));
+        let shapes: Vec<_> = doc.selected(&options.selection).collect();
+        for file in &space.files {
+            let wanted = shapes.iter().filter(|s| s.filled || !file.filled);
+            let wanted: Vec<Shape<'_>> =
+                wanted.map(|s| Shape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
+            let made = if file.filled {
+                pathwarp_mesh::filled(&wanted, &place, options.refit.tolerance)
+            } else {
+                pathwarp_mesh::outlines(&wanted, &place, options.refit.tolerance)
+            };
+            let text = made.map_err(|e| Failure::Geometry(format!("--{}: {e}", file.param)))?;
+            out.push((PathBuf::from(&file.name), text));
+        }
+    }
+    Ok(out)
+}

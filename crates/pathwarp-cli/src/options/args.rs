@@ -1,0 +1,51 @@
+//! The table of common options as clap arguments.
+
+use super::definition::{CommonOption, LeadingMinus, OptionValue};
+use super::table::OPTIONS;
+use clap::{Arg, ArgAction, value_parser};
+use std::path::PathBuf;
+
+/// The id of the positional argument for the inputs.
+pub(super) const INPUT: &str = "INPUT";
+
+/// The inputs and the common options.
+pub(crate) fn args() -> impl Iterator<Item = Arg> {
+    let inputs = Arg::new(INPUT).num_args(0..).value_parser(value_parser!(PathBuf)).help(
+        "SVG files (also .svgz), PNG or JPEG pictures, GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none reads \
+         standard input",
+    );
+    std::iter::once(inputs).chain(options_without_inputs())
+}
+
+/// The common options, without the inputs.
+pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
+    OPTIONS.iter().map(arg)
+}
+
+fn arg(option: &CommonOption) -> Arg {
+    let mut arg = Arg::new(option.name)
+        .long(option.name)
+        .help(option.help())
+        .help_heading("Common options")
+        .conflicts_with_all(option.conflicts.iter().copied());
+    if let Some(c) = option.short {
+        arg = arg.short(c);
+    }
+    match &option.value {
+        OptionValue::Switch(_) => arg.action(ArgAction::SetTrue),
+        OptionValue::Choice(_) => {
+            let words = option.words();
+            arg.value_name(words.join("|")).value_parser(words).hide_possible_values(true)
+        }
+        OptionValue::Whole { name, range, .. } => {
+            let (least, most) = (i64::from(*range.start()), i64::from(*range.end()));
+            arg.value_name(*name).value_parser(value_parser!(u16).range(least..=most))
+        }
+        OptionValue::Text { name, minus, .. } => arg
+            .value_name(*name)
+            .allow_negative_numbers(*minus == LeadingMinus::Number)
+            .allow_hyphen_values(*minus == LeadingMinus::Any),
+        OptionValue::List { name, .. } => arg.value_name(*name).action(ArgAction::Append),
+        OptionValue::File { name, .. } => arg.value_name(*name).value_parser(value_parser!(PathBuf)),
+    }
+}

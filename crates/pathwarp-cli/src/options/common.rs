@@ -1,0 +1,79 @@
+//! The common options as typed values.
+
+use pathwarp::kurbo::Rect;
+use pathwarp_svg::{LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
+use std::path::PathBuf;
+
+/// Default tolerance as a fraction of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
+/// plotter draws.
+const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
+
+/// The box that percentages refer to.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) enum FrameChoice {
+    /// Not given: the artwork's box, or for lettering the box a deformation with a baseline asks for.
+    #[default]
+    Default,
+    Artwork,
+    Lettering(LetteringFrame),
+    ViewBox,
+    Rect(Rect),
+}
+
+/// How gradients follow the artwork.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum GradientChoice {
+    #[default]
+    Fit,
+    Exact,
+    Keep,
+}
+
+/// The values of the common options. `Default` holds the unset state; [`Given::read`](super::Given::read) applies the defaults
+/// that the table declares and then the values given.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct CommonOptions {
+    pub(crate) inputs: Vec<PathBuf>,
+    /// `None`: standard output.
+    pub(crate) out: Option<PathBuf>,
+    pub(crate) out_dir: Option<PathBuf>,
+    /// Copy of the input XCF that receives the warped paths.
+    pub(crate) into: Option<PathBuf>,
+    /// Read the paths before the damage in a damaged GIMP file.
+    pub(crate) salvage: bool,
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) certify: bool,
+    pub(crate) merge: bool,
+    pub(crate) frame: FrameChoice,
+    pub(crate) select: Vec<String>,
+    pub(crate) exclude: Vec<String>,
+    pub(crate) precision: Option<u8>,
+    pub(crate) strokes: Strokes,
+    pub(crate) text: TextMode,
+    pub(crate) gradients: GradientChoice,
+    pub(crate) patterns: Patterns,
+    pub(crate) page: PageFit,
+    pub(crate) structure: Structure,
+    /// Warp the bitmaps in drawings.
+    pub(crate) warp_images: bool,
+    pub(crate) image_dpi: Option<f64>,
+    /// Width, and height if given, of a warped picture in pixels.
+    pub(crate) image_size: Option<(u32, Option<u32>)>,
+    pub(crate) on_error: OnError,
+    pub(crate) report: Option<PathBuf>,
+    pub(crate) preview: Option<PathBuf>,
+    pub(crate) write_recipe: Option<PathBuf>,
+    pub(crate) embed_recipe: bool,
+    pub(crate) explain: bool,
+    /// Number of threads; `None`: one per core.
+    pub(crate) jobs: Option<usize>,
+    pub(crate) quiet: bool,
+}
+
+impl CommonOptions {
+    /// Returns the tolerance given, or the default for artwork with this bounding box.
+    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>) -> f64 {
+        let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
+        self.tolerance.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
+    }
+}

@@ -1,0 +1,17 @@
+//! The options that every deformation shares.
+//!
+//! `table.rs` declares each of them once. clap's arguments (`args.rs`), the values given on a command line or in a recipe
+//! (`given.rs`), the typed struct (`common.rs`), the recipe schema, help and man page all come from that table.
+
+mod args;
+mod common;
+mod definition;
+mod given;
+mod parse;
+mod table;
+
+pub(crate) use args::{args, options_without_inputs};
+pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice};
+pub(crate) use given::Given;
+pub(crate) use parse::rect;
+pub(crate) use table::OPTIONS;

@@ -1,0 +1,99 @@
+//! The run of one input: open, look up references, choose the frame, build, warp, report.
+
+use crate::failure::Failure;
+use crate::input::{Input, WarpRequest, WarpedResult};
+use crate::options::{CommonOptions, FrameChoice, Given};
+use crate::output::PendingFile;
+use crate::report::FileReport;
+use crate::{recipe_file, references};
+use pathwarp::deform::Registry;
+use pathwarp::recipe::{BuiltRecipe, Recipe};
+use std::path::Path;
+
+/// The work that all inputs share.
+pub(super) struct Batch<'a> {
+    pub(super) registry: &'a Registry,
+    pub(super) recipe: &'a Recipe,
+    pub(super) options: &'a CommonOptions,
+    pub(super) given: &'a Given,
+}
+
+/// One input, warped. Nothing is written yet.
+pub(super) struct FileRun {
+    pub(super) report: FileReport,
+    pub(super) files: Vec<PendingFile>,
+    /// The bytes for standard output.
+    pub(super) stdout: Option<Vec<u8>>,
+    /// The lines of `--explain`.
+    pub(super) notes: Vec<String>,
+    pub(super) partial: bool,
+}
+
+impl Batch<'_> {
+    /// Warps one input; without a target the result goes to standard output.
+    pub(super) fn run(&self, input: &Path, target: Option<&Path>) -> Result<FileRun, Failure> {
+        let Batch { registry, options, .. } = *self;
+        let mut input = Input::open(input, options, target)?;
+        let artwork = input.artwork();
+        let mut recipe = self.recipe.clone();
+        let guides = references::resolve(registry, &mut recipe, |name| artwork.path_named(name))?;
+        artwork.remove_guides(guides);
+
+        let bounds = artwork.bounding_box();
+        let frame = artwork.frame(options.frame, bounds, leaves_baseline_open(registry, &recipe))?;
+        let baseline = frame.baseline;
+        let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
+
+        let tolerance = options.tolerance_for(bounds);
+        let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
+        let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
+        let request = WarpRequest { built: &built, options, tolerance, target, embedded_recipe };
+        let warped = artwork.warp(&request)?;
+
+        let (mut files, mut stdout) = (Vec::new(), None);
+        match (warped.result, target) {
+            (WarpedResult::File(file), _) => files.push(file),
+            (WarpedResult::Bytes(bytes), Some(t)) => files.push(PendingFile::new(t, &bytes)?),
+            (WarpedResult::Bytes(bytes), None) => stdout = Some(bytes),
+        }
+        files.extend(warped.files);
+        for file in built.steps.iter().flat_map(|s| &s.saves) {
+            files.push(PendingFile::new(Path::new(&file.name), file.text.as_bytes())?);
+        }
+        if let (Some(file), Some(png)) = (&options.preview, warped.preview) {
+            files.push(PendingFile::new(file, &png)?);
+        }
+        let report = FileReport {
+            file: artwork.file_name(),
+            output: target.or(options.into.as_deref()).map(|t| t.display().to_string()),
+            tolerance,
+            shapes: warped.shapes,
+            skipped: warped.skipped,
+            warnings: built.steps.iter().flat_map(|s| s.explanation.warnings.clone()).chain(warped.warnings).collect(),
+        };
+        let partial = warped.partial || report.is_partial();
+        Ok(FileRun { report, files, stdout, notes: self.notes(&built, baseline), partial })
+    }
+
+    /// The decisions made on the user's behalf.
+    fn notes(&self, built: &BuiltRecipe, baseline: Option<f64>) -> Vec<String> {
+        let mut notes = Vec::new();
+        if !self.options.explain {
+            return notes;
+        }
+        if let (FrameChoice::Default, Some(y)) = (self.options.frame, baseline) {
+            notes.push(format!(
+                "frame: the artwork is lettering; its baseline, at {y:.6}, lies on the curve (--frame baseline-ascent)"
+            ));
+        }
+        notes.extend(built.steps.iter().flat_map(|s| s.explanation.notes.clone()));
+        notes
+    }
+}
+
+/// Returns `true` if a recipe's first step has a baseline and leaves it at its default.
+fn leaves_baseline_open(registry: &Registry, recipe: &Recipe) -> bool {
+    let Some(step) = recipe.steps.first() else { return false };
+    let baseline = registry.get(&step.deformation).and_then(|e| e.info().baseline);
+    baseline.is_some_and(|param| step.args.get(param).is_empty())
+}

@@ -1,0 +1,91 @@
+//! Path references, `FILE#NAME`, `FILE` and `#NAME`: looked up in files and in the input document.
+
+use crate::failure::Failure;
+use crate::input::{GimpFile, read_data_file, split_reference};
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::Point;
+use pathwarp::recipe::Recipe;
+use pathwarp::{Error, Outline};
+use pathwarp_svg::{Document, ReadOptions};
+
+/// Looks up every path and file that a recipe refers to. `in_input` finds a path of the input document.
+///
+/// Returns the names found in the input document: those paths are guides, not artwork.
+pub(crate) fn resolve(
+    registry: &Registry,
+    recipe: &mut Recipe,
+    in_input: impl Fn(&str) -> Result<Outline, Error>,
+) -> Result<Vec<String>, Failure> {
+    let mut guides = Vec::new();
+    for step in &mut recipe.steps {
+        let Some(e) = registry.get(&step.deformation) else { continue };
+        let paths = step.args.resolve_paths(e.info().params, |reference| match reference.strip_prefix('#') {
+            Some(name) => {
+                let outline = in_input(name)?;
+                guides.push(name.to_owned());
+                Ok(outline)
+            }
+            None => in_file(reference),
+        });
+        let all = paths.and_then(|()| step.args.resolve_files(e.info().params, read_data_file));
+        all.map_err(Failure::of_recipe)?;
+    }
+    Ok(guides)
+}
+
+/// Looks up `FILE#NAME` or `FILE`.
+fn in_file(reference: &str) -> Result<Outline, Error> {
+    let (file, name) = split_reference(reference);
+    if let Some(gimp) = GimpFile::read(&file, false)? {
+        return Ok(match name {
+            Some(name) => gimp.path_named(name)?.outline(),
+            None => gimp.only_path()?.outline(),
+        });
+    }
+    let shown = file.display();
+    let bytes = std::fs::read(&file).map_err(|e| {
+        let problem = format!("cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data or points");
+        Error::input(shown.to_string(), problem)
+    })?;
+    if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+        return points(&bytes).map_err(|e| Error::input(reference, e));
+    }
+    let doc = Document::read(&bytes, &shown.to_string(), &ReadOptions::default())?;
+    if let Some(name) = name {
+        return Ok(doc.path(name)?.outline);
+    }
+    let mut all = doc.paths();
+    let count = all.len();
+    match all.pop() {
+        Some(only) if count == 1 => Ok(only.outline),
+        None => Err(Error::input(reference, "holds no path")),
+        Some(last) => {
+            let problem = format!(
+                "holds {count} paths; name one of them: {shown}#NAME (`pathwarp paths {shown}` lists them; one is {})",
+                last.id
+            );
+            Err(Error::input(reference, problem))
+        }
+    }
+}
+
+/// Parses a JSON file of points: `[[x,y],…]`, or rows of them. Each row is a polyline.
+fn points(bytes: &[u8]) -> Result<Outline, String> {
+    #[derive(serde::Deserialize)]
+    #[serde(untagged)]
+    enum PointList {
+        Points(Vec<[f64; 2]>),
+        Rows(Vec<Vec<[f64; 2]>>),
+    }
+    let list: PointList = serde_json::from_slice(bytes)
+        .map_err(|e| format!("is not a JSON list of points [[x,y],…] or of rows of points: {e}"))?;
+    let rows = match list {
+        PointList::Points(p) => vec![p],
+        PointList::Rows(r) => r,
+    };
+    let subpaths = rows.iter().flat_map(|r| {
+        let points: Vec<Point> = r.iter().map(|[x, y]| Point::new(*x, *y)).collect();
+        Outline::from_points(&points, false).subpaths
+    });
+    Ok(Outline { subpaths: subpaths.collect() })
+}

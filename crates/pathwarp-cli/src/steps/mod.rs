@@ -1,0 +1,7 @@
+//! Steps of a recipe from the words of a command line.
+
+mod chain;
+mod params;
+
+pub(crate) use chain::parts;
+pub(crate) use params::{INVERSE, args, step};
