@@ -1,12 +1,12 @@
 //! An SVG file: what it paints, what it calls things, and its text.
 
-use crate::geometry::Reader;
-use crate::letters;
-use crate::read::{self, Missed, ReadOptions};
-use crate::resolve::{self, Tiling};
-use crate::scene::{self, Role, Scene};
-use crate::select::{self, Selection};
-use crate::source::{ElementId, Source, is_shape};
+use crate::scene::geometry::Reader;
+use crate::scene::letters;
+use crate::scene::model::{self as scene, Role, Scene};
+use crate::scene::resolve::{self, Tiling};
+use crate::source::read::{self, Missed, ReadOptions};
+use crate::source::select::{self, Selection};
+use crate::source::text::{ElementId, Source, is_shape};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::{Error, Outline};
 use std::sync::{Arc, OnceLock};

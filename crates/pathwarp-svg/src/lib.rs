@@ -21,46 +21,24 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 
-mod cascade;
-mod cut;
-mod defs;
+mod bend;
 mod document;
-mod edit;
 mod embed;
-mod filter;
-mod fontface;
-mod fonts;
-mod geometry;
-mod gradient;
-mod image;
-mod keep;
-mod lettering;
-mod letters;
-mod marks;
-mod number;
-mod options;
-mod page;
-mod paint;
-mod pieces;
-mod read;
-mod resolve;
 mod scene;
-mod select;
 pub mod sheet;
 mod source;
-mod stroke;
-mod unfold;
-mod warp;
 mod write;
 
+pub use bend::gradient::{GradientPainter, GradientRequest};
+pub use bend::image::{BentImage, ImageRequest, ImageWarper, Images};
+pub use bend::letters::LetterPlaces;
+pub use bend::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
+pub use bend::part::{ShapeReport, Skipped, Warped};
 pub use document::{Document, NamedPath, Shape};
 pub use embed::Origin;
-pub use fonts::{FontFile, GenericFamilies, bundled_font, system_font};
-pub use gradient::{GradientPainter, GradientRequest};
-pub use image::{BentImage, ImageRequest, ImageWarper, Images};
-pub use lettering::{LetterPlaces, Lettering, LetteringFrame, LetteringOptions, write_lettering};
-pub use options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
-pub use page::Overhang;
-pub use read::{ReadOptions, compressed, parse_tree};
-pub use select::Selection;
-pub use warp::{ShapeReport, Skipped, Warped};
+pub use scene::lettering::{Lettering, LetteringFrame};
+pub use source::fonts::{FontFile, GenericFamilies, bundled_font, system_font};
+pub use source::read::{ReadOptions, compressed, parse_tree};
+pub use source::select::Selection;
+pub use write::lettering::{LetteringOptions, write_lettering};
+pub use write::page::Overhang;

@@ -1,25 +1,25 @@
 //! From a parsed document to the table of its elements with their places in the source.
 
-use super::{Attr, Element, ElementId, INKSCAPE, Namespace, SVG, XLINK, XML};
-use crate::marks::{self, Patch};
+use crate::source::marks::{self, Patch};
+use crate::source::text::{Attr, Element, ElementId, INKSCAPE, Namespace, SVG, XLINK, XML};
 use memchr::memrchr;
 use std::borrow::Cow;
 use std::ops::Range;
 use usvg::roxmltree;
 
 /// The elements of a document.
-pub(super) struct Table {
-    pub(super) elements: Vec<Element>,
+pub(crate) struct Table {
+    pub(crate) elements: Vec<Element>,
     /// All style sheets' text.
-    pub(super) css: String,
+    pub(crate) css: String,
     /// Why the text cannot be patched in place.
-    pub(super) unpatchable: Option<String>,
+    pub(crate) unpatchable: Option<String>,
 }
 
 impl Table {
     /// The elements of a document with their places in the source, from which its text differs by `patches`; `None` if its
     /// root is not `<svg>`.
-    pub(super) fn of(doc: &roxmltree::Document<'_>, patches: &[Patch]) -> Option<Self> {
+    pub(crate) fn of(doc: &roxmltree::Document<'_>, patches: &[Patch]) -> Option<Self> {
         let root = doc.root_element();
         if root.tag_name().name() != "svg" || !matches!(root.tag_name().namespace(), Some(SVG) | None) {
             return None;

@@ -1,0 +1,305 @@
+//! Edits to the source text: attributes, style properties, tags and whole elements; everything else stays byte for byte.
+
+use crate::source::number::escape;
+use crate::source::text::{ElementId, Namespace, Source};
+use std::collections::BTreeMap;
+
+/// What happens to one element.
+#[derive(Debug, Default)]
+struct Change {
+    /// New values; `None` takes the attribute away.
+    attrs: Vec<(&'static str, Option<String>)>,
+    properties: Vec<(&'static str, String)>,
+    tag: Option<&'static str>,
+    /// New content, in place of all there was.
+    content: Option<String>,
+    /// In place of the element as a whole.
+    replaced: Option<String>,
+    /// Right after the opening tag and right before the closing one.
+    around: Option<(String, String)>,
+    /// Right before and right after the element.
+    before: String,
+    after: String,
+}
+
+/// Collected edits.
+#[derive(Debug)]
+pub(crate) struct Edits<'a> {
+    source: &'a Source,
+    changes: BTreeMap<ElementId, Change>,
+}
+
+impl<'a> Edits<'a> {
+    pub(crate) fn new(source: &'a Source) -> Self {
+        Self { source, changes: BTreeMap::new() }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.changes.is_empty()
+    }
+
+    fn change(&mut self, e: ElementId) -> &mut Change {
+        self.changes.entry(e).or_default()
+    }
+
+    pub(crate) fn set_attr(&mut self, e: ElementId, name: &'static str, value: String) {
+        let attrs = &mut self.change(e).attrs;
+        attrs.retain(|a| a.0 != name);
+        attrs.push((name, Some(value)));
+    }
+
+    pub(crate) fn remove_attr(&mut self, e: ElementId, name: &'static str) {
+        let attrs = &mut self.change(e).attrs;
+        attrs.retain(|a| a.0 != name);
+        attrs.push((name, None));
+    }
+
+    pub(crate) fn rename(&mut self, e: ElementId, tag: &'static str) {
+        self.change(e).tag = Some(tag);
+    }
+
+    pub(crate) fn set_content(&mut self, e: ElementId, content: String) {
+        self.change(e).content = Some(content);
+    }
+
+    pub(crate) fn replace(&mut self, e: ElementId, text: String) {
+        self.change(e).replaced = Some(text);
+    }
+
+    pub(crate) fn wrap_content(&mut self, e: ElementId, before: String, after: String) {
+        self.change(e).around = Some((before, after));
+    }
+
+    pub(crate) fn insert_before(&mut self, e: ElementId, text: &str) {
+        self.change(e).before.push_str(text);
+    }
+
+    pub(crate) fn insert_after(&mut self, e: ElementId, text: &str) {
+        self.change(e).after.push_str(text);
+    }
+
+    /// Sets a presentation property where it wins: in the style attribute if it, or a style sheet, speaks of the property; as
+    /// an attribute otherwise.
+    pub(crate) fn set_property(&mut self, e: ElementId, name: &'static str, value: String) {
+        let styled = self.source.attr(e, "style").is_some_and(|s| declares(&s, name));
+        if styled || self.source.css_mentions(name) {
+            let properties = &mut self.change(e).properties;
+            properties.retain(|p| p.0 != name);
+            properties.push((name, value));
+        } else {
+            self.set_attr(e, name, value);
+        }
+    }
+
+    /// Sets a property in the style attribute, where nothing but `!important` is stronger.
+    pub(crate) fn set_style(&mut self, e: ElementId, name: &'static str, value: String) {
+        let properties = &mut self.change(e).properties;
+        properties.retain(|p| p.0 != name);
+        properties.push((name, value));
+    }
+
+    /// The text with all edits made. Edits inside an element that is replaced are dropped.
+    pub(crate) fn apply(self) -> String {
+        let source = self.source;
+        let mut patches: Vec<(usize, usize, String)> = Vec::new();
+        for (e, c) in self.changes {
+            patch(source, e, c, &mut patches);
+        }
+        // Stable: insertions at one place stay in the order in which they were asked for; an outer replacement comes first.
+        // But an insertion goes before a replacement that starts at the same place.
+        patches.sort_by_key(|p| (p.0, p.0 != p.1, std::cmp::Reverse(p.1)));
+        let text = &source.text;
+        let mut out = String::with_capacity(text.len() * 2);
+        let mut done = 0;
+        for (from, to, new) in patches {
+            if from < done {
+                continue;
+            }
+            out.push_str(&text[done..from]);
+            out.push_str(&new);
+            done = to;
+        }
+        out.push_str(&text[done..]);
+        out
+    }
+}
+
+fn patch(source: &Source, e: ElementId, c: Change, out: &mut Vec<(usize, usize, String)>) {
+    let text = &source.text;
+    let el = &source.elements[e];
+    if !c.before.is_empty() {
+        out.push((el.range.start, el.range.start, c.before));
+    }
+    if !c.after.is_empty() {
+        out.push((el.range.end, el.range.end, c.after));
+    }
+    if let Some(new) = c.replaced {
+        out.push((el.range.start, el.range.end, new));
+        return;
+    }
+    let prefix = text[el.qname.clone()].find(':').map_or("", |i| &text[el.qname.start..=el.qname.start + i]);
+    let qname = c.tag.map(|t| format!("{prefix}{t}"));
+    if let Some(q) = &qname {
+        out.push((el.qname.start, el.qname.end, q.clone()));
+    }
+    let mut added = String::new();
+    let mut attrs = c.attrs;
+    if !c.properties.is_empty() {
+        let old = source.attr(e, "style").unwrap_or_default();
+        let mut style = old.into_owned();
+        for (name, value) in &c.properties {
+            style = with_declaration(&style, name, value);
+        }
+        attrs.push(("style", Some(style)));
+    }
+    for (name, value) in attrs {
+        // `xlink:href` and `href` go together.
+        let existing = el.attrs.iter().filter(|a| {
+            a.name(text) == name
+                && (a.namespace == Namespace::None || (name == "href" && a.namespace == Namespace::Xlink))
+        });
+        let mut set = false;
+        for a in existing {
+            match &value {
+                Some(v) => {
+                    if !set {
+                        out.push((a.value_range.start, a.value_range.end, quoted(v, text.as_bytes()[a.range.end - 1])));
+                        set = true;
+                    }
+                }
+                None => {
+                    let before = text[..a.range.start].trim_end().len();
+                    out.push((before, a.range.end, String::new()));
+                }
+            }
+        }
+        if let (Some(v), false) = (&value, set) {
+            added.push_str(&format!(" {name}=\"{}\"", escape(v)));
+        }
+    }
+    let slash = usize::from(text.as_bytes().get(el.open_end.wrapping_sub(2)) == Some(&b'/'));
+    let end = text[..el.open_end - 1 - slash].trim_end().len();
+    if !added.is_empty() {
+        out.push((end, end, added));
+    }
+    let name = qname.as_deref().unwrap_or(&text[el.qname.clone()]);
+    match (&el.close, c.content, c.around) {
+        (None, None, None) => {}
+        (None, content, around) => {
+            let inner = content.unwrap_or_default();
+            let (before, after) = around.unwrap_or_default();
+            out.push((el.open_end - 2, el.open_end, format!(">{before}{inner}{after}</{name}>")));
+        }
+        (Some(close), content, around) => {
+            if let Some(inner) = content {
+                out.push((el.open_end, close.start, inner));
+            } else if let Some((before, after)) = around {
+                out.push((el.open_end, el.open_end, before));
+                out.push((close.start, close.start, after));
+            }
+            if qname.is_some() {
+                out.push((close.start, close.end, format!("</{name}>")));
+            }
+        }
+    }
+}
+
+/// A value for the quotes that are there.
+fn quoted(value: &str, quote: u8) -> String {
+    let v = escape(value);
+    if quote == b'\'' { v.replace('\'', "&apos;") } else { v }
+}
+
+/// The declarations of a style attribute.
+pub(crate) fn declarations(style: &str) -> impl Iterator<Item = (&str, &str)> {
+    // Semicolons may stand in quotes and in url(data:…;base64,…).
+    let mut parts = Vec::new();
+    let (mut depth, mut quote, mut start) = (0_i32, None, 0);
+    for (i, c) in style.char_indices() {
+        match (quote, c) {
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(q), c) if q == c => quote = None,
+            (None, '(') => depth += 1,
+            (None, ')') => depth -= 1,
+            (None, ';') if depth <= 0 => {
+                parts.push(&style[start..i]);
+                start = i + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&style[start..]);
+    parts.into_iter().filter_map(|p| p.split_once(':')).map(|(n, v)| (n.trim(), v.trim()))
+}
+
+pub(crate) fn declares(style: &str, name: &str) -> bool {
+    declared(style, name).is_some()
+}
+
+/// The value that a style attribute gives a property.
+pub(crate) fn declared<'a>(style: &'a str, name: &str) -> Option<&'a str> {
+    declarations(style).filter(|(n, _)| n.eq_ignore_ascii_case(name)).last().map(|d| d.1)
+}
+
+/// `style` with `name: value` in it, in the old one's place if there was one.
+fn with_declaration(style: &str, name: &str, value: &str) -> String {
+    let mut out: Vec<String> = Vec::new();
+    let mut set = false;
+    for (n, v) in declarations(style) {
+        if !n.eq_ignore_ascii_case(name) {
+            out.push(format!("{n}:{v}"));
+        } else if !set {
+            out.push(format!("{n}:{value}"));
+            set = true;
+        }
+    }
+    if !set {
+        out.push(format!("{name}:{value}"));
+    }
+    out.join(";")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edited(shape: &str, edit: impl FnOnce(&mut Edits<'_>)) -> String {
+        let head = "<svg xmlns='http://www.w3.org/2000/svg'>";
+        let s = Source::parse(format!("{head}{shape}</svg>"), "t").unwrap();
+        let mut e = Edits::new(&s);
+        edit(&mut e);
+        e.apply().strip_prefix(head).unwrap().strip_suffix("</svg>").unwrap().to_owned()
+    }
+
+    #[test]
+    fn a_rect_becomes_a_path_and_keeps_the_rest() {
+        let out = edited("<rect  x='1'\n y='2' id='a' ><title>t</title></rect >", |e| {
+            e.rename(1, "path");
+            e.remove_attr(1, "x");
+            e.remove_attr(1, "y");
+            e.set_attr(1, "d", "M0,0".into());
+        });
+        assert_eq!(out, "<path id='a' d=\"M0,0\" ><title>t</title></path>");
+    }
+
+    #[test]
+    fn properties_go_where_they_win() {
+        let set = |e: &mut Edits<'_>| e.set_property(1, "stroke-width", "2".into());
+        assert_eq!(edited("<path stroke-width='1'/>", set), "<path stroke-width='2'/>");
+        assert_eq!(edited("<path style='a:b; stroke-width : 1;'/>", set), "<path style='a:b;stroke-width:2'/>");
+        assert_eq!(edited("<path/>", set), "<path stroke-width=\"2\"/>");
+        let css = edited("<path/><style>path{stroke-width:3}</style>", set);
+        assert!(css.starts_with("<path style=\"stroke-width:2\"/>"));
+    }
+
+    #[test]
+    fn content_of_an_empty_element_and_replacement() {
+        let out = edited("<g/><g><path/></g>", |e| {
+            e.set_content(1, "<x/>".into());
+            e.set_attr(3, "d", "M0,0".into());
+            e.replace(2, "<y/>".into());
+            e.insert_after(2, "<z/>");
+        });
+        assert_eq!(out, "<g><x/></g><y/><z/>");
+    }
+}

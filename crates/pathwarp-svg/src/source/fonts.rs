@@ -1,0 +1,202 @@
+//! Fonts for text: the system's where wanted, given files, and a bundled one for whatever is missing.
+
+use pathwarp::Error;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, OnceLock};
+use usvg::fontdb::{self, Database, Family, ID};
+use usvg::{FontFamily, FontResolver};
+
+static BUNDLED: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
+const BUNDLED_FAMILY: &str = "Noto Sans";
+
+/// What CSS's generic families stand for. `None`: whatever common family of that kind there is.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct GenericFamilies {
+    /// `serif`
+    pub serif: Option<String>,
+    /// `sans-serif`
+    pub sans_serif: Option<String>,
+    /// `cursive`
+    pub cursive: Option<String>,
+    /// `fantasy`
+    pub fantasy: Option<String>,
+    /// `monospace`
+    pub monospace: Option<String>,
+}
+
+/// The bytes of the bundled font: Noto Sans (OFL) for Latin, Greek and Cyrillic.
+#[must_use]
+pub fn bundled_font() -> &'static [u8] {
+    BUNDLED
+}
+
+/// A font as it lies in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FontFile {
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
+    /// Which of its fonts, counted from 0.
+    pub index: u32,
+}
+
+/// The font of a family, installed on the machine or bundled, that comes nearest to `weight` (100 to 900; 400 is regular). CSS's
+/// generic families are families too.
+///
+/// # Errors
+/// [`Error::Usage`] if there is no such family; it names some that have a similar name.
+pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, Error> {
+    let db = database(true, &[]);
+    let query = |name: &str| {
+        db.query(&fontdb::Query {
+            families: &[Family::Name(name)],
+            weight: fontdb::Weight(weight),
+            stretch: fontdb::Stretch::Normal,
+            style: if italic { fontdb::Style::Italic } else { fontdb::Style::Normal },
+        })
+    };
+    let generic = match family.to_ascii_lowercase().as_str() {
+        "serif" => Some(FontFamily::Serif),
+        "sans-serif" => Some(FontFamily::SansSerif),
+        "cursive" => Some(FontFamily::Cursive),
+        "fantasy" => Some(FontFamily::Fantasy),
+        "monospace" => Some(FontFamily::Monospace),
+        _ => None,
+    };
+    let exact = || db.faces().flat_map(|f| &f.families).find(|(n, _)| n.eq_ignore_ascii_case(family)).map(|(n, _)| n);
+    let found = match generic {
+        Some(kind) => of_kind(&kind, &GenericFamilies::default(), query),
+        None => exact().and_then(|name| query(name)),
+    };
+    let file = found.and_then(|id| db.with_face_data(id, |bytes, index| FontFile { bytes: bytes.to_vec(), index }));
+    file.ok_or_else(|| {
+        Error::usage("font", family, format!("is no file, and no family of this machine; {}", similar(family, &db)))
+    })
+}
+
+/// Families whose names look like `family`: each of its words is nearly a word of theirs.
+fn similar(family: &str, db: &Database) -> String {
+    /// A likeness (Jaro and Winkler's, 1 is the same) of words with a letter or two wrong; unrelated ones hardly reach it.
+    const ALIKE: f64 = 0.85;
+    /// Names that help; more are noise.
+    const SHOWN: usize = 6;
+    let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
+    let likeness = |name: &str| {
+        let name = name.to_lowercase();
+        let best = |w: &String| name.split_whitespace().map(|n| strsim::jaro_winkler(w, n)).fold(0.0, f64::max);
+        wanted.iter().map(best).sum::<f64>() / wanted.len().max(1) as f64
+    };
+    let mut names: Vec<&str> = db.faces().flat_map(|f| &f.families).map(|(n, _)| n.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut names: Vec<(f64, &str)> =
+        names.into_iter().map(|n| (likeness(n), n)).filter(|(l, _)| *l >= ALIKE).collect();
+    names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
+    if names.is_empty() {
+        return "the bundled one is Noto Sans".into();
+    }
+    let names: Vec<&str> = names.iter().take(SHOWN).map(|(_, n)| *n).collect();
+    format!("there are {}", names.join(", "))
+}
+
+/// What was asked for and not found.
+pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
+
+/// The fonts to look in. The system's are read once per process.
+pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
+    static SYSTEM: OnceLock<Arc<Database>> = OnceLock::new();
+    static BARE: OnceLock<Arc<Database>> = OnceLock::new();
+    let load = |system| {
+        let mut db = Database::new();
+        if system {
+            db.load_system_fonts();
+        }
+        db.load_font_data(BUNDLED.to_vec());
+        Arc::new(db)
+    };
+    let base = if system { SYSTEM.get_or_init(|| load(true)) } else { BARE.get_or_init(|| load(false)) };
+    let mut db = base.clone();
+    for p in paths {
+        let db = Arc::make_mut(&mut db);
+        if p.is_dir() {
+            db.load_fonts_dir(p);
+        } else {
+            // A file that is no font leaves the database as it was; the family's absence is then reported.
+            let _ = db.load_font_file(p);
+        }
+    }
+    db
+}
+
+/// Finds fonts like usvg's own resolver, but never comes back empty-handed, and notes the families it did not find.
+pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolver<'static> {
+    FontResolver {
+        select_font: Box::new(move |font, db| {
+            let query = |family: &str| {
+                db.query(&fontdb::Query {
+                    families: &[Family::Name(family)],
+                    weight: fontdb::Weight(font.weight()),
+                    stretch: stretch(font.stretch()),
+                    style: match font.style() {
+                        usvg::FontStyle::Normal => fontdb::Style::Normal,
+                        usvg::FontStyle::Italic => fontdb::Style::Italic,
+                        usvg::FontStyle::Oblique => fontdb::Style::Oblique,
+                    },
+                })
+            };
+            let mut absent = Vec::new();
+            for family in font.families() {
+                let found = match family {
+                    FontFamily::Named(name) => query(name),
+                    other => of_kind(other, &generic, query),
+                };
+                if found.is_some() {
+                    return found;
+                }
+                if let FontFamily::Named(name) = family {
+                    absent.push(name.clone());
+                }
+            }
+            if let Ok(mut m) = missing.lock() {
+                m.extend(absent);
+            }
+            let last: Option<ID> = of_kind(&FontFamily::Serif, &generic, query);
+            last.or_else(|| query(BUNDLED_FAMILY)).or_else(|| db.faces().next().map(|f| f.id))
+        }),
+        select_fallback: FontResolver::default_fallback_selector(),
+    }
+}
+
+/// A generic family: the one that was set, else the common ones.
+fn of_kind(kind: &FontFamily, set: &GenericFamilies, query: impl Fn(&str) -> Option<ID>) -> Option<ID> {
+    let (own, common): (_, &[&str]) = match kind {
+        FontFamily::Serif => (&set.serif, &["Times New Roman", "Noto Serif", "DejaVu Serif", "Liberation Serif"]),
+        FontFamily::SansSerif => (&set.sans_serif, &["Arial", "Helvetica", "Noto Sans", "DejaVu Sans"]),
+        FontFamily::Cursive => (&set.cursive, &["Comic Sans MS", "Apple Chancery"]),
+        FontFamily::Fantasy => (&set.fantasy, &["Impact", "Papyrus"]),
+        FontFamily::Monospace => {
+            (&set.monospace, &["Courier New", "Noto Sans Mono", "Noto Mono", "DejaVu Sans Mono", "Liberation Mono"])
+        }
+        FontFamily::Named(_) => return None,
+    };
+    match own {
+        Some(name) => query(name),
+        None => common.iter().find_map(|n| query(n)).or_else(|| query(BUNDLED_FAMILY)),
+    }
+}
+
+fn stretch(s: usvg::FontStretch) -> fontdb::Stretch {
+    use fontdb::Stretch as D;
+    use usvg::FontStretch as S;
+    match s {
+        S::UltraCondensed => D::UltraCondensed,
+        S::ExtraCondensed => D::ExtraCondensed,
+        S::Condensed => D::Condensed,
+        S::SemiCondensed => D::SemiCondensed,
+        S::Normal => D::Normal,
+        S::SemiExpanded => D::SemiExpanded,
+        S::Expanded => D::Expanded,
+        S::ExtraExpanded => D::ExtraExpanded,
+        S::UltraExpanded => D::UltraExpanded,
+    }
+}

@@ -1,0 +1,94 @@
+//! Lettering as an SVG drawing that says where its baselines, heights and letters are.
+
+use crate::source::number::{escape, path_data, push};
+use pathwarp::Error;
+use pathwarp_text::Lettering;
+use std::fmt::Write as _;
+use std::str::FromStr as _;
+
+/// How lettering is written.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LetteringOptions {
+    /// A CSS colour; without it, the renderer's black.
+    pub fill: Option<String>,
+    /// Room on the page around ink and lines, in user units: at least 0.
+    pub margin: f64,
+}
+
+/// Significant digits of coordinates, counted from the page's largest: a hair's breadth on a continent.
+const DIGITS: i32 = 10;
+
+/// A drawing of `lettering`, as large as its ink, its lines and the margin around them.
+///
+/// The text is a group with its `aria-label`, and the font's heights in user units: `data-ascent` and `data-descent` (both
+/// counted from the baseline, both positive), `data-cap-height`, `data-x-height`. In it is a group for every line, whose
+/// `data-baseline="x0 y0 x1 y1"` goes from the line's left end to its right one, and in that a path for every cluster that has an
+/// outline: its text as `aria-label`, and `data-glyph="x y advance"`, its origin on the baseline and its advance width.
+///
+/// ```
+/// use pathwarp_svg::{LetteringOptions, bundled_font, write_lettering};
+/// use pathwarp_text::{Font, Style, layout};
+///
+/// let font = Font::new(bundled_font(), 0)?;
+/// let text = layout("Hi", &[font], &Style { size: 100.0, ..Style::default() })?;
+/// let svg = write_lettering(&text, &LetteringOptions { fill: Some("#c00".into()), margin: 10.0 })?;
+/// assert!(svg.contains(r#"viewBox="-10 -10 119.9 156.2""#));
+/// assert!(svg.contains(r#"data-cap-height="71.4""#) && svg.contains(r#"<path aria-label="H" data-glyph="0 106.9 74.1" d="M"#));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Usage`] if the fill is no colour, or the margin is negative or not finite.
+pub fn write_lettering(lettering: &Lettering, options: &LetteringOptions) -> Result<String, Error> {
+    let fill = match &options.fill {
+        Some(fill) if svgtypes::Color::from_str(fill).is_ok() || fill == "none" || fill == "currentColor" => {
+            format!(" fill=\"{}\"", escape(fill))
+        }
+        Some(fill) => {
+            return Err(Error::usage("fill", fill, "is no CSS colour, such as #c00, navy, rgb(0,0,0) or currentColor"));
+        }
+        None => String::new(),
+    };
+    if !(options.margin >= 0.0 && options.margin.is_finite()) {
+        return Err(Error::usage("margin", options.margin.to_string(), "is not possible; a margin is at least 0"));
+    }
+    let page = lettering.page().inflate(options.margin, options.margin);
+    let largest = [page.x0, page.y0, page.x1, page.y1].into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+    let decimals = (DIGITS - largest.log10().ceil() as i32).clamp(0, DIGITS) as u8;
+    let number = |v: f64| {
+        let mut out = String::new();
+        push(&mut out, v, decimals);
+        out
+    };
+    let numbers = |v: &[f64]| v.iter().map(|v| number(*v)).collect::<Vec<_>>().join(" ");
+
+    let (w, h) = (number(page.width()), number(page.height()));
+    let m = &lettering.metrics;
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"{}\">\n<title>{}</title>\n\
+         <g aria-label=\"{}\" data-ascent=\"{}\" data-descent=\"{}\" data-cap-height=\"{}\" data-x-height=\"{}\"{fill}>\n",
+        numbers(&[page.x0, page.y0, page.width(), page.height()]),
+        escape(&lettering.text.replace('\n', " ")),
+        escape(&lettering.text),
+        number(m.ascent),
+        number(m.descent),
+        number(m.cap_height),
+        number(m.x_height),
+    );
+    for line in &lettering.lines {
+        let _ =
+            writeln!(out, "<g data-baseline=\"{}\">", numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]));
+        for c in line.clusters.iter().filter(|c| !c.outline.is_empty()) {
+            let _ = writeln!(
+                out,
+                "<path aria-label=\"{}\" data-glyph=\"{}\" d=\"{}\"/>",
+                escape(&c.text),
+                numbers(&[c.origin.x, c.origin.y, c.advance]),
+                path_data(&c.outline, decimals)
+            );
+        }
+        out.push_str("</g>\n");
+    }
+    out.push_str("</g>\n</svg>\n");
+    Ok(out)
+}
