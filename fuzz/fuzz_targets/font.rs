@@ -1,4 +1,4 @@
-//! Fonts: any bytes are a font that text can be set in, or are refused.
+//! Fonts: any bytes are rejected or are a font that can set text.
 //!
 //! The fonts of the tests are good seeds: `cp crates/pathwarp-text/tests/fonts/*.?tf fuzz/corpus/font`
 
@@ -7,10 +7,10 @@
 use libfuzzer_sys::fuzz_target;
 use pathwarp_text::{Align, Direction, Font, Style, Variation, layout};
 
-/// Kerning, ligatures, marks, letters that join and letters that change places, both directions, and what no font here has.
+/// Kerning, ligatures, marks, joining and reordered letters, both directions, and a character that no font of the tests has.
 const TEXT: &str = "Office AV\nسلام שָׁלוֹם\nहिन्दी क्ष q\u{302} 日";
 
-/// Reads the font of the collection, at places on its axes that `place` chooses, and sets text in it.
+/// Reads a font of a collection, chooses a variation by `place`, and sets text.
 fn set(data: &[u8], index: u32, place: u8) {
     let Ok(font) = Font::new(data, index) else { return };
     let _ = (font.name(), font.has('A'), font.metrics(72.0));
@@ -19,7 +19,7 @@ fn set(data: &[u8], index: u32, place: u8) {
         1 => 0.5 * (a.min + a.max),
         _ => a.max,
     };
-    // Axes may have tags that are no text, or no values between their ends.
+    // A damaged font may have invalid axis tags or ranges.
     let places: Vec<Variation> = font.axes().iter().filter_map(|a| Variation::new(&a.tag, at(a)).ok()).collect();
     let Ok(font) = font.with_variations(&places) else { return };
     let style = Style {
@@ -35,7 +35,7 @@ fn set(data: &[u8], index: u32, place: u8) {
 }
 
 fuzz_target!(
-    // A panic in the font's readers is caught and is an error to who calls them, as it is to users: only what gets out counts.
+    // The library turns a panic in the font readers into an error. Replace the default hook so that only escaping panics count.
     init: std::panic::set_hook(Box::new(|panic| eprintln!("{panic}"))),
     |data: &[u8]| {
         let place = data.last().copied().unwrap_or(0);

@@ -1,15 +1,15 @@
-//! Point lists: any text is read or refused, and what is written again is sound.
+//! Point lists: any text is read or rejected, and a written copy reads the same.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pathwarp_gimp::{Kind, open, read, to_json};
+use pathwarp_gimp::{FileKind, open, read, to_json};
 use std::io::Cursor;
 
 fuzz_target!(|data: &[u8]| {
     let Ok(file) = open(Cursor::new(data)) else { return };
-    if file.kind != Kind::Json {
+    if file.kind != FileKind::Json {
         return;
     }
-    let again = read(to_json(file.size, &file.paths).as_bytes()).expect("what was written is sound");
+    let again = read(to_json(file.size, &file.paths).as_bytes()).expect("a written file is valid");
     assert_eq!(again, file.paths);
 });

@@ -1,4 +1,4 @@
-//! GIMP 1's text: any text is read or refused, without a panic.
+//! GIMP 1 text: any text is read or rejected without a panic.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

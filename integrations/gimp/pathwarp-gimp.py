@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""pathwarp for GIMP 3: bends a path by others, chosen by name (menu of the Paths dialogue, and Filters > pathwarp).
+"""pathwarp for GIMP 3: deforms a path by other paths, chosen by name (Paths dialog, and Filters > pathwarp).
 
-Points go to the program `pathwarp` and come back as they are (PDB point lists, JSON), not as SVG text. The program is looked for
-beside this file (bin/pathwarp), where PATHWARP says, and on the PATH. `pathwarp install gimp` puts both in place.
+Exchanges exact points with the program `pathwarp` (point lists in JSON, not SVG). Looks for the program in the environment variable
+PATHWARP, beside this file (bin/pathwarp), and on the PATH. `pathwarp install gimp` installs both.
 """
 
 import json
@@ -17,46 +17,46 @@ import gi
 gi.require_version("Gimp", "3.0")
 from gi.repository import Gimp, GLib, GObject  # noqa: E402
 
-# A deformation: its title, what it does, and its arguments: name, kind, label, tip, default. "path" arguments name paths of the
-# image; the program knows what a "choice" is among; a "side" is 1 to 4.
+# For each deformation: title, description, and arguments as (name, kind, label, tip, default). A "path" names a path of the image,
+# the program lists the values of a "choice", and a "side" is 1 to 4.
 DEFORMATIONS = {
-    "shaper": ("Shaper…", "Bend a path into a closed path of four sides", [
-        ("shaper", "path", "_Shaper", "The closed path of four sides", ""),
-        ("base", "path", "_Base", "The path's frame: 2 or 4 anchors; none: its box", ""),
-        ("target", "path", "_Target", "Where the result goes: as many anchors as the Base; none: the Shaper's place", ""),
-        ("bottom", "side", "B_ottom side", "The Shaper's side that is the bottom, in the order they were drawn", ""),
-        ("reverse-shaper", "flag", "_Reverse Shaper", "Run the bottom side the other way", False),
-        ("base-as-drawn", "flag", "Base as _drawn", "Take the Base's anchors in the order they were drawn", False),
-        ("target-as-drawn", "flag", "Target as dra_wn", "Take the Target's anchors in the order they were drawn", False),
+    "shaper": ("Shaper…", "Bend a path into a closed path with four sides", [
+        ("shaper", "path", "_Shaper", "The closed path with four sides", ""),
+        ("base", "path", "_Base", "The frame of the path: 2 or 4 anchors. Without a Base, its bounding box", ""),
+        ("target", "path", "_Target", "The place of the result: as many anchors as the Base. Without a Target, the place of the Shaper", ""),
+        ("bottom", "side", "B_ottom side", "The number of the Shaper's bottom side, in drawing order", ""),
+        ("reverse-shaper", "flag", "_Reverse Shaper", "Reverse the direction of the bottom side", False),
+        ("base-as-drawn", "flag", "Base as _drawn", "Keep the drawing order of the Base's anchors", False),
+        ("target-as-drawn", "flag", "Target as dra_wn", "Keep the drawing order of the Target's anchors", False),
     ]),
     "bend": ("Bend along…", "Bend a path along another", [
         ("along", "path", "_Along", "The path to bend along", ""),
-        ("as-drawn", "flag", "As _drawn", "Take it in the direction it was drawn", False),
-        ("reverse", "flag", "_Reverse", "Run it the other way", False),
+        ("as-drawn", "flag", "As _drawn", "Keep the direction in which it was drawn", False),
+        ("reverse", "flag", "_Reverse", "Reverse its direction", False),
     ]),
     "warp": ("Warp…", "Bend a path in a style", [
         ("style", "choice", "_Style", "The style", "arc"),
-        ("bend", "percent", "_Bend", "How far, and which way: -100% to 100%", "50%"),
-        ("axis", "choice", "_Axis", "The direction in which the path runs through the style", "horizontal"),
+        ("bend", "percent", "_Bend", "Amount and direction: -100% to 100%", "50%"),
+        ("axis", "choice", "_Axis", "The axis of the style", "horizontal"),
         ("horizontal", "percent", "_Horizontal", "Distortion: -100% to 100%", "0%"),
         ("vertical", "percent", "_Vertical", "Distortion: -100% to 100%", "0%"),
-        ("keep", "choice", "_Keep straight", "What stays straight, in the styles that allow it", "nothing"),
+        ("keep", "choice", "_Keep straight", "Lines to keep straight, in styles that allow it", "nothing"),
     ]),
-    "wordart": ("Text shape…", "Put a path into a text shape of office programs", [
+    "wordart": ("Text shape…", "Put a path into a text shape known from office programs", [
         ("preset", "choice", "_Shape", "The shape", "wave1"),
-        ("adj", "text", "_Adjust", "The shape's first adjust value: 1/100000 of the box or %; empty: as it comes", ""),
+        ("adj", "text", "_Adjust", "The first adjust value of the shape, in 1/100000 of the box or in %. Empty: the default", ""),
     ]),
 }
 
 
-# What every deformation asks for first.
-PATH = ("path", "path", "_Path", "The path to bend; empty: the selected one", "")
-# Guides without which there is nothing to do.
+# The first argument of every deformation.
+PATH = ("path", "path", "_Path", "The path to bend. Empty: the selected path", "")
+# Guides that a deformation cannot do without.
 REQUIRED = {"shaper", "along"}
 
 
 def program():
-    """The program, or None."""
+    """Return the path of the program, or None."""
     name = "pathwarp.exe" if os.name == "nt" else "pathwarp"
     beside = os.path.join(os.path.dirname(os.path.realpath(__file__)), "bin", name)
     for candidate in (os.environ.get("PATHWARP"), beside, shutil.which("pathwarp")):
@@ -66,10 +66,10 @@ def program():
 
 
 def run_program(arguments):
-    """Standard output of the program; raises RuntimeError with what it says when it fails."""
+    """Run the program and return its output and messages. Raise RuntimeError with its message if it fails."""
     found = program()
     if not found:
-        raise RuntimeError("The program pathwarp is missing; `pathwarp install gimp` puts it beside this plug-in.")
+        raise RuntimeError("The program pathwarp was not found. Run `pathwarp install gimp` to install it beside this plug-in.")
     flags = getattr(subprocess, "CREATE_NO_WINDOW", 0)
     done = subprocess.run([found, *arguments], stdin=subprocess.DEVNULL, capture_output=True, creationflags=flags)
     if done.returncode not in (0, 1):
@@ -78,7 +78,7 @@ def run_program(arguments):
 
 
 def known():
-    """The deformations that the program has."""
+    """Return the deformations that the installed program supports."""
     try:
         listed = run_program(["list"])[0].decode("utf-8", "replace")
     except (RuntimeError, OSError):
@@ -88,7 +88,7 @@ def known():
 
 
 def point_list(path):
-    """A path with its exact points, as JSON data."""
+    """Return a path with its exact points as JSON data."""
     strokes = []
     for stroke in path.get_strokes():
         kind, points, closed = path.stroke_get_points(stroke)
@@ -97,19 +97,20 @@ def point_list(path):
 
 
 def named(image, name):
+    """Return the path of this name."""
     for path in image.get_paths():
         if path.get_name() == name:
             return path
-    raise RuntimeError("There is no path of the name “%s” in this image." % name)
+    raise RuntimeError("This image has no path named “%s”." % name)
 
 
 def without(file, text):
-    """A message without the name of a file that is gone by then."""
+    """Remove the name of a temporary file from a message."""
     return text.replace(file + "#", "").replace(file + ": ", "")
 
 
 def deform(image, deformation, path, values):
-    """Deforms `path` and adds the result to the image as a new path, which is given back."""
+    """Deform `path`, add the result to the image as a new path, and return it."""
     folder = tempfile.mkdtemp(prefix="pathwarp-")
     try:
         arguments = [deformation]
@@ -127,16 +128,16 @@ def deform(image, deformation, path, values):
                     value = source + "#" + value
                 arguments += ["--" + name, value]
         arguments += (values.get("options") or "").split()
-        # A guide may be the path itself: the file's paths are looked up by name, the input is one of them.
+        # A guide may also be the input: the program looks up all paths by name in one file.
         data = {"width": image.get_width(), "height": image.get_height(), "paths": [point_list(p) for p in used.values()]}
         with open(source, "w", encoding="utf-8") as file:
             json.dump(data, file)
         try:
-            said = run_program(arguments + [source + "#" + path.get_name(), "-o", result])[1]
+            messages = run_program(arguments + [source + "#" + path.get_name(), "-o", result])[1]
         except RuntimeError as e:
             raise RuntimeError(without(source, str(e))) from None
-        if said:
-            Gimp.message(without(source, said))
+        if messages:
+            Gimp.message(without(source, messages))
         with open(result, encoding="utf-8") as file:
             warped = json.load(file)["paths"]
     finally:
@@ -157,7 +158,7 @@ def deform(image, deformation, path, values):
 
 
 def ask(image, procedure, config, deformation):
-    """The dialogue; whether it was confirmed."""
+    """Show the dialog. Return True if the user confirms it."""
     gi.require_version("GimpUi", "3.0")
     gi.require_version("Gtk", "3.0")
     from gi.repository import GimpUi, Gtk
@@ -193,7 +194,7 @@ def ask(image, procedure, config, deformation):
                     listed, value = ["", "1", "2", "3", "4"], stored
                 else:
                     listed, value = choices(deformation, name), stored
-                    # A file of one's own.
+                    # Keep a value that is not listed, such as a file.
                     listed += [stored] if stored not in listed else []
                 for choice in listed:
                     field.append(choice, choice or ("(the lowest)" if kind == "side" else "(none)"))
@@ -221,7 +222,7 @@ def ask(image, procedure, config, deformation):
 
 
 def percent(text, default):
-    """A share as the dialogue shows it; scripts may have given it as a plain number, too."""
+    """Convert a stored value to percent. Scripts may pass a plain number instead of a percentage."""
     for candidate in (text, default):
         try:
             return float(candidate[:-1]) if candidate.endswith("%") else 100 * float(candidate)
@@ -231,16 +232,16 @@ def percent(text, default):
 
 
 def guesses(image, config, arguments):
-    """For every argument that is a path: the names to choose among, and the one that is most likely meant."""
+    """Return the names to choose from and the best guess for every argument that is a path."""
     names = [path.get_name() for path in image.get_paths()]
     selected = [path.get_name() for path in image.get_selected_paths()]
     roles = [name for name, kind, *_ in arguments if kind == "path"]
     found = {}
     for role in roles:
         stored = config.get_property(role)
-        # The names that the first plug-in's users give their paths.
+        # Users of the original shaper plug-in name their paths after their roles.
         found[role] = stored if stored in names else next((n for n in names if n.lower() == role), "")
-    # What is bent is no guide, if there is a choice.
+    # Prefer a path that is not a guide as input.
     free = [n for n in selected + names if n not in found.values() and n.lower() not in roles]
     path = (free or selected or names)[0]
     for role in REQUIRED.intersection(roles):
@@ -249,7 +250,7 @@ def guesses(image, config, arguments):
 
 
 def choices(deformation, argument):
-    """What the program knows for an argument of kind "choice"; empty if it cannot be asked."""
+    """Return the values of a "choice" according to the program; empty if it cannot be run."""
     try:
         schema = json.loads(run_program(["schema"])[0])
     except (RuntimeError, OSError, ValueError):
@@ -306,7 +307,7 @@ class Pathwarp(Gimp.PlugIn):
         procedure.set_menu_label(title)
         procedure.add_menu_path("<Paths>/pathwarp")
         procedure.add_menu_path("<Image>/Filters/pathwarp")
-        procedure.set_documentation(blurb, "Paths are chosen by name. The result is a new path.", name)
+        procedure.set_documentation(blurb, "Choose paths by name. The result is a new path.", name)
         procedure.set_attribution("The pathwarp authors", "The pathwarp authors", "2026")
         both = GObject.ParamFlags.READWRITE
         for argument, kind, label, tip, default in [PATH] + arguments:
@@ -314,7 +315,7 @@ class Pathwarp(Gimp.PlugIn):
                 procedure.add_boolean_argument(argument, label, tip, default, both)
             else:
                 procedure.add_string_argument(argument, label, tip, default, both)
-        procedure.add_string_argument("options", "_Options", "Further options of the command line", "", both)
+        procedure.add_string_argument("options", "_Options", "Additional command-line options", "", both)
         procedure.add_path_return_value("result", "Result", "The new path", False, both)
         return procedure
 

@@ -1,33 +1,70 @@
-//! What is wrong with a file, and where.
+//! Errors with their place in the file.
 
 use thiserror::Error;
 
-/// A file that cannot be read, or not be written.
+/// The reason why a file cannot be read or written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// The file has none of the formats that this crate reads.
+    UnknownFormat,
+    /// The file ends too early.
+    Truncated,
+    /// The file breaks its format.
+    Damaged,
+    /// The file is valid, but of a version or form that this crate does not read or write.
+    Unsupported,
+    /// The file exceeds a limit that protects against unbounded work or memory.
+    TooLarge,
+    /// The caller's strokes cannot be written to the file.
+    Strokes,
+    /// Reading or writing failed.
+    Io,
+}
+
+/// An error at a place in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("byte {offset}: {problem}")]
+#[non_exhaustive]
 pub struct Error {
-    /// Where, in bytes from the start; of the unpacked data, if the file is packed.
+    /// The reason.
+    pub kind: ErrorKind,
+    /// Offset in bytes from the start of the file, or of the unpacked data if the file is compressed.
     pub offset: u64,
-    /// What is wrong.
+    /// Description of the problem.
     pub problem: String,
-    /// Whether the problem is that fewer bytes are left than are needed; its text then ends with how many are.
-    pub(crate) short: bool,
 }
 
 impl Error {
-    pub(crate) fn at(offset: u64, problem: impl Into<String>) -> Self {
-        Self { offset, problem: problem.into(), short: false }
+    pub(crate) fn new(kind: ErrorKind, offset: u64, problem: impl Into<String>) -> Self {
+        Self { kind, offset, problem: problem.into() }
     }
 
-    /// What is needed, in words, is more than the `left` bytes that there are.
-    pub(crate) fn short(offset: u64, needed: &str, left: u64) -> Self {
-        Self { offset, problem: format!("{needed}, but only {left} are left"), short: true }
+    pub(crate) fn damaged(offset: u64, problem: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Damaged, offset, problem)
     }
 
-    /// The same, naming the length word (`length`, of `what`) behind what is called left.
-    pub(crate) fn within(mut self, length: u64, what: &str) -> Self {
-        if self.short {
-            self.problem += &format!(" of the {length} that {what} is said to have");
+    pub(crate) fn unsupported(offset: u64, problem: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Unsupported, offset, problem)
+    }
+
+    pub(crate) fn too_large(offset: u64, problem: impl Into<String>) -> Self {
+        Self::new(ErrorKind::TooLarge, offset, problem)
+    }
+
+    pub(crate) fn io(offset: u64, error: &std::io::Error) -> Self {
+        Self::new(ErrorKind::Io, offset, format!("cannot be read: {error}"))
+    }
+
+    /// `needed`, a clause, asks for more than the `left` bytes that remain.
+    pub(crate) fn truncated(offset: u64, needed: &str, left: u64) -> Self {
+        Self::new(ErrorKind::Truncated, offset, format!("{needed}, but only {left} are left"))
+    }
+
+    /// Adds to a truncation which length word (`length`, of `owner`) limits the bytes left.
+    pub(crate) fn within(mut self, length: u64, owner: &str) -> Self {
+        if self.kind == ErrorKind::Truncated {
+            self.problem += &format!(" of the {length} bytes given for {owner}");
         }
         self
     }

@@ -1,9 +1,13 @@
-//! The paths in GIMP's files, exactly as they are stored, and the way back.
+//! Reads and writes the paths in GIMP's files without loss.
 //!
-//! Read are XCF of every version (also packed by gzip, bzip2 or xz), the SVG that GIMP exports, point lists as JSON (what
-//! `gimp-path-stroke-get-points` answers), and the text files of GIMP 1. Of an XCF only the bytes that hold paths are read,
-//! whatever its size. Every count is bounded by the bytes that are left, so that a damaged file costs an [`Error`] with the
-//! place and nothing else.
+//! * [`read`] and [`open`] read XCF files of every version (also compressed with gzip, bzip2 or xz), SVG exported by GIMP, point
+//!   lists in JSON (as returned by `gimp-path-stroke-get-points`), and the text files of GIMP 1. [`sniff`] recognises them, and
+//!   [`salvage`] reads damaged ones as far as possible.
+//! * [`rewrite`] replaces paths in a copy of an XCF and keeps every other byte.
+//! * [`to_svg`], [`to_json`] and [`new_xcf`] write paths to new files.
+//!
+//! Only the bytes of an XCF that hold paths are read, whatever its size. Every count is checked against the bytes left, so a
+//! damaged file gives an [`Error`] with its place and never exhausts memory.
 //!
 //! ```
 //! let text = "Name: slope\n#POINTS: 5\nCLOSED: 0\nDRAW: 0\nSTATE: 2\nTYPE: 1 X: 0 Y: 0\nTYPE: 2 X: 0 Y: 0\n\
@@ -14,27 +18,30 @@
 //! ```
 
 mod error;
-mod input;
+mod file;
 mod number;
+mod old_strokes;
 mod open;
 mod outline;
 mod path;
-mod pdb;
+mod point_list;
+mod source;
 mod svg;
 mod text;
 mod xcf;
 
-pub use error::Error;
-pub use open::{File, Kind, Salvaged, open, salvage, sniff};
+pub use error::{Error, ErrorKind};
+pub use file::{FileKind, GimpFile, Salvaged};
+pub use open::{open, salvage, sniff};
 pub use path::{GimpPath, Stroke};
-pub use pdb::to_json;
+pub use point_list::to_json;
 pub use svg::to_svg;
 pub use xcf::{new_xcf, rewrite};
 
-/// The paths of a file in memory, the topmost of GIMP's list first.
+/// Reads the paths of a file in memory, topmost first.
 ///
 /// # Errors
-/// What is wrong with the file, and at which byte.
+/// As for [`open`].
 pub fn read(bytes: &[u8]) -> Result<Vec<GimpPath>, Error> {
     open(std::io::Cursor::new(bytes)).map(|f| f.paths)
 }

@@ -1,14 +1,14 @@
-//! Coordinates as text.
+//! Formats coordinates.
 
-/// The shortest text that gives the number back: to single precision where it is no finer, for that is what GIMP's files
-/// hold; else to double.
+/// The shortest text that parses to the same number, in single precision if the number has no more, as in GIMP's files, or
+/// else in double precision.
 pub(crate) fn shortest(v: f64) -> String {
     let single = v as f32;
-    // `+ 0.0` makes -0 plain.
+    // Adding 0.0 turns -0 into 0.
     if f64::from(single) == v { (single + 0.0).to_string() } else { (v + 0.0).to_string() }
 }
 
-/// Rounded to `decimals`, without trailing zeros.
+/// Rounds to `decimals` and removes trailing zeros.
 pub(crate) fn rounded(v: f64, decimals: u8) -> String {
     let text = format!("{v:.0$}", usize::from(decimals));
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
@@ -20,7 +20,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_come_back() {
+    fn numbers_survive_a_round_trip() {
         for v in [0.0, 112.277_374_267_578_12, 1e7, -0.1, f64::from(f32::MIN_POSITIVE), 1.0 / 3.0, 34_002_432.0] {
             let back: f64 = shortest(v).parse().unwrap();
             assert_eq!(back as f32, v as f32);

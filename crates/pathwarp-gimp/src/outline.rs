@@ -1,4 +1,4 @@
-//! Between GIMP's strokes and pathwarp's outlines.
+//! Converts between GIMP's strokes and outlines.
 
 use crate::path::{GimpPath, Stroke};
 use pathwarp::Outline;
@@ -6,7 +6,7 @@ use pathwarp::kurbo::{CubicBez, Line, Point};
 use pathwarp::outline::{Seg, Subpath};
 
 impl GimpPath {
-    /// The curves that GIMP draws. A segment whose handles lie on their anchors is a line.
+    /// Returns the curves that GIMP draws. A segment whose handles coincide with their anchors is a line.
     #[must_use]
     pub fn outline(&self) -> Outline {
         Outline { subpaths: self.strokes.iter().filter_map(Stroke::subpath).collect() }
@@ -14,13 +14,13 @@ impl GimpPath {
 }
 
 impl Stroke {
-    /// The curve; `None` if there is no anchor.
+    /// Returns the curve; `None` if there is no anchor.
     #[must_use]
     pub fn subpath(&self) -> Option<Subpath> {
         let triples: Vec<[Point; 3]> = self.triples().collect();
         let (first, last) = (triples.first()?, triples.last()?);
         let mut segs: Vec<Seg> = triples.windows(2).map(|w| segment(w[0], w[1])).collect();
-        // A closing piece without length is none: a lone anchor, or a last one on top of the first.
+        // Drop a closing segment without length: of a single anchor, or of a last anchor on top of the first.
         let closing = segment(*last, *first);
         if self.closed && !matches!(closing, Seg::Line(l) if l.p0 == l.p1) {
             segs.push(closing);
@@ -28,12 +28,12 @@ impl Stroke {
         Some(Subpath { start: first[1], segs, closed: self.closed })
     }
 
-    /// Incoming handle, anchor, outgoing handle of every anchor.
+    /// Iterates over the anchors: incoming handle, anchor, outgoing handle.
     pub fn triples(&self) -> impl Iterator<Item = [Point; 3]> + '_ {
         self.points.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|[x, y]| Point::new(x, y)))
     }
 
-    /// A curve as GIMP keeps it: lines have their handles on their anchors, arcs become cubics.
+    /// Converts a curve to GIMP's form: the handles of lines coincide with their anchors, and arcs become cubics.
     #[must_use]
     pub fn from_subpath(s: &Subpath) -> Self {
         let cubics: Vec<CubicBez> = s
@@ -72,11 +72,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn strokes_and_curves_are_the_same_thing_twice() {
+    fn strokes_and_curves_convert_both_ways() {
         let d = "M10,20 C30,5 40,60 50,50 L80,50 C90,50 5,5 10,20 Z M0,0 L5,5 L9,0";
         let outline = Outline::from_svg(d).unwrap();
         let strokes: Vec<Stroke> = outline.subpaths.iter().map(Stroke::from_subpath).collect();
-        // The closed stroke's first handle is the one that its last piece ends with.
+        // The first handle of the closed stroke is the last control point of its closing segment.
         assert_eq!((strokes[0].anchors(), strokes[0].points[0]), (3, [5.0, 5.0]));
         assert_eq!((strokes[1].anchors(), strokes[1].closed), (3, false));
         let path = GimpPath { strokes, ..GimpPath::default() };
@@ -84,13 +84,13 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_anchor_is_a_point_or_a_loop() {
+    fn a_single_anchor_is_a_point_or_a_loop() {
         let dot = Stroke { closed: true, points: vec![[3.0, 4.0]; 3] };
         assert!(dot.subpath().unwrap().segs.is_empty());
         assert_eq!(Stroke::from_subpath(&dot.subpath().unwrap()), dot);
         let ring = Stroke { closed: true, points: vec![[0.0, 9.0], [3.0, 4.0], [9.0, 0.0]] };
         assert_eq!(Stroke::from_subpath(&ring.subpath().unwrap()), ring);
-        // A parabola-like hump, highest in its middle: 3/4 of its handles' height.
+        // A symmetric hump; its top is at 3/4 of the height of its handles.
         let hump = Stroke { closed: false, points: vec![[0., 0.], [0., 0.], [0., 8.], [4., 8.], [4., 0.], [4., 0.]] };
         let path = GimpPath { strokes: vec![hump], ..GimpPath::default() };
         assert_eq!(path.bounds(), Some([0.0, 0.0, 4.0, 6.0]));

@@ -1,12 +1,12 @@
-//! SVG as GIMP exports it, and as it imports it without scaling.
+//! Reads SVG that GIMP exported, and writes SVG that GIMP imports without scaling.
 //!
-//! GIMP writes the canvas as viewBox, in pixels, and width and height in inches rounded to six digits; the viewBox is what
-//! counts. On import it scales by width and height over the viewBox, at the image's resolution: sizes in px equal to the viewBox
-//! leave everything where it is.
+//! GIMP exports the canvas as a viewBox in pixels, and width and height in inches rounded to six digits; only the viewBox is
+//! exact. On import it scales by width and height over the viewBox, at the resolution of the image. Sizes in px that equal the
+//! viewBox avoid any scaling.
 
 use crate::error::Error;
+use crate::file::{FileKind, GimpFile};
 use crate::number::{rounded, shortest};
-use crate::open::{File, Kind};
 use crate::path::{GimpPath, Stroke};
 use pathwarp::Outline;
 use pathwarp::kurbo::Point;
@@ -17,14 +17,14 @@ use std::fmt::Write as _;
 const NAMESPACE: &str = "http://www.w3.org/2000/svg";
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 const DOCTYPE: &str = "-//W3C//DTD SVG 20010904//EN";
-/// More elements than this are no paths of GIMP's.
+/// Limit for the number of XML nodes.
 const MOST_NODES: u32 = 4_000_000;
 
-/// The attributes by which GIMP's exports are told from other SVG files.
+/// The attributes that distinguish GIMP's exports from other SVG files.
 const ATTRIBUTES: [(&str, &str); 3] = [("fill", "none"), ("stroke", "black"), ("stroke-width", "1")];
 
-/// Whether a file that starts so can be one of GIMP's exports.
-pub(crate) fn may_be_gimps(head: &[u8]) -> bool {
+/// Returns `true` if a file with these first bytes can be an export from GIMP.
+pub(crate) fn may_be_export(head: &[u8]) -> bool {
     head.windows(DOCTYPE.len()).any(|w| w == DOCTYPE.as_bytes())
 }
 
@@ -34,12 +34,12 @@ fn parse(text: &str) -> Result<Document<'_>, Error> {
         let pos = e.pos();
         let lines = text.split_inclusive('\n').take((pos.row as usize).saturating_sub(1));
         let at = lines.map(str::len).sum::<usize>() + (pos.col as usize).saturating_sub(1);
-        Error::at(at as u64, format!("this is no XML: {e}"))
+        Error::damaged(at as u64, format!("not valid XML: {e}"))
     })
 }
 
-/// Whether an SVG is as GIMP writes it: paths, at least one, with nothing but a name and GIMP's own stroke.
-pub(crate) fn is_gimps(text: &str) -> bool {
+/// Returns `true` if an SVG is as GIMP exports it: one or more paths, each with a name and GIMP's stroke and nothing else.
+pub(crate) fn is_export(text: &str) -> bool {
     let Ok(doc) = parse(text) else { return false };
     let mut paths = doc.root_element().children().filter(Node::is_element).peekable();
     paths.peek().is_some()
@@ -54,11 +54,12 @@ pub(crate) fn is_gimps(text: &str) -> bool {
         })
 }
 
-pub(crate) fn read(text: &str) -> Result<File, Error> {
+/// Reads the paths of an SVG.
+pub(crate) fn read(text: &str) -> Result<GimpFile, Error> {
     let doc = parse(text)?;
     let root = doc.root_element();
     if !root.has_tag_name((NAMESPACE, "svg")) {
-        return Err(Error::at(root.range().start as u64, "this XML is no SVG"));
+        return Err(Error::damaged(root.range().start as u64, "not an SVG file"));
     }
     let numbers = |text: &str| -> Vec<f64> {
         text.split([' ', ',']).filter(|w| !w.is_empty()).filter_map(|w| w.parse().ok()).collect()
@@ -70,22 +71,26 @@ pub(crate) fn read(text: &str) -> Result<File, Error> {
     let mut paths = Vec::new();
     for p in root.children().filter(|n| n.has_tag_name((NAMESPACE, "path"))) {
         let data = p.attribute("d").unwrap_or_default();
-        let at = |e: String| Error::at(p.range().start as u64, format!("a path's data: {e}"));
-        let outline = if data.trim().is_empty() { Outline::default() } else { Outline::from_svg(data).map_err(at)? };
+        let damaged = |e: &dyn std::fmt::Display| Error::damaged(p.range().start as u64, format!("path data: {e}"));
+        let outline = if data.trim().is_empty() {
+            Outline::default()
+        } else {
+            Outline::from_svg(data).map_err(|e| damaged(&e))?
+        };
         if outline.segs().any(|s| !s.is_finite()) {
-            return Err(at("a coordinate is too large to be a number".to_owned()));
+            return Err(damaged(&"a coordinate is out of range"));
         }
         let strokes =
-            outline.subpaths.iter().map(|s| lone_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
+            outline.subpaths.iter().map(|s| single_anchor_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
         let name = p.attribute("id").unwrap_or_default().to_owned();
-        // What is not said is invisible: so GIMP imports it.
+        // The format has no visibility; GIMP imports paths as invisible.
         paths.push(GimpPath { name, visible: false, strokes });
     }
-    Ok(File { kind: Kind::Svg, size, paths })
+    Ok(GimpFile { kind: FileKind::Svg, size, paths })
 }
 
-/// A closed stroke of a single anchor: GIMP writes its four points without the C, so that they read as three lines.
-fn lone_loop(s: &Subpath) -> Option<Stroke> {
+/// Recognises a closed stroke of a single anchor. GIMP omits its `C` command, so its four points read as three lines.
+fn single_anchor_loop(s: &Subpath) -> Option<Stroke> {
     let lines: Option<Vec<Point>> =
         s.segs.iter().map(|g| if let Seg::Line(l) = g { Some(l.p1) } else { None }).collect();
     match lines?.as_slice() {
@@ -97,10 +102,10 @@ fn lone_loop(s: &Subpath) -> Option<Stroke> {
     }
 }
 
-/// The paths as SVG that GIMP imports without scaling: sizes in pixels, a matching viewBox, one `path` each with its name as id.
-/// `decimals` rounds coordinates; without it they come back to the single precision that GIMP keeps.
+/// Writes paths as SVG that GIMP imports without scaling: sizes in pixels, a matching viewBox, and one `path` each with its name
+/// as id. `decimals` rounds coordinates; without it they keep the single precision of GIMP.
 ///
-/// Handles at the two ends of open strokes carry no geometry and have no place in SVG.
+/// The outer handles at the ends of open strokes carry no geometry and are lost.
 #[must_use]
 pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> String {
     let [w, h] = size.map(shortest);
@@ -113,7 +118,7 @@ pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> Strin
     );
     for p in paths {
         let name = escaped(&p.name);
-        // Writing to a String cannot fail.
+        // Writing to a string cannot fail.
         let _ = write!(out, "  <path id=\"{name}\"");
         if !is_id(&p.name) {
             let _ = write!(out, " inkscape:label=\"{name}\"");
@@ -127,6 +132,7 @@ pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> Strin
     out + "</svg>\n"
 }
 
+/// Formats the path data of a stroke.
 fn data(s: &Stroke, decimals: Option<u8>) -> String {
     let number = |v: f64| decimals.map_or_else(|| shortest(v), |d| rounded(v, d));
     let point = |p: Point| format!("{},{}", number(p.x), number(p.y));
@@ -134,7 +140,7 @@ fn data(s: &Stroke, decimals: Option<u8>) -> String {
     let Some((first, last)) = triples.first().zip(triples.last()) else { return String::new() };
     let mut out = format!("M {}", point(first[1]));
     let mut segment = |from: &[Point; 3], to: &[Point; 3]| {
-        // GIMP gives the ends of a line handles on their anchors, which is how it keeps lines itself.
+        // GIMP stores a line with handles that coincide with their anchors.
         let _ = if from[2] == from[1] && to[0] == to[1] {
             write!(out, " L {}", point(to[1]))
         } else {
@@ -143,7 +149,7 @@ fn data(s: &Stroke, decimals: Option<u8>) -> String {
     };
     triples.windows(2).for_each(|w| segment(&w[0], &w[1]));
     if s.closed {
-        // A line back is what Z itself draws.
+        // Z draws a closing line by itself.
         if last[2] != last[1] || first[0] != first[1] {
             segment(last, first);
         }
@@ -152,14 +158,14 @@ fn data(s: &Stroke, decimals: Option<u8>) -> String {
     out
 }
 
-/// Whether a name may stand as an id for every reader of XML.
+/// Returns `true` if a name is a valid XML id.
 fn is_id(name: &str) -> bool {
     let mut chars = name.chars();
     chars.next().is_some_and(|c| c.is_alphabetic() || c == '_')
         && chars.all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'))
 }
 
-/// As an attribute's value. Characters that XML cannot hold become the replacement character.
+/// Escapes the value of an attribute. Characters that XML does not allow become U+FFFD.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -168,7 +174,7 @@ fn escaped(text: &str) -> String {
             '<' => out += "&lt;",
             '>' => out += "&gt;",
             '"' => out += "&quot;",
-            // As such they would be read as blanks.
+            // An XML reader would turn them into spaces.
             '\t' | '\n' | '\r' => {
                 let _ = write!(out, "&#{};", u32::from(c));
             }

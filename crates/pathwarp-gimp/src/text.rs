@@ -1,12 +1,13 @@
-//! The text of GIMP 1's "Export path": records of a name, a count, flags, and a line for every point.
+//! The text format of "Export path" in GIMP 1: records of a name, a count, flags, and one line per point.
 
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
+use crate::old_strokes::{self, TypedPoint};
 use crate::path::GimpPath;
-use crate::xcf::old_strokes;
 
+/// The first bytes of such a file.
 pub(crate) const FIRST: &[u8] = b"Name: ";
 
-/// Reads all records; those before a fault stay in `paths`.
+/// Reads all records. Those before an error remain in `paths`.
 pub(crate) fn read(text: &str, paths: &mut Vec<GimpPath>) -> Result<(), Error> {
     let mut at = 0;
     let mut lines = text.split_inclusive('\n').map(|l| {
@@ -18,39 +19,44 @@ pub(crate) fn read(text: &str, paths: &mut Vec<GimpPath>) -> Result<(), Error> {
         if line.trim().is_empty() {
             continue;
         }
-        let name = line.strip_prefix("Name: ").ok_or_else(|| Error::at(start, "`Name: …` must stand here"))?;
+        let name = line.strip_prefix("Name: ").ok_or_else(|| Error::damaged(start, "expected `Name: …`"))?;
         let mut field = |key: &str| -> Result<u64, Error> {
-            let (at, line) = lines.next().ok_or_else(|| Error::at(text.len() as u64, format!("`{key}` is missing")))?;
+            let (at, line) = lines
+                .next()
+                .ok_or_else(|| Error::new(ErrorKind::Truncated, text.len() as u64, format!("`{key}` is missing")))?;
             let value = line.strip_prefix(key).and_then(|v| v.trim().parse().ok());
-            value.ok_or_else(|| Error::at(at, format!("`{key}` and a number must stand here")))
+            value.ok_or_else(|| Error::damaged(at, format!("expected `{key}` and a number")))
         };
         let n = field("#POINTS:")?;
         let closed = field("CLOSED:")? != 0;
         field("DRAW:")?;
         field("STATE:")?;
-        // The shortest line of a point takes more.
+        // A lower bound for the line of a point.
         const LEAST: u64 = 16;
         if n > text.len() as u64 / LEAST {
-            return Err(Error::at(start, format!("{n} points are more than the file can hold")));
+            return Err(Error::damaged(start, format!("{n} points do not fit into the file")));
         }
         let mut points = Vec::new();
-        let mut places = Vec::new();
+        let mut offsets = Vec::new();
         for _ in 0..n {
-            let (at, line) = lines.next().ok_or_else(|| Error::at(text.len() as u64, "the file ends inside a path"))?;
+            let (at, line) = lines
+                .next()
+                .ok_or_else(|| Error::new(ErrorKind::Truncated, text.len() as u64, "the file ends inside a path"))?;
             let point = point(line);
-            points.push(point.ok_or_else(|| Error::at(at, "`TYPE: n X: x Y: y` must stand here"))?);
-            places.push(at);
+            points.push(point.ok_or_else(|| Error::damaged(at, "expected `TYPE: n X: x Y: y`"))?);
+            offsets.push(at);
         }
         if !points.is_empty() {
-            let place = |i: usize| places.get(i).copied().unwrap_or(start);
-            let strokes = old_strokes(&points, closed, &place)?;
+            let offset = |i: usize| offsets.get(i).copied().unwrap_or(start);
+            let strokes = old_strokes::strokes(&points, closed, &offset)?;
             paths.push(GimpPath { name: name.to_owned(), visible: false, strokes });
         }
     }
     Ok(())
 }
 
-fn point(line: &str) -> Option<(u32, [f64; 2])> {
+/// Parses the line of a point.
+fn point(line: &str) -> Option<TypedPoint> {
     let mut words = line.split_whitespace();
     let mut after = |key: &str| (words.next() == Some(key)).then(|| words.next()).flatten();
     let kind = after("TYPE:")?.parse().ok()?;

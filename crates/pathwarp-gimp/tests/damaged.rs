@@ -1,5 +1,5 @@
-//! Damaged files: the right error, at once, in little memory; and the paths before the damage.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test may stop at the first surprise")]
+//! Damaged files give the right error quickly and with little memory, and keep the paths before the damage.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "tests may panic")]
 
 mod common;
 
@@ -13,12 +13,12 @@ use std::time::Instant;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Memory is counted for the whole program: one test at a time.
+/// Memory is counted for the whole process, so tests run one at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// The error of a damaged file, which must come within 100 ms and 50 MB.
+/// Returns the error of a damaged file, which must take less than 100 ms and 50 MB.
 #[track_caller]
-fn fault(bytes: &[u8]) -> Error {
+fn error_of(bytes: &[u8]) -> Error {
     let before = MEMORY.current_usage();
     MEMORY.reset_peak_usage();
     let started = Instant::now();
@@ -31,12 +31,12 @@ fn fault(bytes: &[u8]) -> Error {
 
 #[track_caller]
 fn expect(bytes: &[u8], offset: usize, problem: &str) {
-    let e = fault(bytes);
+    let e = error_of(bytes);
     assert!(e.problem.contains(problem), "{e}");
     assert_eq!(e.offset, offset as u64, "{e}");
 }
 
-/// The place of `needle`, which must be there once.
+/// Finds `needle`, which must occur exactly once.
 fn find(bytes: &[u8], needle: &[u8]) -> usize {
     let mut all = bytes.windows(needle.len()).enumerate().filter(|(_, w)| *w == needle).map(|(i, _)| i);
     let first = all.next().unwrap();
@@ -51,7 +51,7 @@ fn with(bytes: &[u8], at: usize, word: u32) -> Vec<u8> {
 }
 
 #[test]
-fn counts_are_bounded_by_what_is_left() {
+fn counts_are_checked_against_the_bytes_left() {
     let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let file = xcf(0, Form::Vectors(2), &plain_paths());
     let name = find(&file, b"Base\0");
@@ -61,21 +61,21 @@ fn counts_are_bounded_by_what_is_left() {
     expect(&with(&file, name + 17, u32::MAX), name + 17, "parasites");
     expect(&with(&file, name + 21, 0x7fff_ffff), name + 21, "strokes");
     let stroke = name + 25 + 4 + 7 + 8 + 5;
-    expect(&with(&file, stroke, 0), stroke, "kind 0");
+    expect(&with(&file, stroke, 0), stroke, "type 0");
     expect(&with(&file, stroke + 8, 1), stroke + 8, "1 axes");
     expect(&with(&file, stroke + 8, 9), stroke + 8, "9 axes");
     expect(&with(&file, stroke + 12, 0x7fff_ffff), stroke + 12, "2147483647 points");
     expect(&with(&file, stroke + 12, 7), stroke + 12, "7 points");
     expect(&with(&file, stroke + 20, f32::NAN.to_bits()), stroke + 20, "NaN");
     expect(&with(&file, stroke + 24, f32::INFINITY.to_bits()), stroke + 24, "inf");
-    expect(&with(&file, stroke + 16, 5), stroke + 16, "kind 5");
-    // The property's own length, and the version of its content.
+    expect(&with(&file, stroke + 16, 5), stroke + 16, "type 5");
+    // The length of the property, and the version of its content.
     let start = name - 16;
     expect(&with(&file, start, 2), start, "version 2");
-    expect(&with(&file, start - 4, 9), start + 8, "of the 9 that PROP_VECTORS is said to have");
+    expect(&with(&file, start - 4, 9), start + 8, "of the 9 bytes given for PROP_VECTORS");
     let length = u32::from_be_bytes(file[start - 4..start].try_into().unwrap());
     expect(&with(&file, start - 4, length + 8), start - 4, "length word");
-    fault(&with(&file, stroke + 12, 0));
+    error_of(&with(&file, stroke + 12, 0));
 }
 
 #[test]
@@ -98,16 +98,16 @@ fn heads_are_checked() {
     expect(b"gimp xcf v999\0\0\0\x01\0\0\0\x01\0\0\0\0\0", 9, "version 999");
     expect(b"gimp xcf vier\0", 9, "`vier`");
     expect(b"gimp xcf file\0\0\0\x02\x80", 18, "header");
-    expect(b"GIF89a", 0, "no file of GIMP's");
+    expect(b"GIF89a", 0, "not a file of GIMP");
     let file = xcf(4, Form::Vectors(2), &plain_paths());
     expect(&with(&file, 22, 7), 22, "base type 7");
 }
 
 #[test]
-fn pointers_stay_inside_and_do_not_run_in_circles() {
+fn pointers_stay_in_the_file_and_form_no_loops() {
     let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let file = xcf(18, Form::Items, &plain_paths());
-    // The tables follow the last property (22, the unit, then the end): a layer, 0, a channel, 0, the paths.
+    // The tables follow the last property (22, the unit) and the end marker: a layer, 0, a channel, 0, the paths.
     let tables = find(&file, &[0, 0, 0, 22, 0, 0, 0, 4, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0]) + 20;
     let path = tables + 4 * 8;
     expect(&with(&file, path + 4, file.len() as u32 + 1000), path, "outside the file");
@@ -118,17 +118,17 @@ fn pointers_stay_inside_and_do_not_run_in_circles() {
     // A table without end.
     let mut endless = file[..tables].to_vec();
     endless.extend([0, 0, 0, 0, 0, 0, 0, 40].repeat(9));
-    expect(&endless, endless.len(), "no end");
+    expect(&endless, endless.len(), "the table of layer pointers");
     // An item's size.
     let name = find(&file, b"Base\0");
     let size = u32::from_be_bytes(file[name + 5..name + 9].try_into().unwrap());
     expect(&with(&file, name + 5, size + 3), name + 5, "size word");
     expect(&with(&file, name + 5, u32::MAX), name + 5, "4294967295");
-    assert!(fault(&with(&file, name + 5, 3)).problem.contains("left"));
+    assert!(error_of(&with(&file, name + 5, 3)).problem.contains("left"));
 }
 
 #[test]
-fn no_cut_and_no_flipped_bit_does_harm() {
+fn truncated_files_and_flipped_bits_are_harmless() {
     let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     for (version, form) in
         [(0, Form::Old(1)), (1, Form::Old(3)), (8, Form::Vectors(4)), (12, Form::Vectors(2)), (18, Form::Items)]
@@ -144,12 +144,12 @@ fn no_cut_and_no_flipped_bit_does_harm() {
                 }
                 Err(e) => assert!(e.offset <= cut as u64, "{e} of {cut}"),
             }
-            // What is salvaged is a part of what there was, in its order.
+            // Salvaged paths are a prefix of the original ones.
             if let Ok(s) = salvage(Cursor::new(&file[..cut])) {
                 assert!(paths.starts_with(&s.file.paths) || version >= 18, "v{version} cut at {cut}");
             }
         }
-        // Only what stands behind the paths may be missing.
+        // Only bytes after the paths may be missing.
         assert!(whole < file.len() && (version >= 18 || whole > 0));
         for i in 0..file.len() * 8 {
             let mut flipped = file.clone();
@@ -165,7 +165,7 @@ fn paths_before_the_damage_are_salvaged() {
     for (version, form) in forms() {
         let paths = paths_for(form);
         let file = xcf(version, form, &paths);
-        let name = find(&file, b"a lone anchor\0");
+        let name = find(&file, b"a single anchor\0");
         let broken = with(&file, name - 4, 0x7000_0000);
         assert!(open(Cursor::new(&broken)).is_err());
         let s = salvage(Cursor::new(&broken)).unwrap();
@@ -174,9 +174,9 @@ fn paths_before_the_damage_are_salvaged() {
     }
 }
 
-/// A kilobyte that unpacks to gigabytes of path data.
+/// A kilobyte can decompress to gigabytes of path data.
 #[test]
-fn packed_bombs_end_soon() {
+fn decompression_bombs_end_soon() {
     use std::io::Write;
     let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let mut head = common::head(0).0;
@@ -187,9 +187,9 @@ fn packed_bombs_end_soon() {
     for _ in 0..64 {
         gz.write_all(&vec![0; 1 << 20]).unwrap();
     }
-    let e = fault_within(&gz.finish().unwrap(), 2.0);
+    let e = error_within(&gz.finish().unwrap(), 2.0);
     assert!(e.problem.contains("ends"), "{e}");
-    // More points than are read of packed data.
+    // More points than the limit for compressed data.
     let mut head = common::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 2, 0x4100_0000, 1, 0, 0, 0, 1, 1, 0, 2, 300_000_000] {
         head.extend(u32::to_be_bytes(w));
@@ -206,9 +206,9 @@ fn packed_bombs_end_soon() {
     for _ in 0..64 {
         gz.write_all(&points.repeat(20_000)).unwrap();
     }
-    let e = fault_within(&gz.finish().unwrap(), 5.0);
-    assert!(e.problem.contains("unpack it first"), "{e}");
-    // A string of a gigabyte that is there, in packed form.
+    let e = error_within(&gz.finish().unwrap(), 5.0);
+    assert!(e.problem.contains("unpack the file first"), "{e}");
+    // A string of a gigabyte, all of it present in compressed form.
     let mut head = common::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 1 << 30] {
         head.extend(u32::to_be_bytes(w));
@@ -218,12 +218,12 @@ fn packed_bombs_end_soon() {
     for _ in 0..200 {
         gz.write_all(&vec![b'a'; 1 << 20]).unwrap();
     }
-    let e = fault_within(&gz.finish().unwrap(), 5.0);
+    let e = error_within(&gz.finish().unwrap(), 5.0);
     assert!(e.problem.contains("longer than any name"), "{e}");
 }
 
 #[track_caller]
-fn fault_within(bytes: &[u8], seconds: f64) -> Error {
+fn error_within(bytes: &[u8], seconds: f64) -> Error {
     MEMORY.reset_peak_usage();
     let before = MEMORY.current_usage();
     let started = Instant::now();
@@ -236,6 +236,6 @@ fn fault_within(bytes: &[u8], seconds: f64) -> Error {
 
 #[test]
 fn rich_paths_are_rich() {
-    // What the tests above rest on.
+    // The tests above depend on it.
     assert!(rich_paths().iter().any(|p| p.strokes.is_empty()) && rich_paths()[1].strokes.len() == 3);
 }

@@ -1,6 +1,6 @@
-//! Files that GIMP itself has written, where a folder of them is at hand: `PATHWARP_GIMP_SAMPLES` names one that holds pairs of
-//! `NAME.xcf` (or `.xcf.gz`) and `NAME.expected.json`, and `gimp1-text/NAME.txt` with the same.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test may stop at the first surprise")]
+//! Files written by GIMP. `PATHWARP_GIMP_SAMPLES` names a folder with pairs of `NAME.xcf` (or `.xcf.gz`) and
+//! `NAME.expected.json`, and with `gimp1-text/NAME.txt` likewise. Without it the tests are skipped.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "tests may panic")]
 
 use pathwarp_gimp::{GimpPath, open, read, rewrite, salvage};
 use peak_alloc::PeakAlloc;
@@ -15,12 +15,12 @@ static MEMORY: PeakAlloc = PeakAlloc;
 fn folder() -> Option<PathBuf> {
     let folder = std::env::var_os("PATHWARP_GIMP_SAMPLES").map(PathBuf::from);
     if folder.is_none() {
-        eprintln!("skipped: PATHWARP_GIMP_SAMPLES names no folder of samples");
+        eprintln!("skipped: PATHWARP_GIMP_SAMPLES is not set");
     }
     folder
 }
 
-/// Name, bytes and what is expected.
+/// Name, bytes and expected content of every sample.
 fn samples(folder: &Path, endings: &[&str]) -> Vec<(String, Vec<u8>, Value)> {
     let mut out = Vec::new();
     for e in std::fs::read_dir(folder).unwrap() {
@@ -56,7 +56,7 @@ fn same(name: &str, found: &[GimpPath], expected: &Value) {
 }
 
 #[test]
-fn good_ones_agree_bit_for_bit_and_damaged_ones_end_in_an_error() {
+fn sound_files_agree_bit_for_bit_and_damaged_ones_fail() {
     let Some(folder) = folder() else { return };
     let (mut good, mut damaged, mut slowest, mut largest) = (0, 0, 0.0f64, 0);
     for (name, bytes, expected) in samples(&folder, &[".xcf", ".xcf.gz"]) {
@@ -88,7 +88,7 @@ fn texts_of_gimp_1_agree() {
     }
 }
 
-/// GIMP's export holds two decimals of the same points; its point lists ten digits.
+/// GIMP's exports have two decimals, its point lists ten digits.
 #[test]
 fn exports_and_point_lists_agree_with_the_files() {
     let Some(folder) = folder() else { return };
@@ -99,21 +99,21 @@ fn exports_and_point_lists_agree_with_the_files() {
         for (ending, tolerance) in [("export.svg", 0.005_001), ("pdb.json", 0.0)] {
             let Ok(other) = std::fs::read(folder.join(format!("{stem}.{ending}"))) else { continue };
             let other = read(&other).unwrap_or_else(|e| panic!("{stem}.{ending}: {e}"));
-            // GIMP stops at an empty path that is passed over here.
+            // GIMP stops at an empty path, which is skipped here.
             let stops = other.len() < paths.len() && stem.starts_with("31");
             assert!(stops || other.len() == paths.len(), "{stem}.{ending}");
             for (p, q) in paths.iter().zip(&other) {
-                // A tab in an id is read as a blank.
+                // XML readers turn a tab in an id into a space.
                 assert_eq!(p.name.replace('\t', " "), q.name.replace('\t', " "));
                 assert_eq!(p.strokes.len(), q.strokes.len(), "{stem}.{ending} {}", p.name);
                 for (s, t) in p.strokes.iter().zip(&q.strokes) {
                     assert_eq!((s.closed, s.anchors()), (t.closed, t.anchors()), "{stem}.{ending} {}", p.name);
-                    // Handles at open ends are not in SVG.
+                    // SVG lacks the outer handles of open ends.
                     let n = s.points.len();
                     let ends = if s.closed || tolerance == 0.0 { 0 } else { 1 };
                     for (a, b) in s.points[ends..n - ends].iter().zip(&t.points[ends..n - ends]) {
                         for (a, b) in a.iter().zip(b) {
-                            // Ten digits, or single precision.
+                            // Allow for ten digits or single precision.
                             let near = tolerance + a.abs() * 6e-8;
                             assert!((a - b).abs() <= near, "{stem}.{ending} {}: {a} {b}", p.name);
                         }
@@ -126,17 +126,17 @@ fn exports_and_point_lists_agree_with_the_files() {
     assert!(seen > 100);
 }
 
-/// Written back as they are, files stay what they were.
+/// Writing back the same strokes reproduces the file.
 #[test]
-fn files_come_through_rewriting() {
+fn files_survive_rewriting() {
     let Some(folder) = folder() else { return };
     for (name, bytes, _) in samples(&folder, &[".xcf"]) {
         let Ok(file) = open(Cursor::new(&bytes)) else { continue };
         let strokes: Vec<_> = file.paths.iter().map(|p| p.strokes.clone()).enumerate().collect();
         let mut out = Vec::new();
         rewrite(Cursor::new(&bytes), &mut out, &strokes).unwrap_or_else(|e| panic!("{name}: {e}"));
-        assert!(out == bytes, "{name} is not what it was");
-        // Longer strokes move all that stands behind them.
+        assert!(out == bytes, "{name} has changed");
+        // Longer strokes move everything after them.
         let mut wanted = file.paths;
         let single = |p: [f64; 2]| p.map(|v| f64::from(v as f32));
         for s in wanted.iter_mut().flat_map(|p| &mut p.strokes) {

@@ -1,7 +1,7 @@
-//! Seeds for the fuzz targets, and what they must be: files that are read.
+//! Seeds for the fuzz targets, all of them valid files.
 //!
 //! `PATHWARP_FUZZ_SEEDS=fuzz/corpus cargo test -p pathwarp-gimp --test seeds` writes them.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test may stop at the first surprise")]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "tests may panic")]
 
 mod common;
 
@@ -38,7 +38,7 @@ fn seeds_are_read() {
             std::fs::write(folder.join(name), bytes).unwrap();
         }
     }
-    // Two strokes, the first closed as all but the last of GIMP 1's are.
+    // Two strokes; in GIMP 1, all but the last are closed.
     let text = read(&seeds().pop().unwrap().2).unwrap();
     assert_eq!((text.len(), text[0].strokes[0].closed, text[0].strokes[1].closed), (2, true, false));
     assert_eq!(text[0].strokes[0].points[0], [1.5, -2.0]);

@@ -1,10 +1,10 @@
-//! Files of every version and form, read bit for bit, packed and plain; written back with every other byte kept.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test may stop at the first surprise")]
+//! Files of every version and form: read bit for bit, compressed and plain, and rewritten with every other byte kept.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "tests may panic")]
 
 mod common;
 
 use common::{Form, forms, item, paths_for, plain_paths, rich_paths, tiles, xcf};
-use pathwarp_gimp::{GimpPath, Kind, Stroke, new_xcf, open, read, rewrite};
+use pathwarp_gimp::{FileKind, GimpPath, Stroke, new_xcf, open, read, rewrite};
 use std::io::{Cursor, Read, Seek, SeekFrom, Write};
 use std::time::Instant;
 
@@ -14,9 +14,9 @@ fn every_version_and_form_gives_its_paths() {
         let paths = paths_for(form);
         let file = open(Cursor::new(xcf(version, form, &paths))).unwrap_or_else(|e| panic!("v{version} {form:?}: {e}"));
         assert_eq!(file.paths, paths, "v{version} {form:?}");
-        assert_eq!((file.kind, file.size), (Kind::Xcf(version), Some([640.0, 400.0])));
+        assert_eq!((file.kind, file.size), (FileKind::Xcf(version), Some([640.0, 400.0])));
     }
-    // A version to come, as far as can be told.
+    // A future version with the same layout.
     assert_eq!(read(&xcf(25, Form::Items, &rich_paths())).unwrap(), rich_paths());
 }
 
@@ -43,7 +43,7 @@ fn old_paths_with_a_wrong_length_or_without_points_are_read_on() {
 }
 
 #[test]
-fn packed_files_are_unpacked_on_the_way() {
+fn compressed_files_are_read() {
     for (version, form) in [(0, Form::Old(3)), (11, Form::Vectors(2)), (18, Form::Items)] {
         let paths = paths_for(form);
         let plain = xcf(version, form, &paths);
@@ -55,9 +55,9 @@ fn packed_files_are_unpacked_on_the_way() {
         packed.extend(xz(&plain).map(|x| ("xz", x)));
         for (how, bytes) in packed {
             let file = open(Cursor::new(&bytes)).unwrap_or_else(|e| panic!("{how} v{version}: {e}"));
-            assert_eq!((file.kind, &file.paths), (Kind::PackedXcf(version), &paths), "{how}");
+            assert_eq!((file.kind, &file.paths), (FileKind::PackedXcf(version), &paths), "{how}");
             assert!(pathwarp_gimp::sniff(Cursor::new(&bytes)));
-            // Damage inside the packing is an error, not a panic.
+            // Damaged compressed data is an error, not a panic.
             for cut in [3, bytes.len() / 2] {
                 read(&bytes[..cut]).unwrap_err();
             }
@@ -65,14 +65,14 @@ fn packed_files_are_unpacked_on_the_way() {
     }
 }
 
-/// By the encoder of the crate that also decodes; the format's own program writes the samples.
+/// Compresses with the program `xz`; `None` if it is not installed.
 fn xz(plain: &[u8]) -> Option<Vec<u8>> {
     let mut child = std::process::Command::new("xz")
         .arg("-c")
         .stdin(std::process::Stdio::piped())
         .stdout(std::process::Stdio::piped())
         .spawn()
-        .inspect_err(|_| eprintln!("skipped: there is no program `xz` here"))
+        .inspect_err(|_| eprintln!("skipped: `xz` is not installed"))
         .ok()?;
     child.stdin.take()?.write_all(plain).ok()?;
     Some(child.wait_with_output().ok()?.stdout)
@@ -83,7 +83,7 @@ fn a_file_of_two_gigabytes_is_read_in_no_time() {
     const SIZE: u64 = 2 << 30;
     let folder = tempfile::tempdir().unwrap();
     let paths = rich_paths();
-    // Vectors stand near the start, items may stand at the very end.
+    // Vectors are near the start; items can be at the very end.
     let mut early = std::fs::File::create(folder.path().join("early.xcf")).unwrap();
     early.write_all(&xcf(11, Form::Vectors(2), &paths)).unwrap();
     early.set_len(SIZE).unwrap();
@@ -128,7 +128,7 @@ fn the_same_strokes_give_the_same_bytes() {
 }
 
 #[test]
-fn other_strokes_leave_the_rest_as_it_was() {
+fn new_strokes_leave_the_rest_unchanged() {
     for (version, form) in forms() {
         let before = paths_for(form);
         let file = xcf(version, form, &before);
@@ -145,7 +145,7 @@ fn other_strokes_leave_the_rest_as_it_was() {
             assert_eq!(read(&out).unwrap(), wanted, "v{version} {form:?}");
             assert_eq!(tiles(&out), tiles(&file), "v{version} {form:?}");
             assert_eq!(&tiles(&out)[1][..5], b"mask ");
-            // Whoever goes back finds the very same file where the form keeps all there is to keep and things can shrink again.
+            // Writing back the old strokes restores the file in forms that keep everything and can shrink.
             if matches!(form, Form::Old(3) | Form::Vectors(2)) {
                 assert!(rewritten(&out, &[(1, before[1].strokes.clone())]) == file, "v{version} {form:?}");
             }
@@ -154,14 +154,16 @@ fn other_strokes_leave_the_rest_as_it_was() {
 }
 
 #[test]
-fn what_cannot_be_written_back_says_why() {
+fn impossible_rewrites_are_errors() {
     let file = xcf(0, Form::Old(3), &plain_paths());
     let open_first = rich_paths()[1].strokes.clone();
     let e = rewrite(Cursor::new(&file), &mut Vec::new(), &[(1, open_first)]).unwrap_err();
-    assert!(e.to_string().contains("only as the last"), "{e}");
-    assert!(rewrite(Cursor::new(b"<svg/>"), &mut Vec::new(), &[]).unwrap_err().problem.contains("no plain XCF"));
+    assert!(e.to_string().contains("only the last stroke may be open"), "{e}");
+    assert!(
+        rewrite(Cursor::new(b"<svg/>"), &mut Vec::new(), &[]).unwrap_err().problem.contains("not an uncompressed XCF")
+    );
     assert!(rewrite(Cursor::new(&file), &mut Vec::new(), &[(9, Vec::new())]).unwrap_err().problem.contains("number 9"));
-    // A pointer table that leads into itself ends in an error, and soon.
+    // A pointer table that points into itself soon ends in an error.
     let mut looped = xcf(0, Form::Vectors(2), &rich_paths());
     let size = looped.len();
     let tile = looped.windows(6).position(|w| w == b"layer ").unwrap();

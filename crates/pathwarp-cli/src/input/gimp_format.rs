@@ -5,7 +5,7 @@ use super::read::display;
 use super::reference_name::split_reference;
 use crate::failure::Failure;
 use crate::options::CommonOptions;
-use pathwarp_gimp::Kind;
+use pathwarp_gimp::FileKind;
 use std::path::Path;
 
 /// The format in which warped GIMP paths are written.
@@ -45,9 +45,9 @@ pub(super) fn format(options: &CommonOptions, input: &GimpFile, target: Option<&
 /// Checks that the paths of `input` can be written into its copy.
 fn check_into(input: &GimpFile, copy: &Path) -> Result<(), Failure> {
     let problem = match input.file.kind {
-        Kind::Xcf(_) if input.damage.is_some() => "is damaged; write its paths to SVG or JSON (-o)",
-        Kind::Xcf(_) => "",
-        Kind::PackedXcf(_) => "is packed; unpack it first",
+        FileKind::Xcf(_) if input.damage.is_some() => "is damaged; write its paths to SVG or JSON (-o)",
+        FileKind::Xcf(_) => "",
+        FileKind::PackedXcf(_) => "is packed; unpack it first",
         _ => "is not an XCF",
     };
     if !problem.is_empty() {

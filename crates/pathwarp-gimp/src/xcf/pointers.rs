@@ -1,47 +1,48 @@
-//! Every pointer in a file below version 18: what must be mended when the property list changes its length.
+//! All pointers in a file before version 18. They must be adjusted when the length of the property list changes.
 //!
-//! Tables of layers and channels; each layer leads to a hierarchy and a mask, each channel and mask to a hierarchy, each
-//! hierarchy to levels, each level to tiles. One property of layers points as well: a floating selection's, to the layer or
-//! channel that it belongs to.
+//! Tables point to layers and channels; each layer points to a hierarchy and a mask, each channel and mask to a hierarchy, each
+//! hierarchy to levels, each level to tiles. The property of a floating selection points to the layer or channel that it
+//! belongs to.
 
-use super::{MOST_PROPERTIES, PROP_END, Xcf};
+use super::model::{MOST_PROPERTIES, PROP_END, Xcf};
 use crate::error::Error;
-use crate::input::Input;
-use std::collections::BTreeMap;
+use crate::source::ByteSource;
+use std::collections::{BTreeMap, HashSet};
 
-/// Where pointers stand, and where they lead.
+/// The targets of pointers by their places.
 pub(super) type Pointers = BTreeMap<u64, u64>;
 
-/// Its whole content is a pointer.
+/// A property whose whole content is a pointer.
 const PROP_FLOATING_SELECTION: u32 = 5;
-/// As many tiles as 64 GiB of 8-bit RGBA have.
+/// The number of tiles in 64 GiB of 8-bit RGBA.
 const MOST_POINTERS: u64 = 1 << 22;
 
-/// What a pointer leads to.
+/// The type of structure that a pointer points to.
 #[derive(Clone, Copy)]
-enum To {
+enum Target {
     Layer,
     Channel,
     Hierarchy,
     Level,
 }
 
+/// A traversal of the pointers.
 struct Walk<'i, 'a> {
-    input: &'i mut Input<'a>,
+    input: &'i mut ByteSource<'a>,
     wide: bool,
     found: Pointers,
-    /// How many more there can be.
+    /// Maximum number of further pointers.
     left: u64,
-    /// Where the first thing that is pointed to can stand.
+    /// Lowest valid target.
     first: u64,
-    /// What is still to be followed; each place once.
-    open: Vec<(u64, To)>,
-    followed: std::collections::HashSet<u64>,
+    /// Structures still to be visited.
+    pending: Vec<(u64, Target)>,
+    visited: HashSet<u64>,
 }
 
-/// All pointers of the file; `xcf` has been read from the same one.
-pub(super) fn all(input: &mut Input<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
-    input.go(xcf.properties_end, "the property list")?;
+/// Collects all pointers of the file that `xcf` was read from.
+pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
+    input.seek(xcf.properties_end, "the property list")?;
     let input_end = input.end;
     let mut walk = Walk {
         wide: xcf.wide(),
@@ -49,37 +50,37 @@ pub(super) fn all(input: &mut Input<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
         found: Pointers::new(),
         left: (input_end / if xcf.wide() { 8 } else { 4 }).min(MOST_POINTERS),
         first: xcf.properties_end,
-        open: Vec::new(),
-        followed: std::collections::HashSet::new(),
+        pending: Vec::new(),
+        visited: HashSet::new(),
     };
-    walk.table(Some(To::Layer))?;
-    walk.table(Some(To::Channel))?;
-    while let Some((at, what)) = walk.open.pop() {
-        if !walk.followed.insert(at) {
+    walk.table(Some(Target::Layer))?;
+    walk.table(Some(Target::Channel))?;
+    while let Some((at, target)) = walk.pending.pop() {
+        if !walk.visited.insert(at) {
             continue;
         }
-        walk.input.go(at, "a pointer")?;
-        match what {
-            To::Layer => {
+        walk.input.seek(at, "a pointer")?;
+        match target {
+            Target::Layer => {
                 walk.input.skip(12, "a layer")?;
                 walk.name_and_properties()?;
-                walk.pointer(Some(To::Hierarchy))?;
-                walk.pointer(Some(To::Channel))?;
+                walk.pointer(Some(Target::Hierarchy))?;
+                walk.pointer(Some(Target::Channel))?;
             }
-            To::Channel => {
+            Target::Channel => {
                 walk.input.skip(8, "a channel")?;
                 walk.name_and_properties()?;
-                walk.pointer(Some(To::Hierarchy))?;
+                walk.pointer(Some(Target::Hierarchy))?;
             }
-            To::Hierarchy => {
+            Target::Hierarchy => {
                 walk.input.skip(12, "a hierarchy")?;
-                // Only the first level is read by any GIMP. Those behind it are empty since the days of 64-bit pointers,
-                // and GIMP ends their tables with a word of 32 bits.
-                if walk.pointer(Some(To::Level))? {
-                    walk.table((!walk.wide).then_some(To::Level))?;
+                // GIMP reads only the first level. With 64-bit pointers the others are empty, and GIMP ends their table with a
+                // word of 32 bits.
+                if walk.pointer(Some(Target::Level))? {
+                    walk.table((!walk.wide).then_some(Target::Level))?;
                 }
             }
-            To::Level => {
+            Target::Level => {
                 walk.input.skip(8, "a level")?;
                 walk.table(None)?;
             }
@@ -89,13 +90,13 @@ pub(super) fn all(input: &mut Input<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
 }
 
 impl Walk<'_, '_> {
-    fn table(&mut self, to: Option<To>) -> Result<(), Error> {
+    fn table(&mut self, to: Option<Target>) -> Result<(), Error> {
         while self.pointer(to)? {}
         Ok(())
     }
 
-    /// Notes a pointer; whether there was one.
-    fn pointer(&mut self, to: Option<To>) -> Result<bool, Error> {
+    /// Records a pointer; returns `false` if it is the zero that ends a table.
+    fn pointer(&mut self, to: Option<Target>) -> Result<bool, Error> {
         let at = self.input.at();
         let what = "a table of pointers";
         let target = if self.wide { self.input.u64(what)? } else { u64::from(self.input.u32(what)?) };
@@ -104,15 +105,20 @@ impl Walk<'_, '_> {
         }
         if target >= self.input.end {
             let end = self.input.end;
-            return Err(Error::at(at, format!("a pointer leads to byte {target}, outside the file of {end}")));
+            return Err(Error::damaged(
+                at,
+                format!("a pointer points to byte {target}, outside the file of {end} bytes"),
+            ));
         }
         if target < self.first {
-            return Err(Error::at(at, format!("a pointer leads to byte {target}, into the file's head")));
+            return Err(Error::damaged(at, format!("a pointer points to byte {target}, inside the file's head")));
         }
-        self.left =
-            self.left.checked_sub(1).ok_or_else(|| Error::at(at, "the tables of pointers overlap, or have no end"))?;
+        self.left = self
+            .left
+            .checked_sub(1)
+            .ok_or_else(|| Error::damaged(at, "the tables of pointers overlap or have no end"))?;
         self.found.insert(at, target);
-        self.open.extend(to.map(|to| (target, to)));
+        self.pending.extend(to.map(|to| (target, to)));
         Ok(true)
     }
 
@@ -131,6 +137,6 @@ impl Walk<'_, '_> {
             }
             self.input.skip(end - self.input.at(), "a layer's property")?;
         }
-        Err(Error::at(self.input.at(), "a layer's property list has no end"))
+        Err(Error::damaged(self.input.at(), "a layer's property list has no end"))
     }
 }

@@ -1,29 +1,30 @@
-//! `PROP_VECTORS`, GIMP 2's paths, and the strokes that path items share with it.
+//! `PROP_VECTORS`, the paths of GIMP 2, and the encoding of strokes that it shares with path items.
 
-use super::{Layout, Record, Xcf, coordinate, count, string, word};
+use super::model::{PathLayout, PathRecord, Xcf};
+use super::primitives::{coordinate, count, string, word};
 use crate::error::Error;
-use crate::input::Input;
 use crate::path::{GimpPath, Stroke};
+use crate::source::ByteSource;
 
-/// The one version there is.
+/// The only version.
 const VERSION: u32 = 1;
-/// A path without a name and without strokes.
+/// Size of a path without a name and strokes.
 const LEAST_PATH: u64 = 24;
-/// A stroke without points.
+/// Size of a stroke without points.
 const LEAST_STROKE: u64 = 16;
-/// A parasite without a name and without data.
+/// Size of a parasite without a name and data.
 const LEAST_PARASITE: u64 = 12;
-/// The one kind of stroke there is.
+/// The only type of stroke.
 const BEZIER: u32 = 1;
 const ANCHOR: u32 = 0;
 const CONTROL: u32 = 1;
-/// Points that are read at once.
-const AT_ONCE: u32 = 4096;
+/// Number of points read at a time.
+const CHUNK: u32 = 4096;
 
-/// Reads the property, whose length word GIMP checks.
-pub(super) fn read(input: &mut Input<'_>, length: u64, xcf: &mut Xcf) -> Result<(), Error> {
+/// Reads the property. GIMP checks its length word.
+pub(super) fn read(input: &mut ByteSource<'_>, length: u64, xcf: &mut Xcf) -> Result<(), Error> {
     let (start, file_end) = (input.at(), input.end);
-    // What a file promises beyond its end is missed where the reading gets there; paths before it are whole.
+    // A property that exceeds the file fails only at the end of the file, after the paths before it.
     let end = start.saturating_add(length);
     input.end = end.min(file_end);
     let read = paths(input, xcf);
@@ -31,13 +32,13 @@ pub(super) fn read(input: &mut Input<'_>, length: u64, xcf: &mut Xcf) -> Result<
     read.map_err(|e| if end < file_end { e.within(length, "PROP_VECTORS") } else { e })?;
     if input.at() != end {
         let found = input.at() - start;
-        let problem = format!("PROP_VECTORS has {found} bytes of paths, but its length word says {length}");
-        return Err(Error::at(start.saturating_sub(4), problem));
+        let problem = format!("PROP_VECTORS holds {found} bytes of paths, but its length word says {length}");
+        return Err(Error::damaged(start.saturating_sub(4), problem));
     }
     Ok(())
 }
 
-fn paths(input: &mut Input<'_>, xcf: &mut Xcf) -> Result<(), Error> {
+fn paths(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     version(input)?;
     input.u32("PROP_VECTORS")?;
     for _ in 0..count(input, LEAST_PATH, "paths")? {
@@ -54,25 +55,25 @@ fn paths(input: &mut Input<'_>, xcf: &mut Xcf) -> Result<(), Error> {
         }
         let strokes_at = input.at();
         let strokes = strokes(input, n)?;
-        xcf.records.push(Record {
+        xcf.records.push(PathRecord {
             path: GimpPath { name, visible, strokes },
             span: start..input.at(),
-            layout: Layout::Vectors { count_at, strokes_at },
+            layout: PathLayout::Vectors { count_at, strokes_at },
         });
     }
     Ok(())
 }
 
-/// Paths have a version of their own.
-pub(super) fn version(input: &mut Input<'_>) -> Result<(), Error> {
+/// Checks the version of a path.
+pub(super) fn version(input: &mut ByteSource<'_>) -> Result<(), Error> {
     let at = input.at();
     match input.u32("a path's version")? {
         VERSION => Ok(()),
-        other => Err(Error::at(at, format!("paths of version {other} are unknown; the known version is {VERSION}"))),
+        other => Err(Error::unsupported(at, format!("path version {other} is unknown; only {VERSION} is known"))),
     }
 }
 
-fn parasite(input: &mut Input<'_>) -> Result<(), Error> {
+fn parasite(input: &mut ByteSource<'_>) -> Result<(), Error> {
     let what = "a path's parasite";
     let name = u64::from(input.u32(what)?);
     input.skip(name, what)?;
@@ -81,30 +82,31 @@ fn parasite(input: &mut Input<'_>) -> Result<(), Error> {
     input.skip(size, what)
 }
 
-/// A path's strokes; those without points are passed over.
-pub(super) fn strokes(input: &mut Input<'_>, n: u32) -> Result<Vec<Stroke>, Error> {
+/// Reads the strokes of a path; those without points are skipped.
+pub(super) fn strokes(input: &mut ByteSource<'_>, n: u32) -> Result<Vec<Stroke>, Error> {
     let mut out = Vec::new();
     for _ in 0..n {
         let at = input.at();
         let kind = input.u32("a stroke")?;
         if kind != BEZIER {
-            return Err(Error::at(
+            return Err(Error::damaged(
                 at,
-                format!("a stroke of kind {kind} is unknown; Bézier strokes are of kind {BEZIER}"),
+                format!("a stroke of type {kind} is unknown; Bézier strokes have type {BEZIER}"),
             ));
         }
         let closed = input.u32("a stroke")? != 0;
         let at = input.at();
         let axes = input.u32("a stroke")?;
         if !(2..=6).contains(&axes) {
-            return Err(Error::at(at, format!("points with {axes} axes; they have 2 to 6")));
+            return Err(Error::damaged(at, format!("points with {axes} axes; 2 to 6 are possible")));
         }
         let size = 4 + 4 * u64::from(axes);
         let at = input.at();
         let points = count(input, size, "points of a stroke")?;
         if !points.is_multiple_of(3) {
-            let problem = format!("a stroke of {points} points; every anchor has three, itself and two handles");
-            return Err(Error::at(at, problem));
+            let problem =
+                format!("a stroke has {points} points, not a multiple of three (every anchor has two handles)");
+            return Err(Error::damaged(at, problem));
         }
         let points = self::points(input, points, size)?;
         if !points.is_empty() {
@@ -114,11 +116,11 @@ pub(super) fn strokes(input: &mut Input<'_>, n: u32) -> Result<Vec<Stroke>, Erro
     Ok(out)
 }
 
-fn points(input: &mut Input<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>, Error> {
+fn points(input: &mut ByteSource<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>, Error> {
     let mut out: Vec<[f64; 2]> = Vec::new();
     let mut left = n;
     while left > 0 {
-        let now = left.min(AT_ONCE);
+        let now = left.min(CHUNK);
         let start = input.at();
         let bytes = input.vec(u64::from(now) * size, "a stroke's points")?;
         for (i, p) in bytes.chunks_exact(usize::try_from(size).unwrap_or(usize::MAX)).enumerate() {
@@ -126,8 +128,8 @@ fn points(input: &mut Input<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>, Err
             let kind = u32::from_be_bytes(word(p, 0));
             let expected = if out.len() % 3 == 1 { ANCHOR } else { CONTROL };
             if kind != expected {
-                let problem = format!("point {} of a stroke is of kind {kind} where {expected} must be", out.len() + 1);
-                return Err(Error::at(at, problem));
+                let problem = format!("point {} of a stroke has type {kind} instead of {expected}", out.len() + 1);
+                return Err(Error::damaged(at, problem));
             }
             out.push([coordinate(word(p, 4), at + 4)?, coordinate(word(p, 8), at + 8)?]);
         }
@@ -136,11 +138,11 @@ fn points(input: &mut Input<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>, Err
     Ok(out)
 }
 
-/// The strokes as GIMP writes them: two axes.
+/// Encodes strokes as GIMP writes them, with two axes.
 pub(super) fn encode(strokes: &[Stroke]) -> Vec<u8> {
     let mut out = Vec::new();
     for s in strokes {
-        // The number of points was bounded by 32 bits when it was read, and refitting cannot near that.
+        // 32 bits bounded the number of points when they were read, and refitting does not come near that.
         let n = u32::try_from(s.points.len()).unwrap_or(u32::MAX);
         for word in [BEZIER, u32::from(s.closed), 2, n] {
             out.extend(word.to_be_bytes());

@@ -1,13 +1,13 @@
-//! XCF files of every version, good and damaged, made from the format's description alone.
-#![allow(dead_code, reason = "every test file uses its own part of this")]
+//! Builds XCF files of every version from the description of the format, independently of the library.
+#![allow(dead_code, reason = "every test file uses a part of this")]
 
 use pathwarp_gimp::{GimpPath, Stroke};
 
-/// Words and strings, big-endian.
+/// Builds big-endian data.
 #[derive(Default, Clone)]
-pub(crate) struct Bytes(pub(crate) Vec<u8>);
+pub(crate) struct XcfBytes(pub(crate) Vec<u8>);
 
-impl Bytes {
+impl XcfBytes {
     pub(crate) fn u32(&mut self, v: u32) -> &mut Self {
         self.0.extend(v.to_be_bytes());
         self
@@ -37,7 +37,7 @@ impl Bytes {
     }
 }
 
-/// Where paths are kept.
+/// The form in which paths are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Form {
     /// PROP_PATHS of this format.
@@ -48,7 +48,7 @@ pub(crate) enum Form {
     Items,
 }
 
-fn stroke(out: &mut Bytes, s: &Stroke, axes: u32) {
+fn stroke(out: &mut XcfBytes, s: &Stroke, axes: u32) {
     out.words(&[1, u32::from(s.closed), axes, s.points.len() as u32]);
     for (i, [x, y]) in s.points.iter().enumerate() {
         out.u32(u32::from(i % 3 != 1)).f32(*x).f32(*y);
@@ -58,9 +58,9 @@ fn stroke(out: &mut Bytes, s: &Stroke, axes: u32) {
     }
 }
 
-/// The content of PROP_VECTORS. Every path has a parasite, as some of GIMP's have.
+/// The content of PROP_VECTORS. Every path has a parasite, as some in GIMP do.
 pub(crate) fn vectors(paths: &[GimpPath], axes: u32) -> Vec<u8> {
-    let mut out = Bytes::default();
+    let mut out = XcfBytes::default();
     out.words(&[1, 0, paths.len() as u32]);
     for (i, p) in paths.iter().enumerate() {
         out.string(&p.name).words(&[i as u32 + 7, u32::from(p.visible), 0, 1, p.strokes.len() as u32]);
@@ -74,7 +74,7 @@ pub(crate) fn vectors(paths: &[GimpPath], axes: u32) -> Vec<u8> {
 
 /// The content of PROP_PATHS.
 pub(crate) fn old_paths(paths: &[GimpPath], format: u32) -> Vec<u8> {
-    let mut out = Bytes::default();
+    let mut out = XcfBytes::default();
     out.words(&[0, paths.len() as u32]);
     for p in paths {
         let mut points: Vec<(u32, [f64; 2])> = Vec::new();
@@ -120,7 +120,7 @@ pub(crate) fn old_paths(paths: &[GimpPath], format: u32) -> Vec<u8> {
 
 /// A path item: name, size, properties, strokes.
 pub(crate) fn item(p: &GimpPath) -> Vec<u8> {
-    let mut body = Bytes::default();
+    let mut body = XcfBytes::default();
     body.property(8, &u32::from(p.visible).to_be_bytes());
     body.property(34, &3u32.to_be_bytes());
     body.property(9999, b"something new");
@@ -129,14 +129,14 @@ pub(crate) fn item(p: &GimpPath) -> Vec<u8> {
     for s in &p.strokes {
         stroke(&mut body, s, 2);
     }
-    let mut out = Bytes::default();
+    let mut out = XcfBytes::default();
     out.string(&p.name).u32(body.0.len() as u32).raw(&body.0);
     out.0
 }
 
 /// The header of this version and its property list up to the paths.
-pub(crate) fn head(version: u32) -> Bytes {
-    let mut out = Bytes::default();
+pub(crate) fn head(version: u32) -> XcfBytes {
+    let mut out = XcfBytes::default();
     out.raw(b"gimp xcf ");
     if version == 0 {
         out.raw(b"file\0");
@@ -149,14 +149,14 @@ pub(crate) fn head(version: u32) -> Bytes {
         out.u32(150);
     }
     if indexed {
-        // A colour map of two colours, whose length word is wrong, as old GIMPs wrote it.
+        // A colour map of two colours with a wrong length word, as written by old versions of GIMP.
         out.words(&[1, 99, 2]).raw(&[1, 2, 3, 4, 5, 6]);
     }
     out.property(17, &[0]);
-    let mut resolution = Bytes::default();
+    let mut resolution = XcfBytes::default();
     resolution.f32(300.0).f32(150.0);
     out.property(19, &resolution.0);
-    out.property(21, b"a parasite that nobody reads");
+    out.property(21, b"a parasite that is skipped  ");
     out
 }
 
@@ -173,40 +173,40 @@ pub(crate) fn xcf(version: u32, form: Form, paths: &[GimpPath]) -> Vec<u8> {
     rest(out.0, version, if form == Form::Items { paths } else { &[] })
 }
 
-/// From a layer's start to the pointer of its floating selection: three words, its name, and a property's head.
+/// Offset from the start of a layer to the pointer of its floating selection: three words, the name, and a property header.
 const FLOATING: usize = 12 + 4 + "Background".len() + 1 + 8;
 
-/// Tables and what they lead to, after a finished property list.
+/// Appends the tables and their targets to a finished property list.
 pub(crate) fn rest(head: Vec<u8>, version: u32, items: &[GimpPath]) -> Vec<u8> {
     let wide = version >= 11;
     let pointer = |v: usize| if wide { (v as u64).to_be_bytes().to_vec() } else { (v as u32).to_be_bytes().to_vec() };
     let size = if wide { 8 } else { 4 };
     let mut out = head;
     let tables = out.len();
-    // One layer, its end; one channel, its end; from version 18 the paths and their end.
+    // One layer and the end; one channel and the end; since version 18 the paths and the end.
     let entries = 4 + if version >= 18 { items.len() + 1 } else { 0 };
     out.resize(tables + entries * size, 0);
     let set = |out: &mut Vec<u8>, at: usize, v: usize| out[at..at + size].copy_from_slice(&pointer(v));
     let drawable = |out: &mut Vec<u8>, name: &str, layer: bool, mark: &[u8]| {
         let start = out.len();
-        let mut b = Bytes::default();
+        let mut b = XcfBytes::default();
         b.words(&[64, 1]);
         if layer {
             b.u32(0);
         }
         b.string(name);
         if layer {
-            // A floating selection: where that stands to which it belongs.
+            // A floating selection points to its owner.
             b.property(5, &vec![0; size]);
         }
         b.property(6, &255u32.to_be_bytes()).property(0, &[]);
         out.extend(&b.0);
         let pointers = out.len();
         out.resize(pointers + if layer { 2 } else { 1 } * size, 0);
-        // Hierarchy: size, bytes per pixel, a level and the empty level that GIMP writes too.
+        // The hierarchy: size, bytes per pixel, a level, and the empty level that GIMP adds.
         let hierarchy = out.len();
         set(out, pointers, hierarchy);
-        let mut b = Bytes::default();
+        let mut b = XcfBytes::default();
         b.words(&[64, 1, 1]);
         out.extend(&b.0);
         let levels = out.len();
@@ -214,11 +214,11 @@ pub(crate) fn rest(head: Vec<u8>, version: u32, items: &[GimpPath]) -> Vec<u8> {
         for (k, has_tile) in [true, false].into_iter().enumerate() {
             let at = out.len();
             set(out, levels + k * size, at);
-            let mut b = Bytes::default();
+            let mut b = XcfBytes::default();
             b.words(&[64, 1]);
             out.extend(&b.0);
             let table = out.len();
-            // GIMP ends the table of an empty level with 32 bits, also where pointers have 64.
+            // GIMP ends the table of an empty level with 32 bits even if pointers have 64.
             out.resize(table + if has_tile { 2 * size } else { 4 }, 0);
             if has_tile {
                 let tile = out.len();
@@ -254,7 +254,7 @@ pub(crate) fn tiles(file: &[u8]) -> [Vec<u8>; 3] {
     let pointer = |at: usize| if size == 8 { word(at) << 32 | word(at + 4) } else { word(at) };
     let end_of_properties = |mut at: usize| loop {
         let (kind, length) = (word(at), word(at + 4));
-        // The colour map's length word is wrong on purpose.
+        // The length word of the colour map is wrong on purpose.
         at += 8 + if kind == 1 { 4 + 3 * word(at + 8) } else { length };
         if kind == 0 {
             return at;
@@ -282,7 +282,7 @@ pub(crate) fn stroke_of(closed: bool, points: &[[f64; 2]]) -> Stroke {
     Stroke { closed, points: points.iter().map(|p| p.map(|v| f64::from(v as f32))).collect() }
 }
 
-/// Paths that every form can hold: whole numbers, invisible, open strokes last and with their first handle on the anchor.
+/// Paths that every form can hold: integer coordinates, invisible, open strokes last and their first handle on the anchor.
 pub(crate) fn plain_paths() -> Vec<GimpPath> {
     let square: Vec<[f64; 2]> =
         [[10., 10.], [90., 10.], [90., 90.], [10., 90.]].iter().flat_map(|p| [*p, *p, *p]).collect();
@@ -293,11 +293,11 @@ pub(crate) fn plain_paths() -> Vec<GimpPath> {
     vec![
         path("Base", vec![stroke_of(true, &square)]),
         path("Größe & <Pfad> \"q\"", vec![stroke_of(true, &ring), stroke_of(false, &hill)]),
-        path("a lone anchor", vec![stroke_of(true, &[[7., 8.], [7., 9.], [7., 10.]])]),
+        path("a single anchor", vec![stroke_of(true, &[[7., 8.], [7., 9.], [7., 10.]])]),
     ]
 }
 
-/// Paths that only the newer forms can hold: fractions, open strokes anywhere, no strokes, visible.
+/// Paths that only newer forms can hold: fractions, open strokes anywhere, no strokes, visible.
 pub(crate) fn rich_paths() -> Vec<GimpPath> {
     let mut out = plain_paths();
     out[0].visible = true;
@@ -307,7 +307,7 @@ pub(crate) fn rich_paths() -> Vec<GimpPath> {
     out
 }
 
-/// Every form that GIMP has written, in the versions it wrote it in.
+/// Every form written by GIMP, in the versions that used it.
 pub(crate) fn forms() -> Vec<(u32, Form)> {
     let old = (0..18).flat_map(|v| (1..=3).map(move |f| (v, Form::Old(f))));
     let vectors = (0..18).flat_map(|v| (2..=6).map(move |a| (v, Form::Vectors(a))));

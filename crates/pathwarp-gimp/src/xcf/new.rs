@@ -1,12 +1,14 @@
-//! A new XCF that holds paths and nothing else.
+//! Creates an XCF that holds paths only.
 
-use super::{MAGIC, PROP_END, PROP_VECTORS, vectors};
+use super::model::{MAGIC, PROP_END, PROP_VECTORS};
+use super::vectors;
 use crate::path::GimpPath;
 
-/// A new RGB image of this size, without layers, with these paths: version 1 of the format, which every GIMP since 2.0 opens.
+/// Creates an RGB image of this size in pixels, without layers, with these paths. It has version 1 of the format, which every
+/// GIMP since 2.0 opens.
 #[must_use]
 pub fn new_xcf(size: [u32; 2], paths: &[GimpPath]) -> Vec<u8> {
-    /// RGB.
+    /// The code for RGB.
     const BASE_TYPE: u32 = 0;
     const PROP_RESOLUTION: u32 = 19;
     const PIXELS_PER_INCH: f32 = 72.0;

@@ -1,37 +1,38 @@
-//! Point lists as JSON: what GIMP's `gimp-path-stroke-get-points` (3.0) and `gimp-vectors-stroke-get-points` (2.x) answer.
+//! Point lists in JSON, as returned by GIMP's `gimp-path-stroke-get-points` (3.0) and `gimp-vectors-stroke-get-points` (2.x).
 //!
 //! ```json
 //! {"width": 640, "height": 400, "paths": [{"name": "Base", "visible": true, "strokes": [
 //!   {"type": 0, "closed": false, "num_points": 12, "controlpoints": [x, y, x, y, x, y, …]}]}]}
 //! ```
 //!
-//! `num_points` counts numbers, six for an anchor. `points` as pairs, as `pathwarp paths --json` lists them, is understood too.
+//! `num_points` counts numbers, six per anchor. Instead of `controlpoints`, a stroke may have `points`, a list of pairs.
 
 use crate::error::Error;
-use crate::open::{File, Kind};
+use crate::file::{FileKind, GimpFile};
 use crate::path::{GimpPath, Stroke};
 use serde::{Deserialize, Serialize};
 
+/// The whole document.
 #[derive(Serialize, Deserialize)]
-struct Image {
+struct JsonFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     width: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     height: Option<f64>,
-    paths: Vec<Path>,
+    paths: Vec<JsonPath>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Path {
+struct JsonPath {
     name: String,
     #[serde(default)]
     visible: bool,
-    strokes: Vec<Points>,
+    strokes: Vec<JsonStroke>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Points {
-    /// The one kind there is: Bézier.
+struct JsonStroke {
+    /// Always 0, a Bézier stroke.
     #[serde(default, rename = "type")]
     kind: u32,
     closed: bool,
@@ -43,19 +44,21 @@ struct Points {
     points: Option<Vec<[f64; 2]>>,
 }
 
-pub(crate) fn read(text: &str) -> Result<File, Error> {
-    let image: Image = serde_json::from_str(text).map_err(|e| {
+/// Parses a point list.
+pub(crate) fn read(text: &str) -> Result<GimpFile, Error> {
+    let file: JsonFile = serde_json::from_str(text).map_err(|e| {
         let lines = text.split_inclusive('\n').take(e.line().saturating_sub(1));
         let at = lines.map(str::len).sum::<usize>() + e.column().saturating_sub(1);
-        Error::at(at as u64, format!("this is no list of GIMP's paths: {e}"))
+        Error::damaged(at as u64, format!("not a list of GIMP paths: {e}"))
     })?;
-    let paths: Result<Vec<GimpPath>, String> = image.paths.into_iter().map(path).collect();
-    let size = image.width.zip(image.height).map(|(w, h)| [w, h]);
-    Ok(File { kind: Kind::Json, size, paths: paths.map_err(|e| Error::at(0, e))? })
+    let paths: Result<Vec<GimpPath>, String> = file.paths.into_iter().map(path).collect();
+    let size = file.width.zip(file.height).map(|(w, h)| [w, h]);
+    Ok(GimpFile { kind: FileKind::Json, size, paths: paths.map_err(|e| Error::damaged(0, e))? })
 }
 
-fn path(p: Path) -> Result<GimpPath, String> {
-    let stroke = |(i, s): (usize, Points)| {
+/// Checks a path and converts it.
+fn path(p: JsonPath) -> Result<GimpPath, String> {
+    let stroke = |(i, s): (usize, JsonStroke)| {
         let place = || format!("path `{}`, stroke {}", p.name, i + 1);
         if s.kind != 0 {
             return Err(format!("{}: type {} is unknown; 0 is a Bézier stroke", place(), s.kind));
@@ -63,21 +66,21 @@ fn path(p: Path) -> Result<GimpPath, String> {
         let points = match (s.controlpoints, s.points) {
             (Some(flat), None) if flat.len().is_multiple_of(2) => flat.chunks_exact(2).map(|c| [c[0], c[1]]).collect(),
             (None, Some(points)) => points,
-            (Some(flat), None) => return Err(format!("{}: {} control points are no pairs", place(), flat.len())),
-            _ => return Err(format!("{}: either controlpoints or points must be there", place())),
+            (Some(flat), None) => return Err(format!("{}: an odd number of coordinates, {}", place(), flat.len())),
+            _ => return Err(format!("{}: needs either controlpoints or points", place())),
         };
         if s.num_points.is_some_and(|n| n != 2 * points.len()) {
-            return Err(format!("{}: num_points does not count its {} numbers", place(), 2 * points.len()));
+            return Err(format!("{}: num_points differs from its {} numbers", place(), 2 * points.len()));
         }
         if !points.len().is_multiple_of(3) {
             return Err(format!(
-                "{}: {} points; every anchor has three, itself and two handles",
+                "{}: {} points, not a multiple of three (every anchor has two handles)",
                 place(),
                 points.len()
             ));
         }
         if points.as_flattened().iter().any(|v| !v.is_finite()) {
-            return Err(format!("{}: a coordinate is too large to be a number", place()));
+            return Err(format!("{}: a coordinate is out of range", place()));
         }
         Ok(Stroke { closed: s.closed, points })
     };
@@ -86,23 +89,23 @@ fn path(p: Path) -> Result<GimpPath, String> {
     Ok(GimpPath { name: p.name, visible: p.visible, strokes })
 }
 
-/// The paths as JSON point lists, every number to the last bit.
+/// Writes paths as point lists in JSON; every coordinate is exact.
 #[must_use]
 pub fn to_json(size: Option<[f64; 2]>, paths: &[GimpPath]) -> String {
-    let points = |s: &Stroke| Points {
+    let points = |s: &Stroke| JsonStroke {
         kind: 0,
         closed: s.closed,
         num_points: Some(2 * s.points.len()),
         controlpoints: Some(s.points.as_flattened().to_vec()),
         points: None,
     };
-    let path = |p: &GimpPath| Path {
+    let path = |p: &GimpPath| JsonPath {
         name: p.name.clone(),
         visible: p.visible,
         strokes: p.strokes.iter().map(points).collect(),
     };
-    let image =
-        Image { width: size.map(|s| s[0]), height: size.map(|s| s[1]), paths: paths.iter().map(path).collect() };
-    // Nothing in there can fail: no maps, and numbers are finite.
-    serde_json::to_string(&image).unwrap_or_default() + "\n"
+    let file =
+        JsonFile { width: size.map(|s| s[0]), height: size.map(|s| s[1]), paths: paths.iter().map(path).collect() };
+    // Serialization cannot fail: there are no maps, and numbers are finite.
+    serde_json::to_string(&file).unwrap_or_default() + "\n"
 }

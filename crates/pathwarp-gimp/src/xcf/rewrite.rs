@@ -1,0 +1,171 @@
+//! Replaces the strokes of paths in an XCF, adjusts its pointers, and keeps every other byte.
+
+use super::model::{MAGIC, PATH_ITEMS, PROP_PATHS, PathBlock, PathLayout, PathRecord, Xcf};
+use super::read::read;
+use super::{old_paths, pointers, vectors};
+use crate::error::{Error, ErrorKind};
+use crate::old_strokes;
+use crate::path::Stroke;
+use crate::source::{ByteSource, ReadSeek};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+
+/// A replacement of bytes.
+struct ByteEdit {
+    span: Range<u64>,
+    bytes: Vec<u8>,
+}
+
+/// Copies the XCF in `from` to `to`, replacing the strokes of the paths given by their index in [`crate::GimpFile::paths`]. Names,
+/// flags, tattoos and parasites of the paths are kept. Coordinates are rounded to the single precision of XCF.
+///
+/// # Errors
+/// The file is damaged, compressed or not an XCF; the form of its paths cannot hold the new strokes
+/// ([`ErrorKind::Strokes`](crate::ErrorKind::Strokes)); or reading or writing fails.
+pub fn rewrite<R: Read + Seek>(mut from: R, to: &mut dyn Write, strokes: &[(usize, Vec<Stroke>)]) -> Result<(), Error> {
+    let (edits, end) = {
+        let from: &mut dyn ReadSeek = &mut from;
+        let mut input = ByteSource::file(from)?;
+        if !input.peek(MAGIC.len())?.starts_with(MAGIC) {
+            return Err(Error::unsupported(0, "not an uncompressed XCF file; paths can be written to no other kind"));
+        }
+        let mut xcf = Xcf::default();
+        read(&mut input, &mut xcf)?;
+        (edits(&mut input, &xcf, strokes)?, input.end)
+    };
+    copy(&mut from, to, &edits, end)
+}
+
+fn edits(input: &mut ByteSource<'_>, xcf: &Xcf, strokes: &[(usize, Vec<Stroke>)]) -> Result<Vec<ByteEdit>, Error> {
+    let mut edits = Vec::new();
+    let mut appended = ByteEdit { span: input.end..input.end, bytes: Vec::new() };
+    for (i, new) in strokes {
+        let Some(record) = xcf.records.get(*i) else {
+            return Err(Error::new(ErrorKind::Strokes, 0, format!("the file has no path number {i}")));
+        };
+        // Unchanged strokes keep their bytes, even in forms that are no longer written.
+        if record.path.strokes == *new {
+            continue;
+        }
+        match record.layout {
+            PathLayout::Old { state_at, tattoo } => {
+                if !old_strokes::can_hold(new) {
+                    let problem =
+                        "this file stores paths in the form of GIMP 1, in which only the last stroke may be open";
+                    return Err(Error::new(ErrorKind::Strokes, record.span.start, problem));
+                }
+                edits.push(ByteEdit { span: state_at..record.span.end, bytes: old_paths::encode(new, tattoo) });
+            }
+            PathLayout::Vectors { count_at, strokes_at } => {
+                edits.push(ByteEdit { span: count_at..count_at + 4, bytes: word(new.len()) });
+                edits.push(ByteEdit { span: strokes_at..record.span.end, bytes: vectors::encode(new) });
+            }
+            PathLayout::Item { pointer_at, size_at, count_at } => {
+                let strokes = vectors::encode(new);
+                let head = count_at + 4 - size_at - 4;
+                let size = head + strokes.len() as u64;
+                let fits = record.span.end - size_at - 4 >= size;
+                if fits {
+                    edits.push(ByteEdit { span: size_at..size_at + 4, bytes: word(size as usize) });
+                    edits.push(ByteEdit { span: count_at..count_at + 4, bytes: word(new.len()) });
+                    let end = count_at + 4 + strokes.len() as u64;
+                    edits.push(ByteEdit { span: count_at + 4..end, bytes: strokes });
+                } else {
+                    // The path has outgrown its place; move it to the end of the file.
+                    let at = input.end + appended.bytes.len() as u64;
+                    edits.push(ByteEdit { span: pointer_at..pointer_at + 8, bytes: at.to_be_bytes().to_vec() });
+                    input.seek(record.span.start, "a path")?;
+                    let mut head = input.vec(count_at - record.span.start, "a path")?;
+                    let size_in_head = (size_at - record.span.start) as usize;
+                    head.splice(size_in_head..size_in_head + 4, word(size as usize));
+                    appended.bytes.extend(head);
+                    appended.bytes.extend(word(new.len()));
+                    appended.bytes.extend(strokes);
+                }
+            }
+        }
+    }
+    update_lengths(xcf, &mut edits);
+    edits.push(appended);
+    edits.retain(|e| !e.span.is_empty() || !e.bytes.is_empty());
+    edits.sort_by_key(|e| e.span.start);
+    if let Some(w) = edits.windows(2).find(|w| w[1].span.start < w[0].span.end) {
+        return Err(Error::new(ErrorKind::Strokes, w[1].span.start, "a path is given twice"));
+    }
+    with_pointers(input, xcf, edits)
+}
+
+/// A length or count as a big-endian word.
+fn word(n: usize) -> Vec<u8> {
+    u32::try_from(n).unwrap_or(u32::MAX).to_be_bytes().to_vec()
+}
+
+/// Growth of the file by the edits before `place`, in bytes.
+fn shift(edits: &[ByteEdit], place: u64) -> i64 {
+    let before = edits.iter().filter(|e| e.span.end <= place);
+    before.map(|e| e.bytes.len() as i64 - (e.span.end - e.span.start) as i64).sum()
+}
+
+/// Adds edits for the length words of changed properties.
+fn update_lengths(xcf: &Xcf, edits: &mut Vec<ByteEdit>) {
+    for PathBlock { span, property } in &xcf.blocks {
+        let grown = shift(edits, span.end) - shift(edits, span.start);
+        let changed = xcf.records.iter().any(|PathRecord { span: r, .. }| {
+            r.start >= span.start && r.end <= span.end && edits.iter().any(|e| r.contains(&e.span.start))
+        });
+        // The length word of `PROP_PATHS` may have been wrong before; correct it only if the block changes its size.
+        if grown != 0 || (changed && *property != PROP_PATHS) {
+            let content = (span.end - span.start) as i64 - 8 + grown;
+            let bytes = word(usize::try_from(content).unwrap_or(usize::MAX));
+            edits.push(ByteEdit { span: span.start + 4..span.start + 8, bytes });
+        }
+    }
+}
+
+/// Adds edits for the pointers to data that the edits move.
+fn with_pointers(input: &mut ByteSource<'_>, xcf: &Xcf, mut edits: Vec<ByteEdit>) -> Result<Vec<ByteEdit>, Error> {
+    let in_properties = |e: &ByteEdit| e.span.start < xcf.properties_end;
+    let resized = edits.iter().filter(|e| in_properties(e)).any(|e| e.bytes.len() as u64 != e.span.end - e.span.start);
+    if !resized {
+        return Ok(edits);
+    }
+    if xcf.version >= PATH_ITEMS {
+        let problem =
+            format!("a file of version {} stores paths as items; the old block in it cannot be resized", xcf.version);
+        return Err(Error::unsupported(0, problem));
+    }
+    // Everything that pointers point to is after the property list and moves by the same amount.
+    let by = shift(&edits, xcf.properties_end);
+    let mut adjusted = Vec::new();
+    for (at, target) in pointers::all(input, xcf)? {
+        let new = target.saturating_add_signed(by);
+        let bytes = if xcf.wide() {
+            new.to_be_bytes().to_vec()
+        } else {
+            let new = u32::try_from(new);
+            new.map_err(|_| Error::too_large(at, "the file would exceed its 32-bit pointers"))?.to_be_bytes().to_vec()
+        };
+        adjusted.push(ByteEdit { span: at..at + bytes.len() as u64, bytes });
+    }
+    edits.extend(adjusted);
+    edits.sort_by_key(|e| e.span.start);
+    if let Some(w) = edits.windows(2).find(|w| w[1].span.start < w[0].span.end) {
+        return Err(Error::damaged(w[1].span.start, "pointers overlap: the file is damaged outside its paths"));
+    }
+    Ok(edits)
+}
+
+/// Copies `from` up to `end` with the edits.
+fn copy(from: &mut (impl Read + Seek), to: &mut dyn Write, edits: &[ByteEdit], end: u64) -> Result<(), Error> {
+    let mut at = 0;
+    let failed = |at: u64| move |e: std::io::Error| Error::new(ErrorKind::Io, at, format!("cannot be copied: {e}"));
+    from.seek(SeekFrom::Start(0)).map_err(failed(0))?;
+    for e in edits {
+        std::io::copy(&mut from.by_ref().take(e.span.start - at), to).map_err(failed(at))?;
+        to.write_all(&e.bytes).map_err(failed(e.span.start))?;
+        from.seek(SeekFrom::Start(e.span.end)).map_err(failed(e.span.end))?;
+        at = e.span.end;
+    }
+    std::io::copy(&mut from.by_ref().take(end - at), to).map_err(failed(at))?;
+    Ok(())
+}
