@@ -1,46 +1,49 @@
-//! By how much two pictures differ.
+//! Measures the difference of two pictures.
 //!
-//! Differences are taken between premultiplied channels, alpha included: what a transparent pixel's colour would have
-//! been is not a difference. A renderer's edges wobble by a few levels between versions and platforms, a shifted curve
-//! differs by dozens along its whole length; [`Difference::share_over`] with a threshold between the two tells them
-//! apart.
+//! Compares premultiplied channels including alpha, so that the colour of transparent pixels does not matter. Edges differ by
+//! a few levels between versions and platforms of a renderer; a shifted curve differs by dozens of levels along its whole
+//! length. [`Difference::share_over`] with a threshold in between distinguishes the two.
 
-use crate::{Error, render::new_pixmap};
+use crate::error::Error;
+use crate::pixmap::new_pixmap;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
-/// How two pictures of one size differ.
+/// The difference of two pictures of the same size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// Width of both pictures, in pixels.
+    /// Width of both pictures in pixels.
     pub width: u32,
-    /// Height of both pictures, in pixels.
+    /// Height of both pictures in pixels.
     pub height: u32,
-    /// The largest difference of one channel of one pixel, 0 to 255.
+    /// Largest difference of any channel of any pixel, 0 to 255.
     pub max_channel: u8,
-    /// The mean absolute difference over all channels of all pixels, in units of 1/255.
+    /// Mean absolute difference over all channels of all pixels, in units of 1/255.
     pub mean_abs: f64,
-    /// How many pixels have each value as the largest difference among their channels.
+    /// Number of pixels for each value of the largest difference among their channels.
     histogram: Box<[u64; 256]>,
 }
 
 impl Difference {
-    /// Whether the pictures are equal, pixel for pixel.
+    /// Returns `true` if the pictures are equal pixel for pixel.
     pub fn is_same(&self) -> bool {
         self.max_channel == 0
     }
 
-    /// The number of pixels with a channel that differs by more than `threshold`.
+    /// Returns the number of pixels with a channel that differs by more than `threshold`.
     pub fn pixels_over(&self, threshold: u8) -> u64 {
         self.histogram.iter().skip(usize::from(threshold) + 1).sum()
     }
 
-    /// The share of pixels, 0 to 1, with a channel that differs by more than `threshold`.
+    /// Returns the share of pixels, 0 to 1, with a channel that differs by more than `threshold`.
     pub fn share_over(&self, threshold: u8) -> f64 {
         self.pixels_over(threshold) as f64 / (f64::from(self.width) * f64::from(self.height))
     }
 }
 
-/// Measures by how much `b` differs from `a`. Pictures of different sizes are an error.
+/// Measures the difference of two pictures.
+///
+/// # Errors
+/// [`Error::SizesDiffer`].
 pub fn compare(a: &Pixmap, b: &Pixmap) -> Result<Difference, Error> {
     check_sizes(a, b)?;
     let mut histogram = Box::new([0u64; 256]);
@@ -55,7 +58,10 @@ pub fn compare(a: &Pixmap, b: &Pixmap) -> Result<Difference, Error> {
     Ok(Difference { width: a.width(), height: a.height(), max_channel, mean_abs: sum as f64 / channels, histogram })
 }
 
-/// A picture of the differences for people: `a` in pale grey, and red where `b` differs, the stronger the more.
+/// Visualises the difference: `a` in pale grey, and red where `b` differs, stronger for larger differences.
+///
+/// # Errors
+/// [`Error::SizesDiffer`].
 pub fn diff_image(a: &Pixmap, b: &Pixmap) -> Result<Pixmap, Error> {
     check_sizes(a, b)?;
     let mut picture = new_pixmap(f64::from(a.width()), f64::from(a.height()))?;
@@ -84,7 +90,7 @@ fn largest(differences: [u8; 4]) -> u8 {
     differences.into_iter().fold(0, u8::max)
 }
 
-/// The pixel on white, as grey, three quarters of the way to white.
+/// The pixel on white as grey, blended three quarters towards white.
 fn pale(pixel: PremultipliedColorU8) -> ColorU8 {
     let white = u32::from(u8::MAX - pixel.alpha());
     let on_white = |channel: u8| u32::from(channel) + white;
@@ -94,7 +100,7 @@ fn pale(pixel: PremultipliedColorU8) -> ColorU8 {
     ColorU8::from_rgba(grey, grey, grey, 255)
 }
 
-/// From light red for the smallest difference to full red for a quarter of the range and above.
+/// Light red for the smallest difference up to full red at a quarter of the range.
 fn red(difference: u8) -> ColorU8 {
     let rest = 160u8.saturating_sub(difference.saturating_mul(3));
     ColorU8::from_rgba(230, rest, rest, 255)

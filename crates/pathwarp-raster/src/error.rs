@@ -1,43 +1,43 @@
-//! What can go wrong between a drawing and its picture.
+//! Errors of making, reading and comparing pictures.
 
-use crate::render::MAX_PIXELS;
+use crate::limit::MAX_PIXELS;
 use thiserror::Error;
 
-/// A picture cannot be made, read or compared.
+/// The reason why a picture cannot be made, read or compared.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A picture without pixels was asked for.
-    #[error("a picture of {width} x {height} pixels has nothing in it: both sides must be at least one pixel")]
+    /// The size of the picture is zero.
+    #[error("a picture of {width} x {height} pixels is empty: both sides must be at least one pixel")]
     Empty {
-        /// Width asked for, in pixels.
+        /// Requested width in pixels.
         width: u32,
-        /// Height asked for, in pixels.
+        /// Requested height in pixels.
         height: u32,
     },
-    /// A picture larger than the limit was asked for.
+    /// The size of the picture exceeds the limit.
     #[error(
         "a picture of {width:.0} x {height:.0} pixels is too large: the limit is {MAX_PIXELS} pixels \
-         (such as 16384 x 16384); ask for a smaller width, height or scale"
+         (such as 16384 x 16384); choose a smaller width, height or scale"
     )]
     TooLarge {
-        /// Width asked for, in pixels.
+        /// Requested width in pixels.
         width: f64,
-        /// Height asked for, in pixels.
+        /// Requested height in pixels.
         height: f64,
     },
     /// The scale is not a positive number.
-    #[error("a picture cannot be scaled by {0}: the scale must be a positive number")]
+    #[error("invalid scale {0}: the scale must be a positive number")]
     BadScale(f32),
-    /// The bytes are no picture this crate can read.
+    /// The bytes are not a picture that this crate can read.
     #[error("not a readable picture: {0}")]
     Decode(String),
-    /// The picture could not be written.
+    /// The picture cannot be encoded.
     #[error("cannot write the picture: {0}")]
     Encode(String),
-    /// Two pictures of different sizes were compared.
+    /// Pictures of different sizes cannot be compared.
     #[error(
-        "the pictures differ in size, {} x {} against {} x {} pixels: render both at one size",
+        "the pictures differ in size: {} x {} and {} x {} pixels; render both at the same size",
         .a.0, .a.1, .b.0, .b.1
     )]
     SizesDiffer {
@@ -46,7 +46,7 @@ pub enum Error {
         /// Width and height of the second picture.
         b: (u32, u32),
     },
-    /// A preview has no area to show: its page and overlays are empty or not finite.
+    /// The page and the overlays of a preview are empty or not finite.
     #[error("the preview has nothing to show: {0}")]
     NoView(&'static str),
 }

@@ -1,14 +1,15 @@
-//! Pictures for [pathwarp](https://github.com/pathwarp/pathwarp): everything that turns vector artwork into pixels, and
-//! everything that judges pixels.
+//! Bitmaps for [pathwarp](https://github.com/pathwarp/pathwarp): renders drawings, warps photographs, compares pictures.
 //!
-//! * [`render()`] draws a resolved SVG tree at a chosen [`Size`], never larger than [`MAX_PIXELS`].
-//! * [`encode_png`] and [`decode_png`] carry pictures to and from files.
-//! * [`compare()`] measures by how much two pictures differ; [`diff_image`] shows where.
-//! * [`Picture`] reads and writes photographs, with orientation and colour profile.
-//! * [`warp_image()`] bends a bitmap by a map, [`shade()`] a paint.
-//! * [`Preview`] sets a drawing and its warped result side by side, with cages, bases and targets drawn on top.
+//! * [`render()`] draws a resolved SVG tree at a chosen [`Size`], at most [`MAX_PIXELS`].
+//! * [`encode_png`] and [`decode_png`] convert pictures to and from PNG.
+//! * [`compare()`] measures the difference of two pictures; [`diff_image`] visualises it.
+//! * [`Picture`] reads and writes photographs with orientation and colour profile.
+//! * [`warp_image()`] warps a bitmap by a map; [`shade()`] warps a paint.
+//! * [`Preview`] draws a drawing and its warped result side by side, with cages, bases and targets on top.
 //!
-//! All pictures are [`Pixmap`]s: 8 bits per channel, RGBA, sRGB, alpha premultiplied.
+//! All pictures are [`Pixmap`]s: RGBA, sRGB, 8 bits per channel, premultiplied alpha.
+//!
+//! The feature `parallel` (on by default) warps pictures on all processors. Results do not depend on it.
 //!
 //! ```
 //! use pathwarp_raster::{Color, RenderOptions, Size, compare, render};
@@ -29,7 +30,10 @@
 
 mod compare;
 mod error;
+mod limit;
+mod parallel;
 mod picture;
+mod pixmap;
 mod png;
 mod preview;
 mod render;
@@ -37,9 +41,10 @@ mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
 pub use error::Error;
+pub use limit::MAX_PIXELS;
 pub use picture::{Picture, PictureFormat};
 pub use png::{decode_png, encode_png};
 pub use preview::{Overlay, OverlayKind, Panel, Preview};
-pub use render::{MAX_PIXELS, RenderOptions, Size, render};
+pub use render::{RenderOptions, Size, render};
 pub use tiny_skia::{Color, Pixmap};
 pub use warp_image::{Extent, ImageWarp, Shade, extent, shade, shown, warp_image};

@@ -1,6 +1,8 @@
-//! Photographs: PNG and JPEG files with what belongs to their pixels, the camera's orientation and the colour profile.
+//! Photographs: bitmap files with orientation and colour profile.
 
-use crate::{Error, MAX_PIXELS, render::new_pixmap};
+use crate::error::Error;
+use crate::limit::MAX_PIXELS;
+use crate::pixmap::new_pixmap;
 use image::codecs::{jpeg, png};
 use image::metadata::Orientation;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageReader};
@@ -10,59 +12,64 @@ use tiny_skia::{ColorU8, Pixmap};
 /// A bitmap with its colour profile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// The pixels, 8 bits per channel.
+    /// The pixels.
     pub pixmap: Pixmap,
-    /// The ICC profile that says what their colours mean; sRGB if there is none.
+    /// The ICC profile of the colours; `None` for sRGB.
     pub profile: Option<Vec<u8>>,
 }
 
-/// What a picture is written as.
+/// A file format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PictureFormat {
     /// PNG with transparency.
     #[default]
     Png,
-    /// JPEG; what is transparent becomes white.
+    /// JPEG on white, since it has no transparency.
     Jpeg,
 }
 
 impl Picture {
-    /// Whether these bytes begin like a file that [`Picture::read`] reads.
+    /// The first bytes of every PNG file.
+    pub(crate) const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+    /// The first bytes of every JPEG file.
+    const JPEG_SIGNATURE: &[u8] = b"\xff\xd8\xff";
+
+    /// Returns `true` if the bytes start like a PNG or JPEG file.
     #[must_use]
-    pub fn is_one(bytes: &[u8]) -> bool {
-        bytes.starts_with(b"\x89PNG\r\n\x1a\n") || bytes.starts_with(b"\xff\xd8\xff")
+    pub fn sniff(bytes: &[u8]) -> bool {
+        bytes.starts_with(Self::PNG_SIGNATURE) || bytes.starts_with(Self::JPEG_SIGNATURE)
     }
 
-    /// Reads a PNG or JPEG, turned as its EXIF orientation says. Refused when it has more than [`MAX_PIXELS`] pixels, before
-    /// any memory is taken for them.
+    /// Reads a PNG or JPEG and applies its EXIF orientation.
     ///
     /// # Errors
-    /// [`Error::Decode`] for other files and damaged ones, [`Error::TooLarge`].
+    /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above [`MAX_PIXELS`] pixels, before any memory is
+    /// allocated for them.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
-        if Self::is_one(bytes) { Self::decode(bytes, true) } else { Err(unknown("it is neither a PNG nor a JPEG")) }
+        if Self::sniff(bytes) { Self::decode(bytes, true) } else { Err(undecodable("neither a PNG nor a JPEG")) }
     }
 
-    /// Reads an image that is part of a drawing (PNG, JPEG, GIF or WebP), its pixels as they are stored, as SVG renderers
-    /// take them; of an animation, the first.
+    /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) without applying its orientation, as SVG renderers do. Takes the
+    /// first image of an animation.
     ///
     /// # Errors
-    /// As [`Picture::read`].
+    /// As for [`Picture::read`].
     pub fn read_stored(bytes: &[u8]) -> Result<Self, Error> {
         Self::decode(bytes, false)
     }
 
     fn decode(bytes: &[u8], upright: bool) -> Result<Self, Error> {
-        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(unknown)?;
-        // The number of pixels is what is limited, below.
+        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(undecodable)?;
+        // The number of pixels is limited below instead.
         reader.no_limits();
-        let mut decoder = reader.into_decoder().map_err(unknown)?;
+        let mut decoder = reader.into_decoder().map_err(undecodable)?;
         let (width, height) = decoder.dimensions();
         if u64::from(width) * u64::from(height) > u64::from(MAX_PIXELS) {
             return Err(Error::TooLarge { width: f64::from(width), height: f64::from(height) });
         }
         let profile = decoder.icc_profile().ok().flatten();
         let orientation = decoder.orientation().ok().filter(|_| upright).unwrap_or(Orientation::NoTransforms);
-        let mut image = DynamicImage::from_decoder(decoder).map_err(unknown)?;
+        let mut image = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
         image.apply_orientation(orientation);
         let image = image.into_rgba8();
         let mut pixmap = new_pixmap(f64::from(image.width()), f64::from(image.height()))?;
@@ -73,10 +80,10 @@ impl Picture {
         Ok(Self { pixmap, profile })
     }
 
-    /// Writes it.
+    /// Encodes the picture.
     ///
     /// # Errors
-    /// [`Error::Encode`], such as for a JPEG with more than 65535 pixels along a side.
+    /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.
     pub fn write(&self, format: PictureFormat) -> Result<Vec<u8>, Error> {
         let mut out = Vec::new();
         let profile = self.profile.clone();
@@ -90,7 +97,7 @@ impl Picture {
                 self.encode(encoder, profile, &pixels.collect::<Vec<u8>>(), ExtendedColorType::Rgba8)?;
             }
             PictureFormat::Jpeg => {
-                /// Artefacts are hard to see from here on.
+                /// Artefacts are hard to see at this quality.
                 const QUALITY: u8 = 92;
                 let pixels = self.pixmap.pixels().iter().flat_map(|p| {
                     let white = u8::MAX - p.alpha();
@@ -119,7 +126,7 @@ impl Picture {
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "for map_err")]
-fn unknown(why: impl ToString) -> Error {
+fn undecodable(why: impl ToString) -> Error {
     Error::Decode(why.to_string())
 }
 
@@ -136,16 +143,16 @@ mod tests {
     }
 
     #[test]
-    fn png_keeps_all() {
+    fn png_is_lossless() {
         let bytes = half_red().write(PictureFormat::Png).unwrap();
-        assert!(Picture::is_one(&bytes));
+        assert!(Picture::sniff(&bytes));
         assert_eq!(Picture::read(&bytes).unwrap(), half_red());
     }
 
     #[test]
     fn jpeg_is_on_white() {
         let bytes = half_red().write(PictureFormat::Jpeg).unwrap();
-        assert!(Picture::is_one(&bytes));
+        assert!(Picture::sniff(&bytes));
         let back = Picture::read(&bytes).unwrap();
         let at = |x| back.pixmap.pixel(x, 4).unwrap();
         assert!(at(2).red() > 240 && at(2).green() < 20 && at(13).green() > 240);
@@ -153,9 +160,9 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_held_upright_is_understood() {
+    fn orientation_is_applied() {
         let mut bytes = half_red().write(PictureFormat::Jpeg).unwrap();
-        // APP1 with one entry, orientation (0x0112) = 6: the first row is the right side.
+        // Add an APP1 segment with orientation (0x0112) = 6: the first row is the right side.
         let exif = b"\xff\xe1\x00\x22Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
         bytes.splice(2..2, exif.iter().copied());
         let back = Picture::read(&bytes).unwrap().pixmap;

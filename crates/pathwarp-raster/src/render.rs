@@ -1,44 +1,42 @@
-//! A resolved SVG tree to pixels, at a chosen size and within a fixed budget.
+//! Renders a resolved SVG tree at a chosen size.
 
-use crate::Error;
+use crate::error::Error;
+use crate::pixmap::new_pixmap;
 use tiny_skia::{Color, Pixmap, Transform};
 
-/// The largest picture this crate makes or reads, in pixels: 2^28, one gibibyte of memory.
+/// Excess over a whole number of pixels that does not start another row.
 ///
-/// Larger pictures are almost always a unit mistaken; they would fail much later, by running out of memory.
-pub const MAX_PIXELS: u32 = 1 << 28;
-
-/// A drawing's size may miss a whole number by this much (in pixels) before another row of pixels is begun for it.
-///
-/// Sizes that come from physical units (`210mm`) carry rounding errors; a row that is covered by a thousandth shows
-/// nothing but a faint line.
+/// Sizes in physical units (`210mm`) carry rounding errors, and a row that is covered by a thousandth shows only a faint line.
 const ROUNDING_SLACK: f64 = 1e-3;
 
-/// How large a picture becomes. The aspect ratio is always the drawing's own.
+/// The size of a picture. It always keeps the aspect ratio of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Size {
     /// One pixel per CSS pixel of the drawing's `width` and `height`.
     #[default]
     Native,
-    /// This many pixels wide.
+    /// A width in pixels.
     Width(u32),
-    /// This many pixels high.
+    /// A height in pixels.
     Height(u32),
-    /// The native size times a factor.
+    /// A factor on the native size.
     Scale(f32),
 }
 
-/// How a drawing is rendered.
+/// Options for rendering a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RenderOptions {
     /// The size of the picture.
     pub size: Size,
-    /// What lies behind the drawing; transparent when `None`.
+    /// Colour behind the drawing; `None` for transparent.
     pub background: Option<Color>,
 }
 
 impl RenderOptions {
     /// Renders `tree` with these options.
+    ///
+    /// # Errors
+    /// The size is zero, not a positive number, or exceeds [`MAX_PIXELS`](crate::MAX_PIXELS).
     pub fn render(&self, tree: &usvg::Tree) -> Result<Pixmap, Error> {
         let native = (f64::from(tree.size().width()), f64::from(tree.size().height()));
         let (width, height, scale) = self.size.resolve(native)?;
@@ -52,12 +50,15 @@ impl RenderOptions {
 }
 
 /// Renders `tree` on a transparent background.
+///
+/// # Errors
+/// As for [`RenderOptions::render`].
 pub fn render(tree: &usvg::Tree, size: Size) -> Result<Pixmap, Error> {
     RenderOptions { size, background: None }.render(tree)
 }
 
 impl Size {
-    /// The picture's width and height, and the scale from the drawing's pixels to the picture's.
+    /// Width and height of the picture, and the scale from pixels of the drawing to pixels of the picture.
     fn resolve(self, (native_width, native_height): (f64, f64)) -> Result<(f64, f64, f32), Error> {
         let scale = match self {
             Self::Native => 1.0,
@@ -77,19 +78,6 @@ impl Size {
         let scale = scale as f32;
         Ok((width, height, scale))
     }
-}
-
-/// A transparent picture, refused when it would be empty or larger than [`MAX_PIXELS`].
-pub(crate) fn new_pixmap(width: f64, height: f64) -> Result<Pixmap, Error> {
-    if !(width.is_finite() && height.is_finite()) || width * height > f64::from(MAX_PIXELS) {
-        return Err(Error::TooLarge { width, height });
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most MAX_PIXELS; casts saturate")]
-    let (whole_width, whole_height) = (width as u32, height as u32);
-    if whole_width == 0 || whole_height == 0 {
-        return Err(Error::Empty { width: whole_width, height: whole_height });
-    }
-    Pixmap::new(whole_width, whole_height).ok_or(Error::TooLarge { width, height })
 }
 
 #[cfg(test)]
@@ -122,14 +110,14 @@ mod tests {
     }
 
     #[test]
-    fn a_hair_over_a_whole_size_is_no_new_row() {
+    fn a_tiny_excess_adds_no_row() {
         let a4 = tree(r#"<svg xmlns="http://www.w3.org/2000/svg" width="25.4mm" height="50.8mm"/>"#);
         let pixmap = render(&a4, Size::Native).unwrap();
         assert_eq!((pixmap.width(), pixmap.height()), (96, 192));
     }
 
     #[test]
-    fn draws_what_is_there() {
+    fn draws_the_shape() {
         let pixmap = render(&half_red(), Size::Scale(2.0)).unwrap();
         let at = |x, y| pixmap.pixel(x, y).unwrap();
         assert_eq!((at(29, 39).red(), at(29, 39).alpha()), (255, 255));
@@ -145,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_sizes_are_refused() {
+    fn impossible_sizes_are_errors() {
         let refused = |size| render(&half_red(), size).unwrap_err();
         assert_eq!(refused(Size::Width(0)), Error::Empty { width: 0, height: 1 });
         assert_eq!(refused(Size::Height(0)), Error::Empty { width: 1, height: 0 });

@@ -29,7 +29,7 @@ impl Input {
             return Err(Failure::usage(format!("--into copies an XCF with its paths warped; {file} is not an XCF")));
         }
         let bytes = bytes(input)?;
-        if Picture::is_one(&bytes) {
+        if Picture::sniff(&bytes) {
             return Ok(Self::Picture(PictureArtwork::read(&bytes, input, options, target)?));
         }
         Ok(Self::Svg(Box::new(SvgArtwork::read(&bytes, input, options, target)?)))

@@ -1,31 +1,34 @@
-//! A drawing and its warped result side by side, for people.
+//! Draws a drawing and its warped result side by side.
 //!
-//! Both panels show the same part of the plane at the same scale, so that a shape which did not move is at the same
-//! place in both. That part is the smallest box around both pages and all overlays. Artwork may spill over the edge of
-//! its page: there it is shown on the grey around the page, as far as the panel goes.
+//! Both panels show the same part of the plane at the same scale, so that a shape that did not move is in the same place in
+//! both. That part is the bounding box of both pages and all overlays. Artwork outside its page is shown on the grey around it.
 
+mod brush;
 mod overlay;
+mod skia;
 
 pub use overlay::{Overlay, OverlayKind};
 
-use crate::{Error, render::new_pixmap};
+use crate::error::Error;
+use crate::pixmap::new_pixmap;
 use kurbo::{Affine, Rect};
 use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, PixmapPaint, Transform};
 
-/// Width and height of a panel's box, in pixels, unless the caller says otherwise.
+/// Default length of the longer side of a panel, in pixels.
 const DEFAULT_PANEL: u32 = 600;
 
-/// The panel size at which overlays are drawn at their nominal width; at other sizes they scale along.
+/// The panel size at which a nominal pixel is a pixel; overlays scale with the panel.
 const NOMINAL_PANEL: f32 = 600.0;
 
-/// A panel narrower than this (in nominal pixels) is widened: a very flat drawing is still a picture.
+/// Minimum width and height of a panel, in nominal pixels, so that a flat drawing is still visible.
 const LEAST_SIDE: f64 = 48.0;
 
-/// Space around the view within its panel and between the panels, in nominal pixels.
+/// Space around the view within its panel, in nominal pixels.
 const MARGIN: f64 = 20.0;
+/// Space between the panels, in nominal pixels.
 const GAP: f64 = 4.0;
 
-/// One drawing, with what is drawn on top of it.
+/// A drawing with its overlays.
 #[derive(Debug, Clone)]
 pub struct Panel<'a> {
     tree: &'a usvg::Tree,
@@ -35,25 +38,25 @@ pub struct Panel<'a> {
 }
 
 impl<'a> Panel<'a> {
-    /// A panel showing `tree`.
+    /// Creates a panel that shows `tree`.
     ///
-    /// A tree is in pixels of the outermost viewport; page and overlays are in root user units, the units of the
-    /// `viewBox`. `user_to_px` takes the latter to the former. `page` is the drawing's sheet of paper: its `viewBox`, or
-    /// the box of its `width` and `height`.
+    /// The tree is in pixels of the outermost viewport; page and overlays are in root user units, the units of the `viewBox`.
+    /// `user_to_px` maps the latter to the former. `page` is the page of the drawing: its `viewBox`, or the box of its `width`
+    /// and `height`.
     pub fn new(tree: &'a usvg::Tree, user_to_px: Affine, page: Rect) -> Self {
         Self { tree, user_to_px, page, overlays: Vec::new() }
     }
 
-    /// Adds something on top of the artwork and of the overlays added before.
+    /// Adds an overlay on top of the artwork and of earlier overlays.
     #[must_use]
     pub fn with(mut self, overlay: Overlay) -> Self {
         self.overlays.push(overlay);
         self
     }
 
-    /// The box around the page and all overlays, in root user units.
+    /// Bounding box of the page and all overlays, in root user units.
     fn bounds(&self) -> Rect {
-        self.overlays.iter().filter_map(Overlay::bounds).fold(self.page.abs(), |all, one| all.union(one))
+        self.overlays.iter().filter_map(Overlay::bounds).fold(self.page.abs(), |a, b| a.union(b))
     }
 }
 
@@ -83,12 +86,12 @@ pub struct Preview<'a> {
 }
 
 impl<'a> Preview<'a> {
-    /// `before` on the left, `after` on the right.
+    /// Puts `before` on the left and `after` on the right.
     pub fn new(before: Panel<'a>, after: Panel<'a>) -> Self {
         Self { before, after, panel_size: DEFAULT_PANEL, view: None }
     }
 
-    /// The longer side of each panel, in pixels; 600 unless set.
+    /// Sets the longer side of each panel in pixels; the default is 600.
     #[must_use]
     pub fn panel_size(mut self, pixels: u32) -> Self {
         self.panel_size = pixels;
@@ -102,10 +105,13 @@ impl<'a> Preview<'a> {
         self
     }
 
-    /// Draws the picture.
+    /// Draws the preview.
+    ///
+    /// # Errors
+    /// [`Error::NoView`] if there is nothing to show; [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes.
     pub fn render(&self) -> Result<Pixmap, Error> {
         let view = self.view.unwrap_or_else(|| self.before.bounds().union(self.after.bounds())).abs();
-        let layout = Layout::new(view, self.panel_size)?;
+        let layout = PanelLayout::new(view, self.panel_size)?;
         let mut picture = new_pixmap(2.0 * layout.width + layout.gap, layout.height)?;
         picture.fill(Color::from_rgba8(0xc4, 0xc8, 0xcf, 0xff));
         let second = layout.width + layout.gap;
@@ -119,18 +125,18 @@ impl<'a> Preview<'a> {
     }
 }
 
-/// How the view falls on the pixels of a panel. Sizes are whole numbers of pixels.
-struct Layout {
+/// Placement of the view on a panel. Sizes are whole numbers of pixels.
+struct PanelLayout {
     width: f64,
     height: f64,
     gap: f64,
-    /// Root user units to pixels of the panel.
+    /// Maps root user units to pixels of the panel.
     to_panel: Affine,
-    /// Real pixels per nominal pixel: the widths of lines and dots scale with the panel.
+    /// Pixels per nominal pixel.
     unit: f32,
 }
 
-impl Layout {
+impl PanelLayout {
     fn new(view: Rect, panel_size: u32) -> Result<Self, Error> {
         if !view.is_finite() {
             return Err(Error::NoView("the page or an overlay is not finite"));
@@ -157,12 +163,12 @@ impl Layout {
     fn draw(&self, panel: &Panel<'_>) -> Result<Pixmap, Error> {
         let determinant = panel.user_to_px.determinant();
         if !determinant.is_finite() || determinant == 0.0 {
-            return Err(Error::NoView("the map from user units to pixels cannot be undone"));
+            return Err(Error::NoView("the map from user units to pixels is singular"));
         }
         let mut picture = new_pixmap(self.width, self.height)?;
         picture.fill(Color::from_rgba8(0xec, 0xee, 0xf1, 0xff));
         self.draw_page(panel.page, &mut picture);
-        let tree_to_panel = transform(self.to_panel * panel.user_to_px.inverse());
+        let tree_to_panel = skia::transform(self.to_panel * panel.user_to_px.inverse());
         resvg::render(panel.tree, tree_to_panel, &mut picture.as_mut());
         for overlay in &panel.overlays {
             overlay.draw(self.to_panel, self.unit, &mut picture);
@@ -170,14 +176,14 @@ impl Layout {
         Ok(picture)
     }
 
-    /// The white sheet, with a soft edge to the lower right.
+    /// Draws the white page with a soft shadow to the lower right.
     fn draw_page(&self, page: Rect, picture: &mut Pixmap) {
         let sheet = self.to_panel.transform_rect_bbox(page);
         for (offset, color) in
             [(2.5, Color::from_rgba8(0, 0, 0, 14)), (1.2, Color::from_rgba8(0, 0, 0, 26)), (0.0, Color::WHITE)]
         {
             let shifted = sheet + kurbo::Vec2::new(offset, offset) * f64::from(self.unit);
-            let [left, top, right, bottom] = [shifted.x0, shifted.y0, shifted.x1, shifted.y1].map(to_f32);
+            let [left, top, right, bottom] = [shifted.x0, shifted.y0, shifted.x1, shifted.y1].map(skia::to_f32);
             if let Some(rect) = tiny_skia::Rect::from_ltrb(left, top, right, bottom) {
                 let mut paint = Paint::default();
                 paint.set_color(color);
@@ -186,17 +192,6 @@ impl Layout {
             }
         }
     }
-}
-
-/// The renderer's own precision.
-#[expect(clippy::cast_possible_truncation, reason = "pixels need no more")]
-fn to_f32(x: f64) -> f32 {
-    x as f32
-}
-
-fn transform(affine: Affine) -> Transform {
-    let [sx, ky, kx, sy, tx, ty] = affine.as_coeffs().map(to_f32);
-    Transform::from_row(sx, ky, kx, sy, tx, ty)
 }
 
 #[cfg(test)]
@@ -252,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn hopeless_views_are_refused() {
+    fn empty_and_infinite_views_are_errors() {
         let tree = tree();
         let page = |rect| Panel::new(&tree, Affine::IDENTITY, rect);
         let no_view = |preview: Preview<'_>| matches!(preview.render(), Err(Error::NoView(_)));

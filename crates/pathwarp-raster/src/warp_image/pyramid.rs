@@ -1,21 +1,21 @@
-//! A picture, half of it, a quarter, and so on.
+//! A picture at full size, half, a quarter, and so on.
 
-use super::{Channels, channels, color};
+use super::color::{Channels, add, channels, color};
 use std::sync::OnceLock;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
-/// Weights of the eight pixels around the middle of a pair, from the pair outwards: the cubic of [`super::sample`] at
-/// (k + ½)/2, stretched by two.
+/// Weights of the eight pixels around the middle of a pair, from the inside out: the cubic of [`super::sample`], stretched by two,
+/// at (k + ½)/2.
 const HALVING: [f32; 4] = [0.433_593_75, 0.113_281_25, -0.035_156_25, -0.011_718_75];
 
-/// One picture of the pyramid.
+/// A picture of the pyramid.
 pub(super) struct Level<'a> {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) pixels: std::borrow::Cow<'a, [PremultipliedColorU8]>,
 }
 
-/// The pictures; those below the first are made when they are first asked for.
+/// The pictures. Those after the first are computed on first use.
 pub(super) struct Pyramid<'a> {
     source: Level<'a>,
     halves: Vec<OnceLock<Level<'static>>>,
@@ -31,12 +31,12 @@ impl<'a> Pyramid<'a> {
         }
     }
 
-    /// The deepest level.
+    /// Index of the deepest level.
     pub(super) fn deepest(&self) -> usize {
         self.halves.len()
     }
 
-    /// The picture halved `level` times.
+    /// Returns the picture halved `level` times.
     #[inline]
     pub(super) fn level(&self, level: usize) -> &Level<'a> {
         match level.checked_sub(1).and_then(|above| Some((above, self.halves.get(above)?))) {
@@ -52,7 +52,7 @@ impl Level<'_> {
         channels(self.pixels[y * self.width + x])
     }
 
-    /// Half as wide and high, one row of sums at a time.
+    /// Halves width and height, summing columns for one row at a time.
     fn half(&self) -> Level<'static> {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut pixels = Vec::with_capacity(width * height);
@@ -77,12 +77,5 @@ impl Level<'_> {
             }
         }
         Level { width, height, pixels: pixels.into() }
-    }
-}
-
-#[inline]
-pub(super) fn add(sum: &mut Channels, pixel: Channels, weight: f32) {
-    for (s, c) in sum.iter_mut().zip(pixel) {
-        *s += weight * c;
     }
 }

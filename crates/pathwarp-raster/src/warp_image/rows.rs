@@ -1,41 +1,41 @@
-//! A tile's pixels, row by row, in the form that the compiler turns into vector instructions. The vector unit's width changes
-//! nothing in the results: every pixel's sums are taken in the same order.
+//! Computes the pixels of a tile row by row, in loops that the compiler vectorises. Results do not depend on the vector width: the
+//! order of summation for each pixel is fixed.
 
-use super::TILE;
-use super::block::{BYTES, Block, Firsts, Layout, OUTSIDE};
+use super::area::TILE;
+use super::block::{BYTES, ChannelOrder, Firsts, OUTSIDE, SourceBlock};
 use super::sample::Footprint;
-use super::trace::{Row, Trace};
+use super::trace::{Trace, TraceRow};
 
-/// Eight pixels a side hold a kernel that reaches two pixels, stretched by less than this.
+/// Maximum stretch at which a kernel of radius two fits into eight pixels a side.
 const MOST_STRETCH: f64 = 1.99;
-/// The off-diagonal entry of the footprint's matrix that counts as none: the kernel is then stretched along the picture's
-/// own axes.
+/// Off-diagonal entry of the footprint's matrix up to which the kernel is stretched along the axes of the picture.
 const MOST_SKEW: f64 = 0.1;
-/// Places along a side of a tile where the stretch is looked at.
-const LOOKS: usize = 5;
-/// How a tile's pixels are made.
+/// Sample points of the stretch along a side of a tile.
+const SAMPLES: usize = 5;
+
+/// The method for the pixels of a tile.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Way {
-    /// Nothing shrinks: four pixels a side.
-    Between,
-    /// A little shrinks, along the picture's own axes: up to eight.
+pub(super) enum TileMethod {
+    /// Nothing shrinks: interpolate between four pixels a side.
+    Interpolated,
+    /// Slight shrinking along the axes of the picture: up to eight pixels a side.
     Stretched,
-    /// A little shrinks, along other axes.
-    Skewed(Shapes),
-    /// Each pixel by itself.
+    /// Slight shrinking along other axes.
+    Skewed(CornerShapes),
+    /// Compute each pixel separately.
     Each,
 }
 
-/// The inverse of the footprint's matrix in a tile's corners, left to right, top to bottom: it changes little in between.
+/// The inverse of the footprint's matrix in the corners of a tile, left to right, top to bottom. It changes little in between.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shapes([[[f32; 3]; 2]; 2]);
+pub(super) struct CornerShapes([[[f32; 3]; 2]; 2]);
 
-impl Shapes {
+impl CornerShapes {
     fn of(trace: &Trace) -> Self {
         Self([0.0, 1.0].map(|v| [0.0, 1.0].map(|u| Footprint::inverse_matrix(&trace.at(u, v)).map(|m| m as f32))))
     }
 
-    /// In row `j`, in its first column and from column to column.
+    /// Interpolates for row `j`: the entries in the first column, and their change from column to column.
     #[inline(always)]
     pub(super) fn row(&self, j: f32, area: [f32; 2]) -> [[f32; 3]; 2] {
         let between = |a: f32, b: f32, t: f32| a + (b - a) * t;
@@ -46,27 +46,28 @@ impl Shapes {
     }
 }
 
-impl Way {
-    /// How many pixels around a tile's places its kernels reach.
+impl TileMethod {
+    /// Reach of the kernels around the places of a tile, in pixels.
     #[inline(always)]
     pub(super) fn margin(&self) -> f64 {
         match self {
-            Self::Between => 3.0,
+            Self::Interpolated => 3.0,
             _ => 6.0,
         }
     }
 
-    /// How they read a block.
+    /// The memory layout that the method reads.
     #[inline(always)]
-    pub(super) fn layout(&self) -> Layout {
-        if matches!(self, Self::Skewed(_)) { Layout::Channels } else { Layout::Pixels }
+    pub(super) fn layout(&self) -> ChannelOrder {
+        if matches!(self, Self::Skewed(_)) { ChannelOrder::Planar } else { ChannelOrder::Interleaved }
     }
 
+    /// Chooses the method for a tile.
     pub(super) fn of(trace: &Trace) -> Self {
-        let share = |k: usize| k as f64 / (LOOKS - 1) as f64;
+        let share = |k: usize| k as f64 / (SAMPLES - 1) as f64;
         let (mut shrinks, mut skew) = (false, 0.0_f64);
-        for k in 0..LOOKS * LOOKS {
-            let jet = trace.at(share(k % LOOKS), share(k / LOOKS));
+        for k in 0..SAMPLES * SAMPLES {
+            let jet = trace.at(share(k % SAMPLES), share(k / SAMPLES));
             let Some(footprint) = Footprint::new(&jet) else { continue };
             let [sx, s, sy] = footprint.stretch();
             if sx.max(sy) + s.abs() > MOST_STRETCH {
@@ -75,27 +76,28 @@ impl Way {
             (shrinks, skew) = (true, skew.max(s.abs()));
         }
         match shrinks {
-            false => Self::Between,
+            false => Self::Interpolated,
             true if skew <= MOST_SKEW => Self::Stretched,
-            true => Self::Skewed(Shapes::of(trace)),
+            true => Self::Skewed(CornerShapes::of(trace)),
         }
     }
 }
 
-/// The places of a row's pixels, counted from the middle of a block's first pixel.
-struct Places {
+/// The places of the pixels of a row, measured from the centre of the first pixel of a block.
+struct RowPlaces {
     x: [f32; TILE],
     y: [f32; TILE],
 }
 
-impl Places {
+impl RowPlaces {
     #[inline(always)]
-    fn new(row: &Row, block: &Block) -> Self {
+    fn new(row: &TraceRow, block: &SourceBlock) -> Self {
         let [x, y] = block.corner.map(|c| c as f64 + 0.5);
         Self { x: cubic(row.place(0, x)), y: cubic(row.place(1, y)) }
     }
 }
 
+/// Evaluates a cubic for every column.
 #[inline(always)]
 fn cubic(c: [f32; 4]) -> [f32; TILE] {
     let mut out = [0.0; TILE];
@@ -106,18 +108,23 @@ fn cubic(c: [f32; 4]) -> [f32; TILE] {
     out
 }
 
-/// A row's pixels: where the `SIDE` × `SIDE` pixels of the block begin that each reads, and their weights.
+/// The `SIDE` × `SIDE` pixels of the block that each pixel of a row reads: the index of the first, and the weights.
 struct Taps<const SIDE: usize> {
     first: Firsts,
     x: [[f32; TILE]; SIDE],
     y: [[f32; TILE]; SIDE],
 }
 
-/// Makes the row's pixels whose part of the source is in the block; calls `other` for the others.
+/// Interpolates the pixels of a row whose source is in the block, and calls `other` for the rest.
 #[inline(always)]
-pub(super) fn between(block: &Block, row: &Row, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
+pub(super) fn interpolated(
+    block: &SourceBlock,
+    row: &TraceRow,
+    out: &mut [u8],
+    other: impl FnMut(usize) -> [u8; BYTES],
+) {
     const SIDE: usize = 4;
-    let Places { x, y } = Places::new(row, block);
+    let RowPlaces { x, y } = RowPlaces::new(row, block);
     let (mut left, mut top) = ([0.0; TILE], [0.0; TILE]);
     let mut taps = Taps { first: [0; TILE], x: [[0.0; TILE]; SIDE], y: [[0.0; TILE]; SIDE] };
     for i in 0..TILE {
@@ -129,24 +136,24 @@ pub(super) fn between(block: &Block, row: &Row, out: &mut [u8], other: impl FnMu
             taps.y[k][i] = v[k];
         }
     }
-    taps.first = block.firsts(&left, &top, SIDE, Layout::Pixels);
+    taps.first = block.firsts(&left, &top, SIDE, ChannelOrder::Interleaved);
     paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
 }
 
-/// The same with the kernel stretched.
+/// Filters a row like [`interpolated`] with a kernel stretched along the axes of the picture.
 #[inline(always)]
-pub(super) fn stretched(block: &Block, row: &Row, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
+pub(super) fn stretched(block: &SourceBlock, row: &TraceRow, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
     const SIDE: usize = 8;
-    let Places { x, y } = Places::new(row, block);
+    let RowPlaces { x, y } = RowPlaces::new(row, block);
     let (left, wx) = kernels(&x, &stretches(row, 0));
     let (top, wy) = kernels(&y, &stretches(row, 1));
-    let taps = Taps { first: block.firsts(&left, &top, SIDE, Layout::Pixels), x: wx, y: wy };
+    let taps = Taps { first: block.firsts(&left, &top, SIDE, ChannelOrder::Interleaved), x: wx, y: wy };
     paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
 }
 
 #[inline(always)]
 fn paint<const SIDE: usize, const N: usize>(
-    block: &Block,
+    block: &SourceBlock,
     taps: &Taps<SIDE>,
     out: &mut [u8],
     other: impl FnMut(usize) -> [u8; BYTES],
@@ -172,10 +179,10 @@ fn paint<const SIDE: usize, const N: usize>(
     finish(&colors, &taps.first, out, other);
 }
 
-/// Writes a row's colours, the nearest there are as [`super::color`], and those of the pixels that were left out.
+/// Writes the colours of a row, rounded as by [`super::color::color`], and calls `other` for pixels outside the block.
 #[inline(always)]
 fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut other: impl FnMut(usize) -> [u8; BYTES]) {
-    // The unit of a number's last bit at this size is 1: adding it rounds, and leaves a whole number in the low bits.
+    // At this magnitude the last bit has the value 1: adding it rounds and leaves an integer in the low bits.
     const WHOLE: f32 = (1_u32 << 23) as f32;
     let mut bytes = [[0; BYTES]; TILE];
     for (bytes, color) in bytes.iter_mut().zip(colors) {
@@ -189,18 +196,18 @@ fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut oth
     }
 }
 
-/// The same with the kernel stretched along any axes. `shape`: of the row, as [`Shapes::row`] has it.
+/// Filters a row like [`interpolated`] with a kernel stretched along any axes. `shape` comes from [`CornerShapes::row`].
 #[inline(always)]
 pub(super) fn skewed(
-    block: &Block,
-    row: &Row,
+    block: &SourceBlock,
+    row: &TraceRow,
     shape: [[f32; 3]; 2],
     out: &mut [u8],
     other: impl FnMut(usize) -> [u8; BYTES],
 ) {
     const SIDE: usize = 8;
     const MOST: f32 = MOST_STRETCH as f32;
-    let Places { x, y } = Places::new(row, block);
+    let RowPlaces { x, y } = RowPlaces::new(row, block);
     let mut shapes = [[0.0; TILE]; 3];
     for (k, values) in shapes.iter_mut().enumerate() {
         for (i, v) in values.iter_mut().enumerate() {
@@ -214,7 +221,7 @@ pub(super) fn skewed(
         let (wide, high) = (2.0 * least((iy + k.abs()) / det, MOST), 2.0 * least((ix + k.abs()) / det, MOST));
         (left[i], top[i], bottom[i]) = ((x[i] - wide).ceil(), (y[i] - high).ceil(), y[i] + high);
     }
-    let first = block.firsts(&left, &top, SIDE, Layout::Channels);
+    let first = block.firsts(&left, &top, SIDE, ChannelOrder::Planar);
     let mut colors = [[0.0; BYTES]; TILE];
     let n = out.len() / BYTES;
     for (i, color) in colors.iter_mut().enumerate().take(n) {
@@ -254,38 +261,38 @@ pub(super) fn skewed(
     finish(&colors, &first, out, other);
 }
 
-/// The smaller one: one instruction, as no number is NaN here.
+/// The smaller of two numbers; a single instruction, since neither is NaN.
 #[inline(always)]
 fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger one.
+/// The larger of two numbers.
 #[inline(always)]
 fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// The sum, in an order that suits vectors.
+/// The sum, in an order that suits vector units.
 #[inline(always)]
 fn sum(v: &[f32; 8]) -> f32 {
     ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]))
 }
 
-/// How many pixels of the source a pixel of the row covers along one coordinate, at least one.
+/// Source pixels per pixel of the row along one coordinate, at least one.
 #[inline(always)]
-fn stretches(row: &Row, coordinate: usize) -> [f32; TILE] {
+fn stretches(row: &TraceRow, coordinate: usize) -> [f32; TILE] {
     let c = row.place(coordinate, 0.0);
     let (along, down) = (cubic([c[1], 2.0 * c[2], 3.0 * c[3], 0.0]), cubic(row.down(coordinate)));
     let mut out = [0.0; TILE];
     for (o, (a, b)) in out.iter_mut().zip(along.iter().zip(&down)) {
-        // Tiles with more are not made this way.
+        // Tiles with a larger stretch use another method.
         *o = least(most((a * a + b * b).sqrt(), 1.0), MOST_STRETCH as f32);
     }
     out
 }
 
-/// Catmull and Rom's weights of the four pixels around a place that lies `t` behind the second.
+/// Catmull-Rom weights of the four pixels around a place at distance `t` after the second.
 #[inline(always)]
 fn weights(t: f32) -> [f32; 4] {
     const CUBED: [f32; 4] = [-0.5, 1.5, -1.5, 0.5];
@@ -299,7 +306,7 @@ fn weights(t: f32) -> [f32; 4] {
     out
 }
 
-/// For every place, the first of the eight pixels that its stretched kernel reaches, and their weights, whose sum is one.
+/// Returns the first of the eight pixels under the stretched kernel of every place, and their weights, which sum to one.
 #[inline(always)]
 fn kernels(places: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; TILE]; 8]) {
     let (mut first, mut weights, mut total) = ([0.0; TILE], [[0.0; TILE]; 8], [0.0; TILE]);
@@ -320,7 +327,7 @@ fn kernels(places: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; 
     (first, weights)
 }
 
-/// Catmull and Rom's cubic without branches: its outer piece, which is zero at 2, and what the inner one has more,
+/// The Catmull-Rom cubic without branches: its outer piece, which is zero at 2, plus the excess of the inner piece,
 /// (1 − t)²(2t − 1).
 #[inline(always)]
 fn catmull_rom(place: f32) -> f32 {
@@ -334,14 +341,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unstretched_the_kernel_is_the_weights() {
+    fn the_unstretched_kernel_equals_the_weights() {
         let mut places = [0.0; TILE];
         for (i, p) in places.iter_mut().enumerate() {
             *p = 7.0 + i as f32 / TILE as f32;
         }
         let (first, kernels) = kernels(&places, &[1.0; TILE]);
         for (i, p) in places.into_iter().enumerate() {
-            // On a whole place the first of five pixels has no weight.
+            // At an integer place the first of five pixels has weight zero.
             let skipped = if p == 7.0 { 1 } else { 0 };
             assert_eq!(first[i] + skipped as f32, 6.0);
             for (k, w) in weights(p - 7.0).into_iter().enumerate() {
@@ -351,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn without_branches_the_cubic_is_the_same() {
+    fn the_branchless_cubic_is_the_same() {
         for k in -300..300 {
             let t = 0.01 * k as f32;
             assert!((catmull_rom(t) - super::super::sample::cubic(t)).abs() < 2e-6, "{t}");

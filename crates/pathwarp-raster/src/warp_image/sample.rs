@@ -1,24 +1,24 @@
-//! One pixel of the result: what it covers of the source, averaged.
+//! Computes one pixel of the result as the average over its footprint in the source.
 
-use super::pyramid::{Level, Pyramid, add};
-use super::{Channels, color};
+use super::color::{Channels, add, channels, color};
+use super::pyramid::{Level, Pyramid};
 use pathwarp::map::Jet;
 use tiny_skia::PremultipliedColorU8;
 
-/// How much longer than wide a footprint may be; longer ones are widened, which blurs them.
+/// Maximum aspect ratio of a footprint. Longer ones are widened, which blurs them.
 const LONGEST: f64 = 16.0;
-/// A level of the pyramid serves from this many of its pixels for one of the result to twice as many.
+/// Minimum number of pixels of a pyramid level per pixel of the result, along each side; the maximum is twice as many.
 const LEAST_SHRINK: f64 = 2.0;
-/// Stretching by less is rounding.
+/// Stretches below this are rounding errors.
 const SAME: f64 = 1e-9;
 
-/// The colour of a pixel of the result; `jet` goes from its pixels to the source's.
+/// Returns the colour of a pixel of the result. `jet` maps pixels of the result to pixels of the source.
 #[inline]
 pub(super) fn pixel(pyramid: &Pyramid<'_>, jet: &Jet) -> PremultipliedColorU8 {
     let source = pyramid.level(0);
     let (width, height) = (source.width as f64, source.height as f64);
     let share = covered(jet.p.x, width, jet.dx.x.hypot(jet.dy.x)) * covered(jet.p.y, height, jet.dx.y.hypot(jet.dy.y));
-    // From nowhere, the share is no number.
+    // Without an inverse the share is NaN.
     if share.is_nan() || share <= 0.0 {
         return PremultipliedColorU8::TRANSPARENT;
     }
@@ -33,14 +33,14 @@ pub(super) fn pixel(pyramid: &Pyramid<'_>, jet: &Jet) -> PremultipliedColorU8 {
     color(sum)
 }
 
-/// How much of a pixel lies between the source's edges 0 and `size`; `rate` source pixels go to one of the result.
+/// The share of a pixel between the edges 0 and `size` of the source, with `rate` source pixels per pixel of the result.
 #[inline]
 fn covered(at: f64, size: f64, rate: f64) -> f64 {
     let inside = |depth: f64| (depth / rate + 0.5).clamp(0.0, 1.0);
     inside(at) + inside(size - at) - 1.0
 }
 
-/// Catmull and Rom's cubic: E. Catmull, R. Rom, *A class of local interpolating splines*, 1974; R. G. Keys, *Cubic
+/// The Catmull-Rom cubic: E. Catmull, R. Rom, *A class of local interpolating splines*, 1974; R. G. Keys, *Cubic
 /// convolution interpolation for digital image processing*, 1981, with a = −½.
 #[inline]
 pub(super) fn cubic(t: f32) -> f32 {
@@ -54,14 +54,14 @@ pub(super) fn cubic(t: f32) -> f32 {
     }
 }
 
-/// The cubic's weights of the four pixels around a place that lies `t` behind the second.
+/// Weights of the four pixels around a place at distance `t` after the second.
 #[inline]
 fn weights(t: f32) -> [f32; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [-0.5 * t3 + t2 - 0.5 * t, 1.5 * t3 - 2.5 * t2 + 1.0, -1.5 * t3 + 2.0 * t2 + 0.5 * t, 0.5 * t3 - 0.5 * t2]
 }
 
-/// The source between its pixels; beyond the outermost ones their colours go on.
+/// Interpolates the source; the colours of its outermost pixels extend beyond its edge.
 #[inline]
 fn interpolated(source: &Level<'_>, x: f64, y: f64) -> Channels {
     let (x, y) = (x - 0.5, y - 0.5);
@@ -75,7 +75,7 @@ fn interpolated(source: &Level<'_>, x: f64, y: f64) -> Channels {
             let row = &source.pixels[(top + j) * source.width + left..][..4];
             let mut part = [0.0; 4];
             for (pixel, w) in row.iter().zip(wx) {
-                add(&mut part, super::channels(*pixel), w);
+                add(&mut part, channels(*pixel), w);
             }
             add(&mut sum, part, weight);
         }
@@ -90,17 +90,17 @@ fn interpolated(source: &Level<'_>, x: f64, y: f64) -> Channels {
     sum
 }
 
-/// What a pixel covers of the source where that is more than a source pixel: the symmetric matrix S that stretches a unit
-/// square as the Jacobian J does, S² = J·Jᵀ, and in no direction by less than one.
+/// The footprint of a pixel that covers more than a source pixel: the symmetric matrix S that stretches a unit square as the
+/// Jacobian J does, S² = J·Jᵀ, but by at least one in every direction.
 pub(super) struct Footprint {
-    /// The direction of the longest axis.
+    /// Direction of the longest axis.
     axis: [f64; 2],
     pub(super) longest: f64,
     shortest: f64,
 }
 
 impl Footprint {
-    /// `None` where no direction shrinks.
+    /// Returns `None` if no direction shrinks.
     #[inline]
     pub(super) fn new(jet: &Jet) -> Option<Self> {
         let (a, c) = (jet.dx.x * jet.dx.x + jet.dy.x * jet.dy.x, jet.dx.y * jet.dx.y + jet.dy.y * jet.dy.y);
@@ -111,30 +111,30 @@ impl Footprint {
         }
         let longest = (mean + apart).sqrt();
         let shortest = (mean - apart).max(0.0).sqrt().max(1.0).max(longest / LONGEST);
-        // The eigenvector, from whichever row of the matrix is not lost in rounding.
+        // Take the eigenvector from the row of the matrix that does not suffer from cancellation.
         let axis = if a > c { [0.5 * (a - c) + apart, b] } else { [b, 0.5 * (c - a) + apart] };
         let length = axis[0].hypot(axis[1]);
         let axis = if length > 0.0 { axis.map(|v| v / length) } else { [1.0, 0.0] };
         Some(Self { axis, longest, shortest })
     }
 
-    /// The matrix S: its upper left, off-diagonal and lower right entry.
+    /// The upper left, off-diagonal and lower right entries of S.
     pub(super) fn stretch(&self) -> [f64; 3] {
         self.matrix(self.longest, self.shortest)
     }
 
-    /// The same of S⁻¹ at a jet.
+    /// The same entries of S⁻¹ for a jet.
     pub(super) fn inverse_matrix(jet: &Jet) -> [f64; 3] {
         Self::new(jet).map_or([1.0, 0.0, 1.0], |f| f.matrix(1.0 / f.longest, 1.0 / f.shortest))
     }
 
-    /// ax·axᵀ·p + (1 − ax·axᵀ)·q
+    /// The matrix ax·axᵀ·p + (1 − ax·axᵀ)·q.
     fn matrix(&self, p: f64, q: f64) -> [f64; 3] {
         let [x, y] = self.axis;
         [q + (p - q) * x * x, (p - q) * x * y, q + (p - q) * y * y]
     }
 
-    /// The weighted average around a place.
+    /// Returns the weighted average around a place.
     fn average(&self, pyramid: &Pyramid<'_>, x: f64, y: f64) -> Channels {
         let steps = (self.shortest / LEAST_SHRINK).log2().floor().max(0.0) as usize;
         let steps = steps.min(pyramid.deepest());
@@ -142,7 +142,7 @@ impl Footprint {
         let scale = 0.5_f64.powi(steps as i32);
         let (p, q) = (self.longest * scale, self.shortest * scale);
         let ([sx, s, sy], [ix, i, iy]) = (self.matrix(p, q), self.matrix(1.0 / p, 1.0 / q));
-        // Places count from the pixels' middles.
+        // Measure places from pixel centres.
         let (x, y) = (x * scale - 0.5, y * scale - 0.5);
         let (wide, high) = (2.0 * (sx.abs() + s.abs()), 2.0 * (s.abs() + sy.abs()));
         let range = |from: f64, to: f64, size: usize| {
@@ -151,7 +151,7 @@ impl Footprint {
         let (mut sum, mut total) = ([0.0; 4], 0.0);
         let (top, bottom) = range(y - high, y + high, level.height);
         if i.abs() * (wide + high) < 1e-3 {
-            // The axes are the picture's own: the columns' weights are the same in every row.
+            // The axes are those of the picture, so the weights of columns are the same in every row.
             let (left, right) = range(x - wide, x + wide, level.width);
             let mut columns = [0.0; COLUMNS];
             let n = right.saturating_sub(left).min(COLUMNS);
@@ -165,7 +165,7 @@ impl Footprint {
                 all += weight;
                 let mut part = [0.0; 4];
                 for (pixel, w) in level.pixels[row * level.width + left..][..n].iter().zip(&columns) {
-                    add(&mut part, super::channels(*pixel), *w);
+                    add(&mut part, channels(*pixel), *w);
                 }
                 add(&mut sum, part, weight);
             }
@@ -173,7 +173,7 @@ impl Footprint {
         } else {
             for row in top..bottom {
                 let dy = row as f64 - y;
-                // Where |S⁻¹·d| < 2 in both coordinates.
+                // The kernel is nonzero for |S⁻¹·d| < 2 in both coordinates.
                 let ([a0, a1], [b0, b1]) = (strip(ix, i * dy), strip(i, iy * dy));
                 let (left, right) = range(x + a0.max(b0), x + a1.min(b1), level.width);
                 if left >= right {
@@ -182,13 +182,13 @@ impl Footprint {
                 let (mut u, mut v) = ((left as f64 - x) * ix + i * dy, (left as f64 - x) * i + iy * dy);
                 for pixel in &level.pixels[row * level.width..][left..right] {
                     let weight = cubic(u as f32) * cubic(v as f32);
-                    add(&mut sum, super::channels(*pixel), weight);
+                    add(&mut sum, channels(*pixel), weight);
                     total += weight;
                     (u, v) = (u + ix, v + i);
                 }
             }
         }
-        // The place lies on the picture, so that at least about a quarter of the weights does.
+        // At least about a quarter of the weights is on the picture, since the place is.
         if total <= 0.1 * (p * q) as f32 {
             return interpolated(level, x + 0.5, y + 0.5);
         }
@@ -196,10 +196,10 @@ impl Footprint {
     }
 }
 
-/// The widest an upright footprint can be: twice the cubic's reach of two, times the largest stretch of a level.
+/// Maximum width of an upright footprint: twice the radius of the cubic, which is two, times the largest stretch of a level.
 const COLUMNS: usize = (4.0 * 2.0 * LEAST_SHRINK * LONGEST) as usize + 2;
 
-/// Where |slope·d + rest| < 2.
+/// Solves |slope·d + rest| < 2 for d.
 #[inline]
 fn strip(slope: f64, rest: f64) -> [f64; 2] {
     if slope.abs() < 1e-12 {

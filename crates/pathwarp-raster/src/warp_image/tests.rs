@@ -1,8 +1,13 @@
+use super::color::{add, channels, color};
 use super::*;
 use crate::compare;
+use kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp::map::Map;
 use pathwarp::map::{AffineMap, Chain, Formula, Homography, NewtonInverse, Real};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
+use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 fn grey(width: u32, height: u32, f: impl Fn(u32, u32) -> f64) -> Pixmap {
     let mut out = Pixmap::new(width, height).unwrap();
@@ -13,7 +18,7 @@ fn grey(width: u32, height: u32, f: impl Fn(u32, u32) -> f64) -> Pixmap {
     out
 }
 
-/// Colours and transparency of every kind, without order.
+/// Random colours and transparency.
 fn noise(width: u32, height: u32) -> Pixmap {
     let mut out = Pixmap::new(width, height).unwrap();
     let mut state = 1u32;
@@ -50,7 +55,7 @@ fn affine(source: &Pixmap, a: Affine, size: (u32, u32)) -> Pixmap {
     warped(source, &AffineMap(a), Rect::new(0.0, 0.0, f64::from(size.0), f64::from(size.1)), size)
 }
 
-/// The same by brute force: 16 × 16 places in every pixel, each with the colour of the source's pixel there.
+/// Warps by brute force: averages the nearest source pixels at 16 × 16 points of every pixel.
 fn truth(source: &Pixmap, inverse: &dyn Map, target: Rect, size: (u32, u32)) -> Pixmap {
     const N: u32 = 16;
     let mut out = Pixmap::new(size.0, size.1).unwrap();
@@ -64,7 +69,7 @@ fn truth(source: &Pixmap, inverse: &dyn Map, target: Rect, size: (u32, u32)) -> 
             );
             let p = inverse.point(q);
             if p.x >= 0.0 && p.y >= 0.0 && p.x < f64::from(source.width()) && p.y < f64::from(source.height()) {
-                pyramid::add(&mut sum, channels(source.pixel(p.x as u32, p.y as u32).unwrap()), 1.0 / (N * N) as f32);
+                add(&mut sum, channels(source.pixel(p.x as u32, p.y as u32).unwrap()), 1.0 / (N * N) as f32);
             }
         }
         *pixel = color(sum);
@@ -76,7 +81,7 @@ fn truth(source: &Pixmap, inverse: &dyn Map, target: Rect, size: (u32, u32)) -> 
 fn the_identity_changes_nothing() {
     let source = noise(150, 97);
     assert!(compare(&source, &affine(&source, Affine::IDENTITY, (150, 97))).unwrap().is_same());
-    // A map that only happens to be one, inverted by Newton's method, and pixels that are not the plane's units.
+    // An undeclared identity inverted by Newton's method, with pixels that differ from the units of the plane.
     struct Still;
     impl Formula for Still {
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
@@ -102,7 +107,7 @@ fn whole_turns_and_shifts_move_pixels() {
     let source = noise(40, 30);
     let turned = affine(&source, Affine::new([0.0, 1.0, -1.0, 0.0, 32.0, 3.0]), (34, 50));
     for (x, y) in (0..34).flat_map(|x| (0..50).map(move |y| (x, y))) {
-        // (u, v) went to (32 − v, u + 3), pixel middles too.
+        // (u, v) maps to (32 − v, u + 3), and pixel centres to pixel centres.
         let (u, v) = (i64::from(y) - 3, 31 - i64::from(x));
         let expected = (0..40).contains(&u) && (0..30).contains(&v);
         let expected = expected.then(|| source.pixel(u as u32, v as u32).unwrap());
@@ -111,7 +116,7 @@ fn whole_turns_and_shifts_move_pixels() {
 }
 
 #[test]
-fn half_a_pixel_is_the_cubics_own_average() {
+fn half_a_pixel_gives_the_average_of_the_cubic() {
     let source = grey(64, 5, |x, _| f64::from(x * 37 % 64) / 63.0);
     let shifted = affine(&source, Affine::translate((0.5, 0.0)), (65, 5));
     for x in 2..63 {
@@ -119,7 +124,7 @@ fn half_a_pixel_is_the_cubics_own_average() {
         let expected = ((-a + 9.0 * b + 9.0 * c - d) / 16.0).clamp(0.0, 255.0);
         assert!((level(&shifted, x, 2) - expected).abs() <= 0.5 + 1e-3, "{x}");
     }
-    // The edge pixels are half covered.
+    // Edge pixels are half covered.
     for x in [0, 64] {
         assert_eq!(shifted.pixel(x, 2).unwrap().alpha(), 128);
     }
@@ -127,7 +132,7 @@ fn half_a_pixel_is_the_cubics_own_average() {
 
 #[test]
 fn shrinking_does_not_alias() {
-    // A zone plate: rings that get finer outwards, down to two pixels a ring at the middle of the sides.
+    // A zone plate: rings that get finer outwards, down to two pixels per ring at the middle of the sides.
     const SIZE: u32 = 1024;
     let middle = Point::new(0.5 * f64::from(SIZE), 0.5 * f64::from(SIZE));
     let plate = |p: Point| 0.5 + 0.5 * (PI / f64::from(SIZE) * (p - middle).hypot2()).cos();
@@ -144,7 +149,7 @@ fn shrinking_does_not_alias() {
         for (x, y) in (0..size).flat_map(|x| (0..size).map(move |y| (x, y))) {
             let p = a.inverse() * Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let r = (p - middle).hypot();
-            // Rings per pixel of the result. It can hold half a ring; half as fine again, only grey is right.
+            // Rings per pixel of the result. The limit is half a ring; beyond 0.75 only grey is right.
             let frequency = r / f64::from(SIZE) * shrink;
             let seen = level(&shrunk, x, y);
             if r > 0.5 * f64::from(SIZE) - 2.0 * shrink {
@@ -162,7 +167,7 @@ fn shrinking_does_not_alias() {
             "1/{shrink} at {angle}: aliases {alias:.2}, without a filter {points:.1}; coarse rings off by {coarse:.2}"
         );
         assert!(points > 80.0, "without a filter it would alias: {points}");
-        // At most a thirtieth is left, of rings that are only just too fine.
+        // At most a thirtieth of the aliasing is left, from rings just above the limit.
         assert!(alias < points / 30.0, "1/{shrink}: {alias}");
         assert!(coarse < 5.0, "1/{shrink}: {coarse}");
     }
@@ -170,13 +175,13 @@ fn shrinking_does_not_alias() {
 
 #[test]
 fn growing_keeps_edges_sharp_and_waves_whole() {
-    // A step edge, eight times as large: from 10 to 90 % within a source pixel, as the cubic has it.
+    // A step edge, enlarged eight times, rises from 10 to 90 % within a source pixel.
     let source = grey(40, 40, |x, _| if x < 20 { 0.2 } else { 0.8 });
     let large = affine(&source, Affine::scale(8.0), (320, 320));
     let row: Vec<f64> = (0..320).map(|x| (level(&large, x, 160) / 255.0 - 0.2) / 0.6).collect();
     let rise = row.iter().filter(|v| (0.1..0.9).contains(*v)).count();
     assert!((5..=8).contains(&rise), "{rise}");
-    // Waves of eight pixels keep their height.
+    // Waves of eight pixels keep their amplitude.
     let wave = |x: f64| 0.5 + 0.4 * (2.0 * PI * x / 8.0).cos();
     let source = grey(64, 8, |x, _| wave(f64::from(x) + 0.5));
     let large = affine(&source, Affine::scale(4.0), (256, 32));
@@ -184,7 +189,7 @@ fn growing_keeps_edges_sharp_and_waves_whole() {
         let off = (level(&large, x, 16) / 255.0 - wave((f64::from(x) + 0.5) / 4.0)).abs();
         assert!(off < 0.012, "{x}: {off}");
     }
-    // The outline is as sharp as that of a rectangle: whole pixels are opaque to the very edge.
+    // The outline is sharp: all pixels up to the edge are opaque.
     assert!(large.pixels().iter().all(|p| p.alpha() == 255));
 }
 
@@ -199,7 +204,7 @@ fn checkers() -> Pixmap {
 }
 
 #[test]
-fn a_checkerboard_in_perspective_is_as_by_brute_force() {
+fn a_checkerboard_in_perspective_matches_brute_force() {
     let (source, map) = (checkers(), tilt());
     let inverse = map.inverse().unwrap();
     for (target, size) in [
@@ -210,10 +215,10 @@ fn a_checkerboard_in_perspective_is_as_by_brute_force() {
         let (ours, brute) = (warped(&source, &map, target, size), truth(&source, &*inverse, target, size));
         let difference = compare(&ours, &brute).unwrap();
         println!("{size:?}: mean {:.3}/255, over 64: {:.4}", difference.mean_abs, difference.share_over(64));
-        // A box-shaped and a cubic average differ along the edges of the fields, nowhere else.
+        // Box and cubic averages differ only along the edges of the squares.
         assert!(difference.mean_abs < 2.5, "{size:?}: {}", difference.mean_abs);
         assert!(difference.share_over(64) < 0.01, "{size:?}: {}", difference.share_over(64));
-        // The comparison can fail: half a pixel off is seen.
+        // The comparison is sensitive: an offset of half a pixel is detected.
         let off = Rect::new(target.x0 + 0.5 * target.width() / f64::from(size.0), target.y0, target.x1, target.y1);
         let shifted = compare(&warped(&source, &map, off, size), &brute).unwrap();
         assert!(shifted.mean_abs > 1.2 * difference.mean_abs, "{} {}", shifted.mean_abs, difference.mean_abs);
@@ -221,8 +226,8 @@ fn a_checkerboard_in_perspective_is_as_by_brute_force() {
 }
 
 #[test]
-fn a_long_thin_footprint_blurs_one_way_only() {
-    // Shrunk 8 times in x alone: stripes along x stay as they are.
+fn a_long_footprint_blurs_in_one_direction_only() {
+    // Shrinking 8 times in x only leaves stripes along x unchanged.
     let stripes = grey(256, 64, |_, y| f64::from(y % 2));
     let out = affine(&stripes, Affine::scale_non_uniform(0.125, 1.0), (32, 64));
     for (x, y) in (0..32).flat_map(|x| (0..64).map(move |y| (x, y))) {
@@ -234,7 +239,7 @@ fn a_long_thin_footprint_blurs_one_way_only() {
 }
 
 #[test]
-fn a_bent_picture_by_newton_is_as_by_brute_force() {
+fn a_picture_bent_by_newton_matches_brute_force() {
     struct Bend;
     impl Formula for Bend {
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
@@ -262,14 +267,14 @@ fn a_bent_picture_by_newton_is_as_by_brute_force() {
 }
 
 #[test]
-fn edges_are_covered_by_their_share_even_if_the_inverse_ends_there() {
+fn edges_are_antialiased_even_where_the_inverse_ends() {
     struct Still;
     impl Formula for Still {
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
             (x, y)
         }
     }
-    // The edge lies at 0.75 of the outer pixels, whose middles come from nowhere: a quarter of them is covered.
+    // The edge is at 0.75 of the outer pixels, whose centres have no inverse: a quarter of each is covered.
     let source = grey(70, 70, |_, _| 1.0);
     let inverse = NewtonInverse::new(Arc::new(Still), Rect::new(0.0, 0.0, 70.0, 70.0), 1e-9, [1, 1]);
     let target = Rect::new(-0.75, -0.75, 71.25, 71.25);
@@ -285,14 +290,14 @@ fn edges_are_covered_by_their_share_even_if_the_inverse_ends_there() {
     let alpha = |x, y| out.pixel(x, y).unwrap().alpha();
     for k in 1..70 {
         assert_eq!([alpha(k, 0), alpha(0, k)], [64, 64], "{k}");
-        // The far sides end a quarter into the last pixel but one.
+        // The far sides end three quarters into the last pixel but one.
         assert_eq!([alpha(k, 70), alpha(70, k)], [191, 191], "{k}");
     }
 }
 
 #[test]
-fn what_lies_beyond_the_horizon_stays_empty() {
-    // Near the horizon the picture shrinks without bound; behind it the inverse has answers that nobody asked for.
+fn nothing_is_drawn_beyond_the_horizon() {
+    // The picture shrinks without bound towards the horizon; beyond it the inverse still has values.
     let map = Homography { m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0 / 260.0, 1.0]] };
     let out = warped(&checkers(), &map, Rect::new(-500.0, -500.0, 500.0, 500.0), (400, 400));
     for (x, y) in (0..400).flat_map(|x| (0..150).map(move |y| (x, y))) {
@@ -302,7 +307,7 @@ fn what_lies_beyond_the_horizon_stays_empty() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_pixels() {
+fn results_do_not_depend_on_the_number_of_threads() {
     let (source, map) = (noise(300, 200), tilt());
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -312,7 +317,7 @@ fn any_number_of_threads_gives_the_same_pixels() {
 }
 
 #[test]
-fn an_extent_is_the_images_box() {
+fn an_extent_is_the_bounding_box_of_the_image() {
     let area = Rect::new(0.0, 0.0, 256.0, 256.0);
     let e = extent(area, Affine::IDENTITY, &tilt(), Affine::IDENTITY).unwrap();
     let off = |a: Rect, b: Rect| (a.origin() - b.origin()).hypot() + (a.size().to_vec2() - b.size().to_vec2()).hypot();

@@ -1,32 +1,32 @@
-//! Where the pixels of a tile come from, as a cubic polynomial in their column and row.
+//! Approximates the source places of the pixels of a tile by a cubic polynomial in column and row.
 //!
-//! Asking the inverse map for every pixel costs more than all the rest. Over a few pixels it is as good as its bicubic
-//! interpolant at the 4 × 4 Chebyshev points, which two dozen values of the inverse give. Nine more, at the extrema of the
-//! interpolation error's leading term, tell how far off it is; where that is more than [`NEAR`], smaller tiles are tried.
+//! Evaluating the inverse map for every pixel costs more than everything else. Over a few pixels its bicubic interpolant at the
+//! 4 × 4 Chebyshev points is as accurate. Nine further values, at the extrema of the leading term of the interpolation error,
+//! measure the error; if it exceeds [`MAX_ERROR`], smaller tiles are tried.
 
 use kurbo::{Point, Vec2};
 use pathwarp::map::Jet;
 
-/// How far off a place may be, in source pixels: a quarter of a level at the sharpest edge there is.
-const NEAR: f64 = 1.0 / 1024.0;
-/// Points along a side of the interpolation.
+/// Maximum error of a place in source pixels: a quarter of a level at the sharpest possible edge.
+const MAX_ERROR: f64 = 1.0 / 1024.0;
+/// Interpolation points along a side.
 const NODES: usize = 4;
-/// Places of a tile that are asked for.
-pub(super) const ASKED: usize = NODES * NODES + CHECKED * CHECKED;
-/// Points along a side of the check: both ends and the middle.
+/// Number of values of the inverse per tile.
+pub(super) const SAMPLES: usize = NODES * NODES + CHECKED * CHECKED;
+/// Check points along a side: both ends and the middle.
 const CHECKED: usize = 3;
 
 /// Coefficients of 1, u, u², u³.
 type Cubic = [f64; NODES];
 
-/// From values at the Chebyshev points of 0..1 to a cubic's coefficients.
-pub(super) struct Basis {
+/// Converts values at the Chebyshev points of 0..1 to the coefficients of a cubic.
+pub(super) struct ChebyshevBasis {
     nodes: [f64; NODES],
     /// The Lagrange polynomials of the nodes.
     lagrange: [Cubic; NODES],
 }
 
-impl Basis {
+impl ChebyshevBasis {
     pub(super) fn new() -> Self {
         let angle = |k: usize| (2 * k + 1) as f64 * std::f64::consts::PI / (2 * NODES) as f64;
         let nodes: [f64; NODES] = std::array::from_fn(|k| 0.5 - 0.5 * angle(k).cos());
@@ -43,18 +43,18 @@ impl Basis {
         Self { nodes, lagrange }
     }
 
-    /// The places to ask for, as shares of the tile's width and height.
+    /// The sample points as fractions of the width and height of the tile.
     pub(super) fn places(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let nodes = self.nodes.iter().flat_map(|v| self.nodes.iter().map(move |u| (*u, *v)));
         let checks = (0..CHECKED * CHECKED).map(|k| (0.5 * (k % CHECKED) as f64, 0.5 * (k / CHECKED) as f64));
         nodes.chain(checks)
     }
 
-    /// The polynomial through the answers, if it is near enough to all of them. `size`: how many pixels lie between the
-    /// first and the last column and row.
-    pub(super) fn trace(&self, answers: &[Point; ASKED], size: (f64, f64)) -> Option<Trace> {
+    /// Interpolates the values; `None` if the error at a check point is too large. `size` is the distance between the first and the
+    /// last column and row.
+    pub(super) fn interpolate(&self, values: &[Point; SAMPLES], size: (f64, f64)) -> Option<Trace> {
         let mut coefficients = [[[0.0; 2]; NODES]; NODES];
-        for (k, p) in answers[..NODES * NODES].iter().enumerate() {
+        for (k, p) in values[..NODES * NODES].iter().enumerate() {
             let (column, row) = (&self.lagrange[k % NODES], &self.lagrange[k / NODES]);
             for (line, b) in coefficients.iter_mut().zip(row) {
                 for (c, a) in line.iter_mut().zip(column) {
@@ -64,22 +64,22 @@ impl Basis {
             }
         }
         let out = Trace { coefficients, per_pixel: (1.0 / size.0, 1.0 / size.1) };
-        let checks = self.places().zip(answers).skip(NODES * NODES);
-        // From nowhere there is no distance.
-        let near = |((u, v), p): ((f64, f64), &Point)| (out.at(u, v).p - *p).hypot() <= NEAR;
-        checks.into_iter().all(near).then_some(out)
+        let checks = self.places().zip(values).skip(NODES * NODES);
+        // The distance is NaN without an inverse.
+        let is_close = |((u, v), p): ((f64, f64), &Point)| (out.at(u, v).p - *p).hypot() <= MAX_ERROR;
+        checks.into_iter().all(is_close).then_some(out)
     }
 }
 
 /// The polynomial of a tile.
 pub(super) struct Trace {
-    /// By powers of v, then of u.
+    /// Coefficients by powers of v, then of u.
     coefficients: [[[f64; 2]; NODES]; NODES],
     per_pixel: (f64, f64),
 }
 
 impl Trace {
-    /// The jet at a share of the width and height; its derivatives are per pixel.
+    /// The jet at a fraction of width and height; its derivatives are per pixel.
     pub(super) fn at(&self, u: f64, v: f64) -> Jet {
         self.row(v).jet(u)
     }
@@ -89,9 +89,9 @@ impl Trace {
         self.at(column as f64 * self.per_pixel.0, row as f64 * self.per_pixel.1)
     }
 
-    fn row(&self, v: f64) -> Row {
+    fn row(&self, v: f64) -> TraceRow {
         let [a, b, c, d] = &self.coefficients;
-        let mut out = Row { place: [[0.0; 2]; NODES], down: [[0.0; 2]; NODES], per_column: self.per_pixel.0 };
+        let mut out = TraceRow { place: [[0.0; 2]; NODES], down: [[0.0; 2]; NODES], per_column: self.per_pixel.0 };
         for i in 0..NODES {
             for k in 0..2 {
                 out.place[i][k] = ((d[i][k] * v + c[i][k]) * v + b[i][k]) * v + a[i][k];
@@ -101,21 +101,21 @@ impl Trace {
         out
     }
 
-    /// Row `j` of the tile.
-    pub(super) fn pixels(&self, j: usize) -> Row {
+    /// TraceRow `j` of the tile.
+    pub(super) fn pixels(&self, j: usize) -> TraceRow {
         self.row(j as f64 * self.per_pixel.1)
     }
 }
 
-/// One row of a tile: polynomials in the share of its width.
-pub(super) struct Row {
+/// One row of a tile: polynomials in the fraction of its width.
+pub(super) struct TraceRow {
     place: [[f64; 2]; NODES],
-    /// The derivative from row to row.
+    /// Derivative from row to row.
     down: [[f64; 2]; NODES],
     pub(super) per_column: f64,
 }
 
-impl Row {
+impl TraceRow {
     fn jet(&self, u: f64) -> Jet {
         let value = |c: &[[f64; 2]; NODES], k: usize| ((c[3][k] * u + c[2][k]) * u + c[1][k]) * u + c[0][k];
         let slope = |k: usize| {
@@ -129,12 +129,12 @@ impl Row {
         }
     }
 
-    /// Coefficients of one coordinate, of the place less `base`, by powers of the column.
+    /// Coefficients of one coordinate of the place minus `base`, by powers of the column.
     pub(super) fn place(&self, coordinate: usize, base: f64) -> [f32; NODES] {
         self.by_column(&self.place, coordinate, base)
     }
 
-    /// Those of its derivative from row to row.
+    /// Coefficients of the derivative from row to row.
     pub(super) fn down(&self, coordinate: usize) -> [f32; NODES] {
         self.by_column(&self.down, coordinate, 0.0)
     }
@@ -154,16 +154,16 @@ mod tests {
     use super::*;
 
     fn trace(f: impl Fn(f64, f64) -> Point) -> Option<Trace> {
-        let basis = Basis::new();
-        let mut answers = [Point::ORIGIN; ASKED];
-        for (a, (u, v)) in answers.iter_mut().zip(basis.places()) {
+        let basis = ChebyshevBasis::new();
+        let mut values = [Point::ORIGIN; SAMPLES];
+        for (a, (u, v)) in values.iter_mut().zip(basis.places()) {
             *a = f(31.0 * u, 31.0 * v);
         }
-        basis.trace(&answers, (31.0, 31.0))
+        basis.interpolate(&values, (31.0, 31.0))
     }
 
     #[test]
-    fn a_cubic_is_itself_and_so_are_its_derivatives() {
+    fn a_cubic_and_its_derivatives_are_reproduced() {
         let f = |x: f64, y: f64| Point::new(3.0 + x - 0.01 * x * y + 1e-4 * y.powi(3), 2.0 * y + 1e-4 * x * x * y);
         let found = trace(f).unwrap();
         for (i, j) in (0..32).flat_map(|i| (0..32).map(move |j| (i, j))) {
@@ -183,13 +183,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_cubic_is_either_near_or_refused() {
+    fn other_functions_are_close_or_rejected() {
         let wave = |length: f64| move |x: f64, y: f64| Point::new(x + 5.0 * (y / length).sin(), y);
         let found = trace(wave(100.0)).unwrap();
         let off = |j: usize| (found.pixel(0, j).p.x - wave(100.0)(0.0, j as f64).x).abs();
-        assert!((0..32).all(|j| off(j) < 1.1 * NEAR));
+        assert!((0..32).all(|j| off(j) < 1.1 * MAX_ERROR));
         assert!(trace(wave(20.0)).is_none());
-        // A fold, and places from nowhere.
+        // A fold, and undefined values.
         assert!(trace(|x, y| Point::new((x - 11.0).abs(), y)).is_none());
         assert!(trace(|x, y| Point::new(x, if x + y > 60.0 { f64::NAN } else { y })).is_none());
     }

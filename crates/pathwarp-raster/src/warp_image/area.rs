@@ -1,0 +1,54 @@
+//! Rectangles of pixels of the result.
+
+use super::trace::{ChebyshevBasis, SAMPLES, Trace};
+use kurbo::{Affine, Point};
+use pathwarp::map::Map;
+
+/// Side of a tile in pixels; its part of the source fits into the cache.
+pub(super) const TILE: usize = 32;
+/// Side down to which tiles are divided if the inverse is not close to a cubic. Below that every pixel asks the inverse.
+pub(super) const SMALLEST: usize = 8;
+
+/// A rectangle of pixels of the result.
+#[derive(Clone, Copy)]
+pub(super) struct PixelArea {
+    pub(super) left: usize,
+    pub(super) top: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
+}
+
+impl PixelArea {
+    /// The four quarters without empty ones.
+    pub(super) fn quarters(self) -> impl Iterator<Item = Self> {
+        let (w, h) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let quarter = move |k: usize| {
+            let (right, low) = (k % 2, k / 2);
+            Self {
+                left: self.left + right * w,
+                top: self.top + low * h,
+                width: if right == 0 { w } else { self.width - w },
+                height: if low == 0 { h } else { self.height - h },
+            }
+        };
+        (0..4).map(quarter).filter(|a| a.width > 0 && a.height > 0)
+    }
+
+    /// Approximates the source places of the pixels by a polynomial; `None` if that is not accurate. `shown` maps pixels to the
+    /// plane, `inverse` maps the plane back, and `last` maps to the coordinates of the result.
+    pub(super) fn trace(self, basis: &ChebyshevBasis, shown: Affine, inverse: &dyn Map, last: Affine) -> Option<Trace> {
+        // Give a single column a width too, so that there is a derivative.
+        let size = ((self.width - 1).max(1) as f64, (self.height - 1).max(1) as f64);
+        let (left, top) = (self.left as f64 + 0.5, self.top as f64 + 0.5);
+        let mut places = [Point::ORIGIN; SAMPLES];
+        for (place, (u, v)) in places.iter_mut().zip(basis.places()) {
+            *place = shown * Point::new(left + u * size.0, top + v * size.1);
+        }
+        let mut values = [Point::ORIGIN; SAMPLES];
+        inverse.points(&places, &mut values);
+        for value in &mut values {
+            *value = last * *value;
+        }
+        basis.interpolate(&values, size)
+    }
+}

@@ -1,0 +1,182 @@
+//! Warps a bitmap tile by tile.
+
+use super::area::{PixelArea, SMALLEST, TILE};
+use super::block::{BYTES, Bitmap, SourceBlock};
+use super::color::bytes;
+use super::image_warp::{ImageWarp, in_pixels};
+use super::pyramid::Pyramid;
+use super::reach::Reach;
+use super::rows::{self, TileMethod};
+use super::sample;
+use super::trace::{ChebyshevBasis, Trace};
+use crate::error::Error;
+use crate::parallel::for_each_chunk;
+use crate::pixmap::new_pixmap;
+use kurbo::{Affine, Point, Vec2};
+use pathwarp::map::Jet;
+use tiny_skia::Pixmap;
+
+/// Warps a bitmap.
+///
+/// # Errors
+/// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result.
+pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
+    let (width, height) = warp.size;
+    let mut out = new_pixmap(f64::from(width), f64::from(height))?;
+    let reach = Reach::new(warp, warp.shown.inverse(), TILE);
+    let painter = ImagePainter {
+        warp,
+        to_source: warp.placed.inverse(),
+        pyramid: Pyramid::new(warp.source),
+        bitmap: Bitmap {
+            data: warp.source.data(),
+            width: warp.source.width() as usize,
+            height: warp.source.height() as usize,
+        },
+        basis: ChebyshevBasis::new(),
+        arch: pulp::Arch::new(),
+    };
+    let columns = width as usize;
+    for_each_chunk(out.data_mut(), columns * BYTES * TILE, |band, rows| {
+        let mut band = ImageBand { top: band * TILE, stride: columns * BYTES, rows, block: SourceBlock::default() };
+        let height = band.rows.len() / band.stride;
+        for left in (0..columns).step_by(TILE) {
+            if reach.touches(left / TILE, band.top / TILE) {
+                let area = PixelArea { left, top: band.top, width: TILE.min(columns - left), height };
+                painter.tile(&mut band, area);
+            }
+        }
+    });
+    Ok(out)
+}
+
+/// A band of whole rows of the result.
+struct ImageBand<'a> {
+    top: usize,
+    stride: usize,
+    rows: &'a mut [u8],
+    /// The part of the source that a tile reads; the memory is reused by the next tile.
+    block: SourceBlock,
+}
+
+impl ImageBand<'_> {
+    /// The bytes of row `j` of an area.
+    #[inline(always)]
+    fn row(&mut self, area: PixelArea, j: usize) -> &mut [u8] {
+        &mut self.rows[(area.top - self.top + j) * self.stride + area.left * BYTES..][..area.width * BYTES]
+    }
+}
+
+/// The data shared by all tiles.
+struct ImagePainter<'a> {
+    warp: &'a ImageWarp<'a>,
+    to_source: Affine,
+    pyramid: Pyramid<'a>,
+    bitmap: Bitmap<'a>,
+    basis: ChebyshevBasis,
+    arch: pulp::Arch,
+}
+
+impl ImagePainter<'_> {
+    /// Paints a tile, dividing it until the inverse is close to a cubic.
+    fn tile(&self, band: &mut ImageBand<'_>, area: PixelArea) {
+        match area.trace(&self.basis, self.warp.shown, self.warp.inverse, self.to_source) {
+            Some(trace) => self.arch.dispatch(TracedTile { painter: self, band, area, trace }),
+            None if area.width.max(area.height) > SMALLEST => {
+                area.quarters().for_each(|quarter| self.tile(band, quarter));
+            }
+            None => self.each_pixel(band, area),
+        }
+    }
+
+    /// Paints a small tile, asking the inverse for every pixel.
+    fn each_pixel(&self, band: &mut ImageBand<'_>, area: PixelArea) {
+        let place = |i: isize, j: isize| {
+            self.warp.shown * Point::new(area.left as f64 + i as f64 + 0.5, area.top as f64 + j as f64 + 0.5)
+        };
+        let here = |jet: &Jet| in_pixels(jet, self.to_source, self.warp.shown);
+        let mut places = [Point::ORIGIN; SMALLEST];
+        let mut jets = [[Jet::default(); SMALLEST]; SMALLEST];
+        for (j, row) in jets[..area.height].iter_mut().enumerate() {
+            for (i, p) in places[..area.width].iter_mut().enumerate() {
+                *p = place(i as isize, j as isize);
+            }
+            self.warp.inverse.jets(&places[..area.width], &mut row[..area.width]);
+            for jet in &mut row[..area.width] {
+                *jet = here(jet);
+            }
+        }
+        let at = |i: isize, j: isize| {
+            let known = usize::try_from(i).ok().zip(usize::try_from(j).ok());
+            match known.filter(|(i, j)| *i < area.width && *j < area.height) {
+                Some((i, j)) => jets[j][i],
+                None => here(&self.warp.inverse.jet(place(i, j))),
+            }
+        };
+        for (j, row) in jets.iter().enumerate().take(area.height) {
+            for (pixel, (i, jet)) in band.row(area, j).as_chunks_mut().0.iter_mut().zip(row.iter().enumerate()) {
+                let jet = Some(*jet)
+                    .filter(|jet| jet.p.is_finite())
+                    .or_else(|| extrapolated(self.warp.source, |di, dj| at(i as isize + di, j as isize + dj)));
+                if let Some(jet) = jet {
+                    *pixel = bytes(sample::pixel(&self.pyramid, &jet));
+                }
+            }
+        }
+    }
+}
+
+/// A tile with a polynomial for the places of its pixels. It is a type instead of a closure because compiling all of it for the
+/// available vector unit depends on inlining.
+struct TracedTile<'a, 'b> {
+    painter: &'a ImagePainter<'a>,
+    band: &'a mut ImageBand<'b>,
+    area: PixelArea,
+    trace: Trace,
+}
+
+impl pulp::WithSimd for TracedTile<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { painter, band, area, trace } = self;
+        let mut method = TileMethod::of(&trace);
+        let mut block = std::mem::take(&mut band.block);
+        if !matches!(method, TileMethod::Each) && !block.read(painter.bitmap, &trace, method.margin(), method.layout())
+        {
+            method = TileMethod::Each;
+        }
+        for j in 0..area.height {
+            let row = trace.pixels(j);
+            let out = band.row(area, j);
+            let other = |i: usize| bytes(sample::pixel(&painter.pyramid, &trace.pixel(i, j)));
+            match method {
+                TileMethod::Interpolated => rows::interpolated(&block, &row, out, other),
+                TileMethod::Stretched => rows::stretched(&block, &row, out, other),
+                TileMethod::Skewed(shapes) => {
+                    let size = [(area.width - 1).max(1) as f32, (area.height - 1).max(1) as f32];
+                    rows::skewed(&block, &row, shapes.row(j as f32, size), out, other);
+                }
+                TileMethod::Each => {
+                    for (i, pixel) in out.as_chunks_mut().0.iter_mut().enumerate() {
+                        *pixel = other(i);
+                    }
+                }
+            }
+        }
+        band.block = block;
+    }
+}
+
+/// Extrapolates the jet of a neighbour to a pixel whose centre has no inverse, as is common outside the source. Returns it if the
+/// place is outside the source: pixels along the edge then get the share of it that they cover.
+fn extrapolated(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Option<Jet> {
+    let (width, height) = (f64::from(source.width()), f64::from(source.height()));
+    [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().find_map(|(di, dj)| {
+        let jet = neighbour(di, dj);
+        let p = jet.p - jet.push(Vec2::new(di as f64, dj as f64));
+        let off = p.x < 0.0 || p.y < 0.0 || p.x > width || p.y > height;
+        off.then_some(Jet { p, ..jet })
+    })
+}
