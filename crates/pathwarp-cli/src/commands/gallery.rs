@@ -1,49 +1,47 @@
-//! `pathwarp gallery ART -o SHEET`: the artwork under every style, on one sheet.
+//! `pathwarp gallery ART -o SHEET`: draws artwork under every preset of a set on one sheet.
 
+use super::file_args;
 use crate::failure::Failure;
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Deformation, Gallery, Registry};
+use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::refit;
 use pathwarp_raster::{RenderOptions, Size, encode_png};
-use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, sheet};
+use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
+use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions};
 use rayon::prelude::*;
-use std::path::PathBuf;
-
-/// Of the artwork's diagonal: far below a pixel of any sheet.
-const TOLERANCE: f64 = 2e-4;
+use std::path::Path;
 
 pub(super) const NAME: &str = "gallery";
 
-pub(super) fn command() -> Command {
-    Command::new("gallery")
+/// Tolerance as a fraction of the artwork's diagonal: far below a pixel of any sheet.
+const TOLERANCE: f64 = 2e-4;
+
+/// The word for all sets together.
+const ALL: &str = "all";
+
+/// The deformations with presets.
+fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)> {
+    registry.entries().iter().filter_map(|e| Some((&**e, e.info().gallery?)))
+}
+
+pub(super) fn command(registry: &Registry) -> Command {
+    let sets: Vec<&str> = sets(registry).map(|(_, g)| g.set).chain([ALL]).collect();
+    Command::new(NAME)
         .about("Draw artwork under every style on one sheet")
+        .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
+        .arg(file_args::out(
+            "SHEET.svg|SHEET.png",
+            "Where to write the sheet; - or none writes SVG to standard output",
+        ))
         .arg(
-            Arg::new("INPUT")
-                .required(true)
-                .value_parser(value_parser!(PathBuf))
-                .help("An SVG file; - is standard input"),
+            choice("set", sets[0], &sets)
+                .help("The set of presets to draw, or all of them"),
         )
-        .arg(
-            Arg::new("out")
-                .short('o')
-                .long("out")
-                .value_name("SHEET.svg|SHEET.png")
-                .value_parser(value_parser!(PathBuf))
-                .help("Where to write the sheet; - or none writes SVG to standard output"),
-        )
-        .arg(
-            Arg::new("set")
-                .long("set")
-                .value_name("styles|wordart|all")
-                .value_parser(["styles", "wordart", "all"])
-                .hide_possible_values(true)
-                .default_value("styles")
-                .help("The warp styles, the text shapes, or both"),
-        )
-        .arg(Arg::new("all").long("all").action(ArgAction::SetTrue).conflicts_with("set").help("The same as --set all"))
+        .arg(Arg::new(ALL).long(ALL).action(ArgAction::SetTrue).conflicts_with("set").help("The same as --set all"))
         .arg(
             Arg::new("bend")
                 .long("bend")
@@ -53,12 +51,7 @@ pub(super) fn command() -> Command {
                 .help("How far the styles bend"),
         )
         .arg(
-            Arg::new("axis")
-                .long("axis")
-                .value_name("horizontal|vertical")
-                .value_parser(["horizontal", "vertical"])
-                .hide_possible_values(true)
-                .default_value("horizontal")
+            choice("axis", "horizontal", &["horizontal", "vertical"])
                 .help("The direction in which artwork runs through the styles"),
         )
         .arg(
@@ -93,7 +86,17 @@ pub(super) fn command() -> Command {
         )
 }
 
-/// `WxH`, each from 40 to 4000.
+/// An option with one of these words as its value.
+fn choice(name: &'static str, default: &'static str, words: &[&'static str]) -> Arg {
+    Arg::new(name)
+        .long(name)
+        .value_name(words.join("|"))
+        .value_parser(words.to_vec())
+        .hide_possible_values(true)
+        .default_value(default)
+}
+
+/// Parses `WxH`, each from 40 to 4000.
 fn cell(text: &str) -> Result<(f64, f64), String> {
     let side = |t: &str| t.trim().parse::<f64>().ok().filter(|v| (40.0..=4000.0).contains(v));
     let sides = text.split_once(['x', 'X', '×']).and_then(|(w, h)| side(w).zip(side(h)));
@@ -101,83 +104,88 @@ fn cell(text: &str) -> Result<(f64, f64), String> {
 }
 
 pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
-    let file = super::file_args::given(m, "INPUT")?;
+    let file = file_args::given(m, "INPUT")?;
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
-    let set = if m.get_flag("all") { "all" } else { word("set") };
-    let read = input::read_options(file);
+    let set = if m.get_flag(ALL) { ALL } else { word("set") };
+    let (bend, axis) = (word("bend"), word("axis"));
     let doc = input::document(file)?;
     let frame = doc.artwork_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
 
-    let mut wanted: Vec<(&str, &str, Args)> = Vec::new();
-    if set != "wordart" {
-        for name in names(registry, "warp", "style") {
-            wanted.push((
-                "warp",
-                name,
-                Args::from_pairs(&[("style", name), ("bend", word("bend")), ("axis", word("axis"))]),
-            ));
-        }
-    }
-    if set != "styles" {
-        for name in names(registry, "wordart", "preset") {
-            wanted.push(("wordart", name, Args::from_pairs(&[("preset", name)])));
-        }
-    }
-    let one = |(deformation, label, args): &(&str, &str, Args)| -> Result<sheet::Cell, Failure> {
-        let svg = warped(registry, &doc, frame, deformation, args)?;
-        Ok(sheet::Cell { svg, label: (*label).to_owned() })
-    };
-    let mut cells: Vec<sheet::Cell> = wanted.par_iter().map(one).collect::<Result<_, _>>()?;
-    if set != "wordart" {
+    let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
+    let presets: Vec<Preset<'_>> =
+        sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis)).collect();
+    let draw = |p: &Preset<'_>| Ok(Cell { svg: p.warp(&doc, frame)?, label: p.name.to_owned() });
+    let mut cells: Vec<Cell> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
+    // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
+    if sets.iter().any(|(_, g)| g.bend.is_some()) {
         let svg = String::from_utf8_lossy(doc.source()).into_owned();
-        cells.insert(0, sheet::Cell { svg, label: "as it is".into() });
+        cells.insert(0, Cell { svg, label: "as it is".into() });
     }
-
-    let name = file.file_name().map_or_else(|| "standard input".into(), |n| n.to_string_lossy().into_owned());
-    let title = match set {
-        "wordart" => format!("{name}: text shapes"),
-        "all" => format!("{name}: styles at {}, text shapes", word("bend")),
-        _ => format!("{name}: bend {}{}", word("bend"), if word("axis") == "vertical" { ", vertical" } else { "" }),
-    };
-    let options = sheet::SheetOptions {
+    let options = SheetOptions {
         columns: m.get_one::<u32>("columns").map_or(4, |n| *n as usize),
         cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
-        title,
+        title: title(file, &sets, bend, axis),
     };
-    let svg = sheet::sheet(&cells, &options, &read)?;
-    let Some(out) = m.get_one::<PathBuf>("out").filter(|o| o.as_os_str() != "-") else {
-        output::to_stdout(svg.as_bytes())?;
-        return Ok(Status::Complete);
-    };
-    let bytes = if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+    let svg = sheet(&cells, &options, &input::read_options(file))?;
+    let target = file_args::target(m);
+    let bytes = if target.is_some_and(is_png) {
         let tree = pathwarp_svg::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
         encode_png(&RenderOptions { size, background: None }.render(&tree)?)?
     } else {
         svg.into_bytes()
     };
-    output::write(Some(out), &bytes)?;
+    output::write(target, &bytes)?;
     Ok(Status::Complete)
 }
 
-/// The names that a deformation's parameter lists.
-fn names(registry: &Registry, deformation: &str, param: &str) -> &'static [&'static str] {
-    let params = registry.get(deformation).map_or(&[][..], |e| e.info().params);
-    match params.iter().find(|p| p.name == param).map(|p| p.kind) {
-        Some(Kind::NameOrFile(names)) => names,
-        _ => &[],
-    }
+fn is_png(file: &Path) -> bool {
+    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"))
 }
 
-fn warped(
-    registry: &Registry,
-    doc: &Document,
-    frame: pathwarp::kurbo::Rect,
-    deformation: &str,
-    args: &Args,
-) -> Result<String, Failure> {
-    let entry = registry.get(deformation).ok_or_else(|| Failure::usage(format!("there is no {deformation}")))?;
-    let built = entry.build_from(args, &Frame::new(frame))?;
-    let tolerance = TOLERANCE * frame.width().hypot(frame.height());
-    Ok(doc.warp(&built.map, &WarpOptions::new(refit::Options::new(tolerance)))?.svg)
+/// The title of the sheet: the file, and the sets with the bend where it applies.
+fn title(file: &Path, sets: &[(&dyn Deformation, Gallery)], bend: &str, axis: &str) -> String {
+    let name = file.file_name().map_or_else(|| "standard input".into(), |n| n.to_string_lossy().into_owned());
+    if let [(_, only)] = sets
+        && only.bend.is_some()
+    {
+        return format!("{name}: bend {bend}{}", if axis == "vertical" { ", vertical" } else { "" });
+    }
+    let titles = sets.iter().map(|(_, g)| match g.bend {
+        Some(_) => format!("{} at {bend}", g.title),
+        None => g.title.to_owned(),
+    });
+    format!("{name}: {}", titles.collect::<Vec<_>>().join(", "))
+}
+
+/// A preset with its deformation's arguments.
+struct Preset<'a> {
+    entry: &'a dyn Deformation,
+    name: &'static str,
+    args: Args,
+}
+
+/// The presets of a deformation.
+fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: &str) -> Vec<Preset<'a>> {
+    let names = entry.info().params.iter().find(|p| p.name == gallery.presets).map(|p| p.kind);
+    let Some(Kind::NameOrFile(names)) = names else { return Vec::new() };
+    let preset = |&name: &&'static str| {
+        let mut args = Args::from_pairs(&[(gallery.presets, name)]);
+        for (param, value) in [(gallery.bend, bend), (gallery.axis, axis)] {
+            if let Some(param) = param {
+                args.push(param, value);
+            }
+        }
+        Preset { entry, name, args }
+    };
+    names.iter().map(preset).collect()
+}
+
+impl Preset<'_> {
+    /// The artwork under the preset.
+    fn warp(&self, doc: &Document, frame: Rect) -> Result<String, Failure> {
+        let built = self.entry.build_from(&self.args, &Frame::new(frame))?;
+        let tolerance = TOLERANCE * frame.width().hypot(frame.height());
+        Ok(doc.warp(&built.map, &WarpOptions::new(refit::Options::new(tolerance)))?.svg)
+    }
 }

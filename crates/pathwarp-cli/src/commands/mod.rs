@@ -60,7 +60,7 @@ pub(crate) fn build(registry: &Registry) -> Command {
         .subcommand(paths::command())
         .subcommand(convert::command())
         .subcommand(render::command())
-        .subcommand(gallery::command())
+        .subcommand(gallery::command(registry))
         .subcommand(compare::command())
         .subcommand(install::command())
         .subcommand(completions::command())

@@ -67,8 +67,8 @@ pub struct Info {
     /// The parameter that puts a baseline on the deformation's curve, if there is one. While it is not given, a frame around
     /// lettering takes its baseline from the lettering.
     pub baseline: Option<&'static str>,
-    /// The parameter of kind [`NameOrFile`](crate::param::Kind::NameOrFile) whose names a gallery draws one by one.
-    pub gallery: Option<&'static str>,
+    /// The presets that a gallery draws one by one, if the deformation has any.
+    pub gallery: Option<Gallery>,
 }
 
 impl Info {
@@ -145,11 +145,26 @@ impl Info {
         Self { baseline: Some(param), ..self }
     }
 
-    /// Names the parameter whose names a gallery draws one by one.
+    /// Names the presets that a gallery draws one by one.
     #[must_use]
-    pub const fn gallery(self, param: &'static str) -> Self {
-        Self { gallery: Some(param), ..self }
+    pub const fn gallery(self, gallery: Gallery) -> Self {
+        Self { gallery: Some(gallery), ..self }
     }
+}
+
+/// The presets of a deformation, as a gallery draws them: the artwork once under each.
+#[derive(Debug, Clone, Copy)]
+pub struct Gallery {
+    /// The name of the set, kebab-case; users ask for the set by this name.
+    pub set: &'static str,
+    /// The presets in a few words, for the title of the sheet.
+    pub title: &'static str,
+    /// The parameter of kind [`NameOrFile`](crate::param::Kind::NameOrFile) whose names are the presets.
+    pub presets: &'static str,
+    /// The parameter for the amount by which a preset bends the artwork, if there is one.
+    pub bend: Option<&'static str>,
+    /// The parameter for the direction in which artwork runs through a preset (`horizontal` or `vertical`), if there is one.
+    pub axis: Option<&'static str>,
 }
 
 /// A command line for help.

@@ -29,7 +29,7 @@ mod wave;
 mod wordart;
 
 pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile};
-pub use entry::{Case, Deformation, Example, Info, Law, Pairs};
+pub use entry::{Case, Deformation, Example, Gallery, Info, Law, Pairs};
 pub use registry::Registry;
 
 use std::sync::Arc;

@@ -8,7 +8,7 @@
 pub(crate) mod style;
 
 use super::built::{Built, Explanation, Overlay, Role};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{Case, Deformation, Example, Gallery, Info, Law};
 use super::envelope::{self, corners::Ring};
 use crate::error::Error;
 use crate::map::net::Net;
@@ -41,7 +41,7 @@ const NAMES: &[&str] = &[
 ];
 
 static INFO: Info = Info::new("warp", "bend artwork in one of fifteen styles: arc, flag, fisheye, …")
-    .gallery("style")
+    .gallery(Gallery { set: "styles", title: "styles", presets: "style", bend: Some("bend"), axis: Some("axis") })
     .group("Envelopes")
     .about("The warp styles that drawing programs share, by the nets measured on the best known of them: arc, arc-lower, arc-upper, arch, bulge, \
 shell-lower, shell-upper, flag, wave, fish, rise, fisheye, inflate, squeeze, twist. --bend says how much and which way; \

@@ -8,7 +8,7 @@ mod preset;
 
 use super::bend::Bend;
 use super::built::{Built, Overlay, Role};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use super::entry::{Case, Deformation, Example, Gallery, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Along, Class, Guide, Map, Row, Tiled, ruled};
 use crate::outline::{Outline, Seg, Subpath};
@@ -64,7 +64,7 @@ const NAMES: &[&str] = &[
 ];
 
 static INFO: Info = Info::new("wordart", "put artwork into one of the forty text shapes of office programs")
-    .gallery("preset")
+    .gallery(Gallery { set: "wordart", title: "text shapes", presets: "preset", bend: None, axis: None })
     .group("Envelopes")
     .about("The text effects that word processors and presentations offer under Transform, from their published formulas: \
 plain, triangle, chevron, arch-up, ring-inside, wave1, inflate, slant-up, cascade-up and the others below; \
