@@ -159,8 +159,8 @@ impl Deformation for BirationalDeformation {
         let allow_poles = s.flag("allow-poles")?;
         let map = Birational::new(region, rows, [&first, &second], spline, allow_poles, names)?;
         let mut notes = Vec::new();
-        for (k, [a, b]) in map.monoids().enumerate() {
-            notes.push(format!("weights of piece {}: {:.6?} and {:.6?}", k + 1, a.weights(), b.weights()));
+        for (k, [a, b]) in map.weights().enumerate() {
+            notes.push(format!("weights of piece {}: {a:.6?} and {b:.6?}", k + 1));
         }
         let overlays = vec![
             Overlay { role: Role::Base, path: kurbo::Shape::to_path(&region, 0.0) },

@@ -1,18 +1,18 @@
-//! Maps one after another.
+//! Composition of maps.
 
 use super::batch::{Lane, WIDTH};
 use super::{AffineMap, Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
-/// Maps composed, the first applied first. Neighbouring affine and projective steps are folded into one.
+/// A composition of maps, the first applied first. Neighbouring affine and projective steps fold into one.
 #[derive(Clone, Default)]
 pub struct Chain {
     steps: Vec<Arc<dyn Map>>,
 }
 
 impl Chain {
-    /// Composes `steps`, folding what folds.
+    /// Composes `steps`, folding neighbours where possible.
     #[must_use]
     pub fn new(steps: impl IntoIterator<Item = Arc<dyn Map>>) -> Self {
         let mut chain = Self::default();
@@ -22,7 +22,7 @@ impl Chain {
         chain
     }
 
-    /// Adds a step at the end.
+    /// Appends a step.
     pub fn push(&mut self, step: Arc<dyn Map>) {
         let class = step.class();
         if class == Class::Affine(Affine::IDENTITY) {
@@ -45,14 +45,17 @@ impl Chain {
         }
     }
 
-    /// The steps that are left after folding.
+    /// The steps that remain after folding.
     #[must_use]
     pub fn steps(&self) -> &[Arc<dyn Map>] {
         &self.steps
     }
 }
 
-/// A later step's level, pulled back through the steps before it.
+/// Points passed from step to step at a time: few enough for the stack.
+const BATCH: usize = 16;
+
+/// The level set of a later step, pulled back through the steps `before` it.
 fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
     match (level, before) {
         (l, []) => l.clone(),
@@ -84,8 +87,6 @@ impl Map for Chain {
             return AffineMap::IDENTITY.jets(ps, out);
         };
         first.jets(ps, out);
-        /// Points handed on at a time, small enough for the stack.
-        const BATCH: usize = 16;
         for m in rest {
             for chunk in out.chunks_mut(BATCH) {
                 let (mut at, mut outer) = ([Point::ORIGIN; BATCH], [Jet::default(); BATCH]);
@@ -107,7 +108,6 @@ impl Map for Chain {
             return;
         };
         first.points(ps, out);
-        const BATCH: usize = 16;
         for m in rest {
             for chunk in out.chunks_mut(BATCH) {
                 let mut at = [Point::ORIGIN; BATCH];

@@ -1,7 +1,7 @@
-//! Where a map is not smooth, and where it is not defined.
+//! Creases: the lines along which a map is not smooth, and the boundary of its domain.
 //!
-//! Both are level sets φ(x, y) = 0 in the source plane, so that a chain can pull a later map's crease back through the
-//! earlier maps: φ ∘ F. A path is split where it crosses them.
+//! Both are level sets φ(x, y) = 0 in the source plane, so that a chain can pull the crease of a later map back through the
+//! earlier maps, as φ ∘ F. The refitter splits paths at their crossings with creases.
 
 use crate::outline::Seg;
 use kurbo::{
@@ -11,8 +11,9 @@ use kurbo::{
 use std::fmt;
 use std::sync::Arc;
 
-/// A function of the plane whose zero set is the crease.
+/// A function on the plane whose zero set is the crease.
 #[derive(Clone)]
+#[non_exhaustive]
 pub enum Level {
     /// a·x + b·y + c: a straight crease, crossed exactly.
     Line {
@@ -23,7 +24,7 @@ pub enum Level {
         /// Constant term.
         c: f64,
     },
-    /// The part of a straight line within a box: away from it the map is smooth across the line.
+    /// The part of a straight line inside a box. Outside the box, the map is smooth across the line.
     Stretch {
         /// Coefficient of x.
         a: f64,
@@ -48,8 +49,11 @@ impl fmt::Debug for Level {
     }
 }
 
+/// Samples per segment when crossings are bracketed. A crease touched and left again between two samples is missed.
+const SAMPLES: u32 = 64;
+
 impl Level {
-    /// The function's value; for a [`Level::Stretch`] the whole line's.
+    /// The value of the function; for a [`Level::Stretch`], that of the whole line.
     #[must_use]
     pub fn at(&self, p: Point) -> f64 {
         match self {
@@ -58,11 +62,11 @@ impl Level {
         }
     }
 
-    /// Adds the parameters in (0, 1) where `seg` meets the zero set: exactly for a straight one and Bézier pieces, by
-    /// bracketing between samples otherwise.
+    /// Adds the parameters in (0, 1) where `seg` meets the zero set. Straight levels and Bézier segments are solved exactly;
+    /// otherwise crossings are bracketed between samples.
     pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) {
         let within = if let Self::Stretch { within, .. } = self {
-            // Wider by the rounding of a crossing's place.
+            // Wider by the rounding error of a crossing.
             let room = 1e-9 * (within.width() + within.height());
             Some(within.inflate(room, room))
         } else {
@@ -78,8 +82,6 @@ impl Level {
                 straight_crossings(|p| self.at(p), seg).into_iter().for_each(add);
             }
             _ => {
-                /// Finer than any wiggle a cubic's image usually has; a crease touched and left between two samples is missed.
-                const SAMPLES: u32 = 64;
                 let f = |t: f64| self.at(seg.eval(t));
                 let mut prev = (0.0, f(0.0));
                 for i in 1..=SAMPLES {
@@ -97,9 +99,9 @@ impl Level {
     }
 }
 
-/// Where an affine function vanishes on a Bézier piece: roots of a polynomial of its degree.
+/// The zeros of an affine function on a Bézier segment: roots of a polynomial of its degree.
 fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
-    /// A leading coefficient this small against the values is rounding; the closed forms would blow it up.
+    /// A leading coefficient this small relative to the values is rounding noise, which the closed forms would amplify.
     const NOISE: f64 = 1e-14;
     // Power basis.
     let c = match seg {
@@ -126,7 +128,7 @@ fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
         _ => solve_cubic(c[0], c[1], c[2], c[3]).into_iter().collect(),
     };
     for t in &mut roots {
-        // Newton steps wash out the closed forms' cancellation; near a double root they may only help.
+        // Newton steps remove the cancellation error of the closed forms. Near a double root, keep only those that help.
         for _ in 0..3 {
             let value = |t: f64| ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
             let slope = (3.0 * c[3] * *t + 2.0 * c[2]) * *t + c[1];
@@ -140,7 +142,7 @@ fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
 }
 
 fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64 {
-    // Halving 60 times leaves nothing of a unit interval.
+    // Sixty halvings exhaust the precision of a unit interval.
     for _ in 0..60 {
         let t = 0.5 * (lo.0 + hi.0);
         let v = f(t);
@@ -156,32 +158,32 @@ fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64
     0.5 * (lo.0 + hi.0)
 }
 
-/// What happens at a crease.
+/// The behaviour of a map at a crease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CreaseKind {
-    /// The derivative jumps, or the value itself: a path that crosses is drawn on by a straight line then.
+    /// The derivative jumps, or the value does: a path across a jump is connected by a straight line.
     Kink,
-    /// The map is defined only where the level is positive.
+    /// The boundary of the domain: the map is defined only where the level is positive.
     Edge,
 }
 
-/// One crease.
+/// A crease: a level set and the behaviour there.
 #[derive(Debug, Clone)]
 pub struct Crease {
-    /// Where.
+    /// The level set.
     pub level: Level,
-    /// What happens there.
+    /// The behaviour of the map at it.
     pub kind: CreaseKind,
 }
 
 impl Crease {
-    /// A place where the derivative jumps.
+    /// A crease along which the derivative jumps.
     #[must_use]
     pub fn kink(level: Level) -> Self {
         Self { level, kind: CreaseKind::Kink }
     }
 
-    /// The edge of where the map is defined (level > 0).
+    /// The boundary of the domain, where the map is defined for level > 0.
     #[must_use]
     pub fn edge(level: Level) -> Self {
         Self { level, kind: CreaseKind::Edge }
@@ -195,28 +197,28 @@ pub struct Creases {
 }
 
 impl Creases {
-    /// Adds one.
+    /// Adds a crease.
     pub fn push(&mut self, c: Crease) {
         self.items.push(c);
     }
 
-    /// All of them.
+    /// The creases, in the order they were added.
     #[must_use]
     pub fn items(&self) -> &[Crease] {
         &self.items
     }
 
-    /// Whether `p` lies where the map is defined.
+    /// Returns `true` if the map is defined at `p`.
     #[must_use]
     pub fn defined_at(&self, p: Point) -> bool {
         self.items.iter().all(|c| c.kind != CreaseKind::Edge || c.level.at(p) > 0.0)
     }
 
-    /// The parameters in (0, 1), sorted, at which `seg` must be split so that the map is smooth on every part. Parameters
-    /// closer than 1e-9 to each other or to the ends are one.
+    /// The sorted parameters in (0, 1) at which `seg` must be split so that the map is smooth on every part. Parameters closer
+    /// than 1e-9 to each other or to the ends are merged.
     #[must_use]
     pub fn splits(&self, seg: &Seg) -> Vec<f64> {
-        /// Below this a part would be shorter than rounding can place it.
+        /// A shorter part would be lost in rounding.
         const APART: f64 = 1e-9;
         let mut ts = Vec::new();
         for c in &self.items {
@@ -230,7 +232,7 @@ impl Creases {
         ts
     }
 
-    /// The first place on `seg` where the map is not defined.
+    /// The first point of `seg` at which the map is not defined.
     #[must_use]
     pub fn first_undefined(&self, seg: &Seg) -> Option<Point> {
         let mut ts = Vec::new();
@@ -254,7 +256,7 @@ mod tests {
     use super::*;
     use kurbo::{CubicBez, Line, QuadBez};
 
-    /// Pieces that are straight, or nearly, are no worse than bent ones.
+    /// Straight and nearly straight segments are as accurate as curved ones.
     #[test]
     fn straight_creases_are_crossed_exactly() {
         let line = Seg::Line(Line::new((0.0, 50.0), (140.0, 50.0)));

@@ -1,11 +1,11 @@
-//! The number types a [`Formula`](super::Formula) runs on: `f64`, and dual numbers that carry both partial derivatives along.
+//! The number types that a [`Formula`](super::Formula) runs on: `f64`, and dual numbers that carry both partial derivatives.
 //!
-//! A dual number v + x·ε₁ + y·ε₂ with εᵢεⱼ = 0: arithmetic on it is arithmetic on values together with the chain rule
-//! (forward-mode differentiation), exact to rounding.
+//! A dual number is v + x·ε₁ + y·ε₂ with εᵢεⱼ = 0. Arithmetic on dual numbers computes values and applies the chain rule at
+//! the same time (forward-mode automatic differentiation), exact to rounding.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A real number, or something that computes like one.
+/// A real number, or a type that computes like one.
 pub trait Real:
     Copy
     + Send
@@ -21,7 +21,7 @@ pub trait Real:
     + Div<f64, Output = Self>
     + From<f64>
 {
-    /// The value without its derivatives: for branching.
+    /// The value without derivatives, to branch on.
     fn value(self) -> f64;
     /// √x.
     #[must_use]
@@ -38,13 +38,13 @@ pub trait Real:
     /// Natural logarithm.
     #[must_use]
     fn ln(self) -> Self;
-    /// The angle of (x, self), radians, in (−π, π].
+    /// The angle of the vector (x, self) in radians, in (−π, π].
     #[must_use]
     fn atan2(self, x: Self) -> Self;
-    /// A whole power.
+    /// An integer power.
     #[must_use]
     fn powi(self, n: i32) -> Self;
-    /// A real power, of a positive number.
+    /// A real power of a positive number.
     #[must_use]
     fn powf(self, n: f64) -> Self;
     /// √(x² + y²).
@@ -112,7 +112,7 @@ pub struct Dual {
 }
 
 impl Dual {
-    /// f(self), given f's value and slope there.
+    /// f(self), given the value and slope of f there.
     #[inline]
     fn chain(self, value: f64, slope: f64) -> Self {
         Self { v: value, x: self.x * slope, y: self.y * slope }
@@ -245,7 +245,7 @@ impl Real for Dual {
     #[inline]
     fn hypot(self, o: Self) -> Self {
         let r = self.v.hypot(o.v);
-        // The cone's tip has no derivative; 0 is the mean of all directions and keeps the result finite.
+        // The tip of the cone has no derivative. 0 is the mean over all directions and keeps the result finite.
         let (a, b) = if r > 0.0 { (self.v / r, o.v / r) } else { (0.0, 0.0) };
         Self { v: r, x: a * self.x + b * o.x, y: a * self.y + b * o.y }
     }
@@ -255,7 +255,7 @@ impl Real for Dual {
 mod tests {
     use super::*;
 
-    /// Every operation's derivative against central differences.
+    /// Compares the derivative of every operation with central differences.
     #[test]
     fn derivatives_agree_with_differences() {
         fn all<S: Real>(x: S, y: S) -> [S; 14] {

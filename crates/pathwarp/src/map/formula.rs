@@ -1,12 +1,12 @@
-//! The short way to write a map: one formula, any number type.
+//! The short way to write a map: one formula, generic over the number type.
 
 use super::batch::Lane;
 use super::{Class, Creases, Dual, Jet, Map, RationalBezier, RationalDegree, Real};
 use kurbo::Point;
 use std::sync::Arc;
 
-/// A map given by a formula. Every `Formula` is a [`Map`]: the values come from running it on `f64`, the derivatives from
-/// running it on dual numbers.
+/// A map given by a formula. Every `Formula` is a [`Map`]: its values come from running the formula on `f64`, its derivatives
+/// from running it on [`Dual`] numbers.
 ///
 /// ```
 /// use pathwarp::map::{Formula, Map, Real};
@@ -21,7 +21,7 @@ use std::sync::Arc;
 ///
 /// let jet = Wave { height: 3.0, length: 40.0 }.jet((10.0, 5.0).into());
 /// assert_eq!(jet.p.y, 8.0);
-/// assert!((jet.det() - 1.0).abs() < 1e-15); // a shear keeps areas
+/// assert!((jet.det() - 1.0).abs() < 1e-15); // a shear preserves areas
 /// ```
 pub trait Formula: Send + Sync {
     /// The image of (x, y).

@@ -1,13 +1,10 @@
-//! Projective maps of the plane.
+//! Projective maps of the plane as 3×3 matrices. [`projective`](super::projective) makes them [`Map`](super::Map)s.
 
-use super::batch::Lane;
-use super::{Class, Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point, Vec2};
-use std::sync::Arc;
 
 /// A projective map (collineation): (x, y) ↦ (X/W, Y/W) with (X, Y, W) = M·(x, y, 1).
 ///
-/// It is used on the side of its horizon W = 0 where W > 0; crossing the horizon is an error, not a value.
+/// Defined where W > 0, on one side of its horizon W = 0. Artwork that crosses the horizon is an error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Homography {
     /// The matrix, row by row.
@@ -15,8 +12,9 @@ pub struct Homography {
 }
 
 impl Homography {
-    /// The projective map that takes the unit square's corners (0,0), (1,0), (1,1), (0,1) to `q`, in order, with W > 0 on all
-    /// four; `None` if three of them lie on one line, or if the quadrilateral is not convex (then the horizon cuts the square).
+    /// The projective map that takes the corners (0,0), (1,0), (1,1), (0,1) of the unit square to `q`, in order, with W > 0 on
+    /// all four. `None` if three of the points lie on a line, or if the quadrilateral is not convex: the horizon would cut the
+    /// square.
     ///
     /// Solved as in Heckbert, *Fundamentals of Texture Mapping and Image Warping* (1989), §2.2.3. A parallelogram gives an
     /// exactly affine map.
@@ -33,12 +31,12 @@ impl Homography {
         (positive && det != 0.0 && m.iter().flatten().all(|v| v.is_finite())).then_some(out)
     }
 
-    /// The projective map that takes four points to four points, in order. Both quadruples need no three points on a line.
-    /// Where one quadrilateral is convex and the other is not, the horizon runs between the points; `None` then.
+    /// The projective map that takes four points to four points, in order. `None` if three points of either quadrilateral lie
+    /// on a line, or if one is convex and the other is not: the horizon would run between the points.
     #[must_use]
     pub fn from_points(from: [Point; 4], to: [Point; 4]) -> Option<Self> {
-        // Through the unit square, in the general form that needs no convexity: the matrix whose columns are the first three
-        // points, scaled so that the fourth is their sum.
+        // Through a projective basis, which needs no convexity: the matrix whose columns are three of the points, scaled so
+        // that their sum is the fourth.
         let basis = |q: [Point; 4]| -> Option<[[f64; 3]; 3]> {
             let m = [[q[0].x, q[1].x, q[3].x], [q[0].y, q[1].y, q[3].y], [1.0, 1.0, 1.0]];
             let k = mul_vec(&inverse(&m)?, [q[2].x, q[2].y, 1.0]);
@@ -52,9 +50,9 @@ impl Homography {
         (positive && m.iter().flatten().all(|v| v.is_finite())).then_some(out)
     }
 
-    /// A perspective part that is rounding noise over `at` is set to zero, so that parallelograms give affine maps.
+    /// Sets the perspective part to zero if it is rounding noise over `at`, so that parallelograms give affine maps.
     fn tidied(mut self, at: [Point; 4]) -> Self {
-        /// Rounding of the two 3×3 solves, with room.
+        /// Rounding error of the two 3×3 solves, with a margin.
         const NOISE: f64 = 1e-13;
         let varies = at.iter().map(|p| (self.m[2][0] * (p.x - at[0].x) + self.m[2][1] * (p.y - at[0].y)).abs());
         if varies.fold(0.0, f64::max) < NOISE {
@@ -78,7 +76,7 @@ impl Homography {
         Self { m: mul(&self.m, &first.m) }
     }
 
-    /// The affine map this is, if it is one.
+    /// The same map as an affine one, if it is affine.
     #[must_use]
     pub fn as_affine(&self) -> Option<Affine> {
         let [[a, c, e], [b, d, f], [g, h, w]] = self.m;
@@ -90,68 +88,17 @@ impl Homography {
     pub fn inverted(&self) -> Option<Self> {
         inverse(&self.m).map(|m| Self { m })
     }
+
+    /// The matrix times a homogeneous point.
+    pub(super) fn times(&self, v: [f64; 3]) -> [f64; 3] {
+        mul_vec(&self.m, v)
+    }
 }
 
 impl From<Affine> for Homography {
     fn from(m: Affine) -> Self {
         let [a, b, c, d, e, f] = m.as_coeffs();
         Self { m: [[a, c, e], [b, d, f], [0.0, 0.0, 1.0]] }
-    }
-}
-
-impl Map for Homography {
-    #[inline]
-    fn jet(&self, p: Point) -> Jet {
-        let m = &self.m;
-        let r = 1.0 / self.w(p);
-        let x = (m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r;
-        let y = (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r;
-        Jet {
-            p: Point::new(x, y),
-            dx: Vec2::new((m[0][0] - x * m[2][0]) * r, (m[1][0] - y * m[2][0]) * r),
-            dy: Vec2::new((m[0][1] - x * m[2][1]) * r, (m[1][1] - y * m[2][1]) * r),
-        }
-    }
-
-    #[inline]
-    fn point(&self, p: Point) -> Point {
-        let m = &self.m;
-        let r = 1.0 / self.w(p);
-        Point::new((m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r, (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r)
-    }
-
-    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
-        for (x, y) in x.iter_mut().zip(y) {
-            let p = self.point(Point::new(*x, *y));
-            (*x, *y) = (p.x, p.y);
-        }
-    }
-
-    fn class(&self) -> Class {
-        self.as_affine().map_or(Class::Projective(*self), Class::Affine)
-    }
-
-    fn creases(&self, out: &mut Creases) {
-        let [a, b, c] = self.m[2];
-        if a != 0.0 || b != 0.0 {
-            out.push(Crease::edge(Level::Line { a, b, c }));
-        }
-    }
-
-    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        Some(curve.mapped(|v| mul_vec(&self.m, v)))
-    }
-
-    fn rational_degree(&self) -> Option<RationalDegree> {
-        Some(RationalDegree::rational(1))
-    }
-
-    fn denominator(&self, p: Point) -> f64 {
-        self.w(p)
-    }
-
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        self.inverted().map(|h| Arc::new(h) as Arc<dyn Map>)
     }
 }
 
@@ -163,7 +110,7 @@ fn mul_vec(a: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| (0..3).map(|k| a[i][k] * v[k]).sum())
 }
 
-/// By the adjugate: exact enough for 3×3, and keeps exact zeros.
+/// The inverse by the adjugate: accurate enough for 3×3, and it keeps exact zeros.
 fn inverse(m: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     let c = |i: usize, j: usize| {
         let (r, s) = ((i + 1) % 3, (i + 2) % 3);
@@ -178,6 +125,7 @@ fn inverse(m: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::{Class, Map};
 
     const SQUARE: [Point; 4] = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(1.0, 1.0), Point::new(0.0, 1.0)];
     const TRAPEZOID: [Point; 4] =

@@ -1,4 +1,4 @@
-//! A map's first-order behaviour at a point.
+//! The first-order behaviour of a map at a point.
 
 use kurbo::{Point, Vec2};
 
@@ -14,6 +14,13 @@ pub struct Jet {
 }
 
 impl Jet {
+    /// The jet of a map outside its domain: six NaNs.
+    pub const UNDEFINED: Self = Self {
+        p: Point::new(f64::NAN, f64::NAN),
+        dx: Vec2::new(f64::NAN, f64::NAN),
+        dy: Vec2::new(f64::NAN, f64::NAN),
+    };
+
     /// The derivative in direction `v`: the Jacobian times `v`.
     #[inline]
     #[must_use]
@@ -21,21 +28,21 @@ impl Jet {
         self.dx * v.x + self.dy * v.y
     }
 
-    /// The Jacobian's determinant: the map's local area scale, negative where it mirrors.
+    /// The determinant of the Jacobian: the local scale of areas, negative where the map mirrors.
     #[inline]
     #[must_use]
     pub fn det(&self) -> f64 {
         self.dx.cross(self.dy)
     }
 
-    /// The jet of `outer ∘ self`, `outer` being the outer map's jet at `self.p`.
+    /// The jet of `outer ∘ self`, where `outer` is the jet of the outer map at `self.p`.
     #[inline]
     #[must_use]
     pub fn then(&self, outer: &Self) -> Self {
         Self { p: outer.p, dx: outer.push(self.dx), dy: outer.push(self.dy) }
     }
 
-    /// Whether all six numbers are finite.
+    /// Returns `true` if all six numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.p.is_finite() && self.dx.is_finite() && self.dy.is_finite()

@@ -1,96 +1,92 @@
-//! Maps of the plane, numbers only: what a deformation is once its parameters are settled.
+//! Maps of the plane: the result of a deformation once its parameters are known.
 //!
-//! [`Map`] is the trait; [`Formula`] the short way to write one (a formula over any [`Real`], derivatives come from dual
-//! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
+//! A [`Map`] takes every point of the drawing to a new place and knows its derivatives there. [`warp_path`] samples a map along a
+//! path and fits Bézier curves to the image. Bitmaps ask the inverse map for the source of each pixel.
+//!
+//! # Writing a map
+//!
+//! Implement [`Formula`]: one function from (x, y) to (x, y), generic over the number type ([`Real`]). Run on `f64` it gives
+//! values, run on [`Dual`] numbers it gives derivatives. Implement [`Map`] itself if derivatives have a cheaper closed form; only
+//! [`Map::jet`], the value and both partial derivatives at a point, is required.
+//!
+//! Everything else is optional knowledge that makes results better:
+//!
+//! - [`Map::class`] reports affine and projective maps, which are applied to control points or keep lines straight.
+//! - [`Map::creases`] lists the lines along which the derivative jumps and the boundary of the domain. Paths are split there, and
+//!   [`Map::branch`] gives the smooth map on one side.
+//! - [`Map::image`] or [`Map::rational_degree`] describe the image exactly, so that the error of a fit can be proved instead of
+//!   measured.
+//! - [`Map::inverse`] gives the inverse in closed form. [`NewtonInverse`] inverts any smooth map over a box.
+//!
+//! # Composing maps
+//!
+//! [`Chain`] applies maps one after another. Compose first and refit once: every refit adds to the error and to the number of
+//! nodes.
+//!
+//! # Maps that are here
+//!
+//! [`AffineMap`] and [`Homography`]; [`BicubicNet`], given by 16 control points; [`LatticeMap`], free-form deformation by a
+//! [`Lattice`] of any size; [`Birational`], a lattice of two rows with a closed-form inverse; and [`Coons`], given by four curved
+//! sides. The maps of single deformations are in [`deform`](crate::deform).
+//!
+//! Coordinates are user units of the drawing's root, y down.
+//!
+//! [`warp_path`]: crate::refit::warp_path
 
-mod affine;
+#[allow(private_interfaces)]
 pub mod anamorph;
-pub(crate) mod arclength;
 #[doc(hidden)]
 pub mod batch;
-pub(crate) mod bernstein;
 mod birational;
-pub(crate) mod bspline;
 mod chain;
-mod coons;
+mod class;
 mod crease;
+pub(crate) mod curves;
+#[allow(private_interfaces)]
 pub mod dilation;
 mod dual;
 mod formula;
 mod homography;
-mod inverse;
 mod jet;
 mod lattice;
-mod local;
-mod monoid;
-pub mod net;
-mod patch;
+pub(crate) mod nets;
+mod newton;
+pub(crate) mod piecewise;
 mod pins;
-mod quotient;
-mod rational;
-pub mod ruled;
-mod side;
+pub(crate) mod polynomial;
+mod projective;
+mod rational_bezier;
+#[allow(private_interfaces)]
 pub mod surface;
-mod tiled;
 mod traits;
+#[allow(private_interfaces)]
 pub mod triangle;
 
-pub use affine::AffineMap;
 pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
-pub use coons::{Coons, Sides};
+pub use class::{Class, RationalDegree};
 pub use crease::{Crease, CreaseKind, Creases, Level};
+pub use curves::{Pace, Side};
 pub use dual::{Dual, Real};
 pub use formula::Formula;
 pub use homography::Homography;
-pub use inverse::NewtonInverse;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
-pub use local::Local;
-pub use monoid::{Monoid, Ray};
-pub use net::BicubicNet;
-pub use patch::Patch;
-pub use pins::{MOST_PINS, pull};
-pub use quotient::Quotient;
-pub use rational::RationalBezier;
-pub use ruled::{Along, Guide};
-pub use side::{Pace, Side};
-pub use tiled::{Row, Tiled};
+pub use nets::{BicubicNet, Net, complete};
+pub use newton::NewtonInverse;
+pub use piecewise::{Coons, Sides};
+pub use projective::AffineMap;
+pub use rational_bezier::RationalBezier;
 pub use traits::Map;
+
+pub(crate) use curves as arclength;
+pub(crate) use curves::{Along, Guide};
+pub(crate) use nets as net;
+pub(crate) use nets as patch;
+pub(crate) use nets::bspline;
+pub(crate) use piecewise as local;
+pub(crate) use piecewise::{Local, TileRow, Tiled, ruled};
+pub use pins::{MOST_PINS, pull};
+pub(crate) use polynomial as quotient;
+pub(crate) use polynomial::bernstein;
 pub use triangle::TriangleNet;
-
-use kurbo::Affine;
-
-/// What kind of map it is: the kinds that keep lines need no refitting, and fold in a [`Chain`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Class {
-    /// Control points map exactly.
-    Affine(Affine),
-    /// Lines stay lines.
-    Projective(Homography),
-    /// Anything else.
-    Smooth,
-}
-
-/// (x, y) ↦ (X/W, Y/W) with polynomials X, Y, W.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RationalDegree {
-    /// The largest total degree (exponents of x and y together) of X, Y and W.
-    pub degree: usize,
-    /// `true` if W is not the constant 1. [`Map::denominator`] gives its values.
-    pub rational: bool,
-}
-
-impl RationalDegree {
-    /// A polynomial map: W = 1.
-    #[must_use]
-    pub const fn polynomial(degree: usize) -> Self {
-        Self { degree, rational: false }
-    }
-
-    /// A map with a denominator.
-    #[must_use]
-    pub const fn rational(degree: usize) -> Self {
-        Self { degree, rational: true }
-    }
-}

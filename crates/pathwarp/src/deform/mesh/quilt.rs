@@ -15,7 +15,7 @@
 
 use crate::error::Error;
 use crate::map::net::Net;
-use crate::map::{BicubicNet, Map, Row, Tiled};
+use crate::map::{BicubicNet, Map, TileRow, Tiled};
 use crate::param::NamedPath;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use serde::Deserialize;
@@ -208,7 +208,7 @@ impl Quilt {
             Arc::new(BicubicNet::new(&self.net(i, j), pre))
         };
         let inner = |cuts: &[f64]| cuts[1..cuts.len() - 1].to_vec();
-        let row = |j: usize| Row { cuts: inner(&across), maps: (0..columns).map(|i| patch(i, j)).collect() };
+        let row = |j: usize| TileRow { cuts: inner(&across), maps: (0..columns).map(|i| patch(i, j)).collect() };
         Tiled::over(r, inner(&down), (0..rows).map(row).collect())
     }
 

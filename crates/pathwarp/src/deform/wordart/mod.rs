@@ -10,7 +10,7 @@ use super::bend::Bend;
 use super::built::{Built, Overlay, Role};
 use super::entry::{Case, Deformation, Example, Gallery, Info, Law};
 use crate::error::{Error, GeometryError};
-use crate::map::{AffineMap, Along, Class, Guide, Map, Row, Tiled, ruled};
+use crate::map::{AffineMap, Along, Class, Guide, Map, TileRow, Tiled, ruled};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Args, Axis, Frame, Kind, Param, Settings};
 use kurbo::{Affine, Rect};
@@ -176,7 +176,7 @@ impl Deformation for WordArt {
             let y0 = if k == 0 { rect.y0 } else { cuts[k - 1] };
             Rect { y0, y1: cuts.get(k).copied().unwrap_or(rect.y1), ..rect }
         };
-        let rows: Option<Vec<Row>> = match guides {
+        let rows: Option<Vec<TileRow>> = match guides {
             Guides::Between(pairs) => {
                 let along = if s.choice("by")? == "parameter" { Along::Parameter } else { Along::ArcLength };
                 let one = |(k, [top, bottom]): (usize, &[Vec<Seg>; 2])| {
@@ -193,7 +193,7 @@ impl Deformation for WordArt {
                     built.explanation.overlays.push(cage(&path, rect));
                     let bent = standing(&path, band(k))?;
                     built.explanation.warnings.extend(bent.explanation.warnings);
-                    rows.push(Row { cuts: Vec::new(), maps: vec![bent.map] });
+                    rows.push(TileRow { cuts: Vec::new(), maps: vec![bent.map] });
                 }
                 Some(rows)
             }

@@ -1,28 +1,29 @@
-//! The Coons patch: the map of a box into four curved sides.
+//! The Coons patch: the map of a box onto the region between four curved sides.
 //!
 //! > F(u,v) = (1−v)·B(u) + v·T(u) + (1−u)·L(v) + u·R(v) − Σ corners, blended bilinearly
 //!
-//! (S. A. Coons, *Surfaces for Computer-Aided Design of Space Forms*, MIT 1967), with B, T the bottom and the top run left to
-//! right, L, R the left and the right side run upwards, (u,v) an affine function of the source point. With one cubic for every
-//! side this is the shaper's completed net (Koppinen, *A plane transformation from 16 control points*, equation 7). With straight
-//! L and R it is the ruled map (1−v)·B(u) + v·T(u): what stood upright is straight.
+//! (S. A. Coons, *Surfaces for Computer-Aided Design of Space Forms*, MIT 1967), with B, T the bottom and top sides from left to
+//! right, L, R the left and right sides upwards, and (u,v) an affine function of the source point. With one cubic for every
+//! side this is a completed bicubic net (Koppinen, *A plane transformation from 16 control points*, equation 7). With straight L
+//! and R it is the ruled map (1−v)·B(u) + v·T(u), under which verticals stay straight.
 //!
-//! Lines u = k and v = k through the joints of facing sides cut the box into cells. Where all four pieces of a cell are
-//! polynomials (lines; Bézier curves at their own pace), the cell's map is a bicubic net, and exact images follow.
+//! Lines u = k and v = k through the joints of facing sides cut the box into cells. If all four pieces of a cell are polynomials
+//! (lines, or Bézier curves at their own pace), the map of the cell is a bicubic net, with exact images.
 
-use super::side::Side;
-use super::{AffineMap, BicubicNet, Class, Crease, Creases, Jet, Level, Map};
+use crate::map::curves::Side;
+use crate::map::nets::BicubicNet;
+use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
-/// The map of a box into four sides.
+/// The map of a box onto the region between four sides.
 #[derive(Debug, Clone)]
 pub struct Coons {
     pre: Affine,
     cut: Arc<Cut>,
 }
 
-/// The sides, and where their joints cut the box.
+/// The sides, and the lines through their joints that cut the box.
 #[derive(Debug)]
 struct Cut {
     sides: Sides,
@@ -30,23 +31,24 @@ struct Cut {
     vs: Vec<f64>,
 }
 
-/// Four sides that meet in four corners.
+/// Four sides that share their end points.
 #[derive(Debug, Clone)]
 pub struct Sides {
-    /// Left to right.
+    /// The bottom side, from left to right.
     pub bottom: Side,
-    /// Upwards.
+    /// The right side, upwards.
     pub right: Side,
-    /// Left to right.
+    /// The top side, from left to right.
     pub top: Side,
-    /// Upwards.
+    /// The left side, upwards.
     pub left: Side,
 }
 
-/// A crease beyond the box lies this share of it outside, so that artwork which touches the box's edge is not cut there by
-/// rounding. The map bends from there on; between here and the edge it does so by the square of this.
+/// Distance of the outer creases from the box, relative to its size, so that rounding does not split artwork that touches the
+/// edge of the box. Between the edge and the crease the map deviates by the square of this.
 const OUTSIDE: f64 = 1e-9;
 
+/// The net, or the affine map if it is one.
 fn simplest(net: BicubicNet) -> Arc<dyn Map> {
     match net.class() {
         Class::Affine(m) => Arc::new(AffineMap(m)),
@@ -54,11 +56,11 @@ fn simplest(net: BicubicNet) -> Arc<dyn Map> {
     }
 }
 
-/// Which piece of each side: bottom, right, top, left.
+/// The indices of the pieces of the bottom, right, top and left side.
 type Cell = [usize; 4];
 
 impl Coons {
-    /// The map; `pre` takes the source to the unit square, v upwards.
+    /// The map between `sides`. `pre` takes the source to the unit square, with v upwards.
     #[must_use]
     pub fn new(sides: Sides, pre: Affine) -> Self {
         let merged = |a: &Side, b: &Side| {
@@ -77,7 +79,7 @@ impl Coons {
         &self.cut.sides
     }
 
-    /// The same map in its simplest form: one net, or affine, where it is that.
+    /// The same map in its simplest form: as one net or an affine map if possible.
     #[must_use]
     pub fn simplest(self) -> Arc<dyn Map> {
         match self.net([0; 4]) {
@@ -86,19 +88,20 @@ impl Coons {
         }
     }
 
+    /// The cell at (u, v).
     fn cell(&self, u: f64, v: f64) -> Cell {
         let s = self.sides();
         [s.bottom.piece(u), s.right.piece(v), s.top.piece(u), s.left.piece(v)]
     }
 
-    /// The jet in terms of the source point, on known pieces.
+    /// The jet at a source point, on given pieces.
     fn on(&self, [b, r, t, l]: Cell, p: Point) -> Jet {
         let Point { x: u, y: v } = self.pre * p;
         let s = self.sides();
         let ((b, db), (t, dt)) = (s.bottom.on(b, u), s.top.on(t, u));
         let ((l, dl), (r, dr)) = (s.left.on(l, v), s.right.on(r, v));
         let [p00, p10, p01, p11] = self.corners();
-        // Everything counted from the nearest numbers: sums of differences round less.
+        // Sums of differences between nearby points round less.
         let value = b + (t - b) * v + ((l - p00.lerp(p01, v)) * (1.0 - u) + (r - p10.lerp(p11, v)) * u);
         let du = db * (1.0 - v) + dt * v + ((r - p10.lerp(p11, v)) - (l - p00.lerp(p01, v)));
         let dv = (t - b) + (dl - (p01 - p00)) * (1.0 - u) + (dr - (p11 - p10)) * u;
@@ -106,17 +109,17 @@ impl Coons {
         Jet { p: value, dx: du * a + dv * bb, dy: du * c + dv * d }
     }
 
-    /// Bottom left, bottom right, top left, top right.
+    /// The corners: bottom left, bottom right, top left, top right.
     fn corners(&self) -> [Point; 4] {
         let ([a, b], [c, d]) = (self.sides().bottom.ends(), self.sides().top.ends());
         [a, b, c, d]
     }
 
-    /// The bicubic net of a cell whose four pieces are polynomials.
+    /// The bicubic net of a cell; `None` if one of its pieces is not polynomial.
     fn net(&self, cell: Cell) -> Option<BicubicNet> {
         let s = self.sides();
         let [b, r, t, l] = cell;
-        // The cell's range: the stretch of both facing pieces.
+        // The range of the cell: the common range of both facing pieces.
         let range = |joints: &[f64], holds: &dyn Fn(f64) -> bool| {
             let mut ends: Vec<f64> = std::iter::once(0.0).chain(joints.iter().copied()).collect();
             ends.push(1.0);
@@ -130,8 +133,8 @@ impl Coons {
         let left = points(s.left.cubic(l, v0, v1)?);
         let right = points(s.right.cubic(r, v0, v1)?);
         let [p00, p10, p01, p11] = self.corners().map(Point::to_vec2);
-        // A linear function's Bernstein coefficients of degree 3 are its values at thirds, and every term is a product of one
-        // in u and one in v.
+        // The Bernstein coefficients of degree 3 of a linear function are its values at thirds, and every term is the product of
+        // one factor in u and one in v.
         let third = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / 3.0;
         let net = std::array::from_fn(|j| {
             let v = third(v0, v1, j);
@@ -180,7 +183,7 @@ impl Map for Coons {
     }
 }
 
-/// The smooth map on one cell.
+/// The smooth map of one cell, continued beyond it.
 struct OnCell {
     whole: Coons,
     cell: Cell,

@@ -1,33 +1,15 @@
-//! Free-form deformation of degree 1×n that can be undone in closed form.
-//!
-//! > P(s,t) = (1−s)·P₀(t) + s·P₁(t)
-//!
-//! with P₀, P₁ rational Bézier curves of degree n, the rows. Their control points are free; weights make both rows monoids
-//! that the same line L(t) follows, turning about the point A where the first and the last pair's lines meet (T. W. Sederberg,
-//! J. Zheng, *Birational 2D free-form deformation of degree 1×n*, CAGD 2016). Then t and s of a place X have closed forms:
-//!
-//! > t = ℓ₀·X / (ℓ₀·X − ℓ₁·X),  s = f₀(X) / (f₀(X) − f₁(X))
-//!
-//! with f₀, f₁ the rows' implicit equations ([`Monoid::implicit`]); here s comes from the rows at t, which is the same number
-//! with less rounding. Lines of constant t stay straight lines.
-//!
-//! **What fixes the weights.** Scaling ℓ₁ multiplies wᵢ by gⁱ in both rows, and changes only the pace of t; and a row's weights
-//! have a common factor. Here w₀₀ = w₁₀ = 1 and w₀ₙ·w₁ₙ = 1, so that the map depends on the points alone and a rectangle
-//! gives the identity.
-//!
-//! **B-spline rows** are cut into Bézier pieces (knot insertion), each with an A of its own. Neighbours share the line between
-//! them, and its points: a piece's rows start with the weights with which the one before ends. Paces are chosen so that
-//! the speeds on both sides of every joint agree in the geometric mean of both rows, and all w₀ₙ·w₁ₙ are as near 1 as
-//! that allows. Across a joint the rows keep their tangents; the map has a crease there.
+//! The birational map, and its inverse in closed form.
 
-use super::bernstein::Scaled;
-use super::monoid::{Monoid, Ray};
-use super::{Class, Crease, Creases, Formula, Jet, Level, Map, Patch, RationalBezier, Real, bspline};
+use super::monoid::{ImplicitLine, Monoid};
+use super::weights::{chained, general_rows};
 use crate::error::GeometryError;
+use crate::map::nets::{Patch, bspline};
+use crate::map::polynomial::bernstein::Scaled;
+use crate::map::{Class, Crease, Creases, Formula, Jet, Level, Map, RationalBezier, Real};
 use kurbo::{Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// Where s and t run in the source.
+/// The direction of the rows, which determines how s and t run in the source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rows {
     /// The rows are the left and the right side: s from left to right, t from top to bottom. Horizontals stay straight.
@@ -41,27 +23,24 @@ pub enum Rows {
 pub struct Birational {
     region: Rect,
     rows: Rows,
-    pieces: Vec<Piece>,
+    pub(super) pieces: Vec<BirationalPiece>,
 }
 
-/// One Bézier piece.
+/// One Bézier piece: its rows, and the patch they span.
 #[derive(Debug, Clone, PartialEq)]
-struct Piece {
-    rows: [Monoid; 2],
+pub(super) struct BirationalPiece {
+    pub(super) rows: [Monoid; 2],
     patch: Arc<Patch>,
 }
 
-/// Nearer to a line than this share of the lattice's size counts as on it.
-const ON_LINE: f64 = 1e-9;
-
 impl Birational {
-    /// The map of `region` into the lattice with these rows, which have equally many points (at least two). `spline`: the
-    /// degree of uniform clamped B-spline rows. The names are the rows' in messages. With `allow_poles`, weights may be
-    /// negative.
+    /// The map of `region` to the lattice with these rows of equally many points, at least two. `spline` is the degree of uniform
+    /// clamped B-spline rows; `None` makes each row one Bézier curve. With `allow_poles`, weights may be negative. `names` are
+    /// the names of the rows in errors.
     ///
     /// # Errors
-    /// [`GeometryError::Coincident`] and [`GeometryError::WrongSide`] if the points are not in constrained general position:
-    /// a row must meet the first pair's line only in its first point, and the last pair's only in its last.
+    /// [`GeometryError::Coincident`] or [`GeometryError::WrongSide`] if the points are not in general position: a row may meet
+    /// the line through the first pair only in its first point, and the line through the last pair only in its last point.
     pub fn new(
         region: Rect,
         rows: Rows,
@@ -92,13 +71,8 @@ impl Birational {
         Ok(Self::from_monoids(region, rows, rows_of))
     }
 
-    /// The map with one piece whose rows are given with their weights: for other normalisations than [`Birational::new`]'s.
-    #[must_use]
-    pub fn with_monoids(region: Rect, rows: Rows, monoids: [Monoid; 2]) -> Self {
-        Self::from_monoids(region, rows, vec![monoids])
-    }
-
-    fn from_monoids(region: Rect, rows: Rows, monoids: Vec<[Monoid; 2]>) -> Self {
+    /// The map with one piece for each pair of rows, whose weights are given.
+    pub(super) fn from_monoids(region: Rect, rows: Rows, monoids: Vec<[Monoid; 2]>) -> Self {
         let cells = monoids.len();
         let share = |a: f64, size: f64, k: usize| a + size * (k as f64 / cells as f64);
         let piece = |(k, pair): (usize, [Monoid; 2])| {
@@ -120,14 +94,14 @@ impl Birational {
                     [0, 1].iter().flat_map(|&s| (0..=n).map(move |j| (s, j))).map(|(s, j)| homogeneous(s, j)).collect(),
                 ),
             };
-            Piece { patch: Arc::new(Patch::rational(rect, degree, &net)), rows: pair }
+            BirationalPiece { patch: Arc::new(Patch::rational(rect, degree, &net)), rows: pair }
         };
         Self { region, rows, pieces: monoids.into_iter().enumerate().map(piece).collect() }
     }
 
-    /// The rows of each Bézier piece, with weights.
-    pub fn monoids(&self) -> impl Iterator<Item = &[Monoid; 2]> {
-        self.pieces.iter().map(|p| &p.rows)
+    /// The weights of both rows of each Bézier piece.
+    pub fn weights(&self) -> impl Iterator<Item = [&[f64]; 2]> {
+        self.pieces.iter().map(|p| [p.rows[0].weights(), p.rows[1].weights()])
     }
 
     /// The inverse map, in closed form.
@@ -136,6 +110,7 @@ impl Birational {
         BirationalInverse { forward: self.clone() }
     }
 
+    /// The piece at a source point.
     fn piece(&self, p: Point) -> usize {
         let r = self.region;
         let t = match self.rows {
@@ -148,79 +123,6 @@ impl Birational {
     fn patch(&self, p: Point) -> &Arc<Patch> {
         &self.pieces[self.piece(p)].patch
     }
-}
-
-/// The two rows as monoids with the pace left as it comes, their points checked.
-fn general_rows(
-    points: &[Vec<Point>; 2],
-    allow_poles: bool,
-    names: &[String; 2],
-) -> Result<[Monoid; 2], GeometryError> {
-    let n = points[0].len() - 1;
-    let b = points.iter().flatten().fold(Rect::from_points(points[0][0], points[0][0]), |b, p| b.union_pt(*p));
-    let size = b.width().hypot(b.height());
-    let mut lines = [0, n].map(|j| Ray::join(points[0][j], points[1][j]));
-    for (line, j) in lines.iter_mut().zip([0, n]) {
-        let length = line.normal.hypot();
-        if length <= ON_LINE * size {
-            let path = format!("{} and {}", names[0], names[1]);
-            return Err(GeometryError::Coincident { path, which: [j + 1, j + 1], at: points[0][j] });
-        }
-        // Values near 1 within the lattice: their n-th powers are to stay within range.
-        *line = line.scaled(1.0 / (length * size));
-    }
-    let [first, last] = lines;
-    let side = if first.at(points[0][n]) >= 0.0 { 1.0 } else { -1.0 };
-    for (row, name) in points.iter().zip(names) {
-        for (i, p) in row.iter().enumerate() {
-            let off = [(i > 0, side * first.at(*p), "first"), (i < n, -side * last.at(*p), "last")];
-            for (counts, d, end) in off {
-                if counts && (d <= ON_LINE && !allow_poles || d.abs() <= ON_LINE) {
-                    let j = if end == "first" { 0 } else { n };
-                    return Err(GeometryError::WrongSide {
-                        path: name.clone(),
-                        which: i + 1,
-                        at: *p,
-                        end,
-                        line: [points[0][j], points[1][j]],
-                        on: d.abs() <= ON_LINE,
-                    });
-                }
-            }
-        }
-    }
-    let not_finite = || GeometryError::NotFinite { shape: names[0].clone(), at: points[0][0] };
-    let [a, b] = points;
-    let rows = Monoid::new(a, first, last).zip(Monoid::new(b, first, last));
-    rows.map(|(a, b)| [a, b]).ok_or_else(not_finite)
-}
-
-/// Sets the paces and the rows' common factors.
-fn chained(raw: Vec<[Monoid; 2]>) -> Option<Vec<[Monoid; 2]>> {
-    let n = raw[0][0].points().len() - 1;
-    let product = |rows: &[Monoid; 2], over: usize, under: usize| -> f64 {
-        rows.iter().map(|m| (m.weights()[over] / m.weights()[under]).abs().ln()).sum()
-    };
-    // ln g of each piece is a + x or a − x by turns; x is what brings the end weights nearest to 1.
-    let mut a = vec![0.0];
-    for w in raw.windows(2) {
-        let next = 0.5 * (product(&w[0], n - 1, n) - product(&w[1], 1, 0)) - a[a.len() - 1];
-        a.push(next);
-    }
-    let turn = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let ends = raw.iter().zip(&a).enumerate();
-    let sum: f64 = ends.map(|(k, (rows, a))| turn(k) * (product(rows, n, 0) + 2.0 * n as f64 * a)).sum();
-    let x = -sum / (2 * n * raw.len()) as f64;
-    let mut factor = [1.0; 2];
-    let mut out = Vec::with_capacity(raw.len());
-    for (k, (rows, a)) in raw.into_iter().zip(a).enumerate() {
-        let g = (a + turn(k) * x).exp();
-        let [p, q] = rows;
-        let pair = [p.paced(g)?.weighted(factor[0]), q.paced(g)?.weighted(factor[1])];
-        factor = [0, 1].map(|r| pair[r].weights()[n]);
-        out.push(pair);
-    }
-    Some(out)
 }
 
 impl Map for Birational {
@@ -285,6 +187,11 @@ impl Map for Birational {
     }
 }
 
+/// Cost of a candidate piece for the distance of t outside [0, 1], relative to the distance of s from the middle.
+const OUTSIDE_COST: f64 = 1e6;
+/// Cost of a candidate piece in which the point lies on the far side of A.
+const BEHIND_COST: f64 = 1e12;
+
 /// The inverse of a [`Birational`], in closed form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BirationalInverse {
@@ -292,20 +199,21 @@ pub struct BirationalInverse {
 }
 
 impl BirationalInverse {
-    /// s and t of a place, by one piece's rows.
+    /// (s, t) of a point by the rows of one piece.
     fn parameters<S: Real>(rows: &[Monoid; 2], x: S, y: S) -> (S, S) {
         let [first, last] = rows[0].lines();
         let (alpha, beta) = (-last.of(x, y), first.of(x, y));
-        // The rows' homogeneous points at t, times (α+β)ⁿ, seen from the place: opposite ends of the line through it.
-        let seen = |m: &Monoid| {
-            // From a point near: the sums are then not differences of large numbers.
+        // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line
+        // through (x, y).
+        let relative = |m: &Monoid| {
+            // Relative to a control point, so that the sums are not differences of large numbers.
             let o = m.points()[0];
             let (dx, dy) = (x - o.x, y - o.y);
             let n = m.points().len() - 1;
             let term = |i: usize| (m.weights()[i], m.points()[i] - o);
             let (w, d) = term(n);
             let (mut sx, mut sy, mut sw) = (S::from(w * d.x), S::from(w * d.y), S::from(w));
-            // As `monoid::bernstein`, three sums in one pass.
+            // Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ for three sets of c, by Horner's scheme in β with running powers of α.
             let (mut power, mut binomial) = (S::from(1.0), 1.0);
             for i in (0..n).rev() {
                 power = power * alpha;
@@ -316,12 +224,12 @@ impl BirationalInverse {
             }
             (sx - sw * dx, sy - sw * dy)
         };
-        let (a, b) = (seen(&rows[0]), seen(&rows[1]));
+        let (a, b) = (relative(&rows[0]), relative(&rows[1]));
         let (dx, dy) = (a.0 - b.0, a.1 - b.1);
         ((a.0 * dx + a.1 * dy) / (dx * dx + dy * dy), beta / (alpha + beta))
     }
 
-    /// The piece whose image holds a place.
+    /// The piece whose image contains a point.
     fn piece(&self, p: Point) -> usize {
         let pieces = &self.forward.pieces;
         let last = pieces.len() - 1;
@@ -331,10 +239,10 @@ impl BirationalInverse {
         let mut best = (f64::INFINITY, 0);
         for (k, piece) in pieces.iter().enumerate() {
             let (s, t) = Self::parameters(&piece.rows, p.x, p.y);
-            let beyond = if k == 0 { 0.0 } else { -t }.max(if k == last { 0.0 } else { t - 1.0 }).max(0.0);
-            // On the other side of A the denominator is negative.
-            let there = self.forward.pieces[k].patch.denominator(self.source(k, s, t).into()) > 0.0;
-            let cost = beyond * 1e6 + (s - 0.5).abs() + if there { 0.0 } else { 1e12 };
+            let outside = if k == 0 { 0.0 } else { -t }.max(if k == last { 0.0 } else { t - 1.0 }).max(0.0);
+            // The denominator is negative on the far side of A.
+            let in_front = self.forward.pieces[k].patch.denominator(self.source(k, s, t).into()) > 0.0;
+            let cost = outside * OUTSIDE_COST + (s - 0.5).abs() + if in_front { 0.0 } else { BEHIND_COST };
             if cost < best.0 {
                 best = (cost, k);
             }
@@ -342,6 +250,7 @@ impl BirationalInverse {
         best.1
     }
 
+    /// The source point at (s, t) of a piece.
     fn source<S: Real>(&self, piece: usize, s: S, t: S) -> (S, S) {
         let r = self.forward.region;
         let t = (t + piece as f64) / self.forward.pieces.len() as f64;
@@ -368,14 +277,14 @@ impl Formula for BirationalInverse {
 
     fn creases(&self, out: &mut Creases) {
         if self.forward.pieces.len() > 1 {
-            // The lines between the pieces.
+            // The lines between pieces.
             for p in &self.forward.pieces[1..] {
                 let l = p.rows[0].lines()[0];
                 let c = -l.normal.dot(l.through.to_vec2());
                 out.push(Crease::kink(Level::Line { a: l.normal.x, b: l.normal.y, c }));
             }
         }
-        // Where s or t is infinite the forward denominator is too: its reciprocal passes through zero there.
+        // The forward denominator is infinite where s or t is; its reciprocal changes sign there.
         let own = self.clone();
         let level = move |q: Point| {
             let k = own.piece(q);
@@ -391,7 +300,7 @@ impl Formula for BirationalInverse {
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [piece] = self.forward.pieces.as_slice() else { return None };
         let [first, last] = piece.rows[0].lines();
-        let line = |l: Ray, k: f64| {
+        let line = |l: ImplicitLine, k: f64| {
             let c = l.normal.dot(l.through.to_vec2());
             Scaled::new(curve.points.iter().map(|p| k * (l.normal.x * p[0] + l.normal.y * p[1] - c * p[2])))
         };

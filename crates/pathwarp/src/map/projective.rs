@@ -1,6 +1,7 @@
-//! Affine maps.
+//! Affine and projective maps as [`Map`]s: the two classes that keep straight lines.
 
-use super::{Class, Jet, Map, RationalBezier, RationalDegree};
+use super::batch::Lane;
+use super::{Class, Crease, Creases, Homography, Jet, Level, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
@@ -9,11 +10,11 @@ use std::sync::Arc;
 pub struct AffineMap(pub Affine);
 
 impl AffineMap {
-    /// The map that changes nothing.
+    /// The identity.
     pub const IDENTITY: Self = Self(Affine::IDENTITY);
 
-    /// The direct similitude (rotation, uniform scale, shift; no mirroring) that takes `a` to `a1` and `b` to `b1`; `None`
-    /// if `a` = `b`.
+    /// The direct similitude (rotation, uniform scale and translation, no reflection) that takes `a` to `a1` and `b` to `b1`;
+    /// `None` if `a` = `b`.
     #[must_use]
     pub fn similitude(a: Point, b: Point, a1: Point, b1: Point) -> Option<Self> {
         let (v, w) = (b - a, b1 - a1);
@@ -56,6 +57,62 @@ impl Map for AffineMap {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let det = self.0.determinant();
         (det != 0.0 && det.is_finite()).then(|| Arc::new(Self(self.0.inverse())) as Arc<dyn Map>)
+    }
+}
+
+impl Map for Homography {
+    #[inline]
+    fn jet(&self, p: Point) -> Jet {
+        let m = &self.m;
+        let r = 1.0 / self.w(p);
+        let x = (m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r;
+        let y = (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r;
+        Jet {
+            p: Point::new(x, y),
+            dx: Vec2::new((m[0][0] - x * m[2][0]) * r, (m[1][0] - y * m[2][0]) * r),
+            dy: Vec2::new((m[0][1] - x * m[2][1]) * r, (m[1][1] - y * m[2][1]) * r),
+        }
+    }
+
+    #[inline]
+    fn point(&self, p: Point) -> Point {
+        let m = &self.m;
+        let r = 1.0 / self.w(p);
+        Point::new((m[0][0] * p.x + m[0][1] * p.y + m[0][2]) * r, (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) * r)
+    }
+
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+
+    fn class(&self) -> Class {
+        self.as_affine().map_or(Class::Projective(*self), Class::Affine)
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let [a, b, c] = self.m[2];
+        if a != 0.0 || b != 0.0 {
+            out.push(Crease::edge(Level::Line { a, b, c }));
+        }
+    }
+
+    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
+        Some(curve.mapped(|v| self.times(v)))
+    }
+
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::rational(1))
+    }
+
+    fn denominator(&self, p: Point) -> f64 {
+        self.w(p)
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        self.inverted().map(|h| Arc::new(h) as Arc<dyn Map>)
     }
 }
 

@@ -1,61 +1,62 @@
-//! One rational Bézier patch as a map of the plane: fast values, jets and exact images.
+//! A rational tensor-product Bézier patch as a map of the plane.
 //!
 //! > F(s,t) = Σⱼ Σᵢ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ Pᵢⱼ / Σⱼ Σᵢ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ
 //!
-//! with s, t running from 0 to 1 across a box. Evaluated in powers of u = 2s − 1 and v = 2t − 1: about the middle of the box
-//! the change of basis multiplies rounding by at most 2ᵐ·2ⁿ (by 3ᵐ·3ⁿ and cancellation in powers of s and t), and its
-//! coefficients are exact. A polynomial patch is kept as the displacement F(p) − p, so that what does not move does not
-//! round either. Horner's scheme runs on eight points side by side.
+//! with s, t running from 0 to 1 across a box. Evaluated in powers of u = 2s − 1 and v = 2t − 1: about the center of the box the
+//! change of basis amplifies rounding errors by at most 2ᵐ·2ⁿ (3ᵐ·3ⁿ, with cancellation, in powers of s and t), and its
+//! coefficients are exact. A polynomial patch is stored as the displacement F(p) − p, so that points that do not move are not
+//! rounded. Horner's scheme runs on a whole batch of points.
 
-use super::bernstein::Scaled;
-use super::{Class, Crease, Creases, Jet, Level, Map, RationalBezier};
+use super::power_basis::powers;
+use crate::map::batch::WIDTH;
+use crate::map::polynomial::bernstein::Scaled;
+use crate::map::{Class, Crease, Creases, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// Points evaluated side by side.
-const LANES: usize = 8;
-/// Jets evaluated side by side: three results for each coordinate are what the registers hold.
-const JET_LANES: usize = 4;
-/// A coefficient this much smaller than the largest is rounding.
+/// Jets evaluated together: with three results for each coordinate, half as many as points fit the registers.
+const JET_WIDTH: usize = WIDTH / 2;
+/// A coefficient this much smaller than the largest is rounding noise.
 const NOISE: f64 = 1e-15;
 
 /// A rational tensor-product map of the plane.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Patch {
+pub(crate) struct Patch {
     rect: Rect,
-    /// u = (x − centre.x)·k.x, v = (y − centre.y)·k.y.
-    centre: Point,
+    /// u = (x − center.x)·k.x, v = (y − center.y)·k.y.
+    center: Point,
     k: Vec2,
-    /// Terms in a row (powers of u), rows (powers of v).
+    /// Terms in a row: powers of u.
     width: usize,
+    /// Rows: powers of v.
     height: usize,
-    /// x, y of the displacement; or X, Y, W, with X and Y counted from the centre. Rows one after another.
+    /// Coefficients, row by row: of the displacement for a polynomial patch, else of X relative to the center.
     x: Vec<f64>,
+    /// As `x`, of the other coordinate.
     y: Vec<f64>,
-    /// Empty for a polynomial patch.
+    /// Coefficients of W; empty for a polynomial patch.
     w: Vec<f64>,
-    /// Whether the denominator can vanish somewhere in the box.
+    /// The denominator may vanish inside the box.
     may_vanish: bool,
-    /// Whether the patch is only used inside its box.
+    /// The patch is used only inside its box.
     bounded: bool,
 }
 
 impl Patch {
-    /// The polynomial patch over `rect` whose control points are off their regular places by `moves`: (n+1) rows of (m+1),
-    /// s across, t down.
+    /// The polynomial patch over `rect` whose control points are displaced by `moves` from their regular positions: (n+1) rows of
+    /// (m+1), s across, t down.
     #[must_use]
-    pub fn polynomial(rect: Rect, degree: [usize; 2], moves: &[Vec2]) -> Self {
+    pub(crate) fn polynomial(rect: Rect, degree: [usize; 2], moves: &[Vec2]) -> Self {
         let plane = |f: fn(&Vec2) -> f64| powers(degree, &moves.iter().map(f).collect::<Vec<_>>());
         Self::from_planes(rect, degree, plane(|v| v.x), plane(|v| v.y), Vec::new())
     }
 
-    /// The rational patch over `rect` with control points (x·w, y·w, w): (n+1) rows of (m+1), s across, t down. Equal weights
-    /// give a polynomial patch.
+    /// The rational patch over `rect` with homogeneous control points (x·w, y·w, w): (n+1) rows of (m+1), s across, t down. Equal
+    /// weights give a polynomial patch.
     #[must_use]
-    pub fn rational(rect: Rect, degree: [usize; 2], points: &[[f64; 3]]) -> Self {
-        let (most, least) =
-            points.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), p| (a.max(p[2]), b.min(p[2])));
-        if most - least <= 4.0 * NOISE * most {
+    pub(crate) fn rational(rect: Rect, degree: [usize; 2], points: &[[f64; 3]]) -> Self {
+        let (max, min) = points.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), p| (a.max(p[2]), b.min(p[2])));
+        if max - min <= 4.0 * NOISE * max {
             let moves: Vec<Vec2> = points
                 .iter()
                 .enumerate()
@@ -70,7 +71,7 @@ impl Patch {
         let plane = |f: &dyn Fn(&[f64; 3]) -> f64| powers(degree, &points.iter().map(f).collect::<Vec<_>>());
         let (x, y) = (plane(&|p| p[0] - c.x * p[2]), plane(&|p| p[1] - c.y * p[2]));
         let mut out = Self::from_planes(rect, degree, x, y, plane(&|p| p[2]));
-        out.may_vanish = least <= 0.0;
+        out.may_vanish = min <= 0.0;
         out
     }
 
@@ -95,7 +96,7 @@ impl Patch {
             |p: &[f64]| -> Vec<f64> { p.chunks(m).take(height).flat_map(|row| row[..width].iter().copied()).collect() };
         Self {
             rect,
-            centre: rect.center(),
+            center: rect.center(),
             k: Vec2::new(2.0 / rect.width(), 2.0 / rect.height()),
             width,
             height,
@@ -107,7 +108,7 @@ impl Patch {
         }
     }
 
-    /// The same, known to be used inside its box only.
+    /// Marks the patch as used only inside its box.
     #[must_use]
     pub(crate) fn bounded(self) -> Self {
         Self { bounded: true, ..self }
@@ -115,32 +116,34 @@ impl Patch {
 
     /// The box over which s and t run from 0 to 1.
     #[must_use]
-    pub fn rect(&self) -> Rect {
+    pub(crate) fn rect(&self) -> Rect {
         self.rect
     }
 
-    /// Whether the denominator is constant.
+    /// Returns `true` if the denominator is constant.
     #[must_use]
-    pub fn is_polynomial(&self) -> bool {
+    pub(crate) fn is_polynomial(&self) -> bool {
         self.w.is_empty()
     }
 
-    /// Whether the denominator may vanish where the patch is used: a weight that is not positive, or use beyond the box.
+    /// Returns `true` if the denominator may vanish where the patch is used: with a weight that is not positive, or outside the
+    /// box.
     pub(crate) fn has_edge(&self) -> bool {
         !self.is_polynomial() && (self.may_vanish || !self.bounded)
     }
 
+    /// (u, v) of L points.
     #[inline(always)]
     fn local<const L: usize>(&self, p: [Point; L]) -> [[f64; L]; 2] {
         let mut out = [[0.0; L]; 2];
         for i in 0..L {
-            out[0][i] = (p[i].x - self.centre.x) * self.k.x;
-            out[1][i] = (p[i].y - self.centre.y) * self.k.y;
+            out[0][i] = (p[i].x - self.center.x) * self.k.x;
+            out[1][i] = (p[i].y - self.center.y) * self.k.y;
         }
         out
     }
 
-    /// The polynomial `plane` at L places. `W` is its width, or 0 for any: known widths are unrolled by the compiler.
+    /// The polynomial `plane` at L points. `W` is its width, or 0 for any width; the compiler unrolls known widths.
     #[inline(always)]
     fn values<const L: usize, const W: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [f64; L] {
         let width = if W == 0 { self.width } else { W };
@@ -164,7 +167,7 @@ impl Patch {
         out
     }
 
-    /// Value, ∂/∂u and ∂/∂v of `plane` at L places.
+    /// Value, ∂/∂u and ∂/∂v of `plane` at L points.
     #[inline(always)]
     fn slopes<const L: usize, const W: usize>(&self, plane: &[f64], [u, v]: &[[f64; L]; 2]) -> [[f64; L]; 3] {
         let width = if W == 0 { self.width } else { W };
@@ -205,7 +208,7 @@ impl Patch {
             let w = self.values::<L, W>(&self.w, &at);
             for i in 0..L {
                 let r = 1.0 / w[i];
-                out[i] = Point::new(self.centre.x + x[i] * r, self.centre.y + y[i] * r);
+                out[i] = Point::new(self.center.x + x[i] * r, self.center.y + y[i] * r);
             }
         }
         out
@@ -231,7 +234,7 @@ impl Patch {
                 let r = 1.0 / w[0][i];
                 let (a, b) = (x[0][i] * r, y[0][i] * r);
                 out[i] = Jet {
-                    p: Point::new(self.centre.x + a, self.centre.y + b),
+                    p: Point::new(self.center.x + a, self.center.y + b),
                     dx: Vec2::new(x[1][i] - a * w[1][i], y[1][i] - b * w[1][i]) * (r * kx),
                     dy: Vec2::new(x[2][i] - a * w[2][i], y[2][i] - b * w[2][i]) * (r * ky),
                 };
@@ -241,10 +244,10 @@ impl Patch {
     }
 
     fn points_in<const W: usize>(&self, ps: &[Point], out: &mut [Point]) {
-        let (from, rest) = ps.as_chunks::<LANES>();
-        let (to, rest_out) = out.as_chunks_mut::<LANES>();
+        let (from, rest) = ps.as_chunks::<WIDTH>();
+        let (to, rest_out) = out.as_chunks_mut::<WIDTH>();
         for (p, o) in from.iter().zip(to) {
-            *o = self.points_at::<LANES, W>(*p);
+            *o = self.points_at::<WIDTH, W>(*p);
         }
         for (p, o) in rest.iter().zip(rest_out) {
             [*o] = self.points_at::<1, W>([*p]);
@@ -252,17 +255,17 @@ impl Patch {
     }
 
     fn jets_in<const W: usize>(&self, ps: &[Point], out: &mut [Jet]) {
-        let (from, rest) = ps.as_chunks::<JET_LANES>();
-        let (to, rest_out) = out.as_chunks_mut::<JET_LANES>();
+        let (from, rest) = ps.as_chunks::<JET_WIDTH>();
+        let (to, rest_out) = out.as_chunks_mut::<JET_WIDTH>();
         for (p, o) in from.iter().zip(to) {
-            *o = self.jets_at::<JET_LANES, W>(*p);
+            *o = self.jets_at::<JET_WIDTH, W>(*p);
         }
         for (p, o) in rest.iter().zip(rest_out) {
             [*o] = self.jets_at::<1, W>([*p]);
         }
     }
 
-    /// The coefficients of uⁱvʲ as (i, j, X, Y, W), those that vanish left out; X and Y counted from the origin.
+    /// The nonzero coefficients of uⁱvʲ as (i, j, [X, Y, W]), with X and Y relative to the origin.
     fn terms(&self) -> Vec<(usize, usize, [f64; 3])> {
         let mut all: Vec<[f64; 3]> = (0..self.width.max(2) * self.height.max(2)).map(|_| [0.0; 3]).collect();
         let width = self.width.max(2);
@@ -270,13 +273,13 @@ impl Patch {
             for i in 0..self.width {
                 let k = j * self.width + i;
                 let w = self.w.get(k).copied().unwrap_or(0.0);
-                let c = if self.w.is_empty() { Vec2::ZERO } else { self.centre.to_vec2() * w };
+                let c = if self.w.is_empty() { Vec2::ZERO } else { self.center.to_vec2() * w };
                 all[j * width + i] = [self.x[k] + c.x, self.y[k] + c.y, w];
             }
         }
         if self.w.is_empty() {
-            // The displacement and the point itself.
-            let base = [(0, [self.centre.x, self.centre.y, 1.0]), (1, [1.0 / self.k.x, 0.0, 0.0])];
+            // Add the point itself to the displacement.
+            let base = [(0, [self.center.x, self.center.y, 1.0]), (1, [1.0 / self.k.x, 0.0, 0.0])];
             for (k, add) in base.into_iter().chain([(width, [0.0, 1.0 / self.k.y, 0.0])]) {
                 for (a, b) in all[k].iter_mut().zip(add) {
                     *a += b;
@@ -288,48 +291,10 @@ impl Patch {
     }
 }
 
-/// Where control point (i, j) of the identity lies.
+/// The control point (i, j) of the identity.
 fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
     let at = |a: f64, size: f64, i: usize, n: usize| a + size * (i as f64 / n as f64);
     Point::new(at(rect.x0, rect.width(), i, degree[0]), at(rect.y0, rect.height(), j, degree[1]))
-}
-
-/// Bernstein coefficients over (s, t), row by row, to powers of u = 2s − 1 and v = 2t − 1.
-pub(super) fn powers(degree: [usize; 2], b: &[f64]) -> Vec<f64> {
-    let (m, n) = (degree[0] + 1, degree[1] + 1);
-    let (across, down) = (centred(degree[0]), centred(degree[1]));
-    let mut rows = vec![0.0; m * n];
-    for (to, from) in rows.chunks_mut(m).zip(b.chunks(m)) {
-        for (k, v) in to.iter_mut().enumerate() {
-            *v = from.iter().enumerate().map(|(i, c)| across[i][k] * c).sum();
-        }
-    }
-    let mut out = vec![0.0; m * n];
-    for (l, to) in out.chunks_mut(m).enumerate() {
-        for (k, v) in to.iter_mut().enumerate() {
-            *v = (0..n).map(|j| down[j][l] * rows[j * m + k]).sum();
-        }
-    }
-    out
-}
-
-/// The coefficients of uᵏ in each Bⁿᵢ((1+u)/2) = C(n,i)·(1+u)ⁱ(1−u)ⁿ⁻ⁱ/2ⁿ: exact in binary.
-fn centred(n: usize) -> Vec<Vec<f64>> {
-    let mut binomial = 1.0;
-    (0..=n)
-        .map(|i| {
-            let mut c = vec![0.0; n + 1];
-            c[0] = binomial * 0.5f64.powi(n as i32);
-            binomial = binomial * (n - i) as f64 / (i + 1) as f64;
-            for step in 0..n {
-                let sign = if step < i { 1.0 } else { -1.0 };
-                for k in (1..=step + 1).rev() {
-                    c[k] += sign * c[k - 1];
-                }
-            }
-            c
-        })
-        .collect()
 }
 
 impl Map for Patch {
@@ -381,7 +346,7 @@ impl Map for Patch {
         let of = |a: usize, b: usize| terms.iter().find(|(i, j, _)| (*i, *j) == (a, b)).map_or([0.0; 3], |t| t.2);
         let (u, v) = (of(1, 0), of(0, 1));
         let linear = Affine::new([u[0] * self.k.x, u[1] * self.k.x, v[0] * self.k.y, v[1] * self.k.y, 0.0, 0.0]);
-        let shift = self.point(self.centre) - linear * self.centre;
+        let shift = self.point(self.center) - linear * self.center;
         Class::Affine(linear.then_translate(shift))
     }
 
@@ -392,9 +357,9 @@ impl Map for Patch {
         }
     }
 
-    /// Substituting a curve of degree d gives one of degree d·(m+n), less where the highest terms are missing.
+    /// Substituting a curve of degree d gives one of degree d·(m+n), or less if the highest terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let (c, k) = (self.centre, self.k);
+        let (c, k) = (self.center, self.k);
         let local = |f: &dyn Fn(&[f64; 3]) -> f64| Scaled::new(curve.points.iter().map(f));
         let terms = self.terms();
         let total = terms.iter().map(|t| t.0 + t.1).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Monoids: rational Bézier curves with free control points, made to have one point A of multiplicity n − 1 by their weights.
+//! Monoids: rational Bézier curves with free control points whose weights give them a point A of multiplicity n − 1.
 //!
 //! A line L(t) = (1−t)·ℓ₀ + t·ℓ₁ turns about A, from the line ℓ₀ through A and P₀ to the line ℓ₁ through A and Pₙ. It follows
 //! the curve, L(t)·P(t) ≡ 0, if
@@ -6,71 +6,71 @@
 //! > wᵢ = − i (ℓ₁·Pᵢ₋₁) / ((n+1−i)(ℓ₀·Pᵢ)) · wᵢ₋₁
 //!
 //! (T. W. Sederberg, J. Zheng, *Birational 2D free-form deformation of degree 1×n*, CAGD 2016, theorem 2.3, where
-//! ℓ₀ = A×Q₀, ℓ₁ = A×Q₁). Then t has a closed form, ℓ₀·X / (ℓ₀·X − ℓ₁·X), and the curve an implicit equation with the same
-//! numbers in it (equation 22):
+//! ℓ₀ = A×Q₀, ℓ₁ = A×Q₁). Then t has the closed form ℓ₀·X / (ℓ₀·X − ℓ₁·X), and the curve an implicit equation with the same
+//! coefficients (equation 22):
 //!
 //! > f(X) = ⟨w₀,…,wₙ⟩ₙ\[−ℓ₁·X, ℓ₀·X\] − ⟨h₀,…,hₙ₋₁⟩ₙ₋₁\[−ℓ₁·X, ℓ₀·X\],  hᵢ = n/(i+1)·wᵢ₊₁·(ℓ₀·Pᵢ₊₁)
 //!
 //! with ⟨c⟩ₙ\[α,β\] = Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ.
 
-use super::Real;
+use crate::map::Real;
 use kurbo::{Point, Vec2};
 
-/// A line: the points X with normal·(X − through) = 0.
+/// A line by its equation ℓ·X = normal·(X − through) = 0.
 ///
-/// Kept with a point on it, so that its value near itself is not a difference of large numbers.
+/// Stored with a point on the line, so that values near the line are not differences of large numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ray {
-    /// A point on it.
-    pub through: Point,
-    /// Normal to it; its length is the line's scale.
-    pub normal: Vec2,
+pub(super) struct ImplicitLine {
+    /// A point on the line.
+    pub(super) through: Point,
+    /// A normal, whose length is the scale of ℓ.
+    pub(super) normal: Vec2,
 }
 
-impl Ray {
+impl ImplicitLine {
     /// ℓ·X.
     #[inline]
     #[must_use]
-    pub fn at(&self, p: Point) -> f64 {
+    pub(super) fn at(&self, p: Point) -> f64 {
         self.normal.dot(p - self.through)
     }
 
-    /// ℓ·X for any number type.
+    /// ℓ·X, generic over the number type.
     #[inline]
-    pub(crate) fn of<S: Real>(&self, x: S, y: S) -> S {
+    pub(super) fn of<S: Real>(&self, x: S, y: S) -> S {
         (x - self.through.x) * self.normal.x + (y - self.through.y) * self.normal.y
     }
 
-    /// The line through two points with ℓ·X = |from, to, X|.
+    /// The line through two points, scaled so that ℓ·X = |from, to, X|.
     #[must_use]
-    pub fn join(from: Point, to: Point) -> Self {
+    pub(super) fn join(from: Point, to: Point) -> Self {
         let d = to - from;
         Self { through: from, normal: Vec2::new(-d.y, d.x) }
     }
 
-    /// The same line, its values `k` times as large.
+    /// The same line with values scaled by `k`.
     #[must_use]
-    pub fn scaled(self, k: f64) -> Self {
+    pub(super) fn scaled(self, k: f64) -> Self {
         Self { normal: self.normal * k, ..self }
     }
 }
 
 /// A planar rational Bézier curve with an (n−1)-fold point.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Monoid {
+pub(super) struct Monoid {
     points: Vec<Point>,
     weights: Vec<f64>,
     h: Vec<f64>,
-    first: Ray,
-    last: Ray,
+    first: ImplicitLine,
+    last: ImplicitLine,
 }
 
 impl Monoid {
-    /// The curve with these control points whose line at t = 0 is `first` and at t = 1 `last` (through the first and the last
-    /// control point). The lines meet in the multiple point; their scales set the pace of t. `None` with fewer than two points,
-    /// or if a weight is not finite or zero: a control point other than the first on `first`, or other than the last on `last`.
+    /// The curve with these control points whose line L is `first` at t = 0 and `last` at t = 1, through the first and the last
+    /// control point. The lines meet in the multiple point; their scales determine the speed of t. `None` with fewer than two
+    /// points, or if a weight is zero or not finite because another control point lies on `first` or `last`.
     #[must_use]
-    pub fn new(points: &[Point], first: Ray, last: Ray) -> Option<Self> {
+    pub(super) fn new(points: &[Point], first: ImplicitLine, last: ImplicitLine) -> Option<Self> {
         let n = points.len().checked_sub(1).filter(|n| *n > 0)?;
         let mut weights = vec![1.0];
         for i in 1..=n {
@@ -84,92 +84,89 @@ impl Monoid {
         Some(Self { points: points.to_vec(), weights, h, first, last })
     }
 
-    /// The same with the multiple point `a` and points `q0`, `q1` on the first and last line, as the paper has it: a and q1
-    /// homogeneous, so that they may lie at infinity.
-    #[must_use]
-    pub fn with_axis(points: &[Point], a: [f64; 3], q0: Point, q1: Point) -> Option<Self> {
-        let line = |q: Point| Ray { through: q, normal: Vec2::new(a[1] - a[2] * q.y, a[2] * q.x - a[0]) };
-        Self::new(points, line(q0), line(q1))
-    }
-
     /// The control points.
     #[must_use]
-    pub fn points(&self) -> &[Point] {
+    pub(super) fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// The weights.
     #[must_use]
-    pub fn weights(&self) -> &[f64] {
+    pub(super) fn weights(&self) -> &[f64] {
         &self.weights
     }
 
     /// The coefficients h₀ … hₙ₋₁ of the implicit equation.
     #[must_use]
-    pub fn h(&self) -> &[f64] {
+    pub(super) fn h(&self) -> &[f64] {
         &self.h
     }
 
     /// The lines at t = 0 and t = 1.
     #[must_use]
-    pub fn lines(&self) -> [Ray; 2] {
+    pub(super) fn lines(&self) -> [ImplicitLine; 2] {
         [self.first, self.last]
     }
 
-    /// The same curve with weights gⁱ·wᵢ: only the pace of t changes.
+    /// The same curve with weights gⁱ·wᵢ, which changes only the speed of t.
     #[must_use]
-    pub fn paced(&self, g: f64) -> Option<Self> {
+    pub(super) fn paced(&self, g: f64) -> Option<Self> {
         Self::new(&self.points, self.first, self.last.scaled(g))
     }
 
-    /// The same curve with all weights `k` times as large.
+    /// The same curve with all weights multiplied by `k`.
     #[must_use]
-    pub fn weighted(mut self, k: f64) -> Self {
+    pub(super) fn weighted(mut self, k: f64) -> Self {
         self.weights.iter_mut().chain(&mut self.h).for_each(|w| *w *= k);
         self
     }
-
-    /// The curve's parameter on whose line `p` lies; infinite on the line t = ∞.
-    #[must_use]
-    pub fn t(&self, p: Point) -> f64 {
-        let (b, a) = (self.first.at(p), self.last.at(p));
-        b / (b - a)
-    }
-
-    /// The homogeneous point (X·w, Y·w, w) at `t`.
-    #[must_use]
-    pub fn eval(&self, t: f64) -> [f64; 3] {
-        [0, 1, 2].map(|k| {
-            let c = self.points.iter().zip(&self.weights).map(|(p, w)| w * [p.x, p.y, 1.0][k]);
-            bernstein(c.collect::<Vec<_>>().as_slice(), 1.0 - t, t)
-        })
-    }
-
-    /// The implicit equation's left side: zero exactly on the curve (and at its multiple point).
-    #[must_use]
-    pub fn implicit(&self, p: Point) -> f64 {
-        let (alpha, beta) = (-self.last.at(p), self.first.at(p));
-        bernstein(&self.weights, alpha, beta) - bernstein(&self.h, alpha, beta)
-    }
-}
-
-/// ⟨c⟩ₙ\[α,β\] = Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ, by Horner's scheme in β with the powers of α carried along.
-#[must_use]
-fn bernstein<S: Real>(c: &[f64], alpha: S, beta: S) -> S {
-    let n = c.len() - 1;
-    let (mut sum, mut power, mut binomial) = (S::from(c[n]), S::from(1.0), 1.0);
-    // From the last term down, divided by nothing: sum = Σ_{i≥k} cᵢ C(n,i) αⁿ⁻ⁱ βⁱ⁻ᵏ.
-    for k in (0..n).rev() {
-        power = power * alpha;
-        binomial = binomial * (k + 1) as f64 / (n - k) as f64;
-        sum = sum * beta + power * (c[k] * binomial);
-    }
-    sum
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    impl Monoid {
+        /// As [`Monoid::new`], from the multiple point `a` and points `q0`, `q1` on the first and last line, as in the paper. `a` is
+        /// homogeneous, so it may lie at infinity.
+        pub(crate) fn with_axis(points: &[Point], a: [f64; 3], q0: Point, q1: Point) -> Option<Self> {
+            let line = |q: Point| ImplicitLine { through: q, normal: Vec2::new(a[1] - a[2] * q.y, a[2] * q.x - a[0]) };
+            Self::new(points, line(q0), line(q1))
+        }
+
+        /// The parameter whose line contains `p`; infinite on the line t = ∞.
+        pub(crate) fn t(&self, p: Point) -> f64 {
+            let (b, a) = (self.first.at(p), self.last.at(p));
+            b / (b - a)
+        }
+
+        /// The homogeneous point (X·w, Y·w, w) at `t`.
+        pub(crate) fn eval(&self, t: f64) -> [f64; 3] {
+            [0, 1, 2].map(|k| {
+                let c = self.points.iter().zip(&self.weights).map(|(p, w)| w * [p.x, p.y, 1.0][k]);
+                bernstein(c.collect::<Vec<_>>().as_slice(), 1.0 - t, t)
+            })
+        }
+
+        /// The left side of the implicit equation: zero on the curve and at its multiple point.
+        pub(crate) fn implicit(&self, p: Point) -> f64 {
+            let (alpha, beta) = (-self.last.at(p), self.first.at(p));
+            bernstein(&self.weights, alpha, beta) - bernstein(&self.h, alpha, beta)
+        }
+    }
+
+    /// ⟨c⟩ₙ\[α,β\] = Σ cᵢ C(n,i) αⁿ⁻ⁱ βⁱ, by Horner's scheme in β with running powers of α.
+    fn bernstein<S: Real>(c: &[f64], alpha: S, beta: S) -> S {
+        let n = c.len() - 1;
+        let (mut sum, mut power, mut binomial) = (S::from(c[n]), S::from(1.0), 1.0);
+        // From the last term down, without divisions: sum = Σ_{i≥k} cᵢ C(n,i) αⁿ⁻ⁱ βⁱ⁻ᵏ.
+        for k in (0..n).rev() {
+            power = power * alpha;
+            binomial = binomial * (k + 1) as f64 / (n - k) as f64;
+            sum = sum * beta + power * (c[k] * binomial);
+        }
+        sum
+    }
 
     fn example() -> Monoid {
         let p = [(0.0, 2.0), (0.0, 3.0), (2.0, 4.0), (5.0, 3.0), (5.0, 2.0)].map(Point::from);
@@ -221,7 +218,17 @@ mod tests {
     #[test]
     fn a_point_on_an_end_line_has_no_weight() {
         let p = [(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)].map(Point::from);
-        let lines = [Ray::join((0.0, 0.0).into(), (1.0, 0.0).into()), Ray::join((0.0, 1.0).into(), (1.0, 1.0).into())];
+        let lines = [
+            ImplicitLine::join((0.0, 0.0).into(), (1.0, 0.0).into()),
+            ImplicitLine::join((0.0, 1.0).into(), (1.0, 1.0).into()),
+        ];
         assert!(Monoid::new(&p, lines[0], lines[1]).is_none());
+    }
+
+    #[test]
+    fn a_line_through_two_points() {
+        let l = ImplicitLine::join(Point::new(1.0, 1.0), Point::new(3.0, 1.0));
+        assert_eq!(l.at(Point::new(5.0, 1.0)), 0.0);
+        assert_eq!(l.at(Point::new(1.0, 2.0)), 2.0);
     }
 }

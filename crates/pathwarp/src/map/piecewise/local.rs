@@ -1,29 +1,28 @@
-//! A map that acts inside a convex polygon only; outside nothing moves.
+//! A map restricted to a convex polygon; nothing moves outside.
 //!
-//! The polygon's sides are creases, crossed exactly. Whether the pieces meet there is up to the map inside.
+//! The sides of the polygon are creases, crossed exactly. The map inside determines whether it meets the identity there.
 
-use super::inverse::NOWHERE;
-use super::{AffineMap, Class, Crease, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
+use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
-/// How far beyond a side a place still belongs to the inside, relative to the coordinates: curves that end on a side or touch
-/// it do.
+/// Distance from a side, relative to the coordinates, within which outside points count as inside: curves that end on a side or
+/// touch it belong to the inside.
 const ROUNDING: f64 = 1e-12;
 
-/// A map inside a convex polygon, the identity outside.
+/// A map inside a convex polygon, and the identity outside.
 #[derive(Clone)]
-pub struct Local {
-    /// For each side a·x + b·y + c, the distance to it, positive inside; and the side's box.
+pub(crate) struct Local {
+    /// The coefficients of each side's signed distance a·x + b·y + c, positive inside, and the bounding box of the side.
     sides: Vec<([f64; 3], Rect)>,
     reach: f64,
     inside: Arc<dyn Map>,
 }
 
 impl Local {
-    /// `inside` within the convex polygon with these corners, in either order.
+    /// Restricts `inside` to the convex polygon with these corners, in either orientation.
     #[must_use]
-    pub fn new(corners: &[Point], inside: Arc<dyn Map>) -> Self {
+    pub(crate) fn new(corners: &[Point], inside: Arc<dyn Map>) -> Self {
         let n = corners.len();
         let side = |k: usize| {
             let (p, q, other) = (corners[k], corners[(k + 1) % n], corners[(k + 2) % n]);
@@ -36,28 +35,29 @@ impl Local {
         Self { sides: (0..n).map(side).collect(), reach: ROUNDING * size, inside }
     }
 
-    /// How far inside `p` lies: the distance to the nearest side's line, negative outside.
+    /// The signed distance from `p` to the nearest side's line, negative outside.
     fn depth(&self, p: Point) -> f64 {
         self.sides.iter().map(|([a, b, c], _)| a * p.x + b * p.y + c).fold(f64::INFINITY, f64::min)
     }
 
-    /// The box about the polygon.
+    /// The bounding box of the polygon.
     fn bounds(&self) -> Rect {
         self.sides.iter().map(|s| s.1).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
     }
 
-    fn holds(&self, p: Point) -> bool {
+    /// Returns `true` if `p` is inside, up to rounding.
+    fn contains(&self, p: Point) -> bool {
         self.depth(p) >= -self.reach
     }
 }
 
 impl Map for Local {
     fn jet(&self, p: Point) -> Jet {
-        if self.holds(p) { self.inside.jet(p) } else { AffineMap::IDENTITY.jet(p) }
+        if self.contains(p) { self.inside.jet(p) } else { AffineMap::IDENTITY.jet(p) }
     }
 
     fn point(&self, p: Point) -> Point {
-        if self.holds(p) { self.inside.point(p) } else { p }
+        if self.contains(p) { self.inside.point(p) } else { p }
     }
 
     fn creases(&self, out: &mut Creases) {
@@ -68,49 +68,49 @@ impl Map for Local {
         self.inside.creases(&mut own);
         for c in own.items() {
             let (level, local) = (c.level.clone(), self.clone());
-            let level = Level::Field(Arc::new(move |p| if local.holds(p) { level.at(p) } else { 1.0 }));
+            let level = Level::Field(Arc::new(move |p| if local.contains(p) { level.at(p) } else { 1.0 }));
             out.push(Crease { level, kind: c.kind });
         }
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        Some(if self.holds(inside) {
+        Some(if self.contains(inside) {
             self.inside.branch(inside).unwrap_or_else(|| self.inside.clone())
         } else {
             Arc::new(AffineMap::IDENTITY)
         })
     }
 
-    /// Where the curve's control points, and so the curve, lie on one side.
+    /// For a curve whose control points, and therefore the whole curve, lie inside, or beyond one side.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let points: Option<Vec<Point>> =
             curve.points.iter().map(|p| (p[2] > 0.0).then(|| Point::new(p[0] / p[2], p[1] / p[2]))).collect();
         let points = points?;
-        if points.iter().all(|p| self.holds(*p)) {
+        if points.iter().all(|p| self.contains(*p)) {
             return self.inside.image(curve);
         }
         let beyond = |[a, b, c]: [f64; 3]| points.iter().all(|p| a * p.x + b * p.y + c < -self.reach);
         self.sides.iter().any(|s| beyond(s.0)).then(|| curve.clone())
     }
 
-    /// The inverse of the map inside where it leads inside, the identity outside.
+    /// The inverse of the map inside where its answers lie inside, and the identity outside.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let back = match self.inside.class() {
-            Class::Smooth => Back::Newton(Arc::new(NewtonInverse::new(
+            Class::Smooth => InnerInverse::Newton(Arc::new(NewtonInverse::new(
                 self.inside.clone(),
                 self.bounds(),
                 1e-3 * (self.bounds().width() + self.bounds().height()),
                 [1, 1],
             ))),
-            _ => Back::Closed(self.inside.inverse()?),
+            _ => InnerInverse::Closed(self.inside.inverse()?),
         };
         Some(Arc::new(LocalInverse { of: self.clone(), back }))
     }
 }
 
-/// How a place inside is found.
+/// The method that inverts the map inside.
 #[derive(Clone)]
-enum Back {
+enum InnerInverse {
     Closed(Arc<dyn Map>),
     Newton(Arc<NewtonInverse>),
 }
@@ -119,21 +119,21 @@ enum Back {
 #[derive(Clone)]
 struct LocalInverse {
     of: Local,
-    back: Back,
+    back: InnerInverse,
 }
 
 impl LocalInverse {
-    /// The preimage at most `beyond` outside the polygon.
+    /// The preimage inside the polygon, or outside by at most `beyond`.
     fn within(&self, q: Point, beyond: f64) -> Option<Jet> {
-        let holds = |p: Point| self.of.depth(p) >= -beyond;
+        let accept = |p: Point| self.of.depth(p) >= -beyond;
         match &self.back {
-            Back::Closed(m) => Some(m.jet(q)).filter(|j| j.is_finite() && holds(j.p)),
-            Back::Newton(m) => m.solve_where(q, holds),
+            InnerInverse::Closed(m) => Some(m.jet(q)).filter(|j| j.is_finite() && accept(j.p)),
+            InnerInverse::Newton(m) => m.solve_where(q, accept),
         }
     }
 
-    /// Room for the ends of a part that lie on the polygon's sides.
-    fn room(&self) -> f64 {
+    /// A margin for parts that end on the sides of the polygon.
+    fn margin(&self) -> f64 {
         let b = self.of.bounds();
         1e-3 * (b.width() + b.height())
     }
@@ -143,16 +143,16 @@ impl Map for LocalInverse {
     fn jet(&self, q: Point) -> Jet {
         match self.within(q, self.of.reach) {
             Some(found) => found,
-            None if !self.of.holds(q) => AffineMap::IDENTITY.jet(q),
-            None => NOWHERE,
+            None if !self.of.contains(q) => AffineMap::IDENTITY.jet(q),
+            None => Jet::UNDEFINED,
         }
     }
 
     fn creases(&self, out: &mut Creases) {
         let own = self.clone();
         out.push(Crease::kink(Level::Field(Arc::new(move |q| {
-            let room = own.room();
-            own.within(q, room).map_or(-room, |found| own.of.depth(found.p))
+            let margin = own.margin();
+            own.within(q, margin).map_or(-margin, |found| own.of.depth(found.p))
         }))));
     }
 
@@ -161,8 +161,8 @@ impl Map for LocalInverse {
             return Some(Arc::new(AffineMap::IDENTITY));
         }
         Some(match &self.back {
-            Back::Closed(m) => m.clone(),
-            Back::Newton(_) => Arc::new(Inside(self.clone())),
+            InnerInverse::Closed(m) => m.clone(),
+            InnerInverse::Newton(_) => Arc::new(Inside(self.clone())),
         })
     }
 
@@ -176,7 +176,7 @@ struct Inside(LocalInverse);
 
 impl Map for Inside {
     fn jet(&self, q: Point) -> Jet {
-        self.0.within(q, self.0.room()).unwrap_or(NOWHERE)
+        self.0.within(q, self.0.margin()).unwrap_or(Jet::UNDEFINED)
     }
 }
 
@@ -208,7 +208,7 @@ mod tests {
             for p in [(0.25, 0.25), (0.8, 0.8), (0.5, 0.1)] {
                 assert!(back.point(m.point(p.into())).distance(p.into()) < 1e-15);
             }
-            // In the gap that the hump left at the bottom there was nothing.
+            // No point maps into the gap that the swell leaves at the bottom.
             assert!(back.point((0.5, 0.01).into()).is_nan());
         }
     }
@@ -223,7 +223,7 @@ mod tests {
         let mut creases = Creases::default();
         m.creases(&mut creases);
         let seg = crate::outline::Seg::Line(kurbo::Line::new((-1.0, 1.0), (9.0, 1.0)));
-        // Into the left side, out at the slanting one; the bottom side's line is not met, the others' not elsewhere.
+        // Enters at the left side and leaves at the slanting one. The lines of the sides do not count outside the sides.
         let at = creases.splits(&seg);
         assert!(at.len() == 2 && (at[0] - 0.1).abs() < 1e-15 && (at[1] - 0.4).abs() < 1e-15, "{at:?}");
         let below = crate::outline::Seg::Line(kurbo::Line::new((6.0, -1.0), (6.0, 9.0)));

@@ -1,14 +1,14 @@
-//! Arithmetic of polynomials in Bernstein form over [0, 1], for exact images of curves.
+//! Polynomials in Bernstein form over [0, 1], for exact images of curves.
 //!
-//! Coefficients are kept *scaled* (multiplied by their binomials): products are then plain convolutions, and raising the
-//! degree is a product with the scaled form of 1. See Farouki & Rajan, *Algorithms for polynomials in Bernstein form* (1988).
+//! Coefficients are stored *scaled* (multiplied by their binomials), so that products are plain convolutions. See Farouki &
+//! Rajan, *Algorithms for polynomials in Bernstein form* (1988).
 
 /// A polynomial by its scaled Bernstein coefficients cᵢ·C(n,i).
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scaled(Vec<f64>);
 
 impl Scaled {
-    /// From Bernstein coefficients.
+    /// The polynomial with these Bernstein coefficients.
     pub(crate) fn new(coefficients: impl IntoIterator<Item = f64>) -> Self {
         let c: Vec<f64> = coefficients.into_iter().collect();
         let b = binomials(c.len().saturating_sub(1));
@@ -21,7 +21,7 @@ impl Scaled {
         self.0.iter().zip(b).map(|(c, b)| c / b).collect()
     }
 
-    /// The product; degrees add.
+    /// The product, whose degree is the sum of the degrees.
     pub(crate) fn times(&self, other: &Self) -> Self {
         let mut out = vec![0.0; self.0.len() + other.0.len() - 1];
         for (i, a) in self.0.iter().enumerate() {
@@ -32,19 +32,19 @@ impl Scaled {
         Self(out)
     }
 
-    /// Adds `k` times `other`, which has the same degree.
+    /// Adds `k` times `other`, a polynomial written with the same degree.
     pub(crate) fn add_scaled(&mut self, k: f64, other: &Self) {
         for (a, b) in self.0.iter_mut().zip(&other.0) {
             *a += k * b;
         }
     }
 
-    /// The zero polynomial written with degree `n`.
+    /// The zero polynomial, written with degree `n`.
     pub(crate) fn zero(n: usize) -> Self {
         Self(vec![0.0; n + 1])
     }
 
-    /// The powers 0 to `n`.
+    /// The powers 0 to `n` of the polynomial.
     pub(crate) fn powers(&self, n: usize) -> Vec<Self> {
         let mut out = vec![Self(vec![1.0])];
         for i in 0..n {

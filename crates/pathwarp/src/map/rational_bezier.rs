@@ -1,4 +1,4 @@
-//! Rational Bézier curves of any degree in homogeneous coordinates: the exact images that certificates are proved on.
+//! Rational Bézier curves of any degree in homogeneous coordinates: the exact images on which error bounds are proved.
 
 use crate::outline::{EllipticArc, Seg};
 use kurbo::Point;
@@ -6,7 +6,7 @@ use kurbo::Point;
 /// A rational Bézier curve: control points (x·w, y·w, w). Polynomial curves have every w = 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RationalBezier {
-    /// The homogeneous control points; the degree is one less than their number.
+    /// The homogeneous control points, one more than the degree.
     pub points: Vec<[f64; 3]>,
 }
 
@@ -17,8 +17,8 @@ impl RationalBezier {
         Self { points: points.iter().map(|p| [p.x, p.y, 1.0]).collect() }
     }
 
-    /// The exact form of a piece of a path: degree 1, 2 or 3; an arc of at most a half turn is a rational quadratic (longer
-    /// ones have none with positive weights: `None`).
+    /// The exact form of a path segment: degree 1, 2 or 3 for lines and Bézier curves. An arc of up to 0.9 of a half turn is a
+    /// rational quadratic; `None` for longer arcs, whose middle weight is near zero or negative.
     #[must_use]
     pub fn from_seg(seg: &Seg) -> Option<Self> {
         Some(match seg {
@@ -29,16 +29,17 @@ impl RationalBezier {
         })
     }
 
-    /// An arc as a rational quadratic: the middle weight is cos(Δ/2). Its parameter is not the angle.
+    /// An arc as a rational quadratic with middle weight cos(Δ/2). Its parameter is not proportional to the angle.
     fn from_arc(arc: &EllipticArc) -> Option<Self> {
-        const MOST: f64 = 0.9 * std::f64::consts::PI;
-        if arc.sweep.abs() > MOST {
+        /// The middle weight is 0 at a half turn, and badly conditioned just below it.
+        const MAX_SWEEP: f64 = 0.9 * std::f64::consts::PI;
+        if arc.sweep.abs() > MAX_SWEEP {
             return None;
         }
         let half = arc.sweep / 2.0;
         let w = half.cos();
         let (s, c) = (arc.start + half).sin_cos();
-        // Where the end tangents meet, times w: w·(c + (a cos μ + b sin μ)/w), μ the middle angle.
+        // The intersection of the end tangents, times w: w·(c + (a cos μ + b sin μ)/w), μ the middle angle.
         let m = arc.center.to_vec2() * w + arc.a * c + arc.b * s;
         Some(Self { points: vec![[arc.p0.x, arc.p0.y, 1.0], [m.x, m.y, w], [arc.p1.x, arc.p1.y, 1.0]] })
     }
@@ -49,7 +50,7 @@ impl RationalBezier {
         self.points.len().saturating_sub(1)
     }
 
-    /// Whether all weights are one.
+    /// Returns `true` if all weights are 1.
     #[must_use]
     pub fn is_polynomial(&self) -> bool {
         self.points.iter().all(|p| p[2] == 1.0)
@@ -70,7 +71,7 @@ impl RationalBezier {
         row.first().map_or(Point::ORIGIN, |p| Point::new(p[0] / p[2], p[1] / p[2]))
     }
 
-    /// The curve whose homogeneous control points are `f` of this one's: exact for linear `f`.
+    /// The curve whose homogeneous control points are `f` of these: the exact image for linear `f`.
     #[must_use]
     pub fn mapped(&self, f: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         Self { points: self.points.iter().map(|p| f(*p)).collect() }

@@ -1,64 +1,65 @@
-//! A map in tiles: rows of smooth maps side by side, each in charge of a rectangle of the source plane.
+//! Tiled maps: rows of smooth maps, each responsible for a rectangle of the source plane.
 //!
-//! The outermost tiles run on beyond the region. The lines between tiles are creases: uprights within their row, levels all
-//! along. Neighbours need not agree there; where they do not, a path that crosses is drawn on by a straight line.
+//! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
+//! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
 
-use super::inverse::{NOWHERE, NewtonInverse};
-use super::{Crease, CreaseKind, Creases, Jet, Level, Map, RationalBezier};
+use crate::map::{Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
-/// Tiles side by side.
+/// A row of tiles.
 #[derive(Clone)]
-pub struct Row {
-    /// Where one tile ends and the next begins: rising, one less than there are tiles.
-    pub cuts: Vec<f64>,
-    /// The tiles' maps, from the left; at least one.
-    pub maps: Vec<Arc<dyn Map>>,
+pub(crate) struct TileRow {
+    /// The increasing abscissae between tiles, one fewer than there are tiles.
+    pub(crate) cuts: Vec<f64>,
+    /// The maps of the tiles from left to right, at least one.
+    pub(crate) maps: Vec<Arc<dyn Map>>,
 }
 
-/// A map in tiles.
+/// A map made of rows of tiles.
 #[derive(Clone)]
-pub struct Tiled {
+pub(crate) struct Tiled {
     region: Rect,
-    /// Where one row ends and the next begins: rising.
+    /// The increasing ordinates between rows.
     cuts: Vec<f64>,
-    rows: Vec<Row>,
+    rows: Vec<TileRow>,
 }
 
-/// How far beyond the region its creases are told, as a multiple of its size: artwork reaches over its frame by less.
+/// Extent of the creases beyond the region, as a multiple of its size. Artwork extends past its frame by less.
 const REACH: f64 = 1e3;
-/// How far beyond its own rectangle an answer of a tile's inverse still counts, as a share of the rectangle: room for the ends
-/// of a part that lie on the border, and for their rounding.
-const ROOM: f64 = 1e-9;
+/// Margin, as a share of a tile's rectangle, within which answers of its inverse count: for the ends of parts on the border, and
+/// their rounding.
+const MARGIN: f64 = 1e-9;
+/// Distance beyond the region over which the inverse searches, as a multiple of its size.
+const INVERSE_REACH: f64 = 0.5;
 
 impl Tiled {
-    /// Rows over `region`, divided at the heights `cuts`. A single tile is its map itself.
-    ///
-    /// `None`: no rows, or their cuts do not fit their number.
+    /// Rows over `region`, divided at the ordinates `cuts`. A single tile gives its map itself. `None` if there are no rows, or
+    /// if the number of cuts does not fit.
     #[must_use]
-    pub fn over(region: Rect, cuts: Vec<f64>, rows: Vec<Row>) -> Option<Arc<dyn Map>> {
+    pub(crate) fn over(region: Rect, cuts: Vec<f64>, rows: Vec<TileRow>) -> Option<Arc<dyn Map>> {
         let fits = |cuts: &[f64], n: usize| cuts.len() + 1 == n && cuts.windows(2).all(|w| w[0] <= w[1]);
         if !fits(&cuts, rows.len()) || !rows.iter().all(|r| fits(&r.cuts, r.maps.len())) {
             return None;
         }
         match &rows[..] {
-            [Row { maps, .. }] if maps.len() == 1 => maps.first().cloned(),
+            [TileRow { maps, .. }] if maps.len() == 1 => maps.first().cloned(),
             _ => Some(Arc::new(Self { region, cuts, rows })),
         }
     }
 
-    fn place(&self, p: Point) -> (usize, usize) {
+    /// Row and column of the tile at `p`.
+    fn index(&self, p: Point) -> (usize, usize) {
         let j = self.cuts.partition_point(|c| *c < p.y);
         (j, self.rows[j].cuts.partition_point(|c| *c < p.x))
     }
 
     fn tile(&self, p: Point) -> &Arc<dyn Map> {
-        let (j, i) = self.place(p);
+        let (j, i) = self.index(p);
         &self.rows[j].maps[i]
     }
 
-    /// A tile's rectangle, the outermost ones' up to the region's border.
+    /// The rectangle of a tile within the region.
     fn rect(&self, j: usize, i: usize) -> Rect {
         let span = |cuts: &[f64], k: usize, from: f64, to: f64| {
             (if k == 0 { from } else { cuts[k - 1] }, cuts.get(k).copied().unwrap_or(to))
@@ -69,8 +70,8 @@ impl Tiled {
         Rect::new(x0, y0, x1, y1)
     }
 
-    /// The same, the outermost ones' far out.
-    fn reach(&self, j: usize, i: usize) -> Rect {
+    /// The rectangle of a tile, extended far beyond the region for the outermost tiles.
+    fn extended_rect(&self, j: usize, i: usize) -> Rect {
         let (mut b, r) = (self.rect(j, i), self.region);
         let far = r.inflate(REACH * r.width(), REACH * r.height());
         b.x0 = if b.x0 == r.x0 { far.x0 } else { b.x0 };
@@ -80,6 +81,7 @@ impl Tiled {
         b
     }
 
+    /// Rows and columns of all tiles.
     fn tiles(&self) -> impl Iterator<Item = (usize, usize)> {
         self.rows.iter().enumerate().flat_map(|(j, r)| (0..r.maps.len()).map(move |i| (j, i)))
     }
@@ -100,7 +102,11 @@ impl Map for Tiled {
         }
         for (j, row) in self.rows.iter().enumerate() {
             let last = row.maps.len() - 1;
-            let within = Rect { x0: self.reach(j, 0).x0, x1: self.reach(j, last).x1, ..self.reach(j, 0) };
+            let within = Rect {
+                x0: self.extended_rect(j, 0).x0,
+                x1: self.extended_rect(j, last).x1,
+                ..self.extended_rect(j, 0)
+            };
             for x in &row.cuts {
                 let (a, b, c) = (1.0, 0.0, -x);
                 out.push(Crease::kink(if self.cuts.is_empty() {
@@ -115,7 +121,7 @@ impl Map for Tiled {
             self.rows[j].maps[i].creases(&mut own);
             for c in own.items() {
                 let (level, tiled) = (c.level.clone(), self.clone());
-                let level = Level::Field(Arc::new(move |p| if tiled.place(p) == (j, i) { level.at(p) } else { 1.0 }));
+                let level = Level::Field(Arc::new(move |p| if tiled.index(p) == (j, i) { level.at(p) } else { 1.0 }));
                 out.push(Crease { level, kind: c.kind });
             }
         }
@@ -126,23 +132,23 @@ impl Map for Tiled {
         Some(tile.branch(inside).unwrap_or_else(|| tile.clone()))
     }
 
-    /// Where the control points, and so the curve, lie in one tile.
+    /// For a curve whose control points, and therefore the whole curve, lie in one tile.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let mut place = None;
+        let mut tile = None;
         for p in &curve.points {
             if p[2] <= 0.0 {
                 return None;
             }
-            let here = self.place(Point::new(p[0] / p[2], p[1] / p[2]));
-            if place.replace(here).is_some_and(|before| before != here) {
+            let here = self.index(Point::new(p[0] / p[2], p[1] / p[2]));
+            if tile.replace(here).is_some_and(|previous| previous != here) {
                 return None;
             }
         }
-        let (j, i) = place?;
+        let (j, i) = tile?;
         self.rows[j].maps[i].image(curve)
     }
 
-    /// By Newton's method in every tile, half the region's size beyond it.
+    /// By Newton's method in every tile, up to half the size of the region beyond it.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(TiledInverse::new(self)))
     }
@@ -152,24 +158,24 @@ impl Map for Tiled {
 #[derive(Clone)]
 struct TiledInverse {
     of: Tiled,
-    /// Every tile's inverse, and the rectangle its answers must lie in.
+    /// The inverse of every tile, and the rectangle in which its answers must lie.
     tiles: Vec<(Rect, Arc<NewtonInverse>)>,
 }
 
 impl TiledInverse {
     fn new(of: &Tiled) -> Self {
         let r = of.region;
-        let wide = r.inflate(0.5 * r.width(), 0.5 * r.height());
+        let wide = r.inflate(INVERSE_REACH * r.width(), INVERSE_REACH * r.height());
         let tiles = of.tiles().map(|(j, i)| {
-            let domain = of.reach(j, i).intersect(wide);
-            let room = ROOM * (domain.width() + domain.height());
+            let domain = of.extended_rect(j, i).intersect(wide);
+            let margin = MARGIN * (domain.width() + domain.height());
             let (map, core) = (of.rows[j].maps[i].clone(), of.rect(j, i));
-            (domain.inflate(room, room), Arc::new(NewtonInverse::with_core(map, core, domain, 0.0, [1, 1])))
+            (domain.inflate(margin, margin), Arc::new(NewtonInverse::with_core(map, core, domain, 0.0, [1, 1])))
         });
         Self { of: of.clone(), tiles: tiles.collect() }
     }
 
-    /// The first preimage in the region, else the first beyond it.
+    /// The tile and jet of the first preimage in the region, or else of the first one beyond it.
     fn solve(&self, q: Point) -> Option<(usize, Jet)> {
         let found = |k: usize| {
             let (rect, inverse) = &self.tiles[k];
@@ -189,11 +195,11 @@ impl TiledInverse {
 
 impl Map for TiledInverse {
     fn jet(&self, q: Point) -> Jet {
-        self.solve(q).map_or(NOWHERE, |s| s.1)
+        self.solve(q).map_or(Jet::UNDEFINED, |s| s.1)
     }
 
     fn creases(&self, out: &mut Creases) {
-        // The forward map's creases, seen from the image.
+        // The creases of the forward map, pulled back through the inverse.
         let mut own = Creases::default();
         self.of.creases(&mut own);
         for c in own.items().iter().filter(|c| c.kind == CreaseKind::Kink) {
@@ -206,7 +212,7 @@ impl Map for TiledInverse {
         let (k, _) = self.solve(inside)?;
         let (rect, _) = self.tiles[k];
         let (j, i) = self.of.tiles().nth(k)?;
-        // Room for the ends of a part that lie on the tile's border.
+        // A margin for parts that end on the border of the tile.
         let reach = 1e-3 * (rect.width() + rect.height());
         Some(Arc::new(NewtonInverse::new(self.of.rows[j].maps[i].clone(), rect, reach, [1, 1])))
     }

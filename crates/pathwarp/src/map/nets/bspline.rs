@@ -1,21 +1,21 @@
-//! Uniform clamped B-splines over [0, 1]: knots, the places of regular control points, and Bézier form by blossoming.
+//! Uniform clamped B-splines over [0, 1]: knots, Greville abscissae, and conversion to Bézier form by blossoming.
 //!
 //! A clamped knot vector of degree d with c cells is 0 (d+1 times), 1/c, 2/c, …, 1 (d+1 times); it has d + c control points.
-//! With one cell the spline is a Bézier curve. The pieces meet with d − 1 continuous derivatives.
+//! With one cell the spline is a Bézier curve. Neighbouring pieces agree in d − 1 derivatives.
 //!
 //! The Bézier points of a cell \[a, b\] are blossom values f(a,…,a,b,…,b) (L. Ramshaw, *Blossoms are polar forms*, CAGD 6,
-//! 1989), which is what inserting each knot until it has multiplicity d gives (W. Boehm, *Inserting new knots into B-spline
+//! 1989), the result of inserting each knot until it has multiplicity d (W. Boehm, *Inserting new knots into B-spline
 //! curves*, CAD 12, 1980).
 
-/// The knots.
+/// The knot vector.
 fn knots(degree: usize, cells: usize) -> Vec<f64> {
     let inner = (1..cells).map(|k| k as f64 / cells as f64);
     let (zeros, ones) = (std::iter::repeat_n(0.0, degree + 1), std::iter::repeat_n(1.0, degree + 1));
     zeros.chain(inner).chain(ones).collect()
 }
 
-/// Where the control points lie that make the spline the identity: the means of `degree` consecutive knots (Greville's
-/// abscissae); i/n for one cell.
+/// The control points that make the spline the identity: the means of `degree` consecutive knots (Greville abscissae), i/n for
+/// one cell.
 pub(crate) fn regular(degree: usize, cells: usize) -> Vec<f64> {
     if cells == 1 {
         return (0..=degree).map(|i| i as f64 / degree as f64).collect();
@@ -24,8 +24,8 @@ pub(crate) fn regular(degree: usize, cells: usize) -> Vec<f64> {
     (0..degree + cells).map(|i| t[i + 1..=i + degree].iter().sum::<f64>() / degree as f64).collect()
 }
 
-/// For each cell, the matrix that makes Bézier points (one row each) of the `degree` + 1 control points that begin with the
-/// cell's number.
+/// For each cell, the matrix that takes its `degree` + 1 control points, which start at the index of the cell, to Bézier points
+/// (one row each).
 pub(crate) fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
     let t = knots(degree, cells);
     let bezier = |cell: usize| -> Vec<Vec<f64>> {
@@ -33,7 +33,7 @@ pub(crate) fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
         let (a, b) = (t[span], t[span + 1]);
         let mut rows = vec![vec![0.0; degree + 1]; degree + 1];
         for l in 0..=degree {
-            // The blossom is linear in the control points: one at a time.
+            // The blossom is linear in the control points: evaluate it for one unit vector at a time.
             for (k, row) in rows.iter_mut().enumerate() {
                 let mut d = vec![0.0; degree + 1];
                 d[l] = 1.0;
@@ -57,7 +57,7 @@ pub(crate) fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
 mod tests {
     use super::*;
 
-    /// By the recursion that defines B-splines (Cox, de Boor).
+    /// The recursion of Cox and de Boor that defines B-splines.
     fn by_definition(degree: usize, cells: usize, c: &[f64], x: f64) -> f64 {
         fn basis(t: &[f64], i: usize, d: usize, x: f64) -> f64 {
             if d == 0 {
@@ -93,7 +93,7 @@ mod tests {
                     let s = f64::from(k) / 10.0;
                     let x = (cell as f64 + s) / cells as f64;
                     let (a, b) = (bezier(&points, s), by_definition(degree, cells, &c, x));
-                    // At a knot the recursion may fall into the cell before: same value.
+                    // At a knot the recursion may use the previous cell, which has the same value.
                     assert!((a - b).abs() < 1e-12, "{degree} {cells} {cell} {s}: {a} {b}");
                 }
             }

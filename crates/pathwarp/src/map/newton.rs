@@ -1,51 +1,51 @@
-//! The inverse of any smooth map over a box, by Newton's method, with a test that the answer is one.
+//! The inverse of any smooth map over a box, by Newton's method, with a test that each answer is a solution.
 //!
-//! A grid of starts covers the box. For a place q, the cells whose images come near q are tried: from the cell's middle,
-//! damped Newton steps x ← x + J⁻¹(q − F(x)) run until they stop changing x. The answer is accepted if
+//! A grid of starting points covers the box. To invert a point q, the cells whose images come near q are tried: damped Newton
+//! steps x ← x + J⁻¹(q − F(x)) run from the center of the cell until they stop changing x. The answer is accepted if
 //!
-//! 1. the residual |F(x) − q| is rounding,
-//! 2. x lies in the box (or beyond it by less than the stated reach),
+//! 1. the residual |F(x) − q| is at rounding level,
+//! 2. x lies in the box, or outside by less than the stated reach,
 //! 3. β·L·η ≤ ½, with β = ‖J(x)⁻¹‖, η = |J(x)⁻¹(q − F(x))| and L a Lipschitz bound of the Jacobian: Kantorovich's condition
 //!    (L. V. Kantorovich 1948; Ortega & Rheinboldt, *Iterative Solution of Nonlinear Equations*, theorem 12.6.2), under which
-//!    a solution exists within 2η of x and is the only one within about 1/(βL). On a fold β grows without bound and the test
-//!    fails. L is measured between the starts and doubled: a bound for maps that the grid resolves.
+//!    a solution exists within 2η of x and is the only one within about 1/(βL). On a fold β is unbounded and the test fails.
+//!    L is measured between neighbouring starting points and doubled: a bound for maps that the grid resolves.
 //!
-//! Everywhere else the inverse is not defined: its values are NaN there. Where a map folds, a place can have several
-//! preimages. Those in the *core* (the part of the box the map is meant for) go before others; beyond the core only sheets
-//! that lie the same way up as the core's middle count, and of those the preimage nearest to the core is given.
+//! The inverse is undefined (NaN) at every other point. If the map folds, a point can have several preimages. Those in the *core*
+//! (the part of the box that the map is designed for) take precedence; outside the core, only sheets with the orientation of the
+//! core's center count, and of those the preimage nearest to the core is chosen.
 
 use super::{Jet, Map};
 use kurbo::{Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// Starts along a side of the box at least.
-const LEAST: usize = 12;
-/// And at most.
-const MOST: usize = 96;
-/// Newton steps from one start.
-const STEPS: usize = 40;
-/// Starts tried for one place.
-const TRIES: usize = 16;
+/// Fewest starting points along a side of the box.
+const MIN_STARTS: usize = 12;
+/// Most starting points along a side of the box.
+const MAX_STARTS: usize = 96;
+/// Starting points along a side for every piece of the map.
+const STARTS_PER_PIECE: usize = 4;
+/// Newton steps from one starting point.
+const MAX_STEPS: usize = 40;
+/// A Newton step is halved down to this share before it is given up.
+const MIN_DAMPING: f64 = 1e-4;
+/// Starting points tried for one point.
+const MAX_TRIES: usize = 16;
 
-/// What the inverse says where it is not defined.
-pub(super) const NOWHERE: Jet =
-    Jet { p: Point::new(f64::NAN, f64::NAN), dx: Vec2::new(f64::NAN, f64::NAN), dy: Vec2::new(f64::NAN, f64::NAN) };
-
-/// The inverse of a smooth map over a box.
+/// The inverse of a smooth map over a box. Points without a certified preimage map to NaN.
 pub struct NewtonInverse {
     map: Arc<dyn Map>,
     domain: Rect,
     core: Rect,
-    /// The sign of the determinant in the core's middle.
-    up: f64,
+    /// The sign of the determinant at the center of the core.
+    orientation: f64,
     reach: f64,
     starts: Vec<Start>,
-    /// Starts by the place of their cells' images: a grid of buckets over `bounds`.
+    /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
     buckets: Vec<Vec<u32>>,
     bounds: Rect,
     side: usize,
     lipschitz: f64,
-    /// Rounding of an image coordinate.
+    /// Rounding error of an image coordinate.
     rounding: f64,
 }
 
@@ -57,30 +57,30 @@ struct Start {
 }
 
 impl NewtonInverse {
-    /// The inverse of `map` over `area`, with starts enough for a map that bends a few times across it; answers beyond it
-    /// count up to the share `reach` of its diagonal.
+    /// The inverse of `map` over `area`, with enough starting points for a map that bends a few times across it. Answers outside
+    /// `area` count up to `reach` times its diagonal away.
     #[must_use]
     pub fn over(map: Arc<dyn Map>, area: Rect, reach: f64) -> Self {
         const PIECES: [usize; 2] = [6, 6];
         Self::new(map, area, reach * area.width().hypot(area.height()), PIECES)
     }
 
-    /// The inverse of `map` over `domain`; answers up to `reach` beyond it count. `pieces` along x and y: how finely the map
-    /// is divided (1, 1 for one polynomial piece).
+    /// The inverse of `map` over `domain`. Answers up to `reach` user units outside it count. `pieces` is the number of smooth
+    /// pieces of the map along x and y (1, 1 for a single polynomial).
     #[must_use]
     pub fn new(map: Arc<dyn Map>, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
         Self::with_core(map, domain, domain, reach, pieces)
     }
 
-    /// The same with a core smaller than the box.
+    /// As [`NewtonInverse::new`], with a core smaller than the box.
     #[must_use]
-    pub fn with_core(map: Arc<dyn Map>, core: Rect, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
-        let [nx, ny] = pieces.map(|n| (n * 4).clamp(LEAST, MOST));
+    pub(crate) fn with_core(map: Arc<dyn Map>, core: Rect, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
+        let [nx, ny] = pieces.map(|n| (n * STARTS_PER_PIECE).clamp(MIN_STARTS, MAX_STARTS));
         let cell = Vec2::new(domain.width() / nx as f64, domain.height() / ny as f64);
         let at = |i: usize, j: usize| domain.origin() + Vec2::new((i as f64 + 0.5) * cell.x, (j as f64 + 0.5) * cell.y);
-        let places: Vec<Point> = (0..ny).flat_map(|j| (0..nx).map(move |i| at(i, j))).collect();
-        let mut jets = vec![Jet::default(); places.len()];
-        map.jets(&places, &mut jets);
+        let centers: Vec<Point> = (0..ny).flat_map(|j| (0..nx).map(move |i| at(i, j))).collect();
+        let mut jets = vec![Jet::default(); centers.len()];
+        map.jets(&centers, &mut jets);
 
         let mut lipschitz: f64 = 0.0;
         let mut between = |a: &Jet, b: &Jet, apart: f64| {
@@ -99,10 +99,10 @@ impl NewtonInverse {
             }
         }
 
-        // Each start with the box of its cell's image, to first order and half as large again.
-        let mut starts = Vec::with_capacity(places.len());
-        let mut boxes = Vec::with_capacity(places.len());
-        for (at, j) in places.iter().zip(&jets).filter(|(_, j)| j.is_finite()) {
+        // Each starting point with a box around the image of its cell: the first-order image, enlarged by half.
+        let mut starts = Vec::with_capacity(centers.len());
+        let mut boxes = Vec::with_capacity(centers.len());
+        for (at, j) in centers.iter().zip(&jets).filter(|(_, j)| j.is_finite()) {
             let half = Vec2::new(
                 0.75 * (j.dx.x.abs() * cell.x + j.dy.x.abs() * cell.y),
                 0.75 * (j.dx.y.abs() * cell.x + j.dy.y.abs() * cell.y),
@@ -112,11 +112,11 @@ impl NewtonInverse {
         }
         let bounds = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
         let side = nx.max(ny);
-        let up = map.jet(core.center()).det().signum();
+        let orientation = map.jet(core.center()).det().signum();
         let mut out = Self {
             map,
             core,
-            up,
+            orientation,
             domain,
             reach,
             buckets: vec![Vec::new(); side * side],
@@ -145,15 +145,15 @@ impl NewtonInverse {
         (along(q.x, self.bounds.x0, self.bounds.x1), along(q.y, self.bounds.y0, self.bounds.y1))
     }
 
-    /// The preimage of `q` and the inverse's derivatives there; `None` where there is none in the box.
+    /// The preimage of `q` and the derivatives of the inverse there; `None` if there is no preimage in the box.
     #[must_use]
     pub fn solve(&self, q: Point) -> Option<Jet> {
         self.solve_where(q, |_| true)
     }
 
-    /// The same among the preimages that `accept` accepts.
+    /// As [`NewtonInverse::solve`], among the preimages that `accept` accepts.
     #[must_use]
-    pub fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
+    pub(crate) fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() {
             return None;
         }
@@ -162,12 +162,12 @@ impl NewtonInverse {
         let off = |s: &Start| (s.image - q).hypot2();
         if near.is_empty() {
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.from(start.at, q).filter(|found| self.counts(found) && accept(found.p));
+            return self.newton(start.at, q).filter(|found| self.counts(found) && accept(found.p));
         }
-        let mut tried = [u32::MAX; TRIES];
+        let mut tried = [u32::MAX; MAX_TRIES];
         let mut best: Option<(f64, Jet)> = None;
-        for n in 0..TRIES {
-            // Starts in the core first, then by how near their images are.
+        for n in 0..MAX_TRIES {
+            // Starting points in the core first, then in the order of their images' distances from q.
             let key = |k: u32| {
                 let s = &self.starts[k as usize];
                 (!s.in_core, off(s))
@@ -179,49 +179,49 @@ impl NewtonInverse {
             };
             let Some(k) = all.min_by(less) else { break };
             tried[n] = k;
-            let Some(found) = self.from(self.starts[k as usize].at, q).filter(|f| accept(f.p)) else { continue };
-            let beyond = self.beyond(found.p);
-            if beyond <= self.reach {
+            let Some(found) = self.newton(self.starts[k as usize].at, q).filter(|f| accept(f.p)) else { continue };
+            let distance = self.distance_from_core(found.p);
+            if distance <= self.reach {
                 return Some(found);
             }
-            if self.counts(&found) && best.is_none_or(|(least, _)| beyond < least) {
-                best = Some((beyond, found));
+            if self.counts(&found) && best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, found));
             }
         }
         best.map(|b| b.1)
     }
 
-    /// How far a place is outside the core.
-    fn beyond(&self, p: Point) -> f64 {
+    /// Distance from the core along the axis where it is larger; 0 inside.
+    fn distance_from_core(&self, p: Point) -> f64 {
         let c = &self.core;
         (c.x0 - p.x).max(p.x - c.x1).max(c.y0 - p.y).max(p.y - c.y1).max(0.0)
     }
 
-    /// Whether a preimage lies in the core, or on a sheet the same way up.
+    /// Returns `true` for a preimage in the core, or on a sheet with its orientation.
     fn counts(&self, found: &Jet) -> bool {
-        found.det().signum() == self.up || self.beyond(found.p) <= self.reach
+        found.det().signum() == self.orientation || self.distance_from_core(found.p) <= self.reach
     }
 
-    /// Newton's method from one start.
-    fn from(&self, start: Point, q: Point) -> Option<Jet> {
+    /// Newton's method from one starting point.
+    fn newton(&self, start: Point, q: Point) -> Option<Jet> {
         let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
         let mut jet = self.map.jet(x);
         let mut residual = q - jet.p;
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             let step = solve(&jet, residual)?;
-            // Halved until it brings the image nearer; beyond the box's neighbourhood nothing is known of the map.
-            let mut share = 1.0;
+            // Halve the step until it reduces the residual. Stay near the box: the map may be undefined further away.
+            let mut damping = 1.0;
             let (mut to, mut at, mut r) = (x, jet, residual);
-            while share > 1e-4 {
-                to = x + step * share;
+            while damping > MIN_DAMPING {
+                to = x + step * damping;
                 to = Point::new(to.x.clamp(room.x0, room.x1), to.y.clamp(room.y0, room.y1));
                 at = self.map.jet(to);
                 r = q - at.p;
                 if r.hypot2() < residual.hypot2() || r.hypot() <= self.rounding {
                     break;
                 }
-                share *= 0.5;
+                damping *= 0.5;
             }
             let (moved, better) = ((to - x).hypot(), r.hypot2() < residual.hypot2());
             if better || r.hypot() <= self.rounding {
@@ -235,6 +235,7 @@ impl NewtonInverse {
         None
     }
 
+    /// Checks the three conditions above.
     fn accepted(&self, x: Point, jet: &Jet, residual: Vec2) -> Option<Jet> {
         let b = self.domain.inflate(self.reach, self.reach);
         let det = jet.det();
@@ -257,7 +258,7 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
 
 impl Map for NewtonInverse {
     fn jet(&self, q: Point) -> Jet {
-        self.solve(q).unwrap_or(NOWHERE)
+        self.solve(q).unwrap_or(Jet::UNDEFINED)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -278,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_smooth_map_is_undone_and_nothing_is_made_up_beyond() {
+    fn a_smooth_map_is_inverted_and_nothing_is_invented_outside() {
         let inv = NewtonInverse::new(Arc::new(Fold), Rect::new(0.5, -1.0, 3.0, 2.0), 1e-9, [1, 1]);
         for i in 0..50 {
             for j in 0..50 {
@@ -298,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn on_a_fold_there_is_no_certificate() {
+    fn a_point_on_a_fold_is_not_certified() {
         let inv = NewtonInverse::new(Arc::new(Fold), Rect::new(-1.0, -1.0, 1.0, 1.0), 1e-9, [1, 1]);
         assert!(inv.point(Point::new(0.0, 0.3)).is_nan());
         let p = inv.point(Fold.point(Point::new(0.3, 0.2)));

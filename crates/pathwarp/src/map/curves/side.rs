@@ -1,51 +1,56 @@
-//! A side of an envelope: pieces of curve in a row, walked at a chosen pace from 0 to 1.
+//! A side of an envelope: consecutive curve segments with one parameter from 0 to 1.
 //!
-//! The pace is by arc length, by the pieces' own parameters, or by even steps along an axis. Beyond 0 and 1 a Bézier curve at its
-//! own pace runs on as the polynomial it is; everything else runs straight on along its last direction.
+//! The parameter is proportional to arc length, to the parameters of the segments, or to the distance along an axis. Outside [0, 1]
+//! a Bézier segment with its own parameter continues as the same polynomial; everything else continues along its end tangent.
 
-use super::arclength::ArcLength;
+use super::ArcLength;
 use crate::outline::Seg;
 use kurbo::{CubicBez, Line, Point, Vec2};
 
-/// What equal steps of a side's parameter are.
+/// The meaning of equal steps of a side's parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Pace {
     /// Equal distances along the curve.
     Length,
-    /// Equal steps of each piece's own parameter; pieces share the side by their lengths.
+    /// Equal steps of each segment's own parameter; segments share the side in proportion to their lengths.
     Parameter,
-    /// Equal steps to the right or left (needs a curve without uprights).
+    /// Equal horizontal steps, for a curve that is nowhere vertical.
     Width,
-    /// Equal steps up or down (needs a curve without levels).
+    /// Equal vertical steps, for a curve that is nowhere horizontal.
     Height,
 }
 
-/// A side with its pace.
+/// One side of a [`Coons`](crate::map::Coons) patch: segments with a common parameter from 0 to 1.
 #[derive(Debug, Clone)]
 pub struct Side {
-    pieces: Vec<Piece>,
-    /// Where pieces begin and end: 0, …, 1.
+    pieces: Vec<SidePiece>,
+    /// Parameters at the ends of the pieces: 0, …, 1.
     knots: Vec<f64>,
     length: f64,
 }
 
 #[derive(Debug, Clone)]
-struct Piece {
+struct SidePiece {
     seg: Seg,
     table: ArcLength,
     pace: Pace,
 }
 
-/// Slower than this share of the piece's length is standing still: the direction is taken a little further in.
-const STILL: f64 = 1e-9;
-/// How much further in.
-const ASIDE: f64 = 1e-5;
-/// Steeper than this share of its speed against an axis, a curve is not walked by that axis.
-const STEEP: f64 = 1e-3;
+/// Speeds below this share of the piece's length count as zero, and the direction is taken further inside the piece.
+const MIN_SPEED: f64 = 1e-9;
+/// Distance of that point, in the parameter of the segment.
+const INWARD: f64 = 1e-5;
+/// A curve can be parametrised along an axis if at least this share of its speed is along the axis everywhere.
+const MIN_SLOPE: f64 = 1e-3;
+/// Pieces shorter than this share of the side are dropped.
+const MIN_LENGTH: f64 = 1e-12;
+/// Newton steps to a parameter; bracketing makes at least one bit of progress in each.
+const MAX_STEPS: usize = 60;
 
 impl Side {
-    /// The pieces, each starting where the one before ends, at this pace. `None` if they have no length, or run back, or too
-    /// steeply, against the axis of the pace.
+    /// A side of these segments, each starting at the end of the previous one. `None` if they have no length, or if they turn
+    /// back or are too steep for a pace along an axis.
     #[must_use]
     pub fn new(segs: &[Seg], pace: Pace) -> Option<Self> {
         let measured = segs.iter().map(|s| (*s, ArcLength::new(&|u| s.deriv(u).hypot())));
@@ -54,7 +59,7 @@ impl Side {
         if !(length > 0.0 && length.is_finite()) {
             return None;
         }
-        let kept: Vec<_> = measured.into_iter().filter(|m| m.1.length() > 1e-12 * length).collect();
+        let kept: Vec<_> = measured.into_iter().filter(|m| m.1.length() > MIN_LENGTH * length).collect();
         let (first, last) = (kept.first()?.0.start(), kept.last()?.0.end());
         let along = |v: Vec2| if pace == Pace::Width { v.x } else { v.y };
         let extent = along(last - first);
@@ -71,10 +76,10 @@ impl Side {
             at += share(s, t);
             knots.push(at);
         }
-        // Shares add up to one but for rounding.
+        // Shares add up to 1, up to rounding.
         let n = knots.len();
         knots[n - 1] = 1.0;
-        let pieces = kept.into_iter().map(|(seg, table)| Piece { seg, table, pace }).collect();
+        let pieces = kept.into_iter().map(|(seg, table)| SidePiece { seg, table, pace }).collect();
         Some(Self { pieces, knots, length })
     }
 
@@ -83,42 +88,42 @@ impl Side {
         Self::new(&[Seg::Line(Line::new(from, to))], Pace::Parameter)
     }
 
-    /// Its arc length.
+    /// The arc length.
     #[must_use]
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// Where its pieces meet: parameters strictly between 0 and 1, increasing.
+    /// The increasing parameters, strictly between 0 and 1, at which pieces meet.
     #[must_use]
     pub fn joints(&self) -> &[f64] {
         &self.knots[1..self.knots.len() - 1]
     }
 
-    /// The pieces.
+    /// The segments.
     pub fn segs(&self) -> impl Iterator<Item = &Seg> {
         self.pieces.iter().map(|p| &p.seg)
     }
 
-    /// Its ends.
+    /// The first and the last point.
     #[must_use]
     pub fn ends(&self) -> [Point; 2] {
         [self.pieces[0].seg.start(), self.pieces[self.pieces.len() - 1].seg.end()]
     }
 
-    /// The piece that holds the parameter.
+    /// The index of the piece at parameter `u`.
     #[must_use]
     pub fn piece(&self, u: f64) -> usize {
         self.joints().partition_point(|k| *k <= u)
     }
 
-    /// Place and derivative at `u`.
+    /// Point and derivative at `u`.
     #[must_use]
     pub fn at(&self, u: f64) -> (Point, Vec2) {
         self.on(self.piece(u), u)
     }
 
-    /// The same on a piece that is known, run on beyond its ends.
+    /// As [`Side::at`] on a given piece, continued beyond its ends.
     #[must_use]
     pub(crate) fn on(&self, piece: usize, u: f64) -> (Point, Vec2) {
         let (from, to) = (self.knots[piece], self.knots[piece + 1]);
@@ -126,13 +131,13 @@ impl Side {
         (p, v / (to - from))
     }
 
-    /// Whether the whole side is one polynomial piece, or runs on smoothly by itself beyond its ends.
+    /// Returns `true` if every piece continues smoothly beyond its ends.
     #[must_use]
     pub(crate) fn runs_on(&self) -> bool {
         self.pieces.iter().all(|p| p.is_polynomial() || (p.pace == Pace::Parameter))
     }
 
-    /// The cubic that the side is between two parameters of one piece; `None` where it is no polynomial.
+    /// The part of a piece between two parameters of the side as a cubic; `None` if it is not polynomial.
     #[must_use]
     pub(crate) fn cubic(&self, piece: usize, a: f64, b: f64) -> Option<CubicBez> {
         let p = &self.pieces[piece];
@@ -143,33 +148,33 @@ impl Side {
         Some(p.seg.part((a - from) / (to - from), (b - from) / (to - from))?.to_cubic())
     }
 
-    /// How far the side is from the straight line between its ends at most, and where; in its own parameter's order.
+    /// The largest distance of the side from its chord, and the point where it occurs.
     #[must_use]
     pub(crate) fn off_straight(&self) -> (f64, Point) {
-        /// Samples a piece.
+        /// Samples per piece.
         const SAMPLES: u32 = 64;
         let [a, b] = self.ends();
         let chord = b - a;
-        let off = |p: Point| {
+        let distance = |p: Point| {
             let t = ((p - a).dot(chord) / chord.hypot2()).clamp(0.0, 1.0);
             p.distance(a + chord * t)
         };
-        let places = self.segs().flat_map(|s| (0..=SAMPLES).map(move |i| s.eval(f64::from(i) / f64::from(SAMPLES))));
-        places.map(|p| (off(p), p)).fold((0.0, a), |best, here| if here.0 > best.0 { here } else { best })
+        let samples = self.segs().flat_map(|s| (0..=SAMPLES).map(move |i| s.eval(f64::from(i) / f64::from(SAMPLES))));
+        samples.map(|p| (distance(p), p)).fold((0.0, a), |best, here| if here.0 > best.0 { here } else { best })
     }
 }
 
-/// Whether a piece runs one way along the axis, nowhere too steeply.
+/// Returns `true` if a segment runs in one direction along the axis and is nowhere too steep.
 fn runs_along(s: &Seg, along: impl Fn(Vec2) -> f64, extent: f64) -> bool {
     const SAMPLES: u32 = 256;
     (0..=SAMPLES).all(|i| {
         let v = s.deriv(f64::from(i) / f64::from(SAMPLES));
-        along(v) * extent.signum() > STEEP * v.hypot()
+        along(v) * extent.signum() > MIN_SLOPE * v.hypot()
     })
 }
 
-impl Piece {
-    /// A line is one at any pace.
+impl SidePiece {
+    /// A line is polynomial at any pace, a Bézier curve at its own.
     fn is_polynomial(&self) -> bool {
         match self.seg {
             Seg::Line(_) => true,
@@ -178,7 +183,7 @@ impl Piece {
         }
     }
 
-    /// Place and derivative at share `t` of the piece.
+    /// Point and derivative at `t`, which runs from 0 to 1 over the piece.
     fn at(&self, t: f64) -> (Point, Vec2) {
         if self.pace == Pace::Parameter || matches!(self.seg, Seg::Line(_)) {
             return (self.seg.eval(t), self.seg.deriv(t));
@@ -189,15 +194,15 @@ impl Piece {
                 let length = self.table.length();
                 let u = self.table.parameter(inside * length);
                 let mut v = self.seg.deriv(u);
-                if v.hypot() <= STILL * length {
-                    v = self.seg.deriv(if u < 0.5 { u + ASIDE } else { u - ASIDE });
+                if v.hypot() <= MIN_SPEED * length {
+                    v = self.seg.deriv(if u < 0.5 { u + INWARD } else { u - INWARD });
                 }
                 (self.seg.eval(u), v * (length / v.hypot()))
             }
             Pace::Width | Pace::Height => {
                 let along = |v: Vec2| if self.pace == Pace::Width { v.x } else { v.y };
                 let (from, extent) = (self.seg.start(), along(self.seg.end() - self.seg.start()));
-                let u = Self::share(
+                let u = Self::inverse(
                     inside,
                     |u| along(self.seg.eval(u) - from) / extent,
                     |u| along(self.seg.deriv(u)) / extent,
@@ -209,19 +214,19 @@ impl Piece {
         (p + v * (t - inside), v)
     }
 
-    /// The u in [0, 1] where the increasing `f` is `t`: Newton's method in a shrinking bracket.
-    fn share(t: f64, f: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
+    /// Solves f(u) = `t` for u in [0, 1], for an increasing `f` from 0 to 1, by bracketed Newton iteration.
+    fn inverse(t: f64, f: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
         if t <= 0.0 || t >= 1.0 {
             return t;
         }
         let (mut lo, mut hi, mut u) = (0.0, 1.0, t);
-        for _ in 0..60 {
-            let off = f(u) - t;
-            let step = off / slope(u);
+        for _ in 0..MAX_STEPS {
+            let excess = f(u) - t;
+            let step = excess / slope(u);
             if step.abs() <= f64::EPSILON * u {
                 break;
             }
-            if off > 0.0 {
+            if excess > 0.0 {
                 hi = u;
             } else {
                 lo = u;

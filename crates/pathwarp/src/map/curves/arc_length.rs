@@ -1,22 +1,22 @@
-//! From distance along a curve to its parameter, fast and to the last digits.
+//! The inverse of arc length: from the distance along a curve to its parameter, to full precision.
 //!
-//! The arc length L(u) = ∫|C'| is integrated by Gauss and Legendre's rule with 16 points on spans halved until the rule agrees
-//! with itself. On each span the inverse function u(s) is interpolated at Chebyshev's points and kept as a Chebyshev series
-//! (Trefethen, *Approximation Theory and Approximation Practice*, 2013, chapters 2–4); a span whose series does not run out is
-//! halved as well. A lookup is then one search and one Clenshaw sum, and its slope is exactly 1/|C'(u)|.
+//! The arc length L(u) = ∫|C'| is integrated by the 16-point Gauss–Legendre rule on spans, which are halved until the rule agrees
+//! with the sum over both halves. On each span the inverse function u(s) is interpolated at Chebyshev points and stored as a
+//! Chebyshev series (Trefethen, *Approximation Theory and Approximation Practice*, 2013, chapters 2–4); a span whose series does
+//! not converge is halved as well. A lookup is one binary search and one Clenshaw sum, and its slope is exactly 1/|C'(u)|.
 
 use kurbo::common::GAUSS_LEGENDRE_COEFFS_16;
 
 /// Terms of a series.
 const TERMS: usize = 16;
-/// The last terms of a series are below this: the parameter's error, of 1.
+/// Largest magnitude of the last terms of a converged series: the error of the parameter, which runs from 0 to 1.
 const TAIL: f64 = 2e-14;
-/// The rule agrees with itself to this share of the whole length.
-const AGREE: f64 = 1e-14;
-/// Halvings one within another: enough to come to a cusp as near as a double can tell.
-const MOST_DEPTH: usize = 48;
-/// Spans at most.
-const MOST_SPANS: usize = 2000;
+/// Largest disagreement of the integration rule with its halves, relative to the whole length.
+const INTEGRATION_TOLERANCE: f64 = 1e-14;
+/// Nested halvings, enough to resolve a cusp to double precision.
+const MAX_DEPTH: usize = 48;
+/// Spans of a curve.
+const MAX_SPANS: usize = 2000;
 
 /// The inverse of a curve's arc length.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub(crate) struct ArcLength {
 
 #[derive(Debug, Clone)]
 struct Span {
-    /// Distances at the ends.
+    /// Distances along the curve at the ends.
     s0: f64,
     s1: f64,
     /// Chebyshev coefficients of u over [s0, s1].
@@ -34,18 +34,18 @@ struct Span {
 }
 
 impl ArcLength {
-    /// For a curve over [0, 1] with this speed.
+    /// Tabulates a curve over [0, 1] with speed |C'|.
     pub(crate) fn new(speed: &dyn Fn(f64) -> f64) -> Self {
         let rough: f64 = (0..16).map(|i| integral(speed, f64::from(i) / 16.0, f64::from(i + 1) / 16.0)).sum();
         let mut spans = Vec::new();
         let mut todo = vec![(0.0, 1.0, 0)];
         let mut at = 0.0;
-        // Depth first, left before right, so that distances add up in order.
+        // Depth first, left before right, so that distances accumulate in order.
         while let Some((a, b, depth)) = todo.pop() {
             let (whole, middle) = (integral(speed, a, b), 0.5 * (a + b));
             let halves = integral(speed, a, middle) + integral(speed, middle, b);
-            let last = depth >= MOST_DEPTH || spans.len() + todo.len() >= MOST_SPANS;
-            let agrees = (whole - halves).abs() <= AGREE * rough;
+            let last = depth >= MAX_DEPTH || spans.len() + todo.len() >= MAX_SPANS;
+            let agrees = (whole - halves).abs() <= INTEGRATION_TOLERANCE * rough;
             if agrees || last {
                 let c = series(speed, a, b, whole);
                 if c[TERMS - 2].abs() + c[TERMS - 1].abs() <= TAIL || last {
@@ -74,7 +74,7 @@ impl ArcLength {
             return span.c[0];
         }
         let t = ((s - span.s0) / size).clamp(0.0, 1.0) * 2.0 - 1.0;
-        // Clenshaw.
+        // Clenshaw's recurrence.
         let (mut b1, mut b2) = (0.0, 0.0);
         for c in span.c[1..].iter().rev() {
             (b1, b2) = (2.0 * t * b1 - b2 + c, b1);
@@ -103,7 +103,7 @@ fn series(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, whole: f64) -> [f64; TERMS
     })
 }
 
-/// The u in [a, b] before which a share of the span's length lies, by Newton's method kept in a shrinking bracket.
+/// The u in [a, b] that divides the length of the span at `share`, by bracketed Newton iteration.
 fn solve(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, whole: f64, share: f64) -> f64 {
     let wanted = whole * share;
     let (mut lo, mut hi) = (a, b);
@@ -111,7 +111,7 @@ fn solve(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, whole: f64, share: f64) -> 
     for _ in 0..60 {
         let off = integral(speed, a, u) - wanted;
         let step = off / speed(u);
-        // There: before the bracket, which rounding would have halved for nothing.
+        // Test for convergence before updating the bracket, which rounding would make too small.
         if step.abs() <= 2.0 * f64::EPSILON * (b - a) {
             break;
         }

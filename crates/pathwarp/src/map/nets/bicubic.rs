@@ -1,23 +1,25 @@
-//! The bicubic net: the map that 16 control points make of the plane.
+//! Bicubic nets: the maps of the plane given by 16 control points.
 //!
-//! F₀(u,v) = Σᵣ Σₛ B³ₛ(u) B³ᵣ(v) pᵣₛ (Koppinen, *A plane transformation from 16 control points*, equation 3), with (u,v) an
-//! affine function of the source point. Evaluated in power form, where a completed net loses its four highest terms.
+//! > F(u,v) = Σᵣ Σₛ B³ₛ(u) B³ᵣ(v) pᵣₛ
+//!
+//! (Koppinen, *A plane transformation from 16 control points*, equation 3), with (u,v) an affine function of the source point.
+//! Evaluated in power form, in which a completed net loses its four highest terms.
 
-use super::batch::Lane;
-use super::bernstein::Scaled;
-use super::{Class, Jet, Map, RationalBezier, RationalDegree};
+use crate::map::batch::Lane;
+use crate::map::polynomial::bernstein::Scaled;
+use crate::map::{AffineMap, Class, Jet, Map, RationalBezier, RationalDegree};
 use kurbo::{Affine, Point, Vec2};
 
-/// Rows r = 0..3 (v) of columns s = 0..3 (u).
+/// Control points: four rows along v, each of four points along u.
 pub type Net = [[Point; 4]; 4];
 
-/// The inner points from the twelve outer ones, by equation (7) of the paper: the terms u²v², u²v³, u³v², u³v³ vanish. It is
-/// the bilinearly blended Coons patch of the four sides.
+/// Computes the four inner points from the twelve outer ones by equation (7) of the paper, so that the terms u²v², u²v³, u³v² and
+/// u³v³ vanish. The result is the bilinearly blended Coons patch of the four sides.
 #[must_use]
 pub fn complete(mut p: Net) -> Net {
     let v = |r: usize, s: usize, p: &Net| p[r][s].to_vec2();
-    // Each inner point in terms of its nearest corner (a), that corner's row and column neighbours, and the far sides. The four
-    // formulas are one, mirrored.
+    // Each inner point from its nearest corner, the neighbours of that corner in its row and column, and the far sides. The four
+    // formulas are mirror images of one.
     for (r, s) in [(1, 1), (1, 2), (2, 1), (2, 2)] {
         let (cr, cs) = (if r == 1 { 0 } else { 3 }, if s == 1 { 0 } else { 3 });
         let (fr, fs) = (3 - cr, 3 - cs);
@@ -29,19 +31,26 @@ pub fn complete(mut p: Net) -> Net {
     p
 }
 
-/// A bicubic map of the plane.
+/// Terms below this share of the net's size are rounding noise: sixteen terms, each off by a few units in the last place.
+const NOISE: f64 = 1e-13;
+/// Share of the net's distance from the origin that counts as size, because its coordinates are rounded to that: about four
+/// units in the last place when multiplied by [`NOISE`].
+const ROUNDING: f64 = 1e-2;
+
+/// A bicubic map of the plane, defined by a [`Net`] of 16 control points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BicubicNet {
     /// (u, v) from the source point.
     pre: Affine,
-    /// c[j][i]: the coefficient of uⁱ vʲ.
+    /// `c[j][i]` is the coefficient of uⁱ vʲ.
     c: [[Vec2; 4]; 4],
-    /// Where uⁱvʲ with i, j ≥ 2 is gone.
+    /// The terms uⁱvʲ with i, j ≥ 2 vanish.
     completed: bool,
 }
 
 impl BicubicNet {
-    /// The map of `net` on the plane whose unit square `pre` makes of the source.
+    /// The map that takes a source point p to the point of `net` at (u, v) = `pre`·p. The control points belong to the unit
+    /// square of (u, v).
     #[must_use]
     pub fn new(net: &Net, pre: Affine) -> Self {
         let mut c: [[Vec2; 4]; 4] = net.map(|row| power_form(row.map(Point::to_vec2)));
@@ -51,7 +60,7 @@ impl BicubicNet {
                 row[i] = value;
             }
         }
-        // What is left of a vanishing term is rounding; taking it for zero is nearer the truth.
+        // Terms that should vanish leave rounding noise; zero is closer to the truth.
         let size = net.iter().flatten().map(|p| (*p - net[0][0]).hypot()).fold(0.0, f64::max)
             + net.iter().flatten().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max) * ROUNDING;
         for v in c.iter_mut().flatten().skip(1) {
@@ -63,12 +72,7 @@ impl BicubicNet {
         Self { pre, c, completed }
     }
 
-    /// (u, v) of a source point.
-    #[must_use]
-    pub fn parameters(&self, p: Point) -> Point {
-        self.pre * p
-    }
-
+    /// The coefficients of the powers of v at `u`.
     #[inline]
     fn rows(&self, u: f64) -> [Vec2; 4] {
         let c = &self.c;
@@ -81,12 +85,7 @@ impl BicubicNet {
     }
 }
 
-/// Sixteen terms, each off by a few units in the last place.
-const NOISE: f64 = 1e-13;
-/// How far a net's distance from the origin blurs it: a thousand units in the last place per 1/[`NOISE`].
-const ROUNDING: f64 = 1e-2;
-
-/// Bernstein to power coefficients of a cubic.
+/// Converts the Bernstein coefficients of a cubic to power coefficients.
 fn power_form(b: [Vec2; 4]) -> [Vec2; 4] {
     [b[0], (b[1] - b[0]) * 3.0, (b[2] - b[1] * 2.0 + b[0]) * 3.0, (b[3] - b[0]) - (b[2] - b[1]) * 3.0]
 }
@@ -141,10 +140,10 @@ impl Map for BicubicNet {
         }
     }
 
-    /// Substituting a curve of degree n gives one of degree 4n for a completed net (three in one variable with one in the
-    /// other), 6n for a general one, less where terms are missing.
+    /// Substituting a curve of degree n gives one of degree 4n for a completed net (degree three in one variable times one in the
+    /// other) and 6n for a general net, or less if terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let curve = super::AffineMap(self.pre).image(curve)?;
+        let curve = AffineMap(self.pre).image(curve)?;
         let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
         let terms = || {
             let rows = self.c.iter().enumerate();
@@ -184,7 +183,7 @@ mod tests {
         ]
     };
 
-    /// De Casteljau, straight from the definition.
+    /// De Casteljau's algorithm, straight from the definition.
     fn by_definition(net: &Net, u: f64, v: f64) -> Point {
         let column = net.map(|r| CubicBez::new(r[0], r[1], r[2], r[3]).eval(u));
         CubicBez::new(column[0], column[1], column[2], column[3]).eval(v)

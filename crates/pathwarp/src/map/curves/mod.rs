@@ -1,0 +1,10 @@
+//! Curves as the boundaries of maps, with a choice of parameter.
+
+mod arc_length;
+mod guide;
+mod side;
+
+pub(crate) use arc_length::ArcLength;
+pub(super) use guide::GuidePiece;
+pub(crate) use guide::{Along, Guide};
+pub use side::{Pace, Side};

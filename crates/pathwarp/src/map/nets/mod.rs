@@ -1,0 +1,10 @@
+//! Maps given by a net of Bézier or B-spline control points.
+
+mod bicubic;
+pub(crate) mod bspline;
+mod patch;
+mod power_basis;
+
+pub use bicubic::{BicubicNet, Net, complete};
+pub(crate) use patch::Patch;
+pub(crate) use power_basis::powers;
