@@ -26,7 +26,7 @@ fuzz_target!(|bytes: &[u8]| {
     let net = std::array::from_fn(|r| std::array::from_fn(|s| point(rest, 4 + 4 * r + s)));
     let map = BicubicNet::new(&net, Affine::scale(0.001));
     let tolerance = [1.0, 0.1, 0.01, 0.001][usize::from(first % 4)];
-    let options = Options { certify: first & 4 != 0, merge: first & 8 != 0, ..Options::new(tolerance) };
+    let options = Options::new(tolerance).with_certify(first & 4 != 0).with_merge(first & 8 != 0);
     let path = Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] };
     let Ok(warped) = warp_path(&path, &map, &options) else { return };
     assert!(warped.path.is_finite());

@@ -45,7 +45,7 @@ fn stained_glass_has_no_gaps() {
     let shared = refit::SharedEdges::among(doc.shapes().iter().map(|s| &s.outline));
     assert_ne!(shared, refit::SharedEdges::default());
     for merge in [false, true] {
-        let options = refit::Options { merge, ..refit::Options::new(1e-3) };
+        let options = refit::Options::new(1e-3).with_merge(merge);
         let warped = doc.warp(&map, &WarpOptions::new(options)).unwrap();
         let after = Document::read(warped.svg.as_bytes(), "out", &ReadOptions::default()).unwrap();
         // Every shared source edge gives one or more pieces, each found on both sides.
@@ -64,7 +64,7 @@ fn a_shared_edge_is_not_merged_with_what_follows_it() {
         let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 60 90'>{shapes}</svg>");
         let doc = Document::read(svg.as_bytes(), "t", &ReadOptions::default()).unwrap();
         let map = shaper(Rect::new(0.0, 0.0, 60.0, 90.0));
-        let options = refit::Options { merge: true, ..refit::Options::new(0.2) };
+        let options = refit::Options::new(0.2).with_merge(true);
         let out = doc.warp(&map, &WarpOptions::new(options)).unwrap().svg;
         let after = Document::read(out.as_bytes(), "out", &ReadOptions::default()).unwrap();
         after.shapes().iter().map(|s| edges(&s.outline)).collect::<Vec<_>>()

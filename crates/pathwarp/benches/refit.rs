@@ -110,8 +110,8 @@ fn main() {
                 outlines.iter().map(|p| warp_path(p, map, o).map_or(0, |w| w.report.segments_out)).sum::<usize>()
             };
             let plain = Options::new(tolerance);
-            let certify = Options { certify: true, ..plain.clone() };
-            let merge = Options { merge: true, ..plain.clone() };
+            let certify = plain.clone().with_certify(true);
+            let merge = plain.clone().with_merge(true);
             let theirs = |f: &dyn Fn(&Image<'_>) -> kurbo::BezPath| {
                 segs.iter().map(|seg| f(&Image { seg, map }).elements().len() - 1).sum::<usize>()
             };

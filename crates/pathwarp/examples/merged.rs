@@ -29,7 +29,7 @@ fn main() -> Result<(), Error> {
     let start = segs.first().map(Seg::start).unwrap_or_default();
     let path = Outline { subpaths: vec![Subpath { start, segs, closed: true }] };
     for merge in [false, true] {
-        let r = warp_path(&path, &Twist, &Options { merge, ..Options::new(0.05) })?.report;
+        let r = warp_path(&path, &Twist, &Options::new(0.05).with_merge(merge))?.report;
         println!("merge {merge}: {} segments from {}", r.segments_out, r.segments_in);
     }
     Ok(())

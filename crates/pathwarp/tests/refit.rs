@@ -49,7 +49,7 @@ fn corpus_has_no_violation() {
         for tolerance in [1.0, 0.1, 0.01, 0.001] {
             let (mut n, mut worst, mut over, mut turns) = (0, 0.0f64, 0, 0);
             for seg in &segs {
-                let o = Options { certify, ..Options::new(tolerance) };
+                let o = Options::new(tolerance).with_certify(certify);
                 let w = warp_path(&single(*seg), map.as_ref(), &o).unwrap();
                 let out = support::cubics(&w.path);
                 if certify && w.report.over_budget.is_empty() {
@@ -87,7 +87,7 @@ fn merged_corpus_has_no_violation() {
         for tolerance in [1.0, 0.1, 0.01, 0.001] {
             let (mut segs, mut n, mut worst) = (0, 0, 0.0f64);
             for sub in outlines.iter().step_by(every).flat_map(|o| &o.subpaths).filter(|s| !s.segs.is_empty()) {
-                let o = Options { merge: true, ..Options::new(tolerance) };
+                let o = Options::new(tolerance).with_merge(true);
                 let w = warp_path(&Outline { subpaths: vec![sub.clone()] }, map.as_ref(), &o).unwrap();
                 let out = support::cubics(&w.path);
                 (segs, n) = (segs + sub.segs.len(), n + w.report.segments_out);
@@ -122,8 +122,7 @@ fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
         for tolerance in [1.0, 0.01] {
             for (sub, corners) in [(&circle, 0), (&square.subpaths[0], 4)] {
                 let outline = Outline { subpaths: vec![sub.clone()] };
-                let w =
-                    |merge| warp_path(&outline, map.as_ref(), &Options { merge, ..Options::new(tolerance) }).unwrap();
+                let w = |merge| warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_merge(merge)).unwrap();
                 let (plain, merged) = (w(false), w(true));
                 assert!(merged.report.segments_out <= plain.report.segments_out);
                 assert!(corners > 0 || merged.report.segments_out * 10 <= 6 * plain.report.segments_out, "{name}");
@@ -149,7 +148,7 @@ fn merged_pieces_are_proven_too() {
     for (name, map) in &maps() {
         for tolerance in [1.0, 0.1, 0.01] {
             let w = |merge| {
-                let o = Options { merge, certify: true, ..Options::new(tolerance) };
+                let o = Options::new(tolerance).with_merge(merge).with_certify(true);
                 warp_path(&outline, map.as_ref(), &o).unwrap()
             };
             let (plain, merged) = (w(false), w(true));
@@ -169,7 +168,7 @@ fn merged_pieces_are_proven_too() {
 fn any_number_of_threads_gives_the_same_bytes() {
     use std::sync::atomic::{AtomicUsize, Ordering};
     let paths: Vec<Outline> = support::corpus().0.into_iter().take(24).collect();
-    for options in [Options { merge: true, ..Options::new(0.1) }, Options { certify: true, ..Options::new(0.01) }] {
+    for options in [Options::new(0.1).with_merge(true), Options::new(0.01).with_certify(true)] {
         for (name, map) in &maps() {
             let refit = |o: &Outline| {
                 let w = warp_path(o, map.as_ref(), &options).unwrap();
@@ -310,7 +309,7 @@ fn what_is_straight_to_rounding_comes_out_as_a_line() {
     let outline = outline.unwrap();
     for (height, lines) in [(0.0, 2), (1e-10, 2), (1e-7, 2), (1e-4, 0)] {
         for certify in [false, true] {
-            let o = Options { certify, ..Options::new(0.1) };
+            let o = Options::new(0.1).with_certify(certify);
             let w = warp_path(&outline, &Ripple(height), &o).unwrap();
             let straight = w.path.elements().iter().filter(|e| matches!(e, kurbo::PathEl::LineTo(_))).count();
             assert_eq!(straight, lines, "{height}");
@@ -393,7 +392,7 @@ fn proofs_hold_for_every_kind_of_segment() {
     for (name, map) in &maps() {
         for tolerance in [1.0, 0.1, 0.01, 0.001] {
             for seg in outline.segs() {
-                let o = Options { certify: true, ..Options::new(tolerance) };
+                let o = Options::new(tolerance).with_certify(true);
                 let w = warp_path(&single(*seg), map.as_ref(), &o).unwrap();
                 let r = &w.report;
                 assert!(r.over_budget.is_empty(), "{name} {tolerance} {seg:?}");

@@ -113,12 +113,12 @@ proptest! {
 
     #[test]
     fn within_the_tolerance_or_reported(seg in seg(), map in map(), tolerance in tolerance(), certify: bool) {
-        holds(seg, &map, &Options { certify, ..Options::new(tolerance) })?;
+        holds(seg, &map, &Options::new(tolerance).with_certify(certify))?;
     }
 
     #[test]
     fn so_are_images_under_maps_that_say_nothing(seg in seg(), map in waves(), tolerance in tolerance(), certify: bool) {
-        holds(seg, &map, &Options { certify, ..Options::new(tolerance) })?;
+        holds(seg, &map, &Options::new(tolerance).with_certify(certify))?;
     }
 }
 

@@ -19,7 +19,7 @@ fn affine_maps_move_control_points() {
     let m = Affine::new([1.2, 0.3, -0.4, 0.9, 30.0, -20.0]);
     let outline = Outline::from_svg(DRAWING).unwrap();
     for certify in [false, true] {
-        let w = warp_path(&outline, &AffineMap(m), &Options { certify, ..Options::new(1e-6) }).unwrap();
+        let w = warp_path(&outline, &AffineMap(m), &Options::new(1e-6).with_certify(certify)).unwrap();
         assert_eq!(w.report.assurance, Assurance::Exact);
         assert_eq!(w.report.segments_out, w.report.segments_in);
         let want: Vec<_> = support::cubics(&outline.to_bez_path(1e-9)).into_iter().map(|c| m * c).collect();
@@ -85,7 +85,7 @@ fn what_cannot_be_fitted_is_reported_with_its_place() {
         let seg = *outline.segs().next().unwrap();
         for tolerance in [1.0, 0.01] {
             for (certify, merge) in [(false, false), (true, false), (false, true)] {
-                let o = Options { certify, merge, ..Options::new(tolerance) };
+                let o = Options::new(tolerance).with_certify(certify).with_merge(merge);
                 let w = warp_path(&outline, &Torn, &o).unwrap();
                 let r = &w.report;
                 assert!(!r.over_budget.is_empty(), "{d} {tolerance}");
@@ -117,7 +117,7 @@ impl Formula for Noise {
 fn the_budget_ends() {
     let outline = Outline::from_svg("M100 500C300 300 600 700 900 500").unwrap();
     for (certify, merge) in [(false, false), (true, true)] {
-        let w = warp_path(&outline, &Noise, &Options { certify, merge, ..Options::new(0.01) }).unwrap();
+        let w = warp_path(&outline, &Noise, &Options::new(0.01).with_certify(certify).with_merge(merge)).unwrap();
         assert!(!w.report.over_budget.is_empty() && w.report.max_error > 0.01);
         assert!(w.path.is_finite() && w.report.segments_out < 4000, "{}", w.report.segments_out);
     }

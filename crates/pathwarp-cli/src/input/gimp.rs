@@ -161,12 +161,10 @@ impl WarpedPaths {
 impl GimpArtwork {
     fn warp_paths(&self, request: &WarpRequest<'_>) -> Result<WarpedPaths, Failure> {
         let WarpRequest { built, options, .. } = request;
-        let refit = refit::Options {
-            certify: options.certify,
-            merge: options.merge,
-            shared: Arc::new(SharedEdges::among(self.outlines.iter())),
-            ..refit::Options::new(request.tolerance)
-        };
+        let refit = refit::Options::new(request.tolerance)
+            .with_certify(options.certify)
+            .with_merge(options.merge)
+            .with_shared(Arc::new(SharedEdges::among(self.outlines.iter())));
         let places =
             if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
         let warp = |(&i, outline): (&usize, &Outline)| {

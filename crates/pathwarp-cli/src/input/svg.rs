@@ -78,11 +78,7 @@ impl SvgArtwork {
             copies: built.placement.copies.clone(),
             letters: LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() },
             images: if options.warp_images { Images::Warp(bender) } else { Images::Keep },
-            ..WarpOptions::new(refit::Options {
-                certify: options.certify,
-                merge: options.merge,
-                ..refit::Options::new(*tolerance)
-            })
+            ..WarpOptions::new(refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge))
         }
     }
 

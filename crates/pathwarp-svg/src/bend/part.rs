@@ -458,7 +458,7 @@ fn warp_part(
     let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
     // What rounding takes is not the refit's to spend.
     let left = (tolerance - rounding).max(0.5 * tolerance);
-    let warped = refit::warp_path(&outline, last, &refit::Options { tolerance: left, ..options.refit.clone() })?;
+    let warped = refit::warp_path(&outline, last, &options.refit.clone().with_tolerance(left))?;
     let mut done = Done {
         path: local(warped.path, back),
         fill: None,
@@ -493,7 +493,7 @@ fn warp_part(
         if area.is_empty() {
             done.fill = Some(BezPath::new());
         } else {
-            let area = refit::warp_path(&area, last, &refit::Options { tolerance: left, ..options.refit.clone() })?;
+            let area = refit::warp_path(&area, last, &options.refit.clone().with_tolerance(left))?;
             *(if stroked { done.fill.insert(BezPath::new()) } else { &mut done.path }) = local(area.path, back);
         }
     }

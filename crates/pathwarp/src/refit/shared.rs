@@ -1,14 +1,14 @@
-//! Edges that neighbours share: merging leaves them alone, so that no gap opens between two shapes.
+//! Edges that neighbouring shapes share. Merging leaves them alone, so that no gap opens between two shapes.
 //!
-//! A merged piece runs on into what follows its segment, which is different on either side of a shared edge. The segment's
-//! own pieces are the same for both.
+//! A merged piece continues into the segments after an edge, and those differ on its two sides. The pieces of the edge alone
+//! are the same for both.
 
 use super::split;
 use crate::outline::{Outline, Seg};
 use kurbo::Point;
 use std::collections::{HashMap, HashSet};
 
-/// A segment's numbers, in its canonical direction, to the bit.
+/// The coordinates of a segment in its canonical direction, bit by bit.
 type Key = Vec<u64>;
 
 /// The segments that occur more than once in a drawing, in either direction.
@@ -18,7 +18,7 @@ pub struct SharedEdges {
 }
 
 impl SharedEdges {
-    /// The segments that `outlines` have in common, with each other or within themselves.
+    /// The segments that `outlines` share, with each other or within themselves.
     #[must_use]
     pub fn among<'a>(outlines: impl IntoIterator<Item = &'a Outline>) -> Self {
         let mut seen: HashMap<Key, bool> = HashMap::new();
@@ -28,8 +28,8 @@ impl SharedEdges {
         Self { keys: seen.into_iter().filter(|(_, twice)| *twice).map(|(k, _)| k).collect() }
     }
 
-    /// Whether `seg` is one of them.
-    pub(super) fn has(&self, seg: &Seg) -> bool {
+    /// Returns `true` if `seg` is shared.
+    pub(super) fn contains(&self, seg: &Seg) -> bool {
         !self.keys.is_empty() && self.keys.contains(&key(seg))
     }
 }
@@ -43,7 +43,8 @@ fn key(seg: &Seg) -> Key {
         Seg::Quad(s) => [s.p0, s.p1, s.p2].into_iter().for_each(point),
         Seg::Cubic(s) => [s.p0, s.p1, s.p2, s.p3].into_iter().for_each(point),
         Seg::Arc(s) => {
-            // Both ends and the middle tell arcs of one pair of ends apart; rounding of the middle does not matter.
+            // The middle distinguishes arcs between the same ends. It is rounded, since the two directions compute it
+            // differently.
             let m = s.eval(0.5);
             [s.p0, s.p1].into_iter().for_each(&mut point);
             point(Point::new(f64::from(m.x as f32), f64::from(m.y as f32)));
@@ -57,11 +58,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_edge_is_known_in_both_directions_and_a_lonely_one_is_not() {
+    fn an_edge_is_shared_in_both_directions() {
         let a = Outline::from_svg("M0,0 C1,2 3,4 5,5 L9,9 A4,4 0 0 1 1,1 Z").unwrap();
         let b = Outline::from_svg("M5,5 C3,4 1,2 0,0 L-9,9 M1,1 A4,4 0 0 0 9,9").unwrap();
         let shared = SharedEdges::among([&a, &b]);
-        let known: Vec<bool> = a.segs().map(|s| shared.has(s)).collect();
+        let known: Vec<bool> = a.segs().map(|s| shared.contains(s)).collect();
         assert_eq!(known, [true, false, true, false]);
         assert_eq!(SharedEdges::among([&a]), SharedEdges::default());
     }

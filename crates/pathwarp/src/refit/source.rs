@@ -1,73 +1,32 @@
-//! One smooth source piece and its image: sampled eight parameters at a time, with one-sided tangents at its break points.
+//! The image of one source segment under a map that is smooth on it, sampled eight parameters at a time.
 
-use super::fit::{self, fma};
+use super::lanes::{Lane, Lanes, fma, sum};
+use super::limits::{ONE_SIDED_STEP, VANISHING_DERIVATIVE};
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 
-/// Eight numbers side by side: what one pass of the fit works on (two AVX registers of four, or four SSE2 ones of two).
-pub(super) type Lane = crate::map::batch::Lane;
-
-/// Eight points.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Lanes {
-    pub(super) x: Lane,
-    pub(super) y: Lane,
-}
-
-/// Below this share of its usual size a derivative says nothing about the direction of the curve.
-const VANISHING: f64 = 1e-9;
-
-/// Where one-sided directions are taken instead, as a share of the segment: far above rounding, and the direction there is
-/// off by about the same number of radians, a thousandth of the angle the joints are promised to.
-const BESIDE: f64 = 3e-7;
-
-/// A curve that can be fitted: the image of one segment, or of several in a row.
-pub(super) trait Curve {
-    /// Writes the images at eight parameters. `Err`: the source place where the map is not finite.
-    fn images_into(&self, t: &Lane, out: &mut Lanes) -> Result<(), Point>;
-    /// Images at eight parameters. `Err`: the source place where the map is not finite.
-    #[inline(always)]
-    fn images(&self, t: &Lane) -> Result<Lanes, Point> {
-        let mut out = Lanes::default();
-        self.images_into(t, &mut out)?;
-        Ok(out)
-    }
-    /// The image's point and derivative at one parameter.
-    fn image(&self, t: f64) -> (Point, Vec2);
-    /// The break point at `t`.
-    fn end(&self, t: f64) -> Result<End, Point>;
-    /// Places in (t0, t1) that a close look must not miss, besides those spread evenly.
-    fn places(&self, _t0: f64, _t1: f64) -> Vec<f64> {
-        Vec::new()
-    }
-    /// The source's point at `t`, to name in messages.
-    fn at(&self, t: f64) -> Point;
-    /// The curve as the image of one segment, which proofs need.
-    fn single(&self) -> Option<&Source<'_>>;
-}
-
-/// A source segment in its canonical direction under the smooth map that holds on it.
+/// A source segment in its canonical direction, with the smooth map that holds on it.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
+pub(super) struct SourceCurve<'a> {
     pub(super) seg: &'a Seg,
     pub(super) map: &'a dyn Map,
-    /// Power basis, constant term first; of no meaning for an arc.
+    /// Coefficients of the power basis, constant term first; unused for an arc unless `w` is set.
     c: [Vec2; 4],
-    /// Derivative at the end, which the power basis knows only up to rounding.
+    /// The derivative at the end: exact, where the power basis has it only up to rounding.
     last: Vec2,
-    /// Length of the control polygon, the yardstick of the derivative.
+    /// Length of the control polygon: the scale against which derivatives are judged.
     size: f64,
-    /// Weights of an arc in its rational form, power basis; then `c` holds its numerators about the centre.
+    /// Denominator of an arc in rational form, power basis. If set, `c` holds the numerators relative to the centre.
     w: Option<[f64; 3]>,
 }
 
-/// A break point: a place on the image, with the tangents on both sides.
+/// A point between two pieces: a place on the image, with the tangents on both sides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct End {
+pub(super) struct BreakPoint {
     pub(super) t: f64,
     pub(super) p: Point,
-    /// Speed of the image with respect to the segment's parameter; zero where the derivative vanishes.
+    /// Speed of the image with respect to the parameter; zero where the derivative vanishes.
     pub(super) speed: f64,
     /// Unit tangent just before.
     pub(super) into: Vec2,
@@ -75,7 +34,7 @@ pub(super) struct End {
     pub(super) away: Vec2,
 }
 
-impl<'a> Source<'a> {
+impl<'a> SourceCurve<'a> {
     #[inline(always)]
     pub(super) fn new(seg: &'a Seg, map: &'a dyn Map) -> Self {
         let zero = Vec2::ZERO;
@@ -98,8 +57,8 @@ impl<'a> Source<'a> {
         Self { seg, map, c, last, size, w: None }
     }
 
-    /// As [`Source::new`]; for proofs, an arc of less than half a turn as a rational quadratic: the same curve, another
-    /// parameter.
+    /// As [`SourceCurve::new`]. If a proof is wanted, turns an arc of less than half a turn into a rational quadratic: the
+    /// same curve in another parametrisation.
     #[inline(always)]
     pub(super) fn for_proof(seg: &'a Seg, map: &'a dyn Map, proof: bool) -> Self {
         let mut out = Self::new(seg, map);
@@ -109,14 +68,15 @@ impl<'a> Source<'a> {
         out
     }
 
-    /// See [`Source::for_proof`].
+    /// See [`SourceCurve::for_proof`].
     pub(super) fn make_rational(&mut self) {
         let Seg::Arc(a) = self.seg else { return };
+        // At half a turn the weight of the middle control point is zero.
         if a.sweep.abs() > 3.0 {
             return;
         }
-        // With h half the sweep and s = sin h, c = cos h, in the axes of the middle angle: (c, −s), (1, 0), (c, s), the middle one
-        // of weight c. Power basis of the numerators and the denominator.
+        // With h half the sweep and s = sin h, c = cos h, the control points in the axes of the middle angle are (c, −s),
+        // (1, 0), (c, s), with weights 1, c, 1. Power basis of the numerators and of the denominator.
         let (h, mid) = (0.5 * a.sweep, a.start + 0.5 * a.sweep);
         let (s, c) = h.sin_cos();
         let (sm, cm) = mid.sin_cos();
@@ -126,7 +86,7 @@ impl<'a> Source<'a> {
         self.last = self.deriv_rational(1.0);
     }
 
-    /// Whether the source is a quotient of polynomials with a denominator.
+    /// Returns `true` if the source has a denominator.
     pub(super) fn is_rational(&self) -> bool {
         self.w.is_some()
     }
@@ -139,11 +99,11 @@ impl<'a> Source<'a> {
         (dn * w - n * dw) / (w * w)
     }
 
-    /// The parameter here of what the segment has at `t`.
+    /// Converts a parameter of the segment to one of this curve.
     pub(super) fn param(&self, t: f64) -> f64 {
         match (self.seg, self.w) {
             (Seg::Arc(a), Some(_)) => {
-                // Half the angle from the middle has a tangent that is linear in the rational parameter.
+                // The tangent of half the angle from the middle is linear in the rational parameter.
                 let h = 0.25 * a.sweep;
                 0.5 + 0.5 * (h * (2.0 * t - 1.0)).tan() / h.tan()
             }
@@ -151,7 +111,8 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Degree of the source as a quotient of polynomials, and whether it has a denominator.
+    /// The degree of the source as a quotient of polynomials, and `true` if it has a denominator. `None` for an arc that is
+    /// not in rational form.
     pub(super) fn degree(&self) -> Option<(usize, bool)> {
         match self.seg {
             Seg::Line(_) => Some((1, false)),
@@ -161,7 +122,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The denominators of the image at eight parameters: the map's times the source's, the latter to the map's degree.
+    /// The denominators of the image at eight parameters: the map's, times the source's to the power of the map's degree.
     pub(super) fn denominators(&self, t: &Lane, points: &Lanes, power: i32) -> Lane {
         let mut out = self.map.denominators(&points.x, &points.y);
         if let Some([w0, w1, w2]) = self.w {
@@ -221,97 +182,33 @@ impl<'a> Source<'a> {
         out
     }
 
+    /// Writes the images at eight parameters. `Err`: the source point at which the map is not finite.
+    #[inline(always)]
+    pub(super) fn images_into(&self, t: &Lane, g: &mut Lanes) -> Result<(), Point> {
+        *g = self.points(t);
+        self.map.lanes(&mut g.x, &mut g.y);
+        // One test for all: the sum is finite only if every term is. Terms too large to add up are too large to fit.
+        let mut all = [0.0; 8];
+        for i in 0..8 {
+            all[i] = g.x[i] + g.y[i];
+        }
+        if sum(&all).is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
+    }
+
     #[cold]
     fn not_finite(&self, t: &Lane, g: &Lanes) -> Point {
         let i = (0..8).find(|&i| !(g.x[i] + g.y[i]).is_finite()).unwrap_or(0);
         self.at(t[i])
     }
 
-    /// The break point at `t`. `node` is the image of a source node or crease, shared with the neighbours bit by bit.
-    pub(super) fn end_at(&self, t: f64, node: Option<Point>) -> Result<End, Point> {
-        let at = self.at(t);
-        let jet = self.map.jet(at);
-        if jet.is_finite() { Ok(self.end_with(t, node.unwrap_or(jet.p), &jet)) } else { Err(at) }
-    }
-
-    /// As [`Source::end_at`], with the place's image and the map's finite jet there known.
-    #[inline(always)]
-    pub(super) fn end_with(&self, t: f64, p: Point, jet: &Jet) -> End {
-        let v = self.deriv(t);
-        let d = jet.push(v);
-        let (n2, v2) = (d.hypot2(), v.hypot2());
-        let j2 = jet.dx.hypot2() + jet.dy.hypot2();
-        if n2 > VANISHING * VANISHING * j2 * v2 && v2 > (VANISHING * self.size).powi(2) {
-            let speed = n2.sqrt();
-            let u = d / speed;
-            return End { t, p, speed, into: u, away: u };
-        }
-        let away = self.beside(t, 1.0, jet);
-        let into = self.beside(t, -1.0, jet);
-        End { t, p, speed: 0.0, into, away }
-    }
-
-    /// The unit tangent just after (`side` = 1) or just before (−1) a place where the derivative vanishes: the image of the
-    /// first derivative of the source that does not (the k-th turns with (±1)^(k−1)); if the map kills that too, the
-    /// direction a little beside the place.
-    #[cold]
-    fn beside(&self, t: f64, side: f64, jet: &Jet) -> Vec2 {
-        if !matches!(self.seg, Seg::Arc(_)) {
-            let v = self.deriv(t);
-            let a = self.c[2] * 2.0 + self.c[3] * (6.0 * t);
-            let b = self.c[3] * 6.0;
-            let small = (VANISHING * self.size) * 10.0;
-            if v.hypot() <= small {
-                let w = if a.hypot() > small { a * side } else { b };
-                let d = jet.push(w);
-                let whole = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() * w.hypot();
-                if d.hypot() > 1e-6 * whole {
-                    return d / d.hypot();
-                }
-            }
-        }
-        // Farther and farther away until there is a direction; a constant image has none.
-        let mut h = BESIDE;
-        while h < 1.0 {
-            let s = t + side * h;
-            let s = if (0.0..=1.0).contains(&s) { s } else { t - side * h };
-            let flip = if (s - t) * side < 0.0 { -1.0 } else { 1.0 };
-            let (_, d) = self.image(s);
-            let n = d.hypot();
-            if n > 0.0 && n.is_finite() {
-                // Beyond the segment's end there is nothing: the inner side's direction, mirrored as at a cusp or not, is
-                // never used by a piece of this segment.
-                return d * (flip / n);
-            }
-            h *= 30.0;
-        }
-        Vec2::ZERO
-    }
-}
-
-impl Curve for Source<'_> {
-    #[inline(always)]
-    fn images_into(&self, t: &Lane, g: &mut Lanes) -> Result<(), Point> {
-        *g = self.points(t);
-        self.map.lanes(&mut g.x, &mut g.y);
-        // One test for all: the sum is finite only if every term is (terms too large to add up are too large to fit).
-        let mut sum = [0.0; 8];
-        for i in 0..8 {
-            sum[i] = g.x[i] + g.y[i];
-        }
-        if fit::sum(&sum).is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
-    }
-
-    fn image(&self, t: f64) -> (Point, Vec2) {
+    /// The image's point and derivative.
+    pub(super) fn image(&self, t: f64) -> (Point, Vec2) {
         let j = self.map.jet(self.at(t));
         (j.p, j.push(self.deriv(t)))
     }
 
-    fn end(&self, t: f64) -> Result<End, Point> {
-        self.end_at(t, None)
-    }
-
-    fn at(&self, t: f64) -> Point {
+    /// The source's point.
+    pub(super) fn at(&self, t: f64) -> Point {
         match (self.seg, self.w) {
             (Seg::Arc(a), Some([w0, w1, w2])) if t > 0.0 && t < 1.0 => {
                 let [c0, c1, c2, _] = self.c;
@@ -321,7 +218,66 @@ impl Curve for Source<'_> {
         }
     }
 
-    fn single(&self) -> Option<&Source<'_>> {
-        Some(self)
+    /// The break point at `t`. `Err`: the source point, if the map is not finite there.
+    pub(super) fn end(&self, t: f64) -> Result<BreakPoint, Point> {
+        let at = self.at(t);
+        let jet = self.map.jet(at);
+        if jet.is_finite() { Ok(self.end_with(t, jet.p, &jet)) } else { Err(at) }
+    }
+
+    /// The break point at `t` where the map has the finite jet `jet`. `p` is the image of a source node or crease, which
+    /// the neighbouring piece shares bit by bit.
+    #[inline(always)]
+    pub(super) fn end_with(&self, t: f64, p: Point, jet: &Jet) -> BreakPoint {
+        let v = self.deriv(t);
+        let d = jet.push(v);
+        let (n2, v2) = (d.hypot2(), v.hypot2());
+        let j2 = jet.dx.hypot2() + jet.dy.hypot2();
+        if n2 > VANISHING_DERIVATIVE * VANISHING_DERIVATIVE * j2 * v2 && v2 > (VANISHING_DERIVATIVE * self.size).powi(2)
+        {
+            let speed = n2.sqrt();
+            let u = d / speed;
+            return BreakPoint { t, p, speed, into: u, away: u };
+        }
+        let away = self.one_sided_tangent(t, 1.0, jet);
+        let into = self.one_sided_tangent(t, -1.0, jet);
+        BreakPoint { t, p, speed: 0.0, into, away }
+    }
+
+    /// The unit tangent just after (`side` = 1) or just before (−1) a point at which the derivative vanishes: the image of
+    /// the source's first derivative that does not vanish (the k-th has the sign (±1)^(k−1)). If the map's Jacobian maps
+    /// that to zero too, returns the direction a little to that side.
+    #[cold]
+    fn one_sided_tangent(&self, t: f64, side: f64, jet: &Jet) -> Vec2 {
+        if !matches!(self.seg, Seg::Arc(_)) {
+            let v = self.deriv(t);
+            let a = self.c[2] * 2.0 + self.c[3] * (6.0 * t);
+            let b = self.c[3] * 6.0;
+            let small = (VANISHING_DERIVATIVE * self.size) * 10.0;
+            if v.hypot() <= small {
+                let w = if a.hypot() > small { a * side } else { b };
+                let d = jet.push(w);
+                let whole = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() * w.hypot();
+                if d.hypot() > 1e-6 * whole {
+                    return d / d.hypot();
+                }
+            }
+        }
+        // Step farther away until there is a direction; a constant image has none.
+        let mut h = ONE_SIDED_STEP;
+        while h < 1.0 {
+            let s = t + side * h;
+            let s = if (0.0..=1.0).contains(&s) { s } else { t - side * h };
+            let flip = if (s - t) * side < 0.0 { -1.0 } else { 1.0 };
+            let (_, d) = self.image(s);
+            let n = d.hypot();
+            if n > 0.0 && n.is_finite() {
+                // Beyond the end of the segment there is no curve. The tangent on that side is never used by a piece of
+                // this segment, so the sign does not matter.
+                return d * (flip / n);
+            }
+            h *= 30.0;
+        }
+        Vec2::ZERO
     }
 }

@@ -352,7 +352,7 @@ impl NearestTo for CubicBez {
 fn one_net_is_certified() {
     let map = build(&[("style", "fisheye"), ("bend", "70%")]).map;
     let art = Outline::from_svg("M40,20 C80,10 90,60 130,50 L200,80 Z").unwrap();
-    let options = refit::Options { certify: true, ..refit::Options::new(0.01) };
+    let options = refit::Options::new(0.01).with_certify(true);
     let out = refit::warp_path(&art, &map, &options).unwrap();
     assert!(out.report.max_error <= 0.01, "{:?}", out.report);
     assert_eq!(out.report.assurance, refit::Assurance::Certified);

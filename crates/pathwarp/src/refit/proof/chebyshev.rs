@@ -1,42 +1,42 @@
-//! Polynomials on [0, 1] by their values at N Chebyshev nodes: tables, and bounds between the nodes.
+//! Polynomials on [0, 1] given by their values at N Chebyshev nodes: tables, and bounds between the nodes.
 
-use super::fit::fma;
+use crate::refit::lanes::fma;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Samples of the feet, at j/17.
+/// Number of samples with foot points, at j/17.
 pub(super) const FEET: usize = 16;
 
-/// Coefficients come in fours, even and odd ones apart: at most so many quarters of those of one kind.
+/// Coefficients are computed in fours, even and odd ones apart: the largest number of fours of one parity.
 const MOST_QUARTERS: usize = 6;
 
-/// What every proof with N nodes and P coefficients of p uses; see [`super::certify`].
-pub(super) struct Tables<const N: usize, const P: usize> {
+/// Tables for all proofs with N nodes and P coefficients of p; see [`super::nodes`].
+pub(super) struct ChebyshevTables<const N: usize, const P: usize> {
     /// The nodes on [0, 1].
     pub(super) tau: [f64; N],
     /// The Chebyshev polynomials of degree less than P at the nodes.
     pub(super) t: [[f64; N]; P],
-    /// Row k: what the value at node k contributes to the coefficients 0, 2, 4…, and to 1, 3, 5…
+    /// Row k: contributions of the value at node k to the coefficients 0, 2, 4…, and 1, 3, 5…
     even: [[f64; N]; N],
     odd: [[f64; N]; N],
     /// 1 / cos(πd/2N).
     stretch: [f64; N],
-    /// Row i: what the foot of sample i contributes to the coefficients of p (P of the eight), by least squares.
+    /// Row i: contributions of the foot point of sample i to the coefficients of p (P of the eight), by least squares.
     pub(super) feet: [[f64; 8]; FEET],
 }
 
-/// The tables in use.
-pub(super) trait Shared: Sized + 'static {
-    /// Computed when first wanted.
+/// Tables that exist once per process.
+pub(super) trait SharedTables: Sized + 'static {
+    /// Returns the tables, computing them on first use.
     fn shared() -> &'static Self;
 }
 
 macro_rules! shared {
     ($($n:literal, $p:literal;)*) => {$(
-        impl Shared for Tables<$n, $p> {
+        impl SharedTables for ChebyshevTables<$n, $p> {
             fn shared() -> &'static Self {
-                static TABLES: OnceLock<Box<Tables<$n, $p>>> = OnceLock::new();
-                TABLES.get_or_init(|| Box::new(Tables::new()))
+                static TABLES: OnceLock<Box<ChebyshevTables<$n, $p>>> = OnceLock::new();
+                TABLES.get_or_init(|| Box::new(ChebyshevTables::new()))
             }
         }
     )*};
@@ -49,7 +49,7 @@ shared! {
     48, 8;
 }
 
-impl<const N: usize, const P: usize> Tables<N, P> {
+impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
     fn new() -> Self {
         let angle = |k: usize| PI * (k as f64 + 0.5) / N as f64;
         let part = |k: usize, d: usize| (if d == 0 { 1.0 } else { 2.0 }) / N as f64 * (d as f64 * angle(k)).cos();
@@ -74,16 +74,16 @@ impl<const N: usize, const P: usize> Tables<N, P> {
         out
     }
 
-    /// Below which the polynomial of the given degree with values at most `most` in size at the nodes stays.
+    /// A bound for a polynomial of the given degree whose values at the nodes are at most `most` in size.
     pub(super) fn between_nodes(&self, most: f64, degree: usize) -> f64 {
         most * self.stretch[degree]
     }
 
-    /// A bound for the length of the vector polynomial with these values at the nodes, `most` being the longest: the smallest,
-    /// over d, of what the theorem gives for the part up to degree d and the sum of the coefficients beyond.
+    /// A bound for the length of the vector polynomial with these values at the nodes, of which `most` is the longest: the
+    /// least, over d, of the theorem's bound for the part up to degree d plus the sum of the coefficients beyond.
     pub(super) fn supremum(&self, x: &[f64; N], y: &[f64; N], most: f64, degree: usize) -> f64 {
-        // The coefficients of even degree side by side, and the odd ones, of x and y. The value at a node and at its mirror image
-        // contribute the same to the even ones, the opposite to the odd ones.
+        // Even and odd coefficients of x and y. The values at a node and at its mirror image contribute equally to the even
+        // ones and oppositely to the odd ones.
         let mut c = [[[0.0; 4]; 4]; MOST_QUARTERS];
         let quarters = N / 8;
         for k in 0..N / 2 {
@@ -119,7 +119,7 @@ impl<const N: usize, const P: usize> Tables<N, P> {
             if limit < best {
                 best = limit;
             }
-            // The coefficient d joins the tail; more in it cannot help any more once it is that large.
+            // Coefficient d joins the tail. Once the tail alone exceeds the best bound, smaller d cannot help.
             tail += size[d];
             if tail > best {
                 break;
@@ -128,8 +128,8 @@ impl<const N: usize, const P: usize> Tables<N, P> {
         best
     }
 
-    /// A lower bound for a polynomial of the given degree from its values at the nodes: its distance from their middle is
-    /// bounded.
+    /// A lower bound for a polynomial of the given degree from its values at the nodes, by an upper bound for its distance
+    /// from their midrange.
     pub(super) fn least(&self, f: &[f64; N], degree: usize) -> f64 {
         let lo = f.iter().copied().fold(f64::INFINITY, f64::min);
         let hi = f.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -168,7 +168,7 @@ fn least_squares<const P: usize>() -> [[f64; P]; FEET] {
     std::array::from_fn(|i| std::array::from_fn(|k| m[k][P + i]))
 }
 
-/// Where the samples of the feet are.
+/// Places of the samples with foot points.
 pub(super) const SAMPLES: [f64; FEET] = {
     let mut out = [0.0; FEET];
     let mut i = 0;
@@ -186,15 +186,15 @@ mod tests {
 
     fn the_bound_holds_with<const N: usize, const P: usize>(worst: f64)
     where
-        Tables<N, P>: Shared,
+        ChebyshevTables<N, P>: SharedTables,
     {
-        // A polynomial of degree 9 with known maximum, given at the nodes.
+        // A polynomial of degree 9, whose maximum is found by sampling.
         let f = |t: f64| {
             let u = 2.0 * t - 1.0;
             let v = (9.0 * u.acos()).cos() * 0.01 + (4.0 * u.acos()).cos() + 0.3 * u;
             Vec2::new(v, 0.5 * v)
         };
-        let t = Tables::<N, P>::shared();
+        let t = ChebyshevTables::<N, P>::shared();
         let (x, y) = (t.tau.map(|t| f(t).x), t.tau.map(|t| f(t).y));
         let most = (0..N).map(|k| x[k].hypot(y[k])).fold(0.0, f64::max);
         let truth = (0..=10_000).map(|i| f(f64::from(i) / 10_000.0).hypot()).fold(0.0, f64::max);

@@ -1,12 +1,14 @@
 //! Tests of the proofs from samples, against brute force.
 
 use super::super::chebyshev::SAMPLES;
-use super::super::fit::Frame;
-use super::super::samples::{CHECKED, FITTED, between};
-use super::tables::Basis;
+use super::basis::GegenbauerBasis;
+use super::expand::FINE_GROWTH;
 use super::*;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
+use crate::refit::curve::ImageCurve;
+use crate::refit::frame::ChordFrame;
+use crate::refit::samples::{CHECKED, FITTED, between};
 use kurbo::{CubicBez, Line, ParamCurve, QuadBez, Vec2};
 
 /// Numbers in [−1, 1] without pattern.
@@ -75,7 +77,7 @@ impl Map for Test {
 }
 
 /// The largest distance of 400 places of the image from the cubic, by brute force and Newton steps.
-fn truth(source: &Source<'_>, c: &Candidate) -> f64 {
+fn truth(source: &SourceCurve<'_>, c: &Candidate) -> f64 {
     let cubic = c.frame.cubic(c.p0, c.p0 + c.frame.q, c.a, c.b);
     let mut worst = 0.0f64;
     for i in 0..=400 {
@@ -110,10 +112,10 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
             1 => Seg::Quad(QuadBez::new(p[0], p[1], p[2])),
             _ => Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3])),
         };
-        let source = Source::new(&seg, &map);
+        let source = SourceCurve::new(&seg, &map);
         let known = map.rational_degree();
         let (t0, t1) = (0.4 + 0.3 * r.next(), 0.9 + 0.1 * r.next());
-        let (Some(algebra), Ok(from), Ok(to)) = (Algebra::of(&source, known), source.end(t0), source.end(t1)) else {
+        let (Some(form), Ok(from), Ok(to)) = (RationalForm::new(&source, known), source.end(t0), source.end(t1)) else {
             continue;
         };
         let hermite = [from.speed, to.speed].map(|s| s * (t1 - t0) / 3.0);
@@ -121,8 +123,15 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
         let stretch = if even { [1.0; 2] } else { [1.0 + 0.2 * r.next(), 1.0 + 0.2 * r.next()] };
         let (a, b) = (hermite[0] * stretch[0], hermite[1] * stretch[1]);
         let q = to.p - from.p;
-        let frame =
-            Frame { q, t0: from.away, t1: to.into, floor: [0.0; 2], size: q.hypot() + a + b, home: hermite, pull: 0.0 };
+        let frame = ChordFrame {
+            q,
+            t0: from.away,
+            t1: to.into,
+            floor: [0.0; 2],
+            size: q.hypot() + a + b,
+            home: hermite,
+            pull: 0.0,
+        };
         let c = Candidate { t0, t1, p0: from.p, frame, a, b };
         let images = |set: &Lane| {
             let mut g = source.images(&set.map(|j| t0 + (t1 - t0) * j * UNIT)).unwrap_or_default();
@@ -140,9 +149,9 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
         let real = truth(&source, &c);
         // The enough is a real one, so that every stage is met.
         let enough = real * [1.03, 1.1, 1.6, 5.0][round % 4 / 2 * 2 + round / 4 % 2] + 1e-9;
-        let mut job = Sampled::new(&source, &algebra, &c, hermite, [&g[0], &g[1]], enough);
+        let mut proof = SampledProof::new(&source, &form, &c, [&g[0], &g[1]], enough);
         let feet = [&s0, &s1];
-        for (k, bound) in [job.even(), job.few(feet), job.many(feet)].into_iter().enumerate() {
+        for (k, bound) in [proof.identity(), proof.sixteen(feet), proof.thirty_two(feet)].into_iter().enumerate() {
             let Ok(bound) = bound else { continue };
             if bound <= enough {
                 kinds[k] += 1;
@@ -180,8 +189,8 @@ fn nothing_grows_more_than_it_is_said_to() {
         for _ in 0..400 {
             let c: Vec<f64> = (0..=d).map(|k| r.next() * if k == d { 2.0 } else { 1.0 }).collect();
             let f = |t: f64| {
-                let at = Basis([1.0; Basis::MOST]).at(t);
-                let size = Basis([1.0; Basis::MOST]).at(0.5);
+                let at = GegenbauerBasis([1.0; GegenbauerBasis::COUNT]).at(t);
+                let size = GegenbauerBasis([1.0; GegenbauerBasis::COUNT]).at(0.5);
                 (0..=d).map(|k| c[k] * at[k] / size[k / 2 * 2].abs()).sum::<f64>()
             };
             let most = |ts: &[f64]| ts.iter().map(|t| f(*t).abs()).fold(0.0, f64::max);
@@ -227,18 +236,18 @@ impl Map for Swing {
 /// 0.01.
 fn of_swing(map: &Swing) -> ([f64; 2], f64) {
     let seg = Seg::Line(Line::new((0.0, 0.0), (1.0, 0.0)));
-    let source = Source::new(&seg, map);
-    let algebra = Algebra::of(&source, map.rational_degree()).unwrap();
+    let source = SourceCurve::new(&seg, map);
+    let form = RationalForm::new(&source, map.rational_degree()).unwrap();
     let unit = Vec2::new(1.0, 0.0);
     let hermite = [1.0 / 3.0; 2];
-    let frame = Frame { q: unit, t0: unit, t1: unit, floor: [0.0; 2], size: 1.0, home: hermite, pull: 0.0 };
+    let frame = ChordFrame { q: unit, t0: unit, t1: unit, floor: [0.0; 2], size: 1.0, home: hermite, pull: 0.0 };
     let c = Candidate { t0: 0.0, t1: 1.0, p0: Point::ZERO, frame, a: hermite[0], b: hermite[1] };
     let places = [FITTED, CHECKED].map(|set| set.map(|j| j * UNIT));
     let g = places.map(|t| source.images(&t).unwrap());
     let most = g.iter().flat_map(|g| g.y).fold(0.0, |m: f64, y| m.max(y.abs()));
-    let mut job = Sampled::new(&source, &algebra, &c, hermite, [&g[0], &g[1]], 1.0);
+    let mut proof = SampledProof::new(&source, &form, &c, [&g[0], &g[1]], 1.0);
     let feet = [&places[0], &places[1]];
-    ([job.few(feet).unwrap(), job.many(feet).unwrap()], most)
+    ([proof.sixteen(feet).unwrap(), proof.thirty_two(feet).unwrap()], most)
 }
 
 /// An error of the highest degree that nearly vanishes at the samples: only its coefficients tell.

@@ -1,0 +1,126 @@
+//! The thorough check: both one-sided distances, without the foot points of the fit.
+
+use crate::refit::candidate::Candidate;
+use crate::refit::curve::ImageCurve;
+use crate::refit::lanes::Lane;
+use crate::refit::limits::THOROUGH_SAMPLES;
+use crate::refit::split::SlowSpots;
+use kurbo::{Point, Vec2};
+
+/// The Hausdorff distance between candidate and image, by sampling: the nearest sample by search, then Newton steps.
+#[cold]
+pub(in crate::refit) fn thorough(
+    source: &impl ImageCurve,
+    c: &Candidate,
+    slow: &SlowSpots,
+    tolerance: f64,
+) -> Result<f64, Point> {
+    let taus = places(c, slow);
+    let mut images = Vec::with_capacity(taus.len());
+    for chunk in taus.chunks_exact(8) {
+        let tau: Lane = std::array::from_fn(|i| chunk[i]);
+        let g = c.images(source, &tau)?;
+        images.extend((0..8).map(|i| Vec2::new(g.x[i], g.y[i])));
+    }
+    let curve: Vec<Vec2> = (0..=THOROUGH_SAMPLES).map(|i| c.at(i as f64 / THOROUGH_SAMPLES as f64)).collect();
+    let enough = tolerance * tolerance;
+    let worst = from_image(c, &images, &curve, enough);
+    Ok(from_cubic(source, c, [&curve, &images], &taus, enough, worst).sqrt())
+}
+
+/// Evenly spaced places, and geometrically denser ones around slow spots; a multiple of eight.
+fn places(c: &Candidate, slow: &SlowSpots) -> Vec<f64> {
+    let mut taus = Vec::with_capacity(THOROUGH_SAMPLES + 72);
+    taus.extend((0..=THOROUGH_SAMPLES).map(|i| i as f64 / THOROUGH_SAMPLES as f64));
+    for t in slow.all() {
+        let at = c.tau(*t);
+        if at > 0.0 && at < 1.0 {
+            let mut w = 1.0 / THOROUGH_SAMPLES as f64;
+            taus.push(at);
+            for _ in 0..16 {
+                taus.extend([at - w, at + w]);
+                w *= 0.6;
+            }
+        }
+    }
+    taus.retain(|t| (0.0..=1.0).contains(t));
+    taus.sort_by(f64::total_cmp);
+    while taus.len() % 8 != 0 {
+        taus.push(1.0);
+    }
+    taus
+}
+
+/// The sample of `set` nearest to `p`, and its squared distance: downhill from `from`, or the best of all if that does not
+/// come within `enough` (squared).
+fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
+    let d = |i: usize| (set[i] - p).hypot2();
+    let (mut at, mut best) = (from, d(from));
+    loop {
+        if at + 1 < set.len() && d(at + 1) < best {
+            at += 1;
+        } else if at > 0 && d(at - 1) < best {
+            at -= 1;
+        } else {
+            break;
+        }
+        best = d(at);
+    }
+    if best > enough {
+        for (i, q) in set.iter().enumerate() {
+            let d = (*q - p).hypot2();
+            if d < best {
+                (at, best) = (i, d);
+            }
+        }
+    }
+    (at, best)
+}
+
+/// The largest squared distance of an image from the cubic.
+fn from_image(c: &Candidate, images: &[Vec2], curve: &[Vec2], enough: f64) -> f64 {
+    let mut from = 0;
+    let mut worst = 0.0f64;
+    for p in images {
+        let (i, mut best) = nearest(curve, from, *p, enough);
+        from = i;
+        let mut s = i as f64 / THOROUGH_SAMPLES as f64;
+        for _ in 0..4 {
+            let (r, v) = (c.at(s) - *p, c.slope(s));
+            s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            best = best.min((c.at(s) - *p).hypot2());
+        }
+        worst = worst.max(best);
+    }
+    worst
+}
+
+/// The largest squared distance of a point of the cubic from the image, if larger than `worst`.
+fn from_cubic(
+    source: &impl ImageCurve,
+    c: &Candidate,
+    [curve, images]: [&[Vec2]; 2],
+    taus: &[f64],
+    enough: f64,
+    mut worst: f64,
+) -> f64 {
+    let origin = c.p0.to_vec2();
+    let h = c.t1 - c.t0;
+    let mut from = 0;
+    for q in curve {
+        let (i, mut best) = nearest(images, from, *q, enough);
+        from = i;
+        let mut tau = taus[i];
+        for _ in 0..4 {
+            // A distance below the known error need not be refined.
+            if best > worst {
+                let (p, d) = source.image(c.param(tau));
+                let (r, v) = (p.to_vec2() - origin - *q, d * h);
+                best = best.min(r.hypot2());
+                tau = (tau - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            }
+        }
+        worst = worst.max(best);
+    }
+    worst
+}

@@ -1,0 +1,59 @@
+//! The interface that a curve must have to be fitted.
+
+use super::lanes::{Lane, Lanes};
+use super::source::{BreakPoint, SourceCurve};
+use kurbo::{Point, Vec2};
+
+/// A curve that can be fitted: the image of one segment, or of several in a row.
+pub(super) trait ImageCurve {
+    /// Writes the images at eight parameters. `Err`: the source point at which the map is not finite.
+    fn images_into(&self, t: &Lane, out: &mut Lanes) -> Result<(), Point>;
+
+    /// Returns the images at eight parameters. `Err`: the source point at which the map is not finite.
+    #[inline(always)]
+    fn images(&self, t: &Lane) -> Result<Lanes, Point> {
+        let mut out = Lanes::default();
+        self.images_into(t, &mut out)?;
+        Ok(out)
+    }
+
+    /// The image's point and derivative at one parameter.
+    fn image(&self, t: f64) -> (Point, Vec2);
+
+    /// The break point at `t`. `Err`: the source point, if the map is not finite there.
+    fn end(&self, t: f64) -> Result<BreakPoint, Point>;
+
+    /// Parameters in (t0, t1) that a dense check must sample besides those spread evenly.
+    fn places(&self, _t0: f64, _t1: f64) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The source's point at `t`, for messages.
+    fn at(&self, t: f64) -> Point;
+
+    /// The curve as the image of a single segment, which proofs need.
+    fn single(&self) -> Option<&SourceCurve<'_>>;
+}
+
+impl ImageCurve for SourceCurve<'_> {
+    #[inline(always)]
+    fn images_into(&self, t: &Lane, out: &mut Lanes) -> Result<(), Point> {
+        SourceCurve::images_into(self, t, out)
+    }
+
+    fn image(&self, t: f64) -> (Point, Vec2) {
+        SourceCurve::image(self, t)
+    }
+
+    fn end(&self, t: f64) -> Result<BreakPoint, Point> {
+        SourceCurve::end(self, t)
+    }
+
+    fn at(&self, t: f64) -> Point {
+        SourceCurve::at(self, t)
+    }
+
+    fn single(&self) -> Option<&SourceCurve<'_>> {
+        Some(self)
+    }
+}

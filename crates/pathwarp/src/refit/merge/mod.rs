@@ -1,0 +1,209 @@
+//! Fewer pieces across smooth joints of the source.
+//!
+//! A drawing often has more nodes than its shape needs. Smoothly joined segments have one smooth curve as their image, here
+//! parametrised by its own length. Dynamic programming finds the fewest cubics between the places of a grid (the joints, and
+//! points between them) that cover this curve. They are used only if they are fewer than the segments' own pieces and every
+//! one has passed the dense check or, if proofs are wanted, has been proven segment by segment.
+
+mod run;
+mod search;
+
+use super::curve::ImageCurve;
+use super::limits::{MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT};
+use super::options::Options;
+use super::outcome::FitOutcome;
+use super::piece::FittedPiece;
+use super::proof::{self, RationalForm};
+use super::report::{Assurance, PathReport};
+use super::source::{BreakPoint, SourceCurve};
+use super::split::SlowSpots;
+use super::stretch::StretchFitter;
+use crate::map::{Map, RationalDegree};
+use crate::outline::Seg;
+use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point};
+use run::{RunSegment, SegmentRun};
+use search::{Leg, fewest_legs};
+
+/// Merges the pieces of one subpath.
+pub(super) struct Merger<'a> {
+    pub(super) map: &'a dyn Map,
+    /// The map's degree, if it is a quotient of polynomials.
+    pub(super) degree: Option<RationalDegree>,
+    pub(super) options: &'a Options,
+}
+
+impl Merger<'_> {
+    /// The pieces of `segs`, merged where that saves some; `bounds[i]..bounds[i + 1]` are those of segment i.
+    pub(super) fn merged(
+        &self,
+        segs: &[Seg],
+        pieces: &[FittedPiece],
+        bounds: &[usize],
+        report: &mut PathReport,
+    ) -> Result<Vec<FittedPiece>, Point> {
+        let mut out = Vec::with_capacity(pieces.len());
+        let mut i = 0;
+        while i < segs.len() {
+            let run = self.run(&segs[i..])?;
+            // A segment that cannot be in a run keeps its pieces.
+            let end = i + run.segments.len().max(1);
+            let own = &pieces[bounds[i]..bounds[end]];
+            let better = if end - i > 1 { self.fewest(&run, pieces, &bounds[i..=end])? } else { None };
+            match better {
+                Some((merged, error)) => {
+                    let assurance = if self.options.certify { Assurance::Certified } else { Assurance::Checked };
+                    report.add_error(error, assurance);
+                    out.extend_from_slice(&merged);
+                }
+                None => out.extend_from_slice(own),
+            }
+            i = end;
+        }
+        Ok(out)
+    }
+
+    /// The longest run of smoothly joined segments at the start of `segs`.
+    fn run<'s>(&self, segs: &'s [Seg]) -> Result<SegmentRun<'s>, Point>
+    where
+        Self: 's,
+    {
+        let mut run = SegmentRun::default();
+        for seg in segs.iter().take(MAX_RUN) {
+            if self.options.shared.contains(seg) {
+                break;
+            }
+            let Some(segment) = self.run_segment(seg)? else { break };
+            let turn = |last: &RunSegment<'_>| {
+                let (into, away) = (last.to.into, segment.from.away);
+                into.cross(away).atan2(into.dot(away)).abs()
+            };
+            if run.segments.last().is_some_and(|last| turn(last) > SMOOTH_JOINT) {
+                break;
+            }
+            run.push(segment);
+        }
+        Ok(run)
+    }
+
+    /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
+    fn run_segment<'s>(&self, seg: &'s Seg) -> Result<Option<RunSegment<'s>>, Point>
+    where
+        Self: 's,
+    {
+        let certify = self.options.certify;
+        let source = SourceCurve::for_proof(seg, self.map, certify);
+        let form = if certify { RationalForm::new(&source, self.degree) } else { None };
+        if certify && form.is_none() { Ok(None) } else { RunSegment::new(source, form) }
+    }
+
+    /// The fewest pieces for a run, and their largest error. `None` if they are not fewer than its segments have.
+    ///
+    /// Searches quickly, then checks the pieces found densely. Those that fail are left out of the next search.
+    fn fewest(
+        &self,
+        run: &SegmentRun<'_>,
+        pieces: &[FittedPiece],
+        bounds: &[usize],
+    ) -> Result<Option<(Vec<FittedPiece>, f64)>, Point> {
+        let n = run.grid();
+        let mut ends = Vec::with_capacity(n + 1);
+        for k in 0..=n {
+            ends.push(run.end(run.place(k))?);
+        }
+        let slow = SlowSpots::default();
+        let mut fitter = StretchFitter {
+            source: run,
+            slow: &slow,
+            tolerance: MERGE_SHARE * self.options.tolerance,
+            form: None,
+            degree: None,
+            careful: false,
+            attempts: 0,
+        };
+        let mut refused = Vec::new();
+        for _ in 0..MERGE_SEARCHES {
+            fitter.careful = false;
+            let Some(legs) = fewest_legs(run, &mut fitter, &ends, bounds, &refused)? else { return Ok(None) };
+            fitter.careful = true;
+            let (mut out, mut worst) = (Vec::with_capacity(bounds[bounds.len() - 1] - bounds[0]), 0.0f64);
+            let known = refused.len();
+            for Leg { from, to, merged } in legs {
+                if !merged {
+                    out.extend_from_slice(&pieces[bounds[from / MERGE_GRID]..bounds[to / MERGE_GRID]]);
+                } else if let Some((piece, error)) = self.checked(run, &mut fitter, &ends[from], &ends[to])? {
+                    worst = worst.max(error);
+                    out.push(piece);
+                } else {
+                    refused.push((from, to));
+                }
+            }
+            if refused.len() == known {
+                return Ok(Some((out, worst)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A merged piece and its checked or proven error. `None` if it is not within the tolerance.
+    fn checked(
+        &self,
+        run: &SegmentRun<'_>,
+        fitter: &mut StretchFitter<'_, SegmentRun<'_>>,
+        from: &BreakPoint,
+        to: &BreakPoint,
+    ) -> Result<Option<(FittedPiece, f64)>, Point> {
+        let FitOutcome::Fits { piece, mut error, .. } = fitter.attempt(from, to)? else { return Ok(None) };
+        if self.options.certify {
+            error = self.proven(run, from, to, piece)?;
+            if error > self.options.tolerance {
+                return Ok(None);
+            }
+        }
+        Ok(Some((piece, error)))
+    }
+
+    /// The proven distance of a piece over several segments: each segment is proven against its part of the piece, between
+    /// the foot points of the joints.
+    fn proven(
+        &self,
+        run: &SegmentRun<'_>,
+        from: &BreakPoint,
+        to: &BreakPoint,
+        piece: FittedPiece,
+    ) -> Result<f64, Point> {
+        let cubic = match piece {
+            FittedPiece::Line(l) => CubicBez::new(l.p0, l.p0.lerp(l.p1, 1.0 / 3.0), l.p0.lerp(l.p1, 2.0 / 3.0), l.p1),
+            FittedPiece::Cubic(c) => c,
+        };
+        let (mut s, mut worst) = (0.0, 0.0f64);
+        for (k, segment) in run.segments.iter().enumerate() {
+            let (first, last) = (run.starts[k], run.starts[k + 1]);
+            let (a, b) = (from.t.max(first), to.t.min(last));
+            let Some(form) = &segment.form else { return Ok(f64::INFINITY) };
+            if a >= b {
+                continue;
+            }
+            let next =
+                if b == to.t { 1.0 } else { foot_point(&cubic, segment.to.p, s + (1.0 - s) * (b - a) / (to.t - a)) };
+            if next <= s {
+                return Ok(f64::INFINITY);
+            }
+            let t0 = if a == first { 0.0 } else { segment.param(a - first).0 };
+            let t1 = if b == last { 1.0 } else { segment.param(b - first).0 };
+            let part = cubic.subsegment(s..next);
+            worst = worst.max(proof::stretch(&segment.source, form, [t0, t1], &part, self.options.tolerance)?);
+            s = next;
+        }
+        Ok(worst)
+    }
+}
+
+/// The parameter of the point of `c` nearest to `p`, by Newton steps from `s`.
+fn foot_point(c: &CubicBez, p: Point, mut s: f64) -> f64 {
+    let slope = c.deriv();
+    for _ in 0..8 {
+        let (r, v) = (c.eval(s) - p, slope.eval(s).to_vec2());
+        s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    }
+    s
+}

@@ -1,0 +1,54 @@
+//! The result of a refit: the path, its error, and how far that error can be trusted.
+
+use kurbo::{BezPath, Point};
+
+/// Basis of the reported error, from the weakest to the strongest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Assurance {
+    /// Measured by dense sampling; the error between samples is estimated.
+    Checked,
+    /// A proven bound.
+    Certified,
+    /// Nothing was approximated; the error is rounding.
+    Exact,
+}
+
+/// Statistics of a refit path.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct PathReport {
+    /// Segments in the source, closing lines included.
+    pub segments_in: usize,
+    /// Segments in the output, closing lines included.
+    pub segments_out: usize,
+    /// Largest distance between the true image and the output, in root user units.
+    pub max_error: f64,
+    /// Basis of `max_error`: the weakest of all segments.
+    pub assurance: Assurance,
+    /// Places in the source at which the work budget ran out before the tolerance was met.
+    pub over_budget: Vec<Point>,
+}
+
+impl Default for PathReport {
+    fn default() -> Self {
+        Self { segments_in: 0, segments_out: 0, max_error: 0.0, assurance: Assurance::Exact, over_budget: Vec::new() }
+    }
+}
+
+impl PathReport {
+    /// Accounts for a piece with this error.
+    pub(super) fn add_error(&mut self, error: f64, assurance: Assurance) {
+        self.max_error = self.max_error.max(error);
+        self.assurance = self.assurance.min(assurance);
+    }
+}
+
+/// The image of a path.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct RefittedPath {
+    /// Lines and cubics.
+    pub path: BezPath,
+    /// Statistics.
+    pub report: PathReport,
+}
