@@ -23,6 +23,7 @@
 // Loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
 #![allow(clippy::needless_range_loop)]
 
+mod attempt;
 mod breaks;
 mod candidate;
 mod check;

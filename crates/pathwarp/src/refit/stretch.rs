@@ -1,4 +1,4 @@
-//! Fits one piece to a stretch of a curve: samples, line test, Hermite cubic, and then [`improve`](super::improve).
+//! One stretch of a curve: its samples, and the two quick outcomes, a line and the Hermite cubic.
 
 use super::curve::ImageCurve;
 use super::frame::ChordFrame;
@@ -34,20 +34,6 @@ pub(super) struct StretchFitter<'a, C> {
 }
 
 impl<C: ImageCurve> StretchFitter<'_, C> {
-    /// Fits one piece to a stretch.
-    #[inline(never)]
-    pub(super) fn attempt(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, Point> {
-        let mut g = Lanes::default();
-        let mut request = self.start(from, to, &mut g)?;
-        if let Some(line) = self.line(&request)? {
-            return Ok(line);
-        }
-        if let Some(error) = self.hermite_error(&mut request)? {
-            return Ok(FitOutcome::Fits { piece: FittedPiece::Cubic(request.hermite()), error, reach: error });
-        }
-        self.improve(&mut request)
-    }
-
     /// Takes the fitted samples and sets up the frame.
     #[inline(always)]
     pub(super) fn start<'r>(
