@@ -22,7 +22,7 @@ pub enum FileKind {
 /// The paths of a file.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct GimpFile {
+pub struct PathFile {
     /// The format of the file.
     pub kind: FileKind,
     /// Width and height of the canvas in pixels, if the file contains them.
@@ -36,7 +36,7 @@ pub struct GimpFile {
 #[non_exhaustive]
 pub struct Salvaged {
     /// The file with the paths before the damage.
-    pub file: GimpFile,
+    pub file: PathFile,
     /// The damage; `None` if the file is sound.
     pub damage: Option<Error>,
 }

@@ -31,7 +31,7 @@ mod text;
 mod xcf;
 
 pub use error::{Error, ErrorKind};
-pub use file::{FileKind, GimpFile, Salvaged};
+pub use file::{FileKind, PathFile, Salvaged};
 pub use open::{open, salvage, sniff};
 pub use path::{GimpPath, Stroke};
 pub use point_list::to_json;

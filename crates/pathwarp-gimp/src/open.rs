@@ -1,7 +1,7 @@
 //! Detects the format of a file, decompresses it if needed, and reads its paths.
 
 use crate::error::{Error, ErrorKind};
-use crate::file::{FileKind, GimpFile, Salvaged};
+use crate::file::{FileKind, PathFile, Salvaged};
 use crate::source::{ByteSource, ReadSeek};
 use crate::{point_list, svg, text, xcf};
 use std::io::{Read, Seek, SeekFrom};
@@ -13,7 +13,7 @@ const MOST_UNPACKED: u64 = 1 << 32;
 ///
 /// # Errors
 /// The file has an unknown format, is damaged, or cannot be read; the error contains the byte offset.
-pub fn open(mut file: impl Read + Seek) -> Result<GimpFile, Error> {
+pub fn open(mut file: impl Read + Seek) -> Result<PathFile, Error> {
     let salvaged = dispatch(&mut file)?;
     salvaged.damage.map_or(Ok(salvaged.file), Err)
 }
@@ -84,14 +84,14 @@ fn dispatch(file: &mut dyn ReadSeek) -> Result<Salvaged, Error> {
         }
         let size = Some([f64::from(xcf.width), f64::from(xcf.height)]);
         let paths = xcf.records.into_iter().map(|r| r.path).collect();
-        return Ok(Salvaged { file: GimpFile { kind: kind(xcf.version), size, paths }, damage });
+        return Ok(Salvaged { file: PathFile { kind: kind(xcf.version), size, paths }, damage });
     }
     let whole = |file| Salvaged { file, damage: None };
     match first_byte(&head) {
         Some(b'<') => svg::read(&input.text()?).map(whole),
         Some(b'{') => point_list::read(&input.text()?).map(whole),
         _ if head.starts_with(text::FIRST) => {
-            let mut file = GimpFile { kind: FileKind::Text, size: None, paths: Vec::new() };
+            let mut file = PathFile { kind: FileKind::Text, size: None, paths: Vec::new() };
             let damage = text::read(&input.text()?, &mut file.paths).err();
             Ok(Salvaged { file, damage })
         }

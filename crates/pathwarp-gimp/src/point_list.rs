@@ -8,7 +8,7 @@
 //! `num_points` counts numbers, six per anchor. Instead of `controlpoints`, a stroke may have `points`, a list of pairs.
 
 use crate::error::Error;
-use crate::file::{FileKind, GimpFile};
+use crate::file::{FileKind, PathFile};
 use crate::path::{GimpPath, Stroke};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ struct JsonStroke {
 }
 
 /// Parses a point list.
-pub(crate) fn read(text: &str) -> Result<GimpFile, Error> {
+pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
     let file: JsonFile = serde_json::from_str(text).map_err(|e| {
         let lines = text.split_inclusive('\n').take(e.line().saturating_sub(1));
         let at = lines.map(str::len).sum::<usize>() + e.column().saturating_sub(1);
@@ -53,7 +53,7 @@ pub(crate) fn read(text: &str) -> Result<GimpFile, Error> {
     })?;
     let paths: Result<Vec<GimpPath>, String> = file.paths.into_iter().map(path).collect();
     let size = file.width.zip(file.height).map(|(w, h)| [w, h]);
-    Ok(GimpFile { kind: FileKind::Json, size, paths: paths.map_err(|e| Error::damaged(0, e))? })
+    Ok(PathFile { kind: FileKind::Json, size, paths: paths.map_err(|e| Error::damaged(0, e))? })
 }
 
 /// Checks a path and converts it.

@@ -5,7 +5,7 @@
 //! viewBox avoid any scaling.
 
 use crate::error::Error;
-use crate::file::{FileKind, GimpFile};
+use crate::file::{FileKind, PathFile};
 use crate::number::{rounded, shortest};
 use crate::path::{GimpPath, Stroke};
 use pathwarp::Outline;
@@ -55,7 +55,7 @@ pub(crate) fn is_export(text: &str) -> bool {
 }
 
 /// Reads the paths of an SVG.
-pub(crate) fn read(text: &str) -> Result<GimpFile, Error> {
+pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
     let doc = parse(text)?;
     let root = doc.root_element();
     if !root.has_tag_name((NAMESPACE, "svg")) {
@@ -86,7 +86,7 @@ pub(crate) fn read(text: &str) -> Result<GimpFile, Error> {
         // The format has no visibility; GIMP imports paths as invisible.
         paths.push(GimpPath { name, visible: false, strokes });
     }
-    Ok(GimpFile { kind: FileKind::Svg, size, paths })
+    Ok(PathFile { kind: FileKind::Svg, size, paths })
 }
 
 /// Recognises a closed stroke of a single anchor. GIMP omits its `C` command, so its four points read as three lines.

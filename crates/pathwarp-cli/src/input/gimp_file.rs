@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// A GIMP file, or one path of it.
 pub(crate) struct GimpFile {
     pub(crate) path: PathBuf,
-    pub(crate) file: pathwarp_gimp::GimpFile,
+    pub(crate) file: pathwarp_gimp::PathFile,
     /// The path that `FILE#NAME` names; `None`: all paths.
     pub(crate) only: Option<String>,
     /// The damage behind the paths that were salvaged.

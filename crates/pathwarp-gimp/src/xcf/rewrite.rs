@@ -16,7 +16,7 @@ struct ByteEdit {
     bytes: Vec<u8>,
 }
 
-/// Copies the XCF in `from` to `to`, replacing the strokes of the paths given by their index in [`crate::GimpFile::paths`]. Names,
+/// Copies the XCF in `from` to `to`, replacing the strokes of the paths given by their index in [`crate::PathFile::paths`]. Names,
 /// flags, tattoos and parasites of the paths are kept. Coordinates are rounded to the single precision of XCF.
 ///
 /// # Errors
