@@ -7,7 +7,7 @@ mod common;
 use base64::Engine as _;
 use common::{Bend, drawing, oblique, options, read, warp, warp_options};
 use pathwarp_svg::{
-    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, Structure, WarpOptions, WarpedDocument, compressed,
+    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpOptions, WarpedDocument, compressed,
 };
 use std::sync::Arc;
 
@@ -120,7 +120,7 @@ fn what_is_no_geometry_keeps_its_bytes() {
 struct Unasked;
 
 impl ImageWarper for Unasked {
-    fn warp(&self, _: &ImageRequest<'_>) -> Result<BentImage, String> {
+    fn warp(&self, _: &ImageRequest<'_>) -> Result<BentImage, PictureError> {
         Err("asked".into())
     }
 }
