@@ -3,12 +3,13 @@
 mod support;
 
 use pathwarp_raster::{Picture, PictureFormat, Pixmap, Size, compare, decode_png, render};
+use pathwarp_svg::usvg_tree;
 use std::fs;
 use support::{pathwarp, pathwarp_in, sample};
 
 /// A drawing as a photograph of it.
 fn photograph(svg: &str, width: u32) -> Pixmap {
-    let tree = pathwarp_svg::parse_tree(svg.as_bytes(), "drawing", &pathwarp_svg::ReadOptions::default()).unwrap();
+    let tree = usvg_tree::parse_tree(svg.as_bytes(), "drawing", &pathwarp_svg::ReadOptions::default()).unwrap();
     render(&tree, Size::Width(width)).unwrap()
 }
 

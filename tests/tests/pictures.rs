@@ -11,7 +11,7 @@ use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame};
 use pathwarp::refit;
 use pathwarp_raster::{Color, Difference, Pixmap, RenderOptions, Size, compare, decode_png, encode_png};
-use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions};
+use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use std::f64::consts::FRAC_PI_2;
 use std::fs;
 use std::path::PathBuf;
@@ -36,13 +36,13 @@ const DEFORMATIONS: [(&str, &str, Pairs); 5] = [
 const CAGE: &str = "M 0,30 C 30,42 60,18 100,28 C 97,20 103,10 97,2 C 70,-8 35,14 3,0 C 7,10 -3,20 0,30 Z";
 
 fn draw(svg: &[u8]) -> Pixmap {
-    let read = ReadOptions { system_fonts: false, ..ReadOptions::default() };
-    let tree = pathwarp_svg::parse_tree(svg, "picture", &read).unwrap();
+    let read = ReadOptions::default().with_system_fonts(false);
+    let tree = usvg_tree::parse_tree(svg, "picture", &read).unwrap();
     RenderOptions { size: Size::Width(WIDTH), background: Some(Color::WHITE) }.render(&tree).unwrap()
 }
 
 fn warped(name: &str, deformation: &str, args: &[(&str, &str)]) -> Vec<u8> {
-    let read = ReadOptions { system_fonts: false, ..ReadOptions::default() };
+    let read = ReadOptions::default().with_system_fonts(false);
     let doc = Document::read(&fs::read(sample(name)).unwrap(), name, &read).unwrap();
     let guides = ["Base", "Target", "Shaper"].map(str::to_owned).to_vec();
     let selection = Selection { guides, ..Selection::default() };
@@ -54,7 +54,7 @@ fn warped(name: &str, deformation: &str, args: &[(&str, &str)]) -> Vec<u8> {
         .unwrap()
         .map;
     let tolerance = 1e-4 * diagonal(artwork);
-    let options = WarpOptions { selection, ..WarpOptions::new(refit::Options::new(tolerance)) };
+    let options = WarpOptions::new(refit::Options::new(tolerance)).with_selection(selection);
     doc.warp(&map, &options).unwrap().svg.into_bytes()
 }
 
@@ -161,7 +161,7 @@ fn a_straight_shaper_changes_nothing() {
 }
 
 fn straight(shaper: &str, tolerance: f64, channel: u8, lines: fn(usize, usize) -> bool, all: fn(usize, usize) -> bool) {
-    let read = ReadOptions { system_fonts: false, ..ReadOptions::default() };
+    let read = ReadOptions::default().with_system_fonts(false);
     for name in artwork() {
         let bytes = fs::read(sample(&name)).unwrap();
         let doc = Document::read(&bytes, &name, &read).unwrap();

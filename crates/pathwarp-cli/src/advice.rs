@@ -1,7 +1,7 @@
 //! Advice in flags: what the user can do about an error or warning of the libraries, which know no command line.
 
 use crate::decimals::three_figures;
-use pathwarp_svg::Overhang;
+use pathwarp_svg::{LetteringFrameError, Overhang};
 
 /// Describes artwork that extends past the page, with the options that change it.
 pub(crate) fn overhang(o: Overhang) -> String {
@@ -14,6 +14,17 @@ pub(crate) fn overhang(o: Overhang) -> String {
         three_figures(100.0 * o.share),
         sides.join(", ")
     )
+}
+
+/// Describes why there is no frame around lettering, with the options that help.
+pub(crate) fn lettering_frame(error: &LetteringFrameError) -> String {
+    let advice = match error {
+        LetteringFrameError::NoLettering => "write it with `pathwarp text`, or use --frame X,Y,W,H or artwork",
+        LetteringFrameError::NotLevel { .. } => "rotate it first, or use --frame artwork",
+        LetteringFrameError::NoHeight => "use --frame baseline-ascent, ink or artwork",
+        _ => "use --frame artwork",
+    };
+    format!("cannot make a frame: {error}; {advice}")
 }
 
 /// Says that there is no `what` called `name`, and which of the known names is most like it.

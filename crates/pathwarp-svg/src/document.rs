@@ -1,257 +1,154 @@
-//! An SVG file: what it paints, what it calls things, and its text.
+//! The public face of a drawing.
 
-use crate::scene::geometry::Reader;
-use crate::scene::letters;
-use crate::scene::model::{self as scene, Role, Scene};
-use crate::scene::resolve::{self, Tiling};
-use crate::source::read::{self, Missed, ReadOptions};
-use crate::source::select::{self, Selection};
-use crate::source::text::{ElementId, Source, is_shape};
+use crate::bend::drawing::{bend, is_identity};
+use crate::bend::letters::placed_outlines;
+use crate::bend::options::{PageFit, Structure, WarpOptions};
+use crate::bend::outcome::WarpedDocument;
+use crate::bend::tiles;
+use crate::scene::drawing::Drawing;
+use crate::scene::lettering::selected::{Lettering, lettering};
+use crate::scene::shape::{NamedPath, Shape, named_path};
+use crate::source::read::ReadOptions;
+use crate::source::select::{Selection, is_named};
+use crate::source::tags::{ElementId, is_shape};
+use crate::write;
+use crate::write::input::WriteInput;
 use pathwarp::kurbo::{Affine, Rect, Size};
-use pathwarp::{Error, Outline};
-use std::sync::{Arc, OnceLock};
+use pathwarp::map::Map;
+use pathwarp::{Error, Outline, refit};
+use std::sync::Arc;
 
 /// An SVG file.
 #[derive(Debug)]
 pub struct Document {
-    pub(crate) name: String,
-    /// The file as it came, where it is not just the text.
-    packed: Option<Arc<[u8]>>,
-    pub(crate) source: Arc<Source>,
-    /// What is painted; where the stack may be small, it is worked out when it is first asked for.
-    scene: OnceLock<Scene>,
-    shapes: OnceLock<Vec<Shape>>,
-    pub(crate) missed: Missed,
-    pub(crate) page: Size,
-    /// Whether walking it takes little stack.
-    pub(crate) shallow: bool,
-    tree: Arc<usvg::Tree>,
-    /// Which element each letter of a text with names inside comes from.
-    letters: Arc<letters::Owners>,
-    dpi: f64,
-}
-
-/// Something that is painted, clips or masks.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Shape {
-    /// The source's id, or a readable stand-in such as `path at 12:5`. Parts of one text or `use` share it.
-    pub id: String,
-    /// The element it comes from, e.g. `circle`.
-    pub element: String,
-    /// In root user space.
-    pub outline: Outline,
-    /// Where the element starts in the source: line and column, counted from 1.
-    pub at: (usize, usize),
-    /// Whether it leaves a mark by itself: visible, with a fill or a stroke, and no part of a clip path or mask.
-    pub painted: bool,
-    /// Whether its inside is painted, clips or masks.
-    pub filled: bool,
-    /// Whether the even-odd rule says what its inside is (else the nonzero rule).
-    pub even_odd: bool,
-}
-
-/// A path that has a name, or could have one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NamedPath {
-    /// The source's id, or a readable stand-in such as `path at 12:5`.
-    pub id: String,
-    /// Inkscape's label.
-    pub label: Option<String>,
-    /// What its `<title>` says.
-    pub title: Option<String>,
-    /// The element, e.g. `circle`.
-    pub element: String,
-    /// In root user space.
-    pub outline: Outline,
-    /// Where the element starts in the source: line and column, counted from 1.
-    pub at: (usize, usize),
-    /// Of a path without an id, as [`Document::paths`] gives it, the id of the nearest element around it that has one, or nothing.
-    pub group: Option<Arc<str>>,
+    drawing: Drawing,
+    /// Content of the file, if it is not just the text.
+    packed: Option<Box<[u8]>>,
 }
 
 impl Document {
-    /// Reads an SVG or svgz file; `name` is what it is called in messages.
+    /// Reads an SVG or svgz file. `name` identifies it in messages.
     ///
     /// # Errors
-    /// [`Error::Input`] with the place, if it is not UTF-8, not XML, not SVG, or too large.
+    /// Returns [`Error::Input`] with the position if the file is not UTF-8, not XML, not SVG, or too large.
     pub fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
-        let text = read::text(data, name, options)?;
-        let packed = (text.len() != data.len()).then(|| Arc::from(data));
-        let dpi = f64::from(options.dpi);
-        let (source, read) = Source::read(text, name, |source, xml| {
-            let shallow = read::is_shallow(source);
-            let resolve = || {
-                let (tree, missed) = read::tree(xml, name, options)?;
-                let letters = letters::owners(source, name, options)?;
-                let scene = OnceLock::new();
-                if !shallow {
-                    scene.get_or_init(|| resolve::build(&tree, source, &letters, dpi, None));
-                }
-                Ok((tree, letters, missed, scene))
-            };
-            Ok((if shallow { resolve()? } else { read::with_stack(name, resolve)? }, shallow))
-        })?;
-        let ((tree, letters, missed, scene), shallow) = read;
-        Ok(Self {
-            name: name.to_owned(),
-            packed,
-            source: Arc::new(source),
-            scene,
-            shapes: OnceLock::new(),
-            missed,
-            page: Size::new(f64::from(tree.size().width()), f64::from(tree.size().height())),
-            shallow,
-            tree: Arc::new(tree),
-            letters: Arc::new(letters),
-            dpi,
-        })
+        let drawing = Drawing::read(data, name, options)?;
+        let packed = (drawing.source.text.len() != data.len()).then(|| data.into());
+        Ok(Self { drawing, packed })
     }
 
-    /// The drawing as it is painted.
-    pub(crate) fn scene(&self) -> &Scene {
-        self.scene.get_or_init(|| resolve::build(&self.tree, &self.source, &self.letters, self.dpi, None))
-    }
-
-    /// The file's bytes.
+    /// Content of the file.
     #[must_use]
     pub fn source(&self) -> &[u8] {
-        self.packed.as_deref().unwrap_or(self.source.text.as_bytes())
+        self.packed.as_deref().unwrap_or(self.drawing.source.text.as_bytes())
     }
 
-    /// What it is called in messages.
+    /// Name in messages.
     #[must_use]
     pub fn name(&self) -> &str {
-        &self.name
+        &self.drawing.name
     }
 
     /// The visible page in root user units: the viewBox, or (0, 0, width, height).
     #[must_use]
     pub fn view_box(&self) -> Rect {
-        let reader = self.reader();
-        reader.view_box(0).unwrap_or_else(|| Rect::from_origin_size((0.0, 0.0), self.page))
+        self.drawing.view_box()
     }
 
-    /// From root user units to px.
+    /// Transform from root user units to px.
     #[must_use]
     pub fn user_to_px(&self) -> Affine {
-        self.scene().to_px
+        self.drawing.scene().to_px
     }
 
-    /// The page in px.
+    /// Size of the page in px.
     #[must_use]
     pub fn size_px(&self) -> Size {
-        self.page
+        self.drawing.page
     }
 
-    /// usvg's tree of the drawing, for rendering. (Elements without id carry temporary ones in it.)
-    #[must_use]
-    pub fn tree(&self) -> &Arc<usvg::Tree> {
-        &self.tree
+    #[cfg(feature = "usvg")]
+    pub(crate) fn drawing(&self) -> &Drawing {
+        &self.drawing
     }
 
-    fn reader(&self) -> Reader<'_> {
-        Reader { source: &self.source, dpi: self.dpi, page: self.page }
-    }
-
-    /// The document with its patterns' tiles laid out as geometry.
-    pub(crate) fn tiled(&self, tiling: Tiling<'_>) -> Result<Self, Error> {
-        // `Map`s may be used by any thread, so the tiling may go to one.
-        let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.letters, self.dpi, Some(tiling)));
-        let scene = if self.shallow { resolve()? } else { read::with_stack(&self.name, resolve)? };
-        Ok(Self {
-            name: self.name.clone(),
-            packed: self.packed.clone(),
-            source: self.source.clone(),
-            scene: scene.into(),
-            shapes: OnceLock::new(),
-            missed: self.missed.clone(),
-            page: self.page,
-            shallow: self.shallow,
-            tree: self.tree.clone(),
-            letters: self.letters.clone(),
-            dpi: self.dpi,
-        })
-    }
-
-    /// What an element's `transform` says.
-    pub(crate) fn own_transform(&self, e: ElementId) -> Affine {
-        self.reader().own_transform(e).unwrap_or_default()
-    }
-
-    /// Everything that is painted, clips or masks, in painting order. Texts and `use` copies count once per path.
+    /// All shapes that are painted, clip or mask, in painting order. Texts and `use` copies have one shape per path.
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
-        self.shapes.get_or_init(|| shapes(self.scene(), &self.source))
+        self.drawing.shapes()
     }
 
-    /// The tight box of what is painted and meant by `selection`: the filled geometry, without stroke widths.
+    /// Bounding box of the selected painted shapes, without stroke widths.
     #[must_use]
     pub fn artwork_box(&self, selection: &Selection) -> Option<Rect> {
-        let meant = self.meant(selection);
-        let boxes = self.shapes().iter().zip(&meant).filter(|(s, m)| **m && s.painted);
-        boxes.filter_map(|(s, _)| s.outline.bounding_box()).filter(Rect::is_finite).reduce(|a, b| a.union(b))
+        let boxes = self.selected(selection).filter_map(|s| s.outline.bounding_box());
+        boxes.filter(Rect::is_finite).reduce(|a, b| a.union(b))
     }
 
-    /// The painted shapes that `selection` means.
+    /// The selected painted shapes, in painting order.
     pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
-        let meant = self.meant(selection);
-        self.shapes().iter().zip(meant).filter(|(s, meant)| *meant && s.painted).map(|(s, _)| s)
+        let selected = self.drawing.selected_parts(selection);
+        self.shapes().iter().zip(selected).filter(|(s, selected)| *selected && s.painted).map(|(s, _)| s)
     }
 
-    /// For every shape whether `selection` means it.
-    pub(crate) fn meant(&self, selection: &Selection) -> Vec<bool> {
-        let elements = selection.resolve(&self.source);
-        let all = selection.is_everything();
-        let parts = self.scene().parts.iter();
-        parts.map(|p| p.owner.or(p.source).map_or(all, |e| elements[e])).collect()
+    /// The lettering among the selected painted shapes.
+    #[must_use]
+    pub fn lettering(&self, selection: &Selection) -> Lettering {
+        lettering(&self.drawing, selection)
     }
 
-    /// Every path-like element of the file in document order, rendered or not.
+    /// For each shape of [`Document::selected`], its outline after letters have been placed one by one; `None` if it has no
+    /// placed letters.
+    #[must_use]
+    pub fn placed(&self, options: &WarpOptions) -> Vec<Option<Outline>> {
+        placed_outlines(&self.drawing, options)
+    }
+
+    /// Every path-like element of the file in document order, painted or not.
     #[must_use]
     pub fn paths(&self) -> Vec<NamedPath> {
-        let shapes = (0..self.source.elements.len()).filter(|&e| is_shape(&self.source.elements[e].tag));
+        let elements = &self.drawing.source.elements;
+        let shapes = (0..elements.len()).filter(|&e| is_shape(&elements[e].tag));
         let groups = self.groups();
         shapes.filter_map(|e| Some(NamedPath { group: groups[e].clone(), ..self.named_path(e)? })).collect()
     }
 
-    /// For every element without an id what [`NamedPath::group`] says.
+    /// For every element without an id, the value of [`NamedPath::group`].
     fn groups(&self) -> Vec<Option<Arc<str>>> {
-        let mut nearest: Vec<Arc<str>> = Vec::with_capacity(self.source.elements.len());
-        let mut out = Vec::with_capacity(self.source.elements.len());
-        // Parents come before their children.
-        for (e, element) in self.source.elements.iter().enumerate() {
+        let source = &self.drawing.source;
+        let mut nearest: Vec<Arc<str>> = Vec::with_capacity(source.elements.len());
+        let mut out = Vec::with_capacity(source.elements.len());
+        // Parents precede their children.
+        for (e, element) in source.elements.iter().enumerate() {
             let outer = element.parent.map_or_else(|| "".into(), |p| nearest[p].clone());
-            let id = self.source.attr(e, "id").filter(|v| !v.is_empty());
+            let id = source.attr(e, "id").filter(|v| !v.is_empty());
             out.push(id.is_none().then(|| outer.clone()));
             nearest.push(id.map_or(outer, |id| id.as_ref().into()));
         }
         out
     }
 
-    /// The path of this name: an id, else an Inkscape label, else a title; a leading `#` is ignored. It may be invisible, or
-    /// stand in `<defs>`. The name of a group that holds exactly one path means that path.
+    /// Finds a path by its id, else by Inkscape label, else by title; a leading `#` is ignored. The path may be invisible or in
+    /// `<defs>`. The name of a group with exactly one path stands for that path.
     ///
     /// # Errors
-    /// [`Error::Input`] naming the paths there are.
+    /// Returns [`Error::Input`] with the names of similar paths.
     pub fn path(&self, name: &str) -> Result<NamedPath, Error> {
+        let source = &self.drawing.source;
         let wanted = name.strip_prefix('#').unwrap_or(name);
-        let found: Vec<ElementId> =
-            (1..self.source.elements.len()).filter(|&e| select::named(&self.source, e, wanted)).collect();
-        let by_id = found.iter().copied().filter(|&e| self.source.attr(e, "id").is_some_and(|v| v == wanted));
-        let by_label = found.iter().copied().filter(|&e| self.source.label(e).is_some_and(|v| v == wanted));
+        let found: Vec<ElementId> = (1..source.elements.len()).filter(|&e| is_named(source, e, wanted)).collect();
+        let by_id = found.iter().copied().filter(|&e| source.attr(e, "id").is_some_and(|v| v == wanted));
+        let by_label = found.iter().copied().filter(|&e| source.label(e).is_some_and(|v| v == wanted));
         for e in by_id.chain(by_label).chain(found.iter().copied()) {
-            if is_shape(&self.source.elements[e].tag) {
+            if is_shape(&source.elements[e].tag) {
                 if let Some(p) = self.named_path(e) {
                     return Ok(p);
                 }
                 continue;
             }
-            let inside: Vec<ElementId> = (e + 1..self.source.elements.len())
-                .take_while(|&c| self.source.elements[c].range.start < self.source.elements[e].range.end)
-                .filter(|&c| is_shape(&self.source.elements[c].tag))
-                .collect();
-            if let [one] = inside.as_slice()
-                && let Some(p) = self.named_path(*one)
+            let inside: Vec<ElementId> = source.descendants(e).filter(|&c| is_shape(&source.elements[c].tag)).collect();
+            if let [only] = inside.as_slice()
+                && let Some(p) = self.named_path(*only)
             {
                 return Ok(p);
             }
@@ -260,15 +157,14 @@ impl Document {
     }
 
     fn no_such_path(&self, wanted: &str, exists: bool) -> Error {
-        /// As many names as fit a line or two.
+        /// Number of names listed, about two lines.
         const SHOWN: usize = 12;
         let mut names: Vec<String> = self.paths().into_iter().map(|p| p.label.or(p.title).unwrap_or(p.id)).collect();
         let all = names.len();
-        // The likeliest slips first.
-        names.sort_by_key(|n| distance(n, wanted));
+        names.sort_by_cached_key(|n| distance(n, wanted));
         names.truncate(SHOWN);
-        let place = format!("{}#{wanted}", self.name);
-        let what = if exists { "that is not one path" } else { "there is no path of this name" };
+        let place = format!("{}#{wanted}", self.name());
+        let what = if exists { "this is not a single path" } else { "there is no path of this name" };
         let hint = match (names.is_empty(), all > SHOWN) {
             (true, _) => "the file has no paths".to_owned(),
             (_, true) => format!("among the {all} paths are {}", names.join(", ")),
@@ -278,59 +174,43 @@ impl Document {
     }
 
     fn named_path(&self, e: ElementId) -> Option<NamedPath> {
-        // What is painted is known best; the rest comes from the source alone.
-        let parts = self.scene().by_source.get(&e).map_or(&[][..], Vec::as_slice);
-        let painted = parts.iter().map(|&i| &self.scene().parts[i]).find(|p| p.role == Role::Paint);
-        let outline = match painted {
-            Some(p) => p.outline(),
-            None => {
-                let reader = self.reader();
-                let t = reader.transform_to_root(e).unwrap_or_default();
-                reader.outline(e)?.transformed(t)
-            }
-        };
-        let source = &self.source;
-        Some(NamedPath {
-            id: source.display_name(e),
-            label: source.label(e).map(std::borrow::Cow::into_owned),
-            title: source.elements[e].title.clone(),
-            element: source.elements[e].tag.to_string(),
-            outline,
-            at: source.line_column(source.elements[e].range.start),
-            group: None,
-        })
+        named_path(self.drawing.scene(), &self.drawing.reader(), e)
+    }
+
+    /// Bends everything selected by `options` with `map`, a map of root user space.
+    ///
+    /// # Errors
+    /// Returns [`Error::Geometry`] with the name of a shape that the map cannot bend, unless `options` has
+    /// [`OnError::Skip`](crate::OnError::Skip). Returns [`Error::Input`] if the structure must be kept and cannot be.
+    pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<WarpedDocument, Error> {
+        // If nothing moves, return the source unchanged.
+        let unchanged = is_identity(map, options) && options.page == PageFit::None;
+        if unchanged && options.structure != Structure::Flatten {
+            return Ok(WarpedDocument { svg: self.drawing.source.text.clone(), ..WarpedDocument::default() });
+        }
+        match tiles::laid_out(&self.drawing, map, options)? {
+            Some(tiled) => warp(&tiled, map, options),
+            None => warp(&self.drawing, map, options),
+        }
     }
 }
 
-fn shapes(scene: &Scene, source: &Source) -> Vec<Shape> {
-    let shape = |p: &scene::Part| {
-        let e = p.owner.or(p.source);
-        Shape {
-            id: e.map_or_else(|| "path".to_owned(), |e| source.display_name(e)),
-            element: e.map_or_else(|| "path".to_owned(), |e| source.elements[e].tag.to_string()),
-            outline: p.outline(),
-            at: e.map_or((1, 1), |e| source.line_column(source.elements[e].range.start)),
-            painted: p.painted() && p.role == Role::Paint,
-            filled: p.fill.is_some() || p.role != Role::Paint,
-            even_odd: p.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd),
-        }
-    };
-    scene.parts.iter().map(shape).collect()
+fn warp(drawing: &Drawing, map: &dyn Map, options: &WarpOptions) -> Result<WarpedDocument, Error> {
+    let mut options = options.clone();
+    if options.refit.merge && !is_identity(map, &options) {
+        let shared = refit::SharedEdges::among(drawing.shapes().iter().map(|s| &s.outline));
+        options.refit.shared = Arc::new(shared);
+    }
+    let mut out = WarpedDocument::default();
+    let bent = bend(drawing, map, &options, &mut out)?;
+    let input = WriteInput::new(drawing, &bent, map, &options);
+    drawing.with_stack(|| write::document::write(&input, &mut out))?;
+    Ok(out)
 }
 
-/// Levenshtein's distance, over at most so many characters that a hostile name costs nothing.
+/// Edit distance, ignoring case, over at most 40 characters, so that long names cost nothing.
 fn distance(a: &str, b: &str) -> usize {
     const LONGEST: usize = 40;
-    let b: Vec<char> = b.chars().take(LONGEST).flat_map(char::to_lowercase).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, c) in a.chars().take(LONGEST).flat_map(char::to_lowercase).enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, d) in b.iter().enumerate() {
-            let next = (diagonal + usize::from(c != *d)).min(row[j] + 1).min(row[j + 1] + 1);
-            diagonal = row[j + 1];
-            row[j + 1] = next;
-        }
-    }
-    row[b.len()]
+    let [a, b] = [a, b].map(|s| s.chars().take(LONGEST).flat_map(char::to_lowercase).collect::<String>());
+    strsim::levenshtein(&a, &b)
 }

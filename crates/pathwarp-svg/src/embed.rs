@@ -1,35 +1,36 @@
-//! A drawing that remembers where it came from: the recipe and the source file, kept in `<metadata>`.
+//! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
+use crate::source::xml::escape_content;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
 use std::io::{Read as _, Write as _};
 use usvg::roxmltree;
 
-/// The namespace of what is embedded.
+/// Namespace of the embedded elements.
 const NAMESPACE: &str = "https://github.com/pathwarp/pathwarp/ns/1";
-/// The largest source that is unpacked again, in bytes.
+/// Largest source to unpack, in bytes.
 const LARGEST: u64 = 1 << 29;
 
-/// What a drawing remembers.
+/// The origin of a drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
-    /// The recipe, as text.
+    /// Text of the recipe.
     pub recipe: String,
-    /// The source file's bytes.
+    /// Content of the source file.
     pub source: Vec<u8>,
 }
 
 impl Origin {
-    /// The drawing with this in its `<metadata>`, in place of what it may have remembered before.
+    /// Embeds the origin in a drawing's `<metadata>`. It replaces an existing one.
     ///
     /// # Errors
-    /// [`Error::Input`] if `svg` is not XML.
+    /// Returns [`Error::Input`] if `svg` is not XML, or has an empty root.
     pub fn embed(&self, svg: &str) -> Result<String, Error> {
         let packed = self.pack().map_err(|e| Error::input("the source", format!("cannot be packed: {e}")))?;
         let element = format!(
             "<metadata><pathwarp xmlns=\"{NAMESPACE}\"><recipe>{}</recipe><source encoding=\"gzip base64\">{packed}</source></pathwarp></metadata>",
-            escape(&self.recipe)
+            escape_content(&self.recipe)
         );
         let doc = parse(svg)?;
         let mut out = String::with_capacity(svg.len() + element.len() + 1);
@@ -44,7 +45,7 @@ impl Origin {
         let start = &svg[root.clone()];
         let end = root.start + opening_end(start).ok_or_else(|| Error::input("the drawing", "its root has no end"))?;
         if svg[..end].ends_with("/>") {
-            return Err(Error::input("the drawing", "is empty; there is nothing to remember"));
+            return Err(Error::input("the drawing", "is empty; there is nothing to embed"));
         }
         out.push_str(&svg[..end]);
         out.push('\n');
@@ -53,10 +54,10 @@ impl Origin {
         Ok(out)
     }
 
-    /// What `svg` remembers, if it does.
+    /// Reads the origin embedded in `svg`, if any.
     ///
     /// # Errors
-    /// [`Error::Input`] if `svg` is not XML, or what it remembers is damaged.
+    /// Returns [`Error::Input`] if `svg` is not XML, or the origin is damaged.
     pub fn read(svg: &str) -> Result<Option<Self>, Error> {
         let doc = parse(svg)?;
         let Some(metadata) = metadata(&doc) else { return Ok(None) };
@@ -84,13 +85,13 @@ fn parse(svg: &str) -> Result<roxmltree::Document<'_>, Error> {
     roxmltree::Document::parse_with_options(svg, options).map_err(|e| Error::input("the drawing", e.to_string()))
 }
 
-/// The `<metadata>` that holds ours.
+/// Finds the `<metadata>` with the embedded origin.
 fn metadata<'a>(doc: &'a roxmltree::Document<'a>) -> Option<roxmltree::Node<'a, 'a>> {
     let ours = doc.root_element().descendants().find(|n| n.has_tag_name((NAMESPACE, "pathwarp")))?;
     ours.parent().filter(|p| p.tag_name().name() == "metadata")
 }
 
-/// Where an opening tag ends: the first `>` outside quotes.
+/// Finds the end of an opening tag: the first `>` outside of quotes.
 fn opening_end(element: &str) -> Option<usize> {
     let mut quote = None;
     for (i, c) in element.char_indices() {
@@ -102,10 +103,6 @@ fn opening_end(element: &str) -> Option<usize> {
         }
     }
     None
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

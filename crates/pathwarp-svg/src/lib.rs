@@ -1,8 +1,19 @@
-//! SVG drawings, warped in place.
+//! Warps SVG drawings in place.
 //!
-//! A [`Document`] is an SVG file: usvg tells what it paints, the source text keeps its bytes. [`Document::warp`] bends every
-//! shape by a map of root user space (the coordinates inside the root `<svg>`) and gives the file back with ids, classes,
-//! styles, titles, groups and formatting as they were.
+//! A [`Document`] is an SVG file. [`Document::warp`] bends every shape by a map of root user space (the coordinate system
+//! inside the root `<svg>`) and returns the file with ids, classes, styles, titles, groups and formatting as they were: usvg
+//! resolves the drawing, and the source text is patched in place.
+//!
+//! # Structure
+//!
+//! Four rooms, each of which may use those before it: `source` (the text and its elements), `scene` (the drawing as it is
+//! painted), `bend` (its image under the map), `write` (the result as text).
+//!
+//! # Features
+//!
+//! - `parallel` (default): bend shapes on all processors.
+//! - `usvg`: the module [`usvg_tree`](https://docs.rs/pathwarp-svg), which exposes types of usvg. Exempt from semantic
+//!   versioning.
 //!
 //! ```
 //! use pathwarp::map::{Formula, Real};
@@ -27,18 +38,21 @@ mod embed;
 mod scene;
 pub mod sheet;
 mod source;
+#[cfg(feature = "usvg")]
+pub mod usvg_tree;
 mod write;
 
 pub use bend::gradient::{GradientPainter, GradientRequest};
-pub use bend::image::{BentImage, ImageRequest, ImageWarper, Images};
-pub use bend::letters::LetterPlaces;
+pub use bend::image::{ImageRequest, ImageWarper, Images};
+pub use bend::letter_places::LetterPlaces;
 pub use bend::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
-pub use bend::part::{ShapeReport, Skipped, Warped};
-pub use document::{Document, NamedPath, Shape};
+pub use bend::outcome::{Overhang, ShapeReport, Skipped, WarpedDocument};
+pub use bend::picture::{BentImage, PictureError};
+pub use document::Document;
 pub use embed::Origin;
-pub use scene::lettering::{Lettering, LetteringFrame};
+pub use scene::lettering::selected::{Lettering, LetteringFrame, LetteringFrameError};
+pub use scene::shape::{NamedPath, Shape};
 pub use source::fonts::{FontFile, GenericFamilies, bundled_font, system_font};
-pub use source::read::{ReadOptions, compressed, parse_tree};
+pub use source::read::{ReadOptions, compressed};
 pub use source::select::Selection;
 pub use write::lettering::{LetteringOptions, write_lettering};
-pub use write::page::Overhang;

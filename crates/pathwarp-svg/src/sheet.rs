@@ -1,51 +1,54 @@
-//! A sheet of drawings side by side, labelled: one SVG that shows the same everywhere.
+//! Contact sheets: labelled drawings side by side in one SVG, which looks the same everywhere.
 //!
-//! Every drawing is written out as usvg resolves it, its ids made its own, so that none reaches into another. Labels are outlines
-//! of the bundled font. Drawings have one scale, at which three quarters of them fit; larger ones are made to fit.
+//! Every drawing is written in the form resolved by usvg, with prefixed ids, so that drawings cannot refer to one another. Labels
+//! are outlines in the bundled font. All drawings have the same scale, at which three quarters of them fit their cells; larger
+//! ones are scaled to fit.
 
-use crate::{ReadOptions, parse_tree};
+use crate::source::read::ReadOptions;
+use crate::source::tree;
+use crate::source::xml::escape_content;
 use pathwarp::Error;
 use pathwarp::kurbo::Rect;
 use std::fmt::Write as _;
 use usvg::WriteOptions;
 
-/// A drawing and what stands below it.
+/// A drawing with its label.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
-    /// The drawing.
+    /// The drawing as SVG text.
     pub svg: String,
-    /// Its label.
+    /// Label below the drawing.
     pub label: String,
 }
 
-/// How a sheet is laid out.
+/// Layout of a sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetOptions {
-    /// Cells side by side.
+    /// Number of columns.
     pub columns: usize,
-    /// Width and height of a cell in px, its label included.
+    /// Width and height of a cell in px, label included.
     pub cell: (f64, f64),
-    /// What stands at the top.
+    /// Title at the top.
     pub title: String,
 }
 
-/// Between cells and around them.
+/// Space between cells and around them.
 const GAP: f64 = 16.0;
-/// Between a cell's border and what it shows.
+/// Space between a cell's border and its content.
 const INSET: f64 = 12.0;
-/// The title's line.
+/// Height of the title's line.
 const TITLE: f64 = 34.0;
-/// A label's line.
+/// Height of a label's line.
 const LABEL: f64 = 22.0;
-/// The size of labels that fit; longer ones are smaller.
+/// Font size of labels; long labels are smaller.
 const LABEL_SIZE: f64 = 13.0;
-/// What a letter takes of its size, on average.
+/// Average advance of a letter as a fraction of the font size.
 const LETTER: f64 = 0.57;
 
-/// The sheet as SVG text.
+/// Writes a sheet as SVG text.
 ///
 /// # Errors
-/// A drawing that cannot be read.
+/// Returns [`Error::Input`] for a drawing that cannot be read.
 pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Result<String, Error> {
     let (w, h) = options.cell;
     let columns = options.columns.clamp(1, cells.len().max(1));
@@ -58,7 +61,7 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     let height = GAP + TITLE + rows as f64 * (h + GAP);
     let mut drawn = Vec::with_capacity(cells.len());
     for (k, c) in cells.iter().enumerate() {
-        let tree = parse_tree(c.svg.as_bytes(), &c.label, read)?;
+        let tree = tree::parse(c.svg.as_bytes(), &c.label, read)?;
         let b = tree.root().abs_layer_bounding_box();
         let (x, y) = (f64::from(b.x()), f64::from(b.y()));
         let seen = Rect::new(x, y, x + f64::from(b.width()), y + f64::from(b.height()));
@@ -79,7 +82,7 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"Noto Sans\">\n\
          <text x=\"{GAP}\" y=\"{}\" font-size=\"17\" fill=\"#222\">{}</text>\n",
         GAP + 17.0,
-        escaped(&options.title)
+        escape_content(&options.title)
     );
     for (k, (seen, content)) in drawn.iter().enumerate() {
         let (x, y) = place(k);
@@ -89,7 +92,7 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
             out,
             "<g id=\"cell-{k}\">\n<title>{}</title>\n<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"6\" fill=\"#f5f5f2\"/>\n\
              <g transform=\"matrix({scale} 0 0 {scale} {} {})\">{content}</g>\n</g>\n",
-            escaped(&cells[k].label),
+            escape_content(&cells[k].label),
             cx - scale * c.x,
             cy - scale * c.y
         );
@@ -99,26 +102,22 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
             "<text x=\"{cx}\" y=\"{}\" font-size=\"{}\" fill=\"#555\" text-anchor=\"middle\">{}</text>",
             y + h - INSET + 2.0,
             LABEL_SIZE.min(w / (letters * LETTER)),
-            escaped(&cells[k].label)
+            escape_content(&cells[k].label)
         );
     }
     labels.push_str("</svg>\n");
     let bundled = ReadOptions { system_fonts: false, ..ReadOptions::default() };
-    let outlines = parse_tree(labels.as_bytes(), "labels", &bundled)?;
+    let outlines = tree::parse(labels.as_bytes(), "labels", &bundled)?;
     let own = WriteOptions { id_prefix: Some("label-".into()), ..WriteOptions::default() };
     let _ = write!(out, "<g id=\"labels\">{}</g>\n</svg>\n", inside(&outlines.to_string(&own)));
     Ok(out)
 }
 
-/// What the root element holds.
+/// Content of the root element.
 fn inside(svg: &str) -> &str {
     let start = svg.find("<svg").and_then(|i| svg[i..].find('>').map(|j| i + j + 1)).unwrap_or(0);
     let end = svg.rfind("</svg>").unwrap_or(svg.len()).max(start);
     &svg[start..end]
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]
@@ -129,7 +128,7 @@ mod tests {
         <stop stop-color=\"red\"/><stop offset=\"1\" stop-color=\"blue\"/></linearGradient></defs>\
         <rect width=\"100\" height=\"50\" fill=\"url(#g)\"/></svg>";
 
-    /// Ids are each drawing's own, labels are no text, and drawings lie within their cells.
+    /// Ids are unique, labels are outlines, and drawings are inside their cells.
     #[test]
     fn drawings_lie_in_their_cells_and_keep_to_themselves() {
         let half = ONE.replace("<rect width=\"100\"", "<rect width=\"50\"").replace("red", "lime");
@@ -147,10 +146,10 @@ mod tests {
         for k in 0..3 {
             assert!(svg.contains(&format!("url(#s{k}-")), "{k}");
         }
-        let tree = parse_tree(svg.as_bytes(), "sheet", &ReadOptions::default()).unwrap();
+        let tree = tree::parse(svg.as_bytes(), "sheet", &ReadOptions::default()).unwrap();
         assert_eq!((tree.size().width(), tree.size().height()), (296.0, 274.0));
         let gradients: Vec<usvg::Rect> = filled(tree.root());
-        // 124 − 24 = 100 wide: the largest fits exactly; the half one is half as wide, in the middle of its cell.
+        // 124 − 24 = 100 wide: the largest fits exactly; the half one has half the width and is centred.
         let sizes: Vec<(f32, f32, f32)> = gradients.iter().map(|r| (r.x(), r.width(), r.height())).collect();
         let near =
             |a: (f32, f32, f32), b: (f32, f32, f32)| (a.0 - b.0).abs() + (a.1 - b.1).abs() + (a.2 - b.2).abs() < 1e-2;
@@ -160,7 +159,7 @@ mod tests {
         );
     }
 
-    /// The boxes of what is filled with a gradient.
+    /// Bounding boxes of the paths with a gradient.
     fn filled(g: &usvg::Group) -> Vec<usvg::Rect> {
         let of = |n: &usvg::Node| match n {
             usvg::Node::Group(g) => filled(g),

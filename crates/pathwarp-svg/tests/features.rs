@@ -1,4 +1,4 @@
-//! One drawing per feature, under the identity and under an oblique affine map, both taking the way of a smooth map: the
+//! One drawing per feature, warped by the identity and by an oblique affine map, both of which are treated as nonlinear: the
 //! result must look like the original, transformed by the renderer.
 
 mod common;
@@ -7,7 +7,7 @@ use common::{check, drawing, oblique, warp_options};
 use pathwarp::kurbo::Affine;
 use pathwarp_svg::{Strokes, Structure};
 
-/// Name, drawing.
+/// Names and drawings.
 const FEATURES: &[(&str, &str)] = &[
     (
         "shapes",
@@ -187,7 +187,7 @@ fn oblique_looks_like_the_renderers_transform() {
 
 #[test]
 fn written_anew_it_looks_the_same() {
-    let options = pathwarp_svg::WarpOptions { structure: Structure::Flatten, ..warp_options() };
+    let options = warp_options().with_structure(Structure::Flatten);
     for (name, body) in FEATURES {
         check(name, &drawing(body), Affine::IDENTITY, &options);
         check(name, &drawing(body), oblique(), &options);
@@ -196,7 +196,7 @@ fn written_anew_it_looks_the_same() {
 
 #[test]
 fn outlined_strokes_look_the_same() {
-    let options = pathwarp_svg::WarpOptions { strokes: Strokes::Outline, ..warp_options() };
+    let options = warp_options().with_strokes(Strokes::Outline);
     for (name, body) in FEATURES.iter().filter(|f| f.1.contains("stroke")) {
         check(name, &drawing(body), oblique(), &options);
     }

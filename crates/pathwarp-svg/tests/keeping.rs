@@ -1,5 +1,5 @@
-//! What stands beside the geometry of a warped file: strokes that never scale, animations, links, choices, compressed files and
-//! fonts of the file's own.
+//! Parts of a file beside geometry: strokes that never scale, animations, links, `switch`, compressed files and embedded
+//! fonts.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
@@ -7,19 +7,19 @@ mod common;
 use base64::Engine as _;
 use common::{Bend, drawing, oblique, options, read, warp, warp_options};
 use pathwarp_svg::{
-    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, Structure, WarpOptions, Warped, compressed,
+    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpOptions, WarpedDocument, compressed,
 };
 use std::sync::Arc;
 
-fn flat(body: &str) -> Warped {
-    read(&drawing(body)).warp(&Bend, &WarpOptions { structure: Structure::Flatten, ..warp_options() }).unwrap()
+fn flat(body: &str) -> WarpedDocument {
+    read(&drawing(body)).warp(&Bend, &warp_options().with_structure(Structure::Flatten)).unwrap()
 }
 
-fn bent(body: &str) -> Warped {
+fn bent(body: &str) -> WarpedDocument {
     read(&drawing(body)).warp(&Bend, &warp_options()).unwrap()
 }
 
-/// However it is said that a stroke does not scale: it stays a stroke of its width, and scales wherever it is not said.
+/// A stroke that does not scale keeps its width, however that is specified; all other strokes scale.
 #[test]
 fn strokes_that_do_not_scale() {
     let line =
@@ -41,7 +41,7 @@ fn strokes_that_do_not_scale() {
             let stays = drawn.contains("stroke-width='3'")
                 || drawn.contains("stroke-width=\"3\"")
                 || drawn.contains("stroke-width:3");
-            // An outlined stroke is a fill; a scaled one has another width.
+            // An expanded stroke is a fill, and a scaled one has another width.
             let outlined = drawn.contains("fill=\"#ff0000\"") || drawn.contains("fill:#ff0000");
             assert_eq!((stays && !outlined, outlined), (fixed, !fixed), "{body}\n{}", w.svg);
             let says = w.svg.contains("non-scaling-stroke");
@@ -67,9 +67,9 @@ fn animations_stay_where_they_still_fit() {
     assert!(said("geometry are dropped", "c, p"), "{:?}", w.warnings);
     assert!(said("move warped shapes", "g") && said("fill and stroke are dropped", "p"), "{:?}", w.warnings);
     assert!(Document::read(w.svg.as_bytes(), "again", &options()).is_ok());
-    // Nothing bends: nothing is dropped.
+    // Nothing is warped, so nothing is dropped.
     let still = pathwarp_svg::Selection { select: vec!["#none".into()], ..pathwarp_svg::Selection::default() };
-    let w = read(&drawing(body)).warp(&Bend, &WarpOptions { selection: still, ..warp_options() }).unwrap();
+    let w = read(&drawing(body)).warp(&Bend, &warp_options().with_selection(still)).unwrap();
     assert!(!w.warnings.iter().any(|w| w.contains("animations")), "{:?}", w.warnings);
     assert_eq!(w.svg, drawing(body));
     let w = flat(body);
@@ -120,7 +120,7 @@ fn what_is_no_geometry_keeps_its_bytes() {
 struct Unasked;
 
 impl ImageWarper for Unasked {
-    fn warp(&self, _: &ImageRequest<'_>) -> Result<BentImage, String> {
+    fn warp(&self, _: &ImageRequest<'_>) -> Result<BentImage, PictureError> {
         Err("asked".into())
     }
 }
@@ -132,7 +132,7 @@ fn images_that_are_cut_to_their_place_are_told() {
             "<image id='i' x='10' y='20' width='60' height='30' preserveAspectRatio='{aspect}' href='data:image/png;base64,\
              iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=='/>"
         );
-        let options = WarpOptions { images: Images::Warp(Arc::new(Unasked)), ..warp_options() };
+        let options = warp_options().with_images(Images::Warp(Arc::new(Unasked)));
         let w = read(&drawing(&body)).warp(&Bend, &options).unwrap();
         let [s] = w.skipped.as_slice() else { panic!("{:?}", w.skipped) };
         assert!(s.id == "i" && s.why.contains(why) && s.why.contains("affine fit"), "{s:?}");
@@ -152,7 +152,7 @@ fn compressed_files_come_back() {
 
 const FONT: &[u8] = include_bytes!("../fonts/NotoSans-Regular.subset.ttf");
 
-/// The bundled font with `units` on an em: another size of letters.
+/// The bundled font with another number of units per em, for letters of another size.
 fn resized(units: u16) -> Vec<u8> {
     let mut font = FONT.to_vec();
     let count = usize::from(u16::from_be_bytes([font[4], font[5]]));
@@ -162,7 +162,7 @@ fn resized(units: u16) -> Vec<u8> {
     font
 }
 
-/// A font file as WOFF 1.0, after the specification.
+/// Packs a font file as WOFF 1.0, by the specification.
 fn woff(font: &[u8]) -> Vec<u8> {
     use std::io::Write as _;
     let count = usize::from(u16::from_be_bytes([font[4], font[5]]));
@@ -215,7 +215,7 @@ fn embedded_fonts_set_the_text() {
         assert!((half / plain - 0.5).abs() < 1e-3, "{kind}: {half} of {plain}");
         assert!(warnings.is_empty(), "{warnings:?}");
     }
-    // Nothing that fonts can hold brings the program down.
+    // Nothing in a font may crash the program.
     for k in 0..60 {
         let mut data = FONT.to_vec();
         for (i, at) in (0..data.len()).step_by(7 + k * 3).enumerate().skip(k) {
@@ -230,10 +230,10 @@ fn embedded_fonts_set_the_text() {
             "<style>@font-face{{font-family:'My Face';src:url(data:x;base64,{data})}}</style>"
         )));
         if let Ok(d) = Document::read(svg.as_bytes(), "f.svg", &options()) {
-            assert!(d.warp(&Bend, &WarpOptions { on_error: OnError::Skip, ..warp_options() }).is_ok());
+            assert!(d.warp(&Bend, &warp_options().with_on_error(OnError::Skip)).is_ok());
         }
     }
-    // What is damaged is missing.
+    // A damaged font counts as missing.
     for bad in ["d09GRgABAAAA", "AAEAAAAA", "%%%%", "d09GMgABAAAA"] {
         let css = format!("<style>@font-face{{font-family:'My Face';src:url('data:font/x;base64,{bad}')}}</style>");
         let (same, warnings) = width(&text(&css));

@@ -1,10 +1,10 @@
-//! Lettering is known from text and from outlines that tell of it, alike.
+//! Lettering is recognised in text and in outlines with data attributes.
 
 mod common;
 
 use common::{Bend, drawing, read, warp_options};
 use pathwarp::kurbo::{Affine, Point, Rect};
-use pathwarp_svg::{LetterPlaces, LetteringFrame, Selection, WarpOptions};
+use pathwarp_svg::{LetterPlaces, LetteringFrame, Selection};
 
 const ALL: [LetteringFrame; 5] = [
     LetteringFrame::BaselineAscent,
@@ -14,12 +14,12 @@ const ALL: [LetteringFrame; 5] = [
     LetteringFrame::Ink,
 ];
 
-/// Noto Sans, 1000 units to the em: ascent 1069, descent 293, capitals 714, small letters 536; H is 741 wide and begins 97 in,
-/// I is 339 wide.
+/// Noto Sans, 1000 units per em: ascent 1069, descent 293, capitals 714, x-height 536; H has an advance of 741 and a left side
+/// bearing of 97, I an advance of 339.
 const HI: &str = "<text x='10' y='80' font-size='40' font-family='Noto Sans'>HI</text>";
 
 fn near(a: Rect, b: Rect) -> bool {
-    // usvg keeps single precision.
+    // usvg works in single precision.
     (a.x0 - b.x0).abs() + (a.x1 - b.x1).abs() + (a.y0 - b.y0).abs() + (a.y1 - b.y1).abs() < 1e-4
 }
 
@@ -47,7 +47,7 @@ fn frames_of_text_are_the_fonts_own_figures() {
     assert!((ink.x0 - (10.0 + 0.097 * 40.0)).abs() < 1e-3 && (ink.y0 - (80.0 - 0.714 * 40.0)).abs() < 1e-3, "{ink:?}");
 }
 
-/// The same word as outlines that tell of themselves, in units of their own.
+/// The same word as outlines with data attributes, in other units.
 #[test]
 fn outlines_that_tell_of_themselves_are_like_text() {
     let text = read(&drawing(HI));
@@ -66,7 +66,7 @@ transform='translate(10 80) scale(.04)'><g data-baseline='0 0 1080 0'>\
         assert_eq!(a.name, b.name);
         assert!(a.origin.distance(b.origin) < 1e-4 && (a.advance - b.advance).abs() < 1e-4);
     }
-    // Once bent, they say nothing of where they were.
+    // Bent outlines have no data attributes.
     let bent = read(&drawing(marked)).warp(&Bend, &warp_options()).unwrap().svg;
     assert!(!bent.contains("data-") && bent.contains("aria-label='H'"), "{bent}");
 }
@@ -107,7 +107,7 @@ fn where_no_frame_can_be_laid_the_message_says_what_to_do() {
     assert!(mixed.is_level() && !mixed.is_all());
 }
 
-/// Letters go where they are told to, each in all its copies, and on through the steps that follow; strokes too.
+/// Letters are placed, each in all its copies, and then bent by the remaining steps, strokes included.
 #[test]
 fn letters_are_placed_one_by_one() {
     let stroked = HI.replace("<text", "<text fill='none' stroke='red' stroke-width='2'");
@@ -116,10 +116,7 @@ fn letters_are_placed_one_by_one() {
         let turn = Affine::rotate_about(0.5, Point::new(20.0, 80.0));
         let places = vec![vec![turn], vec![Affine::translate((5.0, -9.0)), Affine::scale(0.5)]];
         let letters = doc.lettering(&Selection::default()).letters().to_vec();
-        let options = WarpOptions {
-            letters: LetterPlaces { places: places.clone(), ..LetterPlaces::default() },
-            ..warp_options()
-        };
+        let options = warp_options().with_letters(LetterPlaces { places: places.clone(), ..LetterPlaces::default() });
         let out = read(&doc.warp(&Bend, &options).unwrap().svg);
         let found: Vec<Point> = out.shapes().iter().flat_map(|s| s.outline.subpaths.iter().map(|p| p.start)).collect();
         let wanted = letters
@@ -127,7 +124,7 @@ fn letters_are_placed_one_by_one() {
             .zip(&places)
             .flat_map(|(l, p)| p.iter().flat_map(move |m| l.outline.subpaths.iter().map(move |s| *m * s.start)));
         if stroke {
-            // One of them is half as large: one width will not do, and it becomes an outline.
+            // One copy is half as large, so no single width fits, and the stroke is expanded.
             assert!(out.shapes().iter().all(|s| s.filled), "the stroke is outlined");
             continue;
         }

@@ -1,11 +1,12 @@
-//! An open path is filled as if a line closed it (SVG 2, §13.4.1); under a map that line bends like all others. The truth is the
-//! same drawing with the line drawn.
+//! An open path is filled as if closed by a line (SVG 2, §13.4.1), and a map bends that line like any other. The reference is
+//! the same drawing with the line drawn.
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
 use common::{Bend, difference, drawing, options, read, warp_options};
-use pathwarp_svg::{Strokes, Structure, WarpOptions, parse_tree};
+use pathwarp_svg::usvg_tree::parse_tree;
+use pathwarp_svg::{Strokes, Structure, WarpOptions};
 use resvg::tiny_skia::{Pixmap, Transform};
 
 fn bent(body: &str, options: &WarpOptions) -> String {
@@ -23,13 +24,13 @@ fn ways() -> Vec<WarpOptions> {
     let mut out = Vec::new();
     for structure in [Structure::Auto, Structure::Flatten] {
         for strokes in [Strokes::Auto, Strokes::Outline, Strokes::Scale, Strokes::Keep] {
-            out.push(WarpOptions { structure, strokes, ..warp_options() });
+            out.push(warp_options().with_structure(structure).with_strokes(strokes));
         }
     }
     out
 }
 
-/// Both drawings bent look the same, and the first has something to see.
+/// Both drawings look the same when bent, and the fill is visible.
 fn same(open: &str, drawn: &str) {
     same_in(&ways(), open, drawn);
 }
@@ -52,7 +53,7 @@ fn the_line_that_closes_a_fill_bends() {
 
 #[test]
 fn and_is_still_not_stroked() {
-    // Centre lines alone are never doubled.
+    // Centre lines without a fill are never doubled.
     let ways: Vec<_> = ways().into_iter().filter(|o| o.strokes != Strokes::Keep).collect();
     same_in(
         &ways,

@@ -1,4 +1,4 @@
-//! The page made to fit the warped artwork. Truth is where the renderer leaves a mark.
+//! Adapting the page to the warped artwork. The reference is the set of pixels the renderer paints.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
@@ -11,15 +11,15 @@ use pathwarp_svg::{Document, PageFit, Selection, WarpOptions};
 const FINE: f64 = 8.0;
 
 fn fitted(svg: &str, map: Affine, page: PageFit) -> Document {
-    let w = read(svg).warp(&Hidden(map), &WarpOptions { page, ..warp_options() }).unwrap();
+    let w = read(svg).warp(&Hidden(map), &warp_options().with_page(page)).unwrap();
     read(&w.svg)
 }
 
-/// The box of all that a document paints between -60 and 200, in user units, to a pixel.
+/// The box of everything a document paints between -60 and 200, in user units, to a pixel.
 fn marks(d: &Document) -> Rect {
     let (from, side) = (-60.0, 260.0);
     let window = Affine::scale(FINE) * Affine::translate((-from, -from)) * d.user_to_px().inverse();
-    let picture = rendered(d.tree(), (side * FINE) as u32, window);
+    let picture = rendered(pathwarp_svg::usvg_tree::tree(&d), (side * FINE) as u32, window);
     let wide = picture.width() as usize;
     let marked = picture.pixels().iter().enumerate().filter(|p| p.1.alpha() > 0).map(|p| p.0);
     let boxes = marked.map(|i| Rect::from_origin_size(((i % wide) as f64, (i / wide) as f64), (1.0, 1.0)));
@@ -32,7 +32,7 @@ fn near(a: Rect, b: Rect) -> bool {
     d.iter().all(|d| d.abs() <= 1.5 / FINE)
 }
 
-/// Name, drawing.
+/// Names and drawings.
 const DRAWINGS: &[(&str, &str)] = &[
     ("a fill", "<path d='M20 20C90 0 80 70 30 60z'/>"),
     ("a stroke with miters", "<path d='M20 70L50 20L60 75' fill='none' stroke='red' stroke-width='8'/>"),
@@ -79,7 +79,7 @@ fn it_grows_to_hold_them_and_no_further() {
     }
 }
 
-/// Filters may paint anywhere in their region, of which only the renderer's marks are known to be needed.
+/// A filter may paint anywhere in its region, of which only the renderer's pixels are known to be needed.
 #[test]
 fn what_a_filter_paints_is_held() {
     let body = "<filter id='f'><feGaussianBlur stdDeviation='3'/></filter><rect x='30' y='30' width='30' height='30' \
@@ -93,9 +93,8 @@ fn what_a_filter_paints_is_held() {
 fn lengths_follow_and_the_scale_stays() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='50mm' height='100mm' viewBox='0 0 100 200'><rect x='20' y='30' \
                width='60' height='40'/></svg>";
-    let page = |svg: &str, page| {
-        read(svg).warp(&Hidden(Affine::scale(2.0)), &WarpOptions { page, ..warp_options() }).unwrap().svg
-    };
+    let page =
+        |svg: &str, page| read(svg).warp(&Hidden(Affine::scale(2.0)), &warp_options().with_page(page)).unwrap().svg;
     let out = page(svg, PageFit::Page);
     assert!(out.contains("width='60mm' height='40mm' viewBox='40 60 120 80'"), "{out}");
     let out = page(svg, PageFit::Grow);
@@ -103,7 +102,7 @@ fn lengths_follow_and_the_scale_stays() {
     assert!(page(svg, PageFit::None).contains("width='50mm' height='100mm' viewBox='0 0 100 200'"));
     let out = page(&svg.replace("50mm", "100%").replace("100mm", "100%"), PageFit::Page);
     assert!(out.contains("width='100%' height='100%' viewBox='40 60 120 80'"), "{out}");
-    // A page without viewBox is its width and height.
+    // The page of a file without viewBox is its width and height.
     let plain =
         "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='2in'><rect x='20' width='60' height='40'/></svg>";
     let out = page(plain, PageFit::Page);
@@ -117,12 +116,12 @@ fn guides_and_what_is_hidden_do_not_count() {
     let body = "<rect x='20' y='30' width='60' height='40'/><path id='cage' d='M-50 0H150'/><rect x='-90' width='9' \
                 height='9' visibility='hidden'/><path d='M-80 0h9v9z' fill='none'/>";
     let selection = Selection { guides: vec!["cage".into()], ..Selection::default() };
-    let options = WarpOptions { page: PageFit::Page, selection, ..warp_options() };
+    let options = warp_options().with_page(PageFit::Page).with_selection(selection);
     let w = read(&common::drawing(body)).warp(&Hidden(Affine::translate((5.0, 0.0))), &options).unwrap();
     assert!(w.svg.contains("viewBox=\"25 30 60 40\""), "{}", w.svg);
 }
 
-/// How far marks lie beyond the page of 0 to 100: left, top, right, bottom.
+/// Distances by which pixels extend past the page of 0 to 100: left, top, right, bottom.
 fn beyond(marks: Rect) -> [f64; 4] {
     [-marks.x0, -marks.y0, marks.x1 - 100.0, marks.y1 - 100.0]
 }
@@ -140,7 +139,7 @@ fn what_leaves_the_page_is_measured() {
             }
             let share = out.into_iter().fold(0.0, f64::max) / 100.0;
             assert!((w.overhang.unwrap().share - share).abs() < 0.01, "{name}");
-            let grown = WarpOptions { page: PageFit::Grow, ..warp_options() };
+            let grown = warp_options().with_page(PageFit::Grow);
             assert_eq!(read(&svg).warp(&Hidden(map), &grown).unwrap().overhang, None, "{name}");
         }
         let still = read(&svg).warp(&Hidden(Affine::rotate_about(0.1, (50.0, 50.0))), &warp_options()).unwrap();
@@ -154,7 +153,7 @@ fn what_left_the_page_before_is_not_told() {
         let w = read(svg).warp(&Hidden(Affine::translate((x, y))), &warp_options()).unwrap();
         w.overhang.map(|o| o.by.map(|v| (v * 1e6).round() / 1e6))
     };
-    // It hangs over the left side by 30, strokes included, and stands 10 away from the right.
+    // It extends 30 past the left side, strokes included, and ends 10 inside the right side.
     let body = "<path d='M-28,40H88' stroke='black' stroke-width='4' stroke-linecap='square'/>";
     let svg = common::drawing(body);
     assert_eq!(moved(&svg, 5.0, 0.0), None);
@@ -162,25 +161,25 @@ fn what_left_the_page_before_is_not_told() {
     assert_eq!(moved(&svg, 17.0, 0.0), Some([0.0, 0.0, 7.0, 0.0]));
     assert_eq!(moved(&svg, -5.0, 0.0), Some([35.0, 0.0, 0.0, 0.0]));
     assert_eq!(moved(&svg, 0.0, -50.0), Some([0.0, 12.0, 0.0, 0.0]));
-    // Less than a pixel of a thousand.
+    // Less than one pixel in a thousand.
     assert_eq!(moved(&svg, 10.05, 0.0), None);
-    // A file that does not say how large its page is has none.
+    // A file that does not specify the size of its page has no overhang.
     let endless = format!("<svg xmlns='http://www.w3.org/2000/svg'>{body}</svg>");
     assert_eq!(moved(&endless, 60.0, 0.0), None);
     assert!(moved(&endless.replace("<svg", "<svg width='100' height='100'"), 60.0, 0.0).is_some());
 }
 
-/// Nothing bends, and still the page is wanted.
+/// The page is adapted even if nothing moves.
 #[test]
 fn the_identity_fits_the_page() {
     let svg = common::drawing("<rect x='20' y='30' width='60' height='40'/>");
     let map = pathwarp::map::AffineMap(Affine::IDENTITY);
-    let options = WarpOptions { page: PageFit::Page, ..warp_options() };
+    let options = warp_options().with_page(PageFit::Page);
     let w = read(&svg).warp(&map, &options).unwrap();
     assert!(w.svg.contains("viewBox=\"20 30 60 40\""), "{}", w.svg);
 }
 
-/// A page whose viewBox and size are one but for rounding has no transform of its own to be mistaken for a group's.
+/// A page whose viewBox equals its size up to rounding has no transform, so none may be confused with a group's.
 #[test]
 fn a_page_of_odd_size_is_no_group() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 108.51184 100'><g transform='translate(5) rotate(12)'>\

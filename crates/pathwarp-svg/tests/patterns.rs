@@ -1,4 +1,4 @@
-//! Patterns as geometry. Truth is the original's rendering resampled through the inverse of a curved map.
+//! Patterns as geometry. The reference is the original's rendering, resampled through the inverse of a curved map.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
@@ -7,7 +7,7 @@ use common::{Bend, Hidden, curved, drawing, oblique, read, warp_options};
 use pathwarp::kurbo::Affine;
 use pathwarp_svg::{Patterns, Strokes, Structure, WarpOptions};
 
-/// Name, drawing.
+/// Names and drawings.
 const PATTERNS: &[(&str, &str)] = &[
     (
         "box units",
@@ -62,19 +62,19 @@ const PATTERNS: &[(&str, &str)] = &[
 ];
 
 fn instantiate() -> WarpOptions {
-    WarpOptions { patterns: Patterns::Instantiate, ..warp_options() }
+    warp_options().with_patterns(Patterns::Instantiate)
 }
 
 #[test]
 fn under_a_curved_map_tiles_bend() {
     for (name, body) in PATTERNS {
-        let (_, fitted) = curved(&drawing(body), &WarpOptions { patterns: Patterns::Fit, ..warp_options() });
-        // Nothing is asked for: the map is seen to be none that a pattern can follow.
+        let (_, fitted) = curved(&drawing(body), &warp_options().with_patterns(Patterns::Fit));
+        // By default, the affine fit of the pattern is recognised as visibly wrong.
         let (w, bent) = curved(&drawing(body), &warp_options());
         println!("{name}: {:.2} / 255 bent, {:.2} / 255 fitted", bent.mean, fitted.mean);
         assert!(bent.mean <= 1.0, "{name}: {} of 255", bent.mean);
         assert!(fitted.mean > 10.0 * bent.mean, "{name}: {} and {} of 255", fitted.mean, bent.mean);
-        // So small a pattern within a tile as that of the last one is seen to follow.
+        // A pattern as small as that within the last tile follows the affine fit without a visible error.
         assert!(w.warnings.iter().all(|w| w.ends_with("their tiles are not bent: q")), "{:?}", w.warnings);
         assert!(!w.svg.contains("fill=\"url(#p") && w.svg.contains("-edge"), "{name}: {}", w.svg);
     }
@@ -82,7 +82,7 @@ fn under_a_curved_map_tiles_bend() {
 
 #[test]
 fn written_anew_they_bend_as_well() {
-    let options = WarpOptions { structure: Structure::Flatten, ..instantiate() };
+    let options = instantiate().with_structure(Structure::Flatten);
     for (name, body) in &PATTERNS[5..] {
         let (w, bent) = curved(&drawing(body), &options);
         assert!(bent.mean <= 1.0, "{name}: {} of 255", bent.mean);
@@ -101,7 +101,7 @@ fn the_file_keeps_its_names() {
     assert_eq!(w.shapes.len(), 1);
 }
 
-/// A map that bends less than can be seen leaves the pattern a pattern.
+/// If the map bends less than is visible, the pattern stays a pattern.
 #[test]
 fn what_no_one_sees_is_not_done() {
     let body = PATTERNS[0].1;
@@ -128,7 +128,7 @@ fn copies_repeat_their_tiles() {
     let body = "<pattern id='p' width='5' height='5' patternUnits='userSpaceOnUse'><circle cx='2' cy='2' r='2'/></pattern>\
                 <rect width='20' height='20' fill='url(#p)'/>";
     let copies = vec![Affine::IDENTITY, Affine::translate((30.0, 0.0))];
-    let w = read(&drawing(body)).warp(&Hidden(Affine::IDENTITY), &WarpOptions { copies, ..warp_options() }).unwrap();
+    let w = read(&drawing(body)).warp(&Hidden(Affine::IDENTITY), &warp_options().with_copies(copies)).unwrap();
     let twice =
         drawing(&format!("{body}<g transform='translate(30 0)'><rect width='20' height='20' fill='url(#p)'/></g>"));
     common::same("copies", &w.svg, &twice);
@@ -137,17 +137,17 @@ fn copies_repeat_their_tiles() {
 #[test]
 fn centre_lines_keep_their_patterns() {
     let body = PATTERNS[4].1;
-    let options = WarpOptions { strokes: Strokes::Keep, ..warp_options() };
+    let options = warp_options().with_strokes(Strokes::Keep);
     let w = read(&drawing(body)).warp(&Bend, &options).unwrap();
     assert!(w.svg.contains("stroke='url(#p-2)'"), "{}", w.svg);
 }
 
-/// What the affine fit of a pattern misses by is in the report, and nothing where tiles are bent.
+/// The report contains the error of a pattern's affine fit, and no error where tiles are bent.
 #[test]
 fn the_residual_is_told() {
     let svg = drawing(PATTERNS[0].1);
     let residual = |patterns| {
-        let w = read(&svg).warp(&Bend, &WarpOptions { patterns, ..warp_options() }).unwrap();
+        let w = read(&svg).warp(&Bend, &warp_options().with_patterns(patterns)).unwrap();
         w.shapes.iter().filter_map(|s| s.paint_residual).reduce(f64::max)
     };
     let fitted = residual(Patterns::Fit).unwrap();

@@ -1,4 +1,4 @@
-//! Files as they come: names, boxes, faults, and files made to hurt.
+//! Reading files: names, boxes, errors, and malicious files.
 
 mod common;
 
@@ -76,7 +76,7 @@ fn compressed_files_are_read() {
     gz.write_all(drawing("<path d='M0 0h9v9z'/>").as_bytes()).unwrap();
     let data = gz.finish().unwrap();
     assert_eq!(Document::read(&data, "f.svgz", &options()).unwrap().shapes().len(), 1);
-    let small = ReadOptions { max_size: 20, ..options() };
+    let small = options().with_max_size(20);
     assert!(Document::read(&data, "f.svgz", &small).is_err());
 }
 
@@ -110,14 +110,14 @@ fn files_made_to_hurt_end_in_an_error_or_a_drawing() {
     );
     for svg in [deep, deeper, bomb, loops, odd, circle] {
         if let Ok(d) = Document::read(svg.as_bytes(), "f.svg", &options()) {
-            let options = pathwarp_svg::WarpOptions { on_error: pathwarp_svg::OnError::Skip, ..warp_options() };
+            let options = warp_options().with_on_error(pathwarp_svg::OnError::Skip);
             let w = d.warp(&Bend, &options).unwrap();
             assert!(Document::read(w.svg.as_bytes(), "again.svg", &self::options()).is_ok());
         }
     }
 }
 
-/// Each level shows the next one ten times, in every way there is.
+/// Each level shows the next one ten times, in all possible ways.
 #[test]
 fn what_unfolds_without_end_is_refused_at_once() {
     const LEVELS: usize = 12;
@@ -145,15 +145,15 @@ fn what_unfolds_without_end_is_refused_at_once() {
         let started = std::time::Instant::now();
         let e = fault(n.as_bytes());
         assert!(e.contains("unfolds to more than") && e.starts_with("f.svg:"), "{e}");
-        // In a drawing within a drawing as well.
+        // The limits apply to drawings inside drawings, too.
         let coded =
             n.replace('#', "%23").replace('<', "%3c").replace('>', "%3e").replace('\'', "%27").replace('\n', "%0a");
         let e = fault(svg(&format!("<image width='9' height='9' href='data:image/svg+xml,{coded}'/>")).as_bytes());
         assert!(e.contains("unfolds to more than") && e.contains("image"), "{e}");
-        // usvg alone takes longer than anybody waits.
+        // usvg alone would take too long.
         assert!(started.elapsed().as_secs() < 10, "{:?}", started.elapsed());
     }
-    // Few levels are a drawing like others.
+    // A few levels are an ordinary drawing.
     let few = nests[0].replace("fill='url(#n3)'", "fill='red'");
     assert!(Document::read(few.as_bytes(), "f.svg", &options()).is_ok());
 }

@@ -1,4 +1,4 @@
-//! What the text of a warped file keeps.
+//! Preservation of a file's text.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn the_exact_identity_and_an_empty_selection_give_the_bytes_back() {
     let d = read(&svg);
     assert_eq!(d.warp(&AffineMap(Affine::IDENTITY), &warp_options()).unwrap().svg, svg);
     let nothing = Selection { select: vec!["#none".into()], ..Selection::default() };
-    let w = d.warp(&Hidden(oblique()), &WarpOptions { selection: nothing, ..warp_options() }).unwrap();
+    let w = d.warp(&Hidden(oblique()), &warp_options().with_selection(nothing)).unwrap();
     assert_eq!(w.svg, svg);
     assert!(w.shapes.is_empty());
 }
@@ -80,7 +80,7 @@ fn guides_stay_and_are_no_artwork() {
     let d = read(&svg);
     let selection = Selection { guides: vec!["cage".into()], ..Selection::default() };
     assert_eq!(d.artwork_box(&selection).unwrap().width(), 10.0);
-    let w = d.warp(&Bend, &WarpOptions { selection, ..warp_options() }).unwrap();
+    let w = d.warp(&Bend, &warp_options().with_selection(selection)).unwrap();
     assert!(w.svg.contains("<g id='cage'><path id='q' d='M0 0h90v90h-90z'/></g>"));
 }
 
@@ -91,7 +91,7 @@ fn what_cannot_be_patched_is_written_anew_or_refused() {
     let w = warp(svg, oblique());
     assert!(w.warnings.iter().any(|w| w.contains("written anew")), "{:?}", w.warnings);
     assert!(w.svg.contains("viewBox=\"0 0 100 100\"") && w.svg.contains("<title>E</title>"), "{}", w.svg);
-    let keep = WarpOptions { structure: Structure::Keep, ..warp_options() };
+    let keep = warp_options().with_structure(Structure::Keep);
     assert!(read(svg).warp(&Bend, &keep).is_err());
 }
 
@@ -100,7 +100,7 @@ fn precision_follows_the_tolerance_and_the_transform() {
     let svg = drawing("<g transform='scale(1000)'><path d='M0 0L.1 0L.1 .1z'/></g><path d='M0 0L90 0L90 90z'/>");
     let w = read(&svg).warp(&Hidden(oblique()), &warp_options()).unwrap();
     assert!(w.shapes.iter().all(|s| s.max_error < 1.01e-4), "{:?}", w.shapes);
-    let coarse = WarpOptions { precision: Some(1), ..warp_options() };
+    let coarse = warp_options().with_precision(Some(1));
     let w = read(&svg).warp(&Hidden(oblique()), &coarse).unwrap();
     assert!(w.shapes[0].max_error > 1.0, "{:?}", w.shapes);
 }
@@ -126,10 +126,10 @@ fn an_animation_of_the_geometry_is_named() {
 #[test]
 fn filters_written_anew_saturate_beyond_one() {
     let svg = drawing("<rect width='90' height='90' fill='seagreen' filter='saturate(2)'/>");
-    let flat = WarpOptions { structure: Structure::Flatten, ..warp_options() };
+    let flat = warp_options().with_structure(Structure::Flatten);
     let out = read(&svg).warp(&AffineMap(Affine::IDENTITY), &flat).unwrap().svg;
     let middle = |svg: &str| {
-        let tree = pathwarp_svg::parse_tree(svg.as_bytes(), "test", &common::options()).unwrap();
+        let tree = pathwarp_svg::usvg_tree::parse_tree(svg.as_bytes(), "test", &common::options()).unwrap();
         let mut p = resvg::tiny_skia::Pixmap::new(100, 100).unwrap();
         resvg::render(&tree, resvg::tiny_skia::Transform::identity(), &mut p.as_mut());
         let c = p.pixel(45, 45).unwrap();

@@ -1,5 +1,5 @@
-//! Drawings shown as images, warped as geometry. Truth is the renderer's own transform of the original, and its rendering bent
-//! pixel by pixel.
+//! Drawings shown as images, warped as geometry. The reference is the renderer's own transform of the original, or its
+//! rendering bent pixel by pixel.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
 mod common;
@@ -8,7 +8,7 @@ use common::{Bend, check, curved, drawing, oblique, options, read, warp, warp_op
 use pathwarp::kurbo::Affine;
 use pathwarp_svg::{Document, ReadOptions, Selection, Structure, WarpOptions};
 
-/// A drawing as a link, percent-encoded.
+/// Encodes a drawing as a `data:` link, percent-encoded.
 fn link(svg: &str) -> String {
     let code = |b: u8| match b {
         b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b' ' | b'.' | b'/' | b'=' | b':' | b'-' | b',' => {
@@ -23,7 +23,7 @@ fn inner(attributes: &str, body: &str) -> String {
     link(&format!("<svg xmlns='http://www.w3.org/2000/svg' {attributes}>{body}</svg>"))
 }
 
-/// Name, drawing.
+/// Names and drawings.
 fn drawings() -> Vec<(&'static str, String)> {
     let plain =
         inner("width='20' height='10'", "<rect width='20' height='10' fill='gold'/><circle cx='10' cy='5' r='4'/>");
@@ -70,7 +70,7 @@ fn they_look_like_the_renderers_transform() {
     for (name, body) in drawings() {
         for structure in [Structure::Auto, Structure::Flatten] {
             for map in [oblique(), Affine::IDENTITY] {
-                check(name, &drawing(&body), map, &WarpOptions { structure, ..warp_options() });
+                check(name, &drawing(&body), map, &warp_options().with_structure(structure));
             }
         }
     }
@@ -92,7 +92,7 @@ fn under_a_curved_map_they_are_geometry() {
 fn linked_drawings_are_geometry_too() {
     let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples");
     let svg = drawing("<image id='i' x='10' y='10' width='80' height='80' href='logo.svg'/>");
-    let with = ReadOptions { base_dir: Some(samples.into()), ..options() };
+    let with = options().with_base_dir(Some(samples.into()));
     let w = Document::read(svg.as_bytes(), "t.svg", &with).unwrap().warp(&Bend, &warp_options()).unwrap();
     let logo = std::fs::read(format!("{samples}/logo.svg")).unwrap();
     let shapes = Document::read(&logo, "logo.svg", &options()).unwrap().shapes().len();
@@ -100,11 +100,11 @@ fn linked_drawings_are_geometry_too() {
     assert!(!w.svg.contains("<image") && w.svg.contains("<g id='i'"), "{}", w.svg);
 }
 
-/// A link may name anything the file system holds; without a folder, nothing.
+/// A link may name anything in the file system. Without a base folder, it is not followed.
 #[test]
 fn what_is_no_plain_file_is_not_read() {
     let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples");
-    let with = ReadOptions { base_dir: Some(samples.into()), ..options() };
+    let with = options().with_base_dir(Some(samples.into()));
     let links = ["/dev/zero", "../samples", "no-such.svg", "../../../samples/logo.svg?", "data:image/bmp,"];
     for (link, with) in links.map(|l| (l, &with)).into_iter().chain([("samples/logo.svg", &options())]) {
         let svg = drawing(&format!("<image id='i' x='10' y='10' width='80' height='80' href='{link}'/>"));
@@ -112,20 +112,20 @@ fn what_is_no_plain_file_is_not_read() {
         assert!(w.svg.contains("<image id='i'"), "{link}: {}", w.svg);
         let [left] = &w.skipped[..] else { panic!("{link}: {:?}", w.skipped) };
         assert!(left.id == "i" && left.why.contains(link.trim_end_matches(',')), "{left:?}");
-        // Nor is it told of where it was not meant, and written anew it is gone.
+        // It is not reported if it is not selected, and a file written anew omits it.
         let other = Selection { exclude: vec!["#i".into()], ..Selection::default() };
-        let options = WarpOptions { selection: other, ..warp_options() };
+        let options = warp_options().with_selection(other);
         assert!(
             Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &options).unwrap().skipped.is_empty()
         );
-        let options = WarpOptions { structure: Structure::Flatten, ..warp_options() };
+        let options = warp_options().with_structure(Structure::Flatten);
         let anew = Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &options).unwrap();
         assert!(!anew.svg.contains("<image") && anew.skipped.iter().any(|s| s.why.contains("left out")));
     }
 }
 
-/// SVG 2, section 12.3: what an image shows is cut at the edge of its drawing. (The renderer forgets that, so truth is a group
-/// with such a clip path.)
+/// SVG 2, section 12.3: an image is clipped to the edge of its drawing. The renderer does not do that, so the reference is a
+/// group with such a clip path.
 #[test]
 fn they_are_cut_at_their_edge() {
     let body = "<circle cx='15' cy='15' r='19' fill='teal'/>";
@@ -141,7 +141,7 @@ fn they_are_cut_at_their_edge() {
     assert_eq!(cut, 2, "a shape and its clip path");
 }
 
-/// The comparison can fail: what is placed by an affine map alone is far off.
+/// The comparison can fail: an affine placement alone is far off.
 #[test]
 fn an_affine_place_would_be_seen() {
     let (_, body) = drawings().swap_remove(0);

@@ -4,7 +4,7 @@ use super::inverse::{ROUNDING, inverse};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp_raster::{ImageWarp, Picture, PictureFormat, Shade, extent, shade, shown, warp_image};
-use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper};
+use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
 use std::sync::Arc;
 
 /// Pixels per inch of a drawing at 100 %.
@@ -26,7 +26,7 @@ impl Bender {
 }
 
 impl ImageWarper for Bender {
-    fn warp(&self, r: &ImageRequest<'_>) -> Result<BentImage, String> {
+    fn warp(&self, r: &ImageRequest<'_>) -> Result<BentImage, PictureError> {
         /// Largest growth of the pixel count: where the map compresses the image, keeping every detail takes more pixels.
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
@@ -37,7 +37,7 @@ impl ImageWarper for Bender {
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
         let (width, height) = (e.bounds.width(), e.bounds.height());
         if !(width > 0.0 && height > 0.0) {
-            return Err("nothing is left of its area".to_owned());
+            return Err("nothing is left of its area".into());
         }
         let most = (GROWTH * area.area()).clamp(1.0, MOST);
         let finest = (most / (width * height)).sqrt();
@@ -66,7 +66,7 @@ impl ImageWarper for Bender {
 }
 
 impl GradientPainter for Bender {
-    fn paint(&self, r: &GradientRequest<'_>) -> Result<BentImage, String> {
+    fn paint(&self, r: &GradientRequest<'_>) -> Result<BentImage, PictureError> {
         /// Samples per pixel of the drawing in each direction: the resolution of a screen of twice the density.
         const DENSITY: f64 = 2.0;
         /// Fewest samples along the longer side: small drawings are often shown enlarged.
@@ -79,7 +79,7 @@ impl GradientPainter for Bender {
         const MARGIN: f64 = 2.0;
         let (width, height) = (r.target.width(), r.target.height());
         if !(width > 0.0 && height > 0.0 && (width + height).is_finite()) {
-            return Err("nothing is left of the shape's area".to_owned());
+            return Err("nothing is left of the shape's area".into());
         }
         let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
         let wanted = match self.dpi {

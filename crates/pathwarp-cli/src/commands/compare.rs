@@ -7,7 +7,7 @@ use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::distance;
 use pathwarp_raster::{Color, RenderOptions, Size};
-use pathwarp_svg::{Document, NamedPath};
+use pathwarp_svg::{Document, NamedPath, usvg_tree};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
@@ -109,7 +109,7 @@ fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure
     let repeated = |p: &NamedPath| p.group.is_none() && paired_ids.contains(p.id.as_str());
     let unpaired = paths_b.iter().enumerate().filter(|(i, p)| !paired.contains(i) && !repeated(p));
     let only_in_b = unpaired.map(|(_, p)| p.id.clone()).collect();
-    let render = |d: &Document| RenderOptions { size, background: Some(Color::WHITE) }.render(d.tree());
+    let render = |d: &Document| RenderOptions { size, background: Some(Color::WHITE) }.render(usvg_tree::tree(d));
     let difference = pathwarp_raster::compare(&render(a)?, &render(b)?)?;
     Ok(Comparison {
         max_distance: pairs.iter().filter_map(|p| p.distance).fold(0.0, f64::max),

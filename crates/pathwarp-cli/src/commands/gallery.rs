@@ -11,7 +11,7 @@ use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::refit;
 use pathwarp_raster::{RenderOptions, Size, encode_png};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
-use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions};
+use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -129,7 +129,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let svg = sheet(&cells, &options, &input::read_options(file))?;
     let target = file_args::target(m);
     let bytes = if target.is_some_and(is_png) {
-        let tree = pathwarp_svg::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
+        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
         encode_png(&RenderOptions { size, background: None }.render(&tree)?)?
     } else {

@@ -6,6 +6,7 @@ use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp_raster::{Color, RenderOptions, Size, encode_png};
+use pathwarp_svg::usvg_tree;
 
 pub(super) const NAME: &str = "render";
 
@@ -53,7 +54,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         Some("black") => Some(Color::BLACK),
         _ => None,
     };
-    let tree = pathwarp_svg::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
+    let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
     let png = encode_png(&RenderOptions { size, background }.render(&tree)?)?;
     output::write(file_args::target(m), &png)?;
     Ok(Status::Complete)

@@ -5,13 +5,13 @@ use pathwarp::deform::Role;
 use pathwarp::kurbo::{Rect, Shape};
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview, encode_png};
-use pathwarp_svg::{Document, ReadOptions, Selection};
+use pathwarp_svg::{Document, ReadOptions, Selection, usvg_tree};
 
 /// Draws the PNG. Bases are drawn over the source; targets and cages over the result.
 pub(super) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &ReadOptions) -> Result<Vec<u8>, Failure> {
     let after = Document::read(warped.as_bytes(), "the result", read)?;
-    let mut left = Panel::new(doc.tree(), doc.user_to_px(), doc.view_box());
-    let mut right = Panel::new(after.tree(), after.user_to_px(), after.view_box());
+    let mut left = Panel::new(usvg_tree::tree(doc), doc.user_to_px(), doc.view_box());
+    let mut right = Panel::new(usvg_tree::tree(&after), after.user_to_px(), after.view_box());
     let everything = Selection::default();
     // The view holds all artwork, including what the warp moved off the page.
     let artwork = [doc, &after].into_iter().filter_map(|d| d.artwork_box(&everything));

@@ -42,5 +42,5 @@ pub(crate) fn read_options(input: &Path) -> ReadOptions {
         Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
         other => other.map(Path::to_path_buf),
     };
-    ReadOptions { base_dir: folder, ..ReadOptions::default() }
+    ReadOptions::default().with_base_dir(folder)
 }

@@ -19,8 +19,8 @@ use pathwarp::recipe::BuiltRecipe;
 use pathwarp::refit;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions, Warped,
-    compressed,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions,
+    WarpedDocument, compressed,
 };
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -61,25 +61,26 @@ impl SvgArtwork {
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
         let WarpRequest { built, options, tolerance, .. } = request;
         let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), options.image_dpi));
-        WarpOptions {
-            precision: options.precision,
-            strokes: options.strokes,
-            text: options.text,
-            structure: options.structure,
-            selection: self.selection.clone(),
-            on_error: options.on_error,
-            gradients: match options.gradients {
-                GradientChoice::Fit => Gradients::Fit,
-                GradientChoice::Exact => Gradients::Exact(bender.clone()),
-                GradientChoice::Keep => Gradients::Keep,
-            },
-            patterns: options.patterns,
-            page: options.page,
-            copies: built.placement.copies.clone(),
-            letters: LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() },
-            images: if options.warp_images { Images::Warp(bender) } else { Images::Keep },
-            ..WarpOptions::new(refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge))
-        }
+        let gradients = match options.gradients {
+            GradientChoice::Fit => Gradients::Fit,
+            GradientChoice::Exact => Gradients::Exact(bender.clone()),
+            GradientChoice::Keep => Gradients::Keep,
+        };
+        let letters = LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() };
+        let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
+        WarpOptions::new(refit)
+            .with_precision(options.precision)
+            .with_strokes(options.strokes)
+            .with_text(options.text)
+            .with_structure(options.structure)
+            .with_selection(self.selection.clone())
+            .with_on_error(options.on_error)
+            .with_gradients(gradients)
+            .with_patterns(options.patterns)
+            .with_page(options.page)
+            .with_copies(built.placement.copies.clone())
+            .with_letters(letters)
+            .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep })
     }
 
     /// Every selected shape's orientation under the map.
@@ -100,7 +101,7 @@ impl SvgArtwork {
         &self,
         built: &BuiltRecipe,
         options: &WarpOptions,
-        warped: &Warped,
+        warped: &WarpedDocument,
     ) -> (Vec<ShapeReport>, Vec<String>) {
         // Parts of one text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
@@ -169,7 +170,9 @@ impl Artwork for SvgArtwork {
             FrameChoice::Default | FrameChoice::Artwork => artwork(),
             FrameChoice::ViewBox => Frame::new(self.doc.view_box()),
             FrameChoice::Rect(r) => Frame::new(r),
-            FrameChoice::Lettering(kind) => lettering.frame(kind)?,
+            FrameChoice::Lettering(kind) => {
+                lettering.frame(kind).map_err(|e| Error::input(&self.name, advice::lettering_frame(&e)))?
+            }
         };
         Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
     }

@@ -1,9 +1,18 @@
-//! The drawing under a map: the image of every outline, stroke, gradient and bitmap.
+//! The drawing under a map: images of outlines, strokes, gradients and bitmaps.
 
+pub(crate) mod bitmap;
+pub(crate) mod drawing;
 pub(crate) mod gradient;
 pub(crate) mod image;
+pub(crate) mod letter_places;
 pub(crate) mod letters;
 pub(crate) mod options;
+pub(crate) mod outcome;
 pub(crate) mod paint;
-pub(crate) mod part;
-pub(crate) mod stroke;
+mod part;
+pub(crate) mod picture;
+mod shading;
+pub(crate) mod slots;
+mod stroke;
+mod task;
+pub(crate) mod tiles;

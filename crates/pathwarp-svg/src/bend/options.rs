@@ -1,69 +1,74 @@
-//! How a document is warped.
+//! Options for warping a document.
 
-use crate::bend::gradient::GradientPainter;
-use crate::bend::image::Images;
-use crate::bend::letters::LetterPlaces;
+use super::gradient::GradientPainter;
+use super::image::Images;
+use super::letter_places::LetterPlaces;
 use crate::source::select::Selection;
 use pathwarp::kurbo::Affine;
 use pathwarp::refit;
 use std::fmt;
 use std::sync::Arc;
 
-/// What becomes of strokes.
+/// Treatment of strokes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Strokes {
-    /// Scaled where that is right within 2 % of the width all along the shape, outlined elsewhere.
+    /// Scale the width if that is correct within 2 % of the width along the whole shape; else expand the stroke.
     #[default]
     Auto,
-    /// The centre line is warped, the width stays.
+    /// Warp the centre line and keep the width.
     Keep,
-    /// The width (and dashes) grow with the map's mean local scale.
+    /// Scale the width (and dashes) by the map's mean local scale.
     Scale,
-    /// The stroke becomes a filled outline, which is warped.
+    /// Expand the stroke to a filled outline and warp that.
     Outline,
 }
 
-/// What becomes of text.
+/// Treatment of text.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TextMode {
-    /// Its outlines are warped.
+    /// Warp its outlines.
     #[default]
     Outline,
-    /// It stays as it is.
+    /// Leave it unchanged.
     Skip,
 }
 
-/// How the file is written.
+/// Method of writing the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Structure {
-    /// Patched in place; written anew only where that is impossible, with a warning.
+    /// Patch the file in place. If that is impossible, write it anew with a warning.
     #[default]
     Auto,
-    /// Patched in place, or an error.
+    /// Patch the file in place, or fail.
     Keep,
-    /// Always written anew: groups and paths with everything resolved.
+    /// Write the file anew: groups and paths with resolved properties.
     Flatten,
 }
 
-/// What happens when a shape cannot be warped.
+/// Reaction to a shape that cannot be warped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum OnError {
-    /// The whole document fails.
+    /// Fail.
     #[default]
     Stop,
-    /// The shape stays as it was and is reported.
+    /// Leave the shape unchanged and report it.
     Skip,
 }
 
-/// What becomes of gradients.
+/// Treatment of gradients.
 #[derive(Clone, Default)]
+#[non_exhaustive]
 pub enum Gradients {
-    /// They follow the map's best affine fit over the shape they paint.
+    /// Transform them by the map's best affine fit over the painted shape.
     #[default]
     Fit,
-    /// Where that fit would be seen to be none, the shape shows a picture of the gradient, bent pixel by pixel.
+    /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would be visibly wrong.
     Exact(Arc<dyn GradientPainter>),
-    /// They stay as they are.
+    /// Leave them unchanged.
     Keep,
 }
 
@@ -87,76 +92,70 @@ impl PartialEq for Gradients {
     }
 }
 
-/// What becomes of the page.
+/// Treatment of the page.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PageFit {
-    /// It stays.
+    /// Leave it unchanged.
     #[default]
     None,
-    /// It grows to hold all of the warped artwork.
+    /// Extend it to hold all of the warped artwork.
     Grow,
-    /// It becomes the warped artwork's box.
+    /// Set it to the bounding box of the warped artwork.
     Page,
 }
 
-/// What becomes of patterns.
+/// Treatment of patterns.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Patterns {
-    /// Their tiles are warped one by one where an affine fit would be seen to be none and the tiles are not too many; elsewhere
-    /// they follow that fit.
+    /// Warp their tiles one by one if an affine fit would be visibly wrong and there are not too many tiles; else transform
+    /// the pattern by that fit.
     #[default]
     Auto,
-    /// Their tiles are warped one by one unless they are too many.
+    /// Warp their tiles one by one unless there are too many.
     Instantiate,
-    /// They follow the map's best affine fit over the shape they paint.
+    /// Transform them by the map's best affine fit over the painted shape.
     Fit,
-    /// They stay as they are.
+    /// Leave them unchanged.
     Keep,
 }
 
-/// How a document is warped.
+/// Options for warping a document.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct WarpOptions {
-    /// How paths are refitted; the tolerance is in root user units.
+    /// Options for refitting paths; the tolerance is in root user units.
     pub refit: refit::Options,
-    /// Decimals of the coordinates written. `None`: as many as keep rounding below a hundredth of the tolerance.
+    /// Number of decimals in written coordinates. `None`: as many as keep rounding below a hundredth of the tolerance.
     pub precision: Option<u8>,
-    /// What becomes of strokes.
+    /// Treatment of strokes.
     pub strokes: Strokes,
-    /// What becomes of text.
+    /// Treatment of text.
     pub text: TextMode,
-    /// How the file is written.
+    /// Method of writing the file.
     pub structure: Structure,
-    /// What is warped.
+    /// The part of the document to warp.
     pub selection: Selection,
-    /// What happens when a shape cannot be warped.
+    /// Reaction to a shape that cannot be warped.
     pub on_error: OnError,
-    /// What becomes of gradients.
+    /// Treatment of gradients.
     pub gradients: Gradients,
-    /// What becomes of patterns.
+    /// Treatment of patterns.
     pub patterns: Patterns,
-    /// What becomes of the page: viewBox, width and height. Lengths in per cent that stand in the file then mean the new one.
+    /// Treatment of the page: viewBox, width and height. Lengths in percent in the file then refer to the new page.
     pub page: PageFit,
-    /// Where copies of every shape stand before the warp, in root user space, the original included; a shape and its copies
-    /// become one path, clip paths and masks alike. Empty: the shape alone.
+    /// Transforms to the copies of every shape before the warp, in root user space, the original included. A shape and its
+    /// copies become one path, also in clip paths and masks. Empty: the shape alone.
     pub copies: Vec<Affine>,
     /// Letters that are placed one by one.
     pub letters: LetterPlaces,
-    /// What becomes of bitmaps.
+    /// Treatment of bitmaps.
     pub images: Images,
 }
 
 impl WarpOptions {
-    /// Whether paint servers of this kind follow the map.
-    pub(crate) fn moves(&self, paint: &usvg::Paint) -> bool {
-        match paint {
-            usvg::Paint::Color(_) => false,
-            usvg::Paint::Pattern(_) => self.patterns != Patterns::Keep,
-            usvg::Paint::LinearGradient(_) | usvg::Paint::RadialGradient(_) => self.gradients != Gradients::Keep,
-        }
-    }
-
-    /// Everything as it is by default.
+    /// Default options with the given options for refitting.
     #[must_use]
     pub fn new(refit: refit::Options) -> Self {
         Self {
@@ -175,4 +174,48 @@ impl WarpOptions {
             images: Images::default(),
         }
     }
+
+    /// Returns `true` if paint servers of this kind follow the map.
+    pub(crate) fn moves(&self, paint: &usvg::Paint) -> bool {
+        match paint {
+            usvg::Paint::Color(_) => false,
+            usvg::Paint::Pattern(_) => self.patterns != Patterns::Keep,
+            usvg::Paint::LinearGradient(_) | usvg::Paint::RadialGradient(_) => self.gradients != Gradients::Keep,
+        }
+    }
+
+    /// Returns `true` if `gradients` allows for pictures.
+    pub(crate) fn paints_gradients(&self) -> bool {
+        matches!(self.gradients, Gradients::Exact(_))
+    }
+}
+
+/// Generates a setter for each option.
+macro_rules! setters {
+    ($($field:ident: $type:ty, $setter:ident;)*) => {
+        impl WarpOptions {
+            $(
+                #[doc = concat!("Sets [`", stringify!($field), "`](Self::", stringify!($field), ").")]
+                #[must_use]
+                pub fn $setter(self, $field: $type) -> Self {
+                    Self { $field, ..self }
+                }
+            )*
+        }
+    };
+}
+
+setters! {
+    precision: Option<u8>, with_precision;
+    strokes: Strokes, with_strokes;
+    text: TextMode, with_text;
+    structure: Structure, with_structure;
+    selection: Selection, with_selection;
+    on_error: OnError, with_on_error;
+    gradients: Gradients, with_gradients;
+    patterns: Patterns, with_patterns;
+    page: PageFit, with_page;
+    copies: Vec<Affine>, with_copies;
+    letters: LetterPlaces, with_letters;
+    images: Images, with_images;
 }

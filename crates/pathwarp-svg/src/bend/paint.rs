@@ -3,20 +3,20 @@
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::Map;
 
-/// An affine stand-in for a map over a box.
+/// An affine approximation of a map over a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Fit {
-    /// Between the two user spaces.
+pub(crate) struct PaintFit {
+    /// From the shape's user space as read to that as written.
     pub(crate) affine: Affine,
-    /// The largest distance between it and the map over the samples, relative to the box's image.
+    /// Largest distance between fit and map over the samples, relative to the size of the box's image.
     pub(crate) residual: f64,
-    /// That distance in the units of the space fitted into.
+    /// The same distance in units of the target space.
     pub(crate) miss: f64,
 }
 
-/// The best affine fit of `map` over `area`, from a user space that `read` takes to root user space to one that `write` does.
-/// `None` where the map is not finite, or all is one point.
-pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Option<Fit> {
+/// Finds the least-squares affine fit of `map` over a grid on `area`, from a user space with the transform `read` to root user
+/// space to one with the transform `write`. Returns `None` where the map is not finite.
+pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Option<PaintFit> {
     let back = write.inverse();
     let pairs: Vec<(Point, Point)> =
         grid(area).map(|p| (p, back * map.point(read * p))).filter(|(_, q)| q.is_finite()).collect();
@@ -39,7 +39,7 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
         uy += w * d.y;
     }
     let det = xx * yy - xy * xy;
-    // A box without area, such as a straight line's: the map's own derivative has to do.
+    // A box without area, such as a straight line's: use the map's derivative.
     let (cx, cy) = if det > 1e-12 * (xx + yy).powi(2) {
         ((ux * yy - uy * xy) / det, (uy * xx - ux * xy) / det)
     } else {
@@ -56,11 +56,11 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
     let affine = Affine::new([cx.x, cx.y, cy.x, cy.y, shift.x, shift.y]);
     let miss = pairs.iter().map(|(p, q)| (affine * *p).distance(*q)).fold(0.0, f64::max);
     let size = (cx * area.width()).hypot() + (cy * area.height()).hypot();
-    affine.is_finite().then_some(Fit { affine, residual: if size > 0.0 { miss / size } else { 0.0 }, miss })
+    affine.is_finite().then_some(PaintFit { affine, residual: if size > 0.0 { miss / size } else { 0.0 }, miss })
 }
 
-/// As [`fit`], over the box of all copies: what was laid over one of them is stretched over the row. Where no affine map
-/// comes near the row's image, as round a ring, it is stretched over that image's box, `result`.
+/// Finds the fit of a shape with copies: the paint of one copy is stretched over the box of all. If no affine map comes near
+/// the image of that box, as around a ring, the paint is stretched over the image's own box, `result`.
 pub(crate) fn fit_copies(
     area: Rect,
     read: Affine,
@@ -68,15 +68,15 @@ pub(crate) fn fit_copies(
     map: &dyn Map,
     copies: &[Affine],
     result: Rect,
-) -> Option<Fit> {
-    /// Beyond this share of the fitted size an affine fit says nothing.
+) -> Option<PaintFit> {
+    /// A fit with a larger relative residual is useless.
     const LOST: f64 = 0.25;
     let back = read.inverse();
     let Some(whole) = copies.iter().map(|m| (back * *m * read).transform_rect_bbox(area)).reduce(|a, b| a.union(b))
     else {
         return fit(area, read, write, map);
     };
-    // A box without width or height keeps its size there.
+    // Without width or height, keep the size.
     let scale = |own: f64, all: f64| if own > 0.0 && all > 0.0 { all / own } else { 1.0 };
     let onto = |all: Rect| {
         Affine::translate(all.origin().to_vec2())
@@ -85,13 +85,13 @@ pub(crate) fn fit_copies(
     };
     let over = fit(whole, read, write, map).filter(|f| f.residual <= LOST);
     Some(match over {
-        Some(over) => Fit { affine: over.affine * onto(whole), ..over },
-        None => Fit { affine: onto(result), residual: 1.0, miss: f64::INFINITY },
+        Some(over) => PaintFit { affine: over.affine * onto(whole), ..over },
+        None => PaintFit { affine: onto(result), residual: 1.0, miss: f64::INFINITY },
     })
 }
 
-impl Fit {
-    /// Whether it moves nothing on `area` by more than a hair of its size.
+impl PaintFit {
+    /// Returns `true` if the fit moves no corner of `area` by more than 1e-9 of its diagonal.
     pub(crate) fn is_identity(&self, area: Rect) -> bool {
         let size = area.width().hypot(area.height());
         let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x1, area.y1), (area.x0, area.y1)];

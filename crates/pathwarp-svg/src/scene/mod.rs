@@ -1,7 +1,13 @@
-//! The drawing as it is painted: every shape with its outline, its transform and the element it comes from.
+//! The drawing as it is painted: every shape with its outline, its transform and its source element.
 
+pub(crate) mod affine;
+mod basic_shapes;
+pub(crate) mod drawing;
+pub(crate) mod expand;
 pub(crate) mod geometry;
 pub(crate) mod lettering;
 pub(crate) mod letters;
 pub(crate) mod model;
 pub(crate) mod resolve;
+pub(crate) mod shape;
+pub(crate) mod usvg_path;

@@ -1,10 +1,9 @@
-//! The drawing as it is painted: usvg's tree in f64, each shape with its source element, its true outline and its transform
-//! to root user space.
-//!
-//! Root user space is the coordinate system inside the root `<svg>` (viewBox units).
+//! The drawing as it is painted: usvg's tree in f64. Each shape has its source element, its exact outline and its transform to
+//! root user space, the coordinate system inside the root `<svg>` (viewBox units).
 
-use crate::scene::lettering::Line;
-use crate::source::text::ElementId;
+use super::lettering::line::TextLine;
+use crate::source::tags::ElementId;
+use crate::source::unpatchable::Unpatchable;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Rect};
 use std::collections::{HashMap, HashSet};
@@ -13,68 +12,107 @@ use std::ops::{Deref, Range};
 use std::sync::{Arc, LazyLock};
 use usvg::{BlendMode, Fill, PaintOrder, ShapeRendering, Stroke};
 
-/// What a shape does for the picture.
+/// Role of a shape in the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
+pub(crate) enum PartRole {
     Paint,
     Clip,
     Mask,
-    /// A tile's content; never warped.
+    /// Content of a tile, which is never warped.
     Pattern,
 }
 
-/// One painted path, or one that would be if it were visible.
+/// A painted path, visible or not.
 #[derive(Debug)]
 pub(crate) struct Part {
-    /// The element it is written as, if that is a shape element of its own.
+    /// The shape element that the part is written to, if it has one.
     pub(crate) source: Option<ElementId>,
-    /// The element that is replaced as a whole if this part changes: a `use`, a text, a shape with markers.
+    /// The element to replace as a whole if the part changes: a `use`, a text, a shape with markers.
     pub(crate) owner: Option<ElementId>,
-    pub(crate) role: Role,
-    /// The element whose geometry `local` is, read from the source itself: its own, or the one it is a copy of.
+    pub(crate) role: PartRole,
+    /// The source element that `local` was read from: `source`, or the original of a copy.
     pub(crate) drawn: Option<ElementId>,
-    /// In its own user space.
-    pub(crate) local: Local,
-    /// From there to root user space.
+    /// Outline in the part's user space.
+    pub(crate) local: LazyOutline,
+    /// From the part's user space to root user space.
     pub(crate) frame: Affine,
     pub(crate) fill: Option<Fill>,
     pub(crate) stroke: Option<Stroke>,
     pub(crate) paint_order: PaintOrder,
     pub(crate) rendering: ShapeRendering,
     pub(crate) visible: bool,
-    /// The stroke's width is in px whatever the transform (`vector-effect`).
+    /// The stroke width is in px regardless of the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
     pub(crate) slot: Option<usize>,
-    /// Whether it is part of a pattern's tiles that are laid out; if it has a stroke, `local` is that stroke's outline.
+    /// `true` for parts of laid-out pattern tiles. If such a part has a stroke, `local` is the outline of that stroke.
     pub(crate) in_tile: bool,
-    /// What its fill's pattern shows, and its stroke's, where that is geometry.
+    /// Laid-out tiles of the fill's pattern, and of the stroke's.
     pub(crate) fill_tiles: Option<Tiles>,
     pub(crate) stroke_tiles: Option<Tiles>,
 }
 
-/// The tiles that a pattern lays over a shape, in the shape's user space. They reach beyond the shape.
+impl Part {
+    /// A visible part without paint, slot or source.
+    pub(crate) fn plain(role: PartRole, owner: Option<ElementId>, local: LazyOutline, frame: Affine) -> Self {
+        Self {
+            source: None,
+            owner,
+            role,
+            drawn: None,
+            local,
+            frame,
+            fill: None,
+            stroke: None,
+            paint_order: PaintOrder::FillAndStroke,
+            rendering: ShapeRendering::GeometricPrecision,
+            visible: true,
+            fixed_width: false,
+            slot: None,
+            in_tile: false,
+            fill_tiles: None,
+            stroke_tiles: None,
+        }
+    }
+
+    /// Returns `true` if the part is visible and has a fill or a stroke.
+    pub(crate) fn painted(&self) -> bool {
+        self.visible && (self.fill.is_some() || self.stroke.is_some())
+    }
+
+    /// Outline in root user space.
+    pub(crate) fn outline(&self) -> Outline {
+        self.local.transformed(self.frame)
+    }
+
+    /// The element that the part belongs to.
+    pub(crate) fn element(&self) -> Option<ElementId> {
+        self.owner.or(self.source)
+    }
+}
+
+/// Pattern tiles laid out over a shape, in the shape's user space. They extend past the shape.
 #[derive(Debug)]
 pub(crate) struct Tiles {
     pub(crate) opacity: f32,
     pub(crate) content: Group,
 }
 
-/// An outline that is worked out when it is first looked at: what is only read and written again never is.
-pub(crate) struct Local(LazyLock<Outline, Box<dyn FnOnce() -> Outline + Send>>);
+/// An outline computed on first use. Shapes that are read and written unchanged never need theirs.
+pub(crate) struct LazyOutline(LazyLock<Outline, Box<dyn FnOnce() -> Outline + Send>>);
 
-impl Local {
-    pub(crate) fn later(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
+impl LazyOutline {
+    pub(crate) fn new(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
         Self(LazyLock::new(Box::new(f)))
     }
 }
 
-impl From<Outline> for Local {
+impl From<Outline> for LazyOutline {
     fn from(o: Outline) -> Self {
-        Self::later(move || o)
+        Self::new(move || o)
     }
 }
 
-impl Deref for Local {
+impl Deref for LazyOutline {
     type Target = Outline;
 
     fn deref(&self) -> &Outline {
@@ -82,7 +120,7 @@ impl Deref for Local {
     }
 }
 
-impl fmt::Debug for Local {
+impl fmt::Debug for LazyOutline {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         (**self).fmt(f)
     }
@@ -92,12 +130,12 @@ impl fmt::Debug for Local {
 pub(crate) enum Node {
     Group(Box<Group>),
     Part(usize),
-    /// A bitmap, by number.
+    /// Index of a bitmap.
     Image(usize),
     Text {
         element: Option<ElementId>,
         content: Box<Group>,
-        /// Of each node of the content the element it comes from; empty where nothing inside has a name.
+        /// The source element of each node of the content; empty if nothing inside has a name.
         owners: Vec<ElementId>,
     },
 }
@@ -113,13 +151,13 @@ pub(crate) struct Group {
     pub(crate) clip: Option<usize>,
     pub(crate) mask: Option<usize>,
     pub(crate) filters: Vec<Arc<usvg::filter::Filter>>,
-    /// Its own slot, if it is moved as a whole.
+    /// The group's own slot, if it is moved as a whole.
     pub(crate) slot: Option<usize>,
     pub(crate) children: Vec<Node>,
 }
 
 impl Group {
-    /// One that does nothing to what is in it but move it.
+    /// A group that only transforms its content.
     pub(crate) fn plain(owner: Option<ElementId>, transform: Affine, children: Vec<Node>) -> Self {
         Self {
             source: None,
@@ -137,43 +175,43 @@ impl Group {
     }
 }
 
-/// A place in the tree of groups where an affine fit of the map goes into the transforms, so that what cannot be bent (filters
-/// with their regions and lengths, images) is moved along. What is inside is written in the moved frame.
+/// A group that moves as a whole: an affine fit of the map is applied to its transform. It holds content that cannot be bent
+/// (filters with their regions and lengths, images). Its content is written in the moved frame.
 #[derive(Debug)]
 pub(crate) struct Slot {
-    /// The slot around it.
+    /// The enclosing slot.
     pub(crate) outer: Option<usize>,
-    /// From inside to root user space.
+    /// From the slot's coordinates to root user space.
     pub(crate) frame: Affine,
-    /// What is to be fitted, in the coordinates inside.
+    /// Area to fit, in the slot's coordinates.
     pub(crate) area: Rect,
-    /// Whether it goes before the group's own transform, else after.
+    /// `true` if the fit is applied outside of the group's transform, `false` if inside.
     pub(crate) before: bool,
-    /// The element whose `transform` takes it up.
+    /// The element whose `transform` takes the fit.
     pub(crate) element: Option<ElementId>,
     pub(crate) owner: Option<ElementId>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
 }
 
-/// A bitmap.
+/// A bitmap image.
 #[derive(Debug)]
 pub(crate) struct Bitmap {
     pub(crate) image: Box<usvg::Image>,
-    /// From its pixels to root user space.
+    /// From pixels to root user space.
     pub(crate) frame: Affine,
-    /// From its pixels to the user space of its element: what usvg made of x, y, width and height.
+    /// From pixels to the element's user space, derived by usvg from x, y, width and height.
     pub(crate) placing: Affine,
     pub(crate) slot: Option<usize>,
-    /// The element that selects it.
+    /// The element by which the image is selected.
     pub(crate) owner: Option<ElementId>,
-    /// Whether it is part of the picture; tiles and filters' pictures never bend.
+    /// `false` for images in tiles and filters, which are never bent.
     pub(crate) bends: bool,
-    /// Whether it is larger than its place and cut.
+    /// `true` if the image is cropped to its viewport.
     pub(crate) sliced: bool,
 }
 
-/// A clip path as one frame sees it.
+/// A clip path in one frame.
 #[derive(Debug)]
 pub(crate) struct Clip {
     pub(crate) id: String,
@@ -181,13 +219,28 @@ pub(crate) struct Clip {
     pub(crate) clip: Option<usize>,
     pub(crate) root: Group,
     pub(crate) referrers: Vec<Referrer>,
-    /// The parts that belong to it.
+    /// The parts inside.
     pub(crate) parts: Range<usize>,
-    /// Whether it is none of the source's own definitions: in tiles that are laid out, in a drawing shown as an image.
+    /// `true` if the source has no such definition: in laid-out tiles, in a drawing shown as an image.
     pub(crate) foreign: bool,
 }
 
-/// A mask as one frame sees it.
+impl Clip {
+    /// A clip path that the source does not define.
+    pub(crate) fn foreign(id: &str, root: Group, owner: Option<ElementId>, parts: Range<usize>) -> Self {
+        Self {
+            id: id.to_owned(),
+            transform: Affine::IDENTITY,
+            clip: None,
+            root,
+            referrers: vec![Referrer { element: None, owner }],
+            parts,
+            foreign: true,
+        }
+    }
+}
+
+/// A mask in one frame.
 #[derive(Debug)]
 pub(crate) struct Mask {
     pub(crate) id: String,
@@ -195,32 +248,39 @@ pub(crate) struct Mask {
     pub(crate) kind: usvg::MaskType,
     pub(crate) mask: Option<usize>,
     pub(crate) root: Group,
-    /// Of those that refer to it: from their user space to root user space.
+    /// From the referrers' user space to root user space.
     pub(crate) frame: Affine,
     pub(crate) slot: Option<usize>,
     pub(crate) referrers: Vec<Referrer>,
-    /// The parts that belong to it.
+    /// The parts inside.
     pub(crate) parts: Range<usize>,
-    /// Whether it is none of the source's own definitions.
+    /// `true` if the source has no such definition.
     pub(crate) foreign: bool,
-    /// What its content covers, in the frame's coordinates.
+    /// Bounding box of the content in the frame's coordinates.
     pub(crate) content: Rect,
 }
 
-/// A pattern's tile.
+/// The tile of a pattern.
 #[derive(Debug)]
-pub(crate) struct Tile {
+pub(crate) struct PatternTile {
     pub(crate) pattern: Arc<usvg::Pattern>,
     pub(crate) root: Group,
 }
 
-/// Who refers to a clip path or mask.
+/// An element that refers to a clip path or mask.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Referrer {
-    /// The element that carries the property, where it is known.
+    /// The element with the property, if known.
     pub(crate) element: Option<ElementId>,
-    /// The element that is replaced as a whole around it.
+    /// The element around it that is replaced as a whole.
     pub(crate) owner: Option<ElementId>,
+}
+
+/// A remark on something that could not be resolved as requested, with the name of what it concerns.
+#[derive(Debug, Clone)]
+pub(crate) struct SceneNote {
+    pub(crate) text: &'static str,
+    pub(crate) name: String,
 }
 
 #[derive(Debug)]
@@ -229,33 +289,42 @@ pub(crate) struct Scene {
     pub(crate) parts: Vec<Part>,
     pub(crate) clips: Vec<Clip>,
     pub(crate) masks: Vec<Mask>,
-    pub(crate) tiles: Vec<Tile>,
-    /// What filters show by `feImage`, by the address of usvg's group (which the document keeps alive).
+    pub(crate) tiles: Vec<PatternTile>,
+    /// Content of `feImage`s by the address of usvg's group (which the document keeps alive).
     pub(crate) pictures: HashMap<usize, Group>,
     pub(crate) bitmaps: Vec<Bitmap>,
-    /// Gradients and filters that are none of the source's own, by address.
+    /// Addresses of gradients and filters that the source does not define.
     pub(crate) foreign: HashSet<usize>,
     pub(crate) slots: Vec<Slot>,
     /// Lines of lettering.
-    pub(crate) lines: Vec<Line>,
-    /// The parts written as each element.
+    pub(crate) lines: Vec<TextLine>,
+    /// Parts by source element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
     /// Root user space to px.
     pub(crate) to_px: Affine,
-    /// Why the source cannot be patched in place, whatever the map.
-    pub(crate) unkeepable: Option<String>,
-    /// What could not be resolved as asked, and where.
-    pub(crate) notes: Vec<(&'static str, String)>,
+    /// Reason why the source cannot be patched in place, regardless of the map.
+    pub(crate) unpatchable: Option<Unpatchable>,
+    pub(crate) notes: Vec<SceneNote>,
 }
 
-impl Part {
-    /// Whether it leaves a mark.
-    pub(crate) fn painted(&self) -> bool {
-        self.visible && (self.fill.is_some() || self.stroke.is_some())
-    }
-
-    /// In root user space.
-    pub(crate) fn outline(&self) -> Outline {
-        self.local.transformed(self.frame)
+impl Scene {
+    /// A scene with nothing in it.
+    pub(crate) fn empty(unpatchable: Option<Unpatchable>) -> Self {
+        Self {
+            root: Group::plain(None, Affine::IDENTITY, Vec::new()),
+            parts: Vec::new(),
+            clips: Vec::new(),
+            masks: Vec::new(),
+            tiles: Vec::new(),
+            pictures: HashMap::new(),
+            bitmaps: Vec::new(),
+            foreign: HashSet::new(),
+            slots: Vec::new(),
+            lines: Vec::new(),
+            by_source: HashMap::new(),
+            to_px: Affine::IDENTITY,
+            unpatchable,
+            notes: Vec::new(),
+        }
     }
 }

@@ -1,49 +1,53 @@
-//! Which elements a property is declared on, by attribute, style sheet or style attribute, as the cascade of CSS says.
+//! Values of a property by the cascade of CSS: attribute, style sheet, style attribute.
+//!
+//! It serves properties that usvg does not resolve (`vector-effect`), so it follows CSS: importance, then specificity, then
+//! order. `unfold` has a cascade of its own, which must predict usvg and therefore follows usvg's rules.
 
-use crate::source::edit::declared;
-use crate::source::text::{ElementId, Source};
+use super::style::declared;
+use super::tags::ElementId;
+use super::text::SourceText;
 use simplecss::{AttributeOperator, PseudoClass, StyleSheet};
 
-/// The value that `property` has on every element for which anything declares one. (Nothing is inherited here.)
-pub(crate) fn values(source: &Source, property: &'static str) -> Vec<Option<String>> {
+/// Returns for every element the value declared for `property`. Nothing is inherited.
+pub(crate) fn values(source: &SourceText, property: &'static str) -> Vec<Option<String>> {
     let sheet = StyleSheet::parse(&source.css);
-    // In the order of the cascade: the later wins, and what is important wins over all that is not.
-    let said = |important: bool| {
+    // Rules are sorted by specificity, then order.
+    let declarations = |important: bool| {
         let rules = sheet.rules.iter().flat_map(|r| r.declarations.iter().map(move |d| (&r.selector, d)));
         rules.filter(move |(_, d)| d.name == property && d.important == important)
     };
-    let one = |e: ElementId| {
-        let node = Node { source, e };
+    let value = |e: ElementId| {
+        let element = StyledElement { source, e };
         let own = source.attr(e, "style").and_then(|s| declared(&s, property).map(ToOwned::to_owned));
-        let (own, strong) = match own {
+        let (own, important) = match own {
             Some(v) => match v.split_once('!') {
                 Some((v, _)) => (Some(v.trim().to_owned()), true),
                 None => (Some(v), false),
             },
             None => (None, false),
         };
-        let sheets = |important| {
-            let mut matching = said(important).filter(|(s, _)| s.matches(&node));
+        let from_sheets = |important| {
+            let mut matching = declarations(important).filter(|(s, _)| s.matches(&element));
             matching.next_back().map(|(_, d)| d.value.to_owned())
         };
         own.clone()
-            .filter(|_| strong)
-            .or_else(|| sheets(true))
+            .filter(|_| important)
+            .or_else(|| from_sheets(true))
             .or(own)
-            .or_else(|| sheets(false))
+            .or_else(|| from_sheets(false))
             .or_else(|| source.attr(e, property).map(|v| v.trim().to_owned()))
     };
-    (0..source.elements.len()).map(one).collect()
+    (0..source.elements.len()).map(value).collect()
 }
 
-/// An element as selectors see it.
+/// Element adapter for selectors.
 #[derive(Clone, Copy)]
-struct Node<'a> {
-    source: &'a Source,
+struct StyledElement<'a> {
+    source: &'a SourceText,
     e: ElementId,
 }
 
-impl simplecss::Element for Node<'_> {
+impl simplecss::Element for StyledElement<'_> {
     fn parent_element(&self) -> Option<Self> {
         self.source.elements.get(self.e)?.parent.map(|e| Self { e, ..*self })
     }
@@ -80,7 +84,7 @@ mod tests {
                     <circle style='x:style!important'/><g><path/></g><path x='attribute'/><path/><line/><line/>\
                     <rect x='attribute'/>";
         let text = format!("<svg xmlns='http://www.w3.org/2000/svg'><style>{css}</style>{body}</svg>");
-        let found = values(&Source::parse(text, "t").unwrap(), "x");
+        let found = values(&SourceText::parse(text, "t").unwrap(), "x");
         let found: Vec<&str> = found.iter().skip(2).map(|v| v.as_deref().unwrap_or("-")).collect();
         let wanted =
             ["type", "class", "id", "style", "strong", "style", "-", "child", "attribute", "-", "-", "next", "type"];

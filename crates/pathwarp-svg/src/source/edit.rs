@@ -1,36 +1,39 @@
-//! Edits to the source text: attributes, style properties, tags and whole elements; everything else stays byte for byte.
+//! Edits to the source text: attributes, style properties, tags and whole elements. Everything else stays as it is, byte for
+//! byte.
 
-use crate::source::number::escape;
-use crate::source::text::{ElementId, Namespace, Source};
+use super::style::{declared, with_declaration};
+use super::tags::{ElementId, Namespace};
+use super::text::SourceText;
+use super::xml::escape;
 use std::collections::BTreeMap;
 
-/// What happens to one element.
+/// Edits of one element.
 #[derive(Debug, Default)]
 struct Change {
-    /// New values; `None` takes the attribute away.
+    /// New values; `None` removes the attribute.
     attrs: Vec<(&'static str, Option<String>)>,
     properties: Vec<(&'static str, String)>,
     tag: Option<&'static str>,
-    /// New content, in place of all there was.
+    /// Replaces the content.
     content: Option<String>,
-    /// In place of the element as a whole.
+    /// Replaces the whole element.
     replaced: Option<String>,
-    /// Right after the opening tag and right before the closing one.
+    /// Inserted after the opening tag and before the closing tag.
     around: Option<(String, String)>,
-    /// Right before and right after the element.
+    /// Inserted before and after the element.
     before: String,
     after: String,
 }
 
-/// Collected edits.
+/// Edits to be applied together.
 #[derive(Debug)]
 pub(crate) struct Edits<'a> {
-    source: &'a Source,
+    source: &'a SourceText,
     changes: BTreeMap<ElementId, Change>,
 }
 
 impl<'a> Edits<'a> {
-    pub(crate) fn new(source: &'a Source) -> Self {
+    pub(crate) fn new(source: &'a SourceText) -> Self {
         Self { source, changes: BTreeMap::new() }
     }
 
@@ -78,10 +81,10 @@ impl<'a> Edits<'a> {
         self.change(e).after.push_str(text);
     }
 
-    /// Sets a presentation property where it wins: in the style attribute if it, or a style sheet, speaks of the property; as
-    /// an attribute otherwise.
+    /// Sets a presentation property where it takes effect: in the style attribute if that or a style sheet mentions the
+    /// property, else as an attribute.
     pub(crate) fn set_property(&mut self, e: ElementId, name: &'static str, value: String) {
-        let styled = self.source.attr(e, "style").is_some_and(|s| declares(&s, name));
+        let styled = self.source.attr(e, "style").is_some_and(|s| declared(&s, name).is_some());
         if styled || self.source.css_mentions(name) {
             let properties = &mut self.change(e).properties;
             properties.retain(|p| p.0 != name);
@@ -91,22 +94,22 @@ impl<'a> Edits<'a> {
         }
     }
 
-    /// Sets a property in the style attribute, where nothing but `!important` is stronger.
+    /// Sets a property in the style attribute, which only `!important` overrides.
     pub(crate) fn set_style(&mut self, e: ElementId, name: &'static str, value: String) {
         let properties = &mut self.change(e).properties;
         properties.retain(|p| p.0 != name);
         properties.push((name, value));
     }
 
-    /// The text with all edits made. Edits inside an element that is replaced are dropped.
+    /// Applies all edits to the text. Edits inside a replaced element are dropped.
     pub(crate) fn apply(self) -> String {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
         for (e, c) in self.changes {
             patch(source, e, c, &mut patches);
         }
-        // Stable: insertions at one place stay in the order in which they were asked for; an outer replacement comes first.
-        // But an insertion goes before a replacement that starts at the same place.
+        // The sort is stable, so insertions at one position keep their order. An insertion precedes a replacement that starts
+        // at the same position, and an outer replacement precedes an inner one.
         patches.sort_by_key(|p| (p.0, p.0 != p.1, std::cmp::Reverse(p.1)));
         let text = &source.text;
         let mut out = String::with_capacity(text.len() * 2);
@@ -124,7 +127,7 @@ impl<'a> Edits<'a> {
     }
 }
 
-fn patch(source: &Source, e: ElementId, c: Change, out: &mut Vec<(usize, usize, String)>) {
+fn patch(source: &SourceText, e: ElementId, c: Change, out: &mut Vec<(usize, usize, String)>) {
     let text = &source.text;
     let el = &source.elements[e];
     if !c.before.is_empty() {
@@ -153,7 +156,7 @@ fn patch(source: &Source, e: ElementId, c: Change, out: &mut Vec<(usize, usize, 
         attrs.push(("style", Some(style)));
     }
     for (name, value) in attrs {
-        // `xlink:href` and `href` go together.
+        // `xlink:href` counts as `href`.
         let existing = el.attrs.iter().filter(|a| {
             a.name(text) == name
                 && (a.namespace == Namespace::None || (name == "href" && a.namespace == Namespace::Xlink))
@@ -204,59 +207,10 @@ fn patch(source: &Source, e: ElementId, c: Change, out: &mut Vec<(usize, usize, 
     }
 }
 
-/// A value for the quotes that are there.
+/// Escapes a value for the given kind of quotes.
 fn quoted(value: &str, quote: u8) -> String {
     let v = escape(value);
     if quote == b'\'' { v.replace('\'', "&apos;") } else { v }
-}
-
-/// The declarations of a style attribute.
-pub(crate) fn declarations(style: &str) -> impl Iterator<Item = (&str, &str)> {
-    // Semicolons may stand in quotes and in url(data:…;base64,…).
-    let mut parts = Vec::new();
-    let (mut depth, mut quote, mut start) = (0_i32, None, 0);
-    for (i, c) in style.char_indices() {
-        match (quote, c) {
-            (None, '"' | '\'') => quote = Some(c),
-            (Some(q), c) if q == c => quote = None,
-            (None, '(') => depth += 1,
-            (None, ')') => depth -= 1,
-            (None, ';') if depth <= 0 => {
-                parts.push(&style[start..i]);
-                start = i + 1;
-            }
-            _ => {}
-        }
-    }
-    parts.push(&style[start..]);
-    parts.into_iter().filter_map(|p| p.split_once(':')).map(|(n, v)| (n.trim(), v.trim()))
-}
-
-pub(crate) fn declares(style: &str, name: &str) -> bool {
-    declared(style, name).is_some()
-}
-
-/// The value that a style attribute gives a property.
-pub(crate) fn declared<'a>(style: &'a str, name: &str) -> Option<&'a str> {
-    declarations(style).filter(|(n, _)| n.eq_ignore_ascii_case(name)).last().map(|d| d.1)
-}
-
-/// `style` with `name: value` in it, in the old one's place if there was one.
-fn with_declaration(style: &str, name: &str, value: &str) -> String {
-    let mut out: Vec<String> = Vec::new();
-    let mut set = false;
-    for (n, v) in declarations(style) {
-        if !n.eq_ignore_ascii_case(name) {
-            out.push(format!("{n}:{v}"));
-        } else if !set {
-            out.push(format!("{n}:{value}"));
-            set = true;
-        }
-    }
-    if !set {
-        out.push(format!("{name}:{value}"));
-    }
-    out.join(";")
 }
 
 #[cfg(test)]
@@ -265,7 +219,7 @@ mod tests {
 
     fn edited(shape: &str, edit: impl FnOnce(&mut Edits<'_>)) -> String {
         let head = "<svg xmlns='http://www.w3.org/2000/svg'>";
-        let s = Source::parse(format!("{head}{shape}</svg>"), "t").unwrap();
+        let s = SourceText::parse(format!("{head}{shape}</svg>"), "t").unwrap();
         let mut e = Edits::new(&s);
         edit(&mut e);
         e.apply().strip_prefix(head).unwrap().strip_suffix("</svg>").unwrap().to_owned()

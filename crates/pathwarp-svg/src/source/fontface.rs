@@ -1,13 +1,13 @@
-//! Fonts that a drawing brings along: `@font-face` rules of its style sheets (CSS Fonts 4, section 4) whose source is a `data:`
-//! URL of a TrueType, OpenType or WOFF 1.0 font.
+//! Fonts embedded in a drawing: `@font-face` rules in its style sheets (CSS Fonts 4, section 4) with a `data:` URL of a
+//! TrueType, OpenType or WOFF 1.0 font.
 
-use crate::source::edit::declarations;
+use super::style::declarations;
 use base64::Engine as _;
 use std::io::Read as _;
 use std::sync::Arc;
 use usvg::fontdb::{Database, FaceInfo, Language, Source, Style, Weight};
 
-/// The largest font that is unpacked: some ten times the usual.
+/// Largest font to unpack, about ten times the usual size.
 const LARGEST: usize = 64 << 20;
 
 #[derive(Debug)]
@@ -15,11 +15,11 @@ struct Face {
     family: String,
     style: Option<Style>,
     weight: Option<Weight>,
-    /// An sfnt file.
+    /// Content of an sfnt file.
     data: Vec<u8>,
 }
 
-/// Adds a drawing's own fonts, in place of others of the same name.
+/// Adds a drawing's embedded fonts. They replace other fonts of the same name.
 pub(crate) fn add(mut db: Arc<Database>, text: &str) -> Arc<Database> {
     let faces = faces(text);
     if faces.is_empty() {
@@ -70,15 +70,15 @@ fn face(block: &str) -> Option<Face> {
     Some(Face { family, style, weight, data })
 }
 
-/// The font of a `data:` URL, as an sfnt file.
+/// Decodes the font in a `data:` URL to an sfnt file.
 fn font(url: &str) -> Option<Vec<u8>> {
     let (head, rest) = url.split_once(',')?;
     if !head.trim_end().ends_with(";base64") {
         return None;
     }
-    let coded = &rest[..rest.find(['"', '\'', ')']).unwrap_or(rest.len())];
-    let coded: String = coded.split_whitespace().collect();
-    let data = base64::engine::general_purpose::STANDARD.decode(coded).ok()?;
+    let encoded = &rest[..rest.find(['"', '\'', ')']).unwrap_or(rest.len())];
+    let encoded: String = encoded.split_whitespace().collect();
+    let data = base64::engine::general_purpose::STANDARD.decode(encoded).ok()?;
     match data.get(..4)? {
         b"wOFF" => unpacked(&data),
         b"wOF2" => None,
@@ -86,7 +86,7 @@ fn font(url: &str) -> Option<Vec<u8>> {
     }
 }
 
-/// WOFF 1.0 as the sfnt file that it was made of (W3C, *WOFF File Format 1.0*, sections 3 to 5).
+/// Unpacks WOFF 1.0 to the original sfnt file (W3C, *WOFF File Format 1.0*, sections 3 to 5).
 fn unpacked(woff: &[u8]) -> Option<Vec<u8>> {
     const HEADER: usize = 44;
     const ENTRY: usize = 20;
@@ -94,7 +94,7 @@ fn unpacked(woff: &[u8]) -> Option<Vec<u8>> {
     let size = |at: usize| long(at).map(|v| v as usize);
     let count = u16::from_be_bytes(woff.get(12..14)?.try_into().ok()?);
     let mut out = long(4)?.to_be_bytes().to_vec();
-    // What lets readers search the table by halving; all of ours ignore it, some ask for it.
+    // Search parameters of the table directory, required by some readers.
     let halves = u16::try_from(count.checked_ilog2()?).ok()?;
     let range = 16 << halves;
     for v in [count, range, halves, (count * 16).checked_sub(range)?] {

@@ -1,4 +1,4 @@
-//! Fonts for text: the system's where wanted, given files, and a bundled one for whatever is missing.
+//! Fonts for text: installed ones if wanted, given files, and a bundled fallback.
 
 use pathwarp::Error;
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use usvg::{FontFamily, FontResolver};
 static BUNDLED: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
 const BUNDLED_FAMILY: &str = "Noto Sans";
 
-/// What CSS's generic families stand for. `None`: whatever common family of that kind there is.
+/// Families for CSS's generic family names. `None` selects a common family of that kind.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct GenericFamilies {
     /// `serif`
@@ -25,26 +25,26 @@ pub struct GenericFamilies {
     pub monospace: Option<String>,
 }
 
-/// The bytes of the bundled font: Noto Sans (OFL) for Latin, Greek and Cyrillic.
+/// Returns the bytes of the bundled font: Noto Sans (OFL) for Latin, Greek and Cyrillic.
 #[must_use]
 pub fn bundled_font() -> &'static [u8] {
     BUNDLED
 }
 
-/// A font as it lies in a file.
+/// A font file's content.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FontFile {
-    /// The file's bytes.
+    /// Bytes of the file.
     pub bytes: Vec<u8>,
-    /// Which of its fonts, counted from 0.
+    /// Index of the font in the file, from 0.
     pub index: u32,
 }
 
-/// The font of a family, installed on the machine or bundled, that comes nearest to `weight` (100 to 900; 400 is regular). CSS's
-/// generic families are families too.
+/// Finds the installed or bundled font of a family that is nearest to `weight` (100 to 900; 400 is regular). `family` may be
+/// a generic family of CSS.
 ///
 /// # Errors
-/// [`Error::Usage`] if there is no such family; it names some that have a similar name.
+/// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
 pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, Error> {
     let db = database(true, &[]);
     let query = |name: &str| {
@@ -70,15 +70,15 @@ pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, 
     };
     let file = found.and_then(|id| db.with_face_data(id, |bytes, index| FontFile { bytes: bytes.to_vec(), index }));
     file.ok_or_else(|| {
-        Error::usage("font", family, format!("is no file, and no family of this machine; {}", similar(family, &db)))
+        Error::usage("font", family, format!("is neither a file nor an installed family; {}", similar(family, &db)))
     })
 }
 
-/// Families whose names look like `family`: each of its words is nearly a word of theirs.
+/// Lists families with names similar to `family`: each word of `family` resembles a word of the name.
 fn similar(family: &str, db: &Database) -> String {
-    /// A likeness (Jaro and Winkler's, 1 is the same) of words with a letter or two wrong; unrelated ones hardly reach it.
+    /// Jaro–Winkler similarity (1 is equal) of words that differ by a letter or two; unrelated words rarely reach it.
     const ALIKE: f64 = 0.85;
-    /// Names that help; more are noise.
+    /// Longest list of suggestions.
     const SHOWN: usize = 6;
     let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
     let likeness = |name: &str| {
@@ -93,16 +93,16 @@ fn similar(family: &str, db: &Database) -> String {
         names.into_iter().map(|n| (likeness(n), n)).filter(|(l, _)| *l >= ALIKE).collect();
     names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
     if names.is_empty() {
-        return "the bundled one is Noto Sans".into();
+        return "the bundled family is Noto Sans".into();
     }
     let names: Vec<&str> = names.iter().take(SHOWN).map(|(_, n)| *n).collect();
-    format!("there are {}", names.join(", "))
+    format!("similar families: {}", names.join(", "))
 }
 
-/// What was asked for and not found.
+/// Names that were asked for and not found.
 pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
-/// The fonts to look in. The system's are read once per process.
+/// Loads the fonts. The installed ones are read once per process.
 pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
     static SYSTEM: OnceLock<Arc<Database>> = OnceLock::new();
     static BARE: OnceLock<Arc<Database>> = OnceLock::new();
@@ -121,14 +121,14 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
         if p.is_dir() {
             db.load_fonts_dir(p);
         } else {
-            // A file that is no font leaves the database as it was; the family's absence is then reported.
+            // A file that is not a font leaves the database unchanged; its family is then reported as missing.
             let _ = db.load_font_file(p);
         }
     }
     db
 }
 
-/// Finds fonts like usvg's own resolver, but never comes back empty-handed, and notes the families it did not find.
+/// Finds fonts like usvg's own resolver, but always returns one, and records the families that were not found.
 pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolver<'static> {
     FontResolver {
         select_font: Box::new(move |font, db| {
@@ -167,7 +167,7 @@ pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolv
     }
 }
 
-/// A generic family: the one that was set, else the common ones.
+/// Resolves a generic family to the configured one, else to a common one.
 fn of_kind(kind: &FontFamily, set: &GenericFamilies, query: impl Fn(&str) -> Option<ID>) -> Option<ID> {
     let (own, common): (_, &[&str]) = match kind {
         FontFamily::Serif => (&set.serif, &["Times New Roman", "Noto Serif", "DejaVu Serif", "Liberation Serif"]),

@@ -1,23 +1,23 @@
-//! Temporary ids: they are put into the text before it is parsed, so that one parse serves usvg, whose tree is told apart by
-//! ids, and the table of the source's own elements.
+//! Temporary ids. They are inserted into the text before parsing, so that a single parse serves both usvg, whose nodes are
+//! identified by id, and our own table of elements.
 
-use crate::source::text::{ElementId, is_tracked};
+use super::tags::{ElementId, is_tracked};
 use memchr::{memchr, memmem};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::ops::Range;
 
-/// The text that is parsed in the source's place.
+/// The text to parse in place of the source.
 #[derive(Debug)]
 pub(crate) struct Marked {
     pub(crate) text: String,
     pub(crate) marks: Marks,
-    /// How many elements there are.
+    /// Number of elements.
     pub(crate) elements: usize,
-    pub(crate) patches: Vec<Patch>,
+    pub(crate) patches: Vec<TextPatch>,
 }
 
-/// Which elements carry a temporary id: the stem and the element's number.
+/// The elements with a temporary id, which is the stem followed by the element's number.
 #[derive(Debug, Default)]
 pub(crate) struct Marks {
     pub(crate) stem: String,
@@ -25,56 +25,56 @@ pub(crate) struct Marks {
     pub(crate) elements: Vec<ElementId>,
 }
 
-/// A place where the parsed text differs from the source: an attribute more, or another value between the quotes.
+/// A difference between the parsed text and the source: an inserted attribute, or a replaced attribute value.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Patch {
+pub(crate) struct TextPatch {
     pub(crate) element: ElementId,
-    /// In the source: a place, or the value that was there.
+    /// Range in the source; empty for an insertion.
     from: usize,
     to: usize,
-    /// In the parsed text.
+    /// Range in the parsed text.
     start: usize,
     end: usize,
-    /// Whether it is a whole attribute.
+    /// `true` for an inserted attribute, `false` for a replaced value.
     new: bool,
 }
 
-impl Patch {
-    /// Whether a value of the parsed text is this one, which the source says otherwise or not at all.
+impl TextPatch {
+    /// Returns `true` if `value`, a range of the parsed text, lies inside the patch.
     pub(crate) fn is(&self, value: &Range<usize>) -> bool {
         value.end <= self.end && value.start >= self.start
     }
 
-    /// The value that is replaced, in the source; `None` for a new attribute.
+    /// Range in the source of the replaced value; `None` for an inserted attribute.
     pub(crate) fn replaced(&self) -> Option<Range<usize>> {
         (!self.new).then_some(self.from..self.to)
     }
 
-    /// What all that follows is shifted by, modulo a word: a new value may be shorter than the old one.
+    /// Shift of everything after the patch, modulo 2^64: a new value may be shorter than the old one.
     pub(crate) fn shift(&self) -> usize {
         self.end.wrapping_sub(self.to)
     }
 }
 
-/// Where something of the parsed text, none of it new, stands in the source.
-pub(crate) fn in_source(patches: &[Patch], at: usize) -> usize {
+/// Translates a position in the parsed text, outside of all patches, to the source.
+pub(crate) fn in_source(patches: &[TextPatch], at: usize) -> usize {
     let before = patches.partition_point(|p| p.end <= at);
-    let shift = before.checked_sub(1).and_then(|i| patches.get(i)).map_or(0, Patch::shift);
+    let shift = before.checked_sub(1).and_then(|i| patches.get(i)).map_or(0, TextPatch::shift);
     at.wrapping_sub(shift)
 }
 
 /// An opening tag.
 struct Tag<'a> {
-    /// Without its prefix.
+    /// Local name.
     name: &'a str,
     name_end: usize,
-    /// Between the quotes of its `id` or `xml:id`.
+    /// Range of the value of `id` or `xml:id`.
     id: Option<(usize, usize)>,
-    /// Whether that is a plain `id`.
+    /// `true` if the attribute is `id` rather than `xml:id`.
     plain: bool,
 }
 
-/// The text with temporary ids; `None` where the tags cannot be told without a parser, and where the text is no XML at all.
+/// Inserts temporary ids. Returns `None` if the tags cannot be found without a full parser, or the text is not XML.
 pub(crate) fn mark(text: &str) -> Option<Marked> {
     let tags = tags(text)?;
     let value = |t: &Tag<'_>| t.id.and_then(|(a, b)| text.get(a..b)).filter(|v| !v.is_empty());
@@ -106,7 +106,7 @@ pub(crate) fn mark(text: &str) -> Option<Marked> {
         if new {
             out.text.push('"');
         }
-        out.patches.push(Patch { element: i, from, to, start, end: out.text.len(), new });
+        out.patches.push(TextPatch { element: i, from, to, start, end: out.text.len(), new });
         out.marks.elements.push(i);
         done = to;
     }
@@ -114,7 +114,7 @@ pub(crate) fn mark(text: &str) -> Option<Marked> {
     Some(out)
 }
 
-/// What no id begins with.
+/// Finds a prefix that occurs nowhere in the text.
 pub(crate) fn stem(text: &str) -> String {
     let mut stem = "warp-".to_owned();
     while text.contains(&stem) {
@@ -123,7 +123,7 @@ pub(crate) fn stem(text: &str) -> String {
     stem
 }
 
-/// Everything that looks like a reference; more than there are does no harm.
+/// Collects everything that looks like a reference. False positives do no harm.
 pub(crate) fn links(text: &str) -> HashSet<&str> {
     text.match_indices('#')
         .map(|(i, _)| {
@@ -133,9 +133,9 @@ pub(crate) fn links(text: &str) -> HashSet<&str> {
         .collect()
 }
 
-/// All opening tags in order.
+/// Lists all opening tags in order.
 fn tags(text: &str) -> Option<Vec<Tag<'_>>> {
-    /// About as many bytes as a tag has in small files.
+    /// Typical bytes per tag in small files, for the capacity.
     const TAG: usize = 48;
     let bytes = text.as_bytes();
     let past = |from: usize, end: &str| Some(from + memmem::find(bytes.get(from..)?, end.as_bytes())? + end.len());
@@ -150,7 +150,7 @@ fn tags(text: &str) -> Option<Vec<Tag<'_>>> {
             b'!' if bytes[at..].starts_with(b"<![CDATA[") => at = past(at + 9, "]]>")?,
             b'!' => {
                 let end = past(at, ">")?;
-                // Entities may be declared, which hold anything.
+                // A DTD subset may declare entities, which can contain tags.
                 if bytes[at..end].contains(&b'[') {
                     return None;
                 }
@@ -166,7 +166,7 @@ fn tags(text: &str) -> Option<Vec<Tag<'_>>> {
     Some(out)
 }
 
-/// The tag whose name starts at `from`, and where it ends.
+/// Parses the opening tag whose name starts at `from`; returns it with its end.
 fn tag(text: &str, from: usize) -> Option<(Tag<'_>, usize)> {
     let bytes = text.as_bytes();
     let skip = |mut at: usize| {
@@ -210,7 +210,7 @@ fn tag(text: &str, from: usize) -> Option<(Tag<'_>, usize)> {
                 let value = at + 1;
                 at = value + memchr(quote, bytes.get(value..)?)?;
                 if matches!(name, b"id" | b"xml:id") && out.id.is_none() {
-                    // What it says may be other than what is written.
+                    // The parsed value would differ from the raw text.
                     if bytes[value..at].iter().any(|b| matches!(b, b'&' | b'\t' | b'\n' | b'\r')) {
                         return None;
                     }

@@ -1,18 +1,17 @@
-//! Numbers and path data as text: rounded once, shortest form.
+//! Numbers and path data as text: rounded once, in the shortest form.
 
-use memchr::memchr3;
 use pathwarp::kurbo::{Affine, BezPath, PathEl, Point};
 use pathwarp::outline::EllipticArc;
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 
-/// More decimals than this say nothing in an f64.
+/// Beyond this many decimals, digits of an f64 carry no information.
 pub(crate) const MOST_DECIMALS: u8 = 14;
 
 /// Appends `v` rounded to `decimals`, without trailing zeros and never as `-0`.
 pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
     let decimals = usize::from(decimals.min(MOST_DECIMALS));
-    // Whole numbers up to here are exact in f64, and integers are written far faster than exact decimals.
+    // Integers up to this size are exact in f64 and much faster to write than decimals.
     const WHOLE: f64 = 9e15;
     let scaled = (v * POWERS[decimals]).round();
     if scaled.abs() >= WHOLE || !scaled.is_finite() {
@@ -30,7 +29,7 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
         n /= 10;
         decimals -= 1;
     }
-    // Digits from the right; a u64 has at most twenty.
+    // Digits from right to left; a u64 has at most twenty.
     let mut buffer = [b'0'; 24];
     let mut at = buffer.len();
     let mut written = 0;
@@ -44,7 +43,7 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
         n /= 10;
         written += 1;
     }
-    // Digits are text.
+    // The buffer holds ASCII digits only, so this cannot fail.
     out.push_str(std::str::from_utf8(&buffer[at..]).unwrap_or_default());
 }
 
@@ -65,12 +64,12 @@ fn push_exactly(out: &mut String, v: f64, decimals: usize) {
     }
 }
 
-/// `v` with nine significant digits: for lengths, offsets and matrices.
+/// Formats `v` with nine significant digits: for lengths, offsets and matrices.
 pub(crate) fn short(v: f64) -> String {
     significant(v, 9)
 }
 
-/// `v` with as many significant digits as asked for.
+/// Formats `v` with `digits` significant digits.
 pub(crate) fn significant(v: f64, digits: i32) -> String {
     let mut out = String::new();
     push_significant(&mut out, v, digits);
@@ -81,19 +80,19 @@ fn push_significant(out: &mut String, v: f64, digits: i32) {
     if v == 0.0 || !v.is_finite() {
         return out.push('0');
     }
-    // Small whole numbers, which most are, need no logarithm.
+    // Fast path for small integers, the common case: no logarithm.
     if v.fract() == 0.0 && v.abs() < 1e6 {
         return push(out, v, 0);
     }
     let size = v.abs().log10().floor() as i32 + 1;
     match u8::try_from((digits - size).max(0)) {
         Ok(d) if d <= MOST_DECIMALS => push(out, v, d),
-        // Nothing in a drawing is smaller than thirty decimals can tell.
+        // Thirty decimals resolve everything that can occur in a drawing.
         _ => push_exactly(out, v, (digits - size).clamp(0, 30) as usize),
     }
 }
 
-/// `matrix(…)` with digits enough for f32 readers and f64 ones.
+/// Formats a transform as `matrix(…)`, with fifteen significant digits to suit f64 readers.
 pub(crate) fn matrix(m: Affine) -> String {
     let mut out = String::from("matrix(");
     for (i, v) in m.as_coeffs().into_iter().enumerate() {
@@ -106,7 +105,7 @@ pub(crate) fn matrix(m: Affine) -> String {
     out
 }
 
-/// The `d` attribute: absolute commands.
+/// Formats a path as a `d` attribute with absolute commands.
 pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
     let mut out = String::with_capacity(path.elements().len() * 24);
     let point = |out: &mut String, p: Point| {
@@ -115,7 +114,7 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
         push(out, p.y, decimals);
     };
     let mut at = Point::ORIGIN;
-    // Cubics that differ from a quadratic by less than rounding are one.
+    // Write a cubic as a quadratic if the two differ by less than the rounding.
     let near = 0.1 * 0.1_f64.powi(i32::from(decimals));
     for el in path.elements() {
         if !out.is_empty() {
@@ -159,10 +158,10 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
     out
 }
 
-/// Appends `v` to the last bit: as f32 where it came from one.
+/// Appends `v` in the shortest form that reads back unchanged; as an f32 if `v` is one.
 fn push_exact(out: &mut String, v: f64) {
     let single = v as f32;
-    // A number of few digits is the only one so short that rounds to `v`; it is found without the long way.
+    // A number with few digits is the unique shortest form; find it without the general algorithm.
     const DECIMALS: u8 = 3;
     const LARGEST: f64 = 1e6;
     let scale = POWERS[usize::from(DECIMALS)];
@@ -175,7 +174,7 @@ fn push_exact(out: &mut String, v: f64) {
     let _ = if f64::from(single) == v { write!(out, "{single}") } else { write!(out, "{v}") };
 }
 
-/// The `d` attribute of an outline as it was drawn: no number rounded, arcs as arcs.
+/// Formats an outline as a `d` attribute without rounding, with arcs as arcs.
 pub(crate) fn outline_data(outline: &Outline) -> String {
     let mut out = String::new();
     let mut add = |command: &str, numbers: &[f64]| {
@@ -216,46 +215,24 @@ pub(crate) fn outline_data(outline: &Outline) -> String {
     out
 }
 
-/// Against any pixel, of an ellipse that has no axes to be named by.
+/// Relative tolerance of the cubics that replace an arc without principal axes; far below a pixel.
 const FINE: f64 = 1e-5;
 
-/// The radii of an arc and the turn of its ellipse in degrees, as the `A` command wants them; `None` for one that has been
-/// sheared or mirrored, or that comes back to its start.
+/// Returns the radii of an arc and the rotation of its ellipse in degrees, as the `A` command takes them. Returns `None` for
+/// a sheared or mirrored arc, and for one that ends at its start.
 fn radii(a: &EllipticArc) -> Option<[f64; 3]> {
     let (rx, ry) = (a.a.hypot(), a.b.hypot());
     let right = a.a.dot(a.b).abs() <= 1e-12 * rx * ry && a.a.cross(a.b) > 0.0;
     (right && a.p0 != a.p1).then(|| [rx, ry, a.a.y.atan2(a.a.x).to_degrees()])
 }
 
-/// The quadratic nearest to a cubic, and how far its handle is off; `None` for a handle that would not be finite.
+/// Finds the quadratic nearest to a cubic, with the distance between its two candidate handles. Returns `None` if the
+/// handle is not finite.
 fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)> {
     let from_start = p0 + (p1 - p0) * 1.5;
     let from_end = p3 + (p2 - p3) * 1.5;
     let q = from_start.midpoint(from_end);
     q.is_finite().then(|| (q, from_start.distance(from_end)))
-}
-
-/// Text made safe for an attribute value in double quotes, and for element content.
-pub(crate) fn escape(text: &str) -> String {
-    let bytes = text.as_bytes();
-    let has = |a, b, c| memchr3(a, b, c, bytes).is_some();
-    if !has(b'&', b'<', b'>') && !has(b'"', b'\n', b'\r') && !bytes.contains(&b'\t') {
-        return text.to_owned();
-    }
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' => out.push_str("&#10;"),
-            '\r' => out.push_str("&#13;"),
-            '\t' => out.push_str("&#9;"),
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 #[cfg(test)]
@@ -288,13 +265,13 @@ mod tests {
         let d = "M0.1 0.30000000000000004Q1 2 3 4C5 6 7 8 9 10A50 30 0 1 0 -4 0.0000001L8 8ZM1 1A2 2 0 0 1 3 1";
         let o = Outline::from_svg(d).unwrap();
         assert_eq!(outline_data(&o), d);
-        // What a renderer keeps is written as short as that.
+        // Numbers that come from an f32 are written as such.
         let mut p = BezPath::new();
         p.move_to((f64::from(0.1_f32), 2.0));
         assert_eq!(outline_data(&(&p).into()), "M0.1 2");
     }
 
-    /// Against the standard library, which knows no short way.
+    /// Compares with the standard library's formatting.
     #[test]
     fn exact_numbers_are_the_shortest_there_are() {
         let mut seed = 1_u64;
@@ -312,7 +289,7 @@ mod tests {
             let single = v as f32;
             let wanted = if f64::from(single) == v { single.to_string() } else { v.to_string() };
             assert_eq!(out, wanted);
-            // The same with three digits behind the point by hand.
+            // Compare rounding to three decimals, too.
             out.clear();
             push(&mut out, v, 3);
             let wanted = format!("{v:.3}");
@@ -335,7 +312,7 @@ mod tests {
                 };
                 a.segs().flat_map(|s| [0.0, 0.3, 0.5, 0.8, 1.0].map(|t| near(s.eval(t)))).fold(0.0, f64::max)
             };
-            // Half the distance between two of the places that are looked at, on the longer arc.
+            // Half the distance between neighbouring samples on the longer arc.
             assert!(far(&o, &again) < 0.05 && far(&again, &o) < 0.05, "{}", outline_data(&o));
         }
     }

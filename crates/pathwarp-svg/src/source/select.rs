@@ -1,50 +1,53 @@
-//! What part of a drawing is meant: selectors, exclusions, guides, and names.
+//! Selection of a part of a drawing: selectors, exclusions, guides, and names.
 
-use crate::source::text::{ElementId, Source};
+use super::tags::ElementId;
+use super::text::SourceText;
 
-/// The part of a document that is warped. Empty lists: everything.
+/// The part of a document to warp. By default, everything.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
-    /// Only these, each `#id`, `.class`, `tag` or a name (id, Inkscape label or title), with all that is inside.
+    /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name (id, Inkscape label or title). Empty:
+    /// all.
     pub select: Vec<String>,
-    /// Not these, nor what is inside them.
+    /// Elements to leave unchanged with all they contain, in the same form.
     pub exclude: Vec<String>,
-    /// Names of cages, bases and targets: left as they are, and no part of the artwork.
+    /// Names of cages, bases and targets. They are left unchanged and do not count as artwork.
     pub guides: Vec<String>,
 }
 
 impl Selection {
-    /// Whether everything is meant.
+    /// Returns `true` if everything is selected.
     #[must_use]
     pub fn is_everything(&self) -> bool {
         self.select.is_empty() && self.exclude.is_empty() && self.guides.is_empty()
     }
 
-    /// For every element whether it is meant.
-    pub(crate) fn resolve(&self, source: &Source) -> Vec<bool> {
+    /// Determines for every element whether it is selected.
+    pub(crate) fn resolve(&self, source: &SourceText) -> Vec<bool> {
         let hits = |list: &[String], e: ElementId| list.iter().any(|s| matches(source, e, s));
-        let mut chosen = Vec::with_capacity(source.elements.len());
-        let mut barred: Vec<bool> = Vec::with_capacity(source.elements.len());
+        let mut selected = Vec::with_capacity(source.elements.len());
+        let mut excluded: Vec<bool> = Vec::with_capacity(source.elements.len());
         for (e, el) in source.elements.iter().enumerate() {
-            // Parents come first in document order.
-            let (above, shut) = el.parent.map_or((false, false), |p| (chosen[p], barred[p]));
-            chosen.push(above || self.select.is_empty() || hits(&self.select, e));
-            barred.push(shut || hits(&self.exclude, e) || e > 0 && self.guides.iter().any(|g| named(source, e, g)));
+            // In document order, parents precede their children.
+            let (inside_selected, inside_excluded) = el.parent.map_or((false, false), |p| (selected[p], excluded[p]));
+            selected.push(inside_selected || self.select.is_empty() || hits(&self.select, e));
+            let is_guide = || e > 0 && self.guides.iter().any(|g| is_named(source, e, g));
+            excluded.push(inside_excluded || hits(&self.exclude, e) || is_guide());
         }
-        chosen.iter().zip(&barred).map(|(c, b)| *c && !*b).collect()
+        selected.iter().zip(&excluded).map(|(s, x)| *s && !*x).collect()
     }
 }
 
-fn matches(source: &Source, e: ElementId, selector: &str) -> bool {
+fn matches(source: &SourceText, e: ElementId, selector: &str) -> bool {
     match selector.split_at_checked(1) {
-        Some(("#", name)) => named(source, e, name),
+        Some(("#", name)) => is_named(source, e, name),
         Some((".", class)) => source.attr(e, "class").is_some_and(|c| c.split_ascii_whitespace().any(|c| c == class)),
-        _ => source.elements[e].tag == selector || named(source, e, selector),
+        _ => source.elements[e].tag == selector || is_named(source, e, selector),
     }
 }
 
-/// Whether the element goes by this name: id, then Inkscape's label, then title.
-pub(crate) fn named(source: &Source, e: ElementId, name: &str) -> bool {
+/// Returns `true` if the element's id, Inkscape label or title is `name`.
+pub(crate) fn is_named(source: &SourceText, e: ElementId, name: &str) -> bool {
     let name = name.strip_prefix('#').unwrap_or(name);
     source.attr(e, "id").is_some_and(|v| v == name)
         || source.label(e).is_some_and(|v| v == name)

@@ -1,7 +1,9 @@
-//! From a parsed document to the table of its elements with their places in the source.
+//! Builds the table of elements, with their source positions, from a parsed document.
 
-use crate::source::marks::{self, Patch};
-use crate::source::text::{Attr, Element, ElementId, INKSCAPE, Namespace, SVG, XLINK, XML};
+use super::element::{Attr, Element};
+use super::marks::{self, TextPatch};
+use super::tags::{ElementId, INKSCAPE, Namespace, SVG, XLINK, XML};
+use super::unpatchable::Unpatchable;
 use memchr::memrchr;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -10,23 +12,23 @@ use usvg::roxmltree;
 /// The elements of a document.
 pub(crate) struct Table {
     pub(crate) elements: Vec<Element>,
-    /// All style sheets' text.
+    /// Text of all style sheets.
     pub(crate) css: String,
-    /// Why the text cannot be patched in place.
-    pub(crate) unpatchable: Option<String>,
+    /// Reason why the text cannot be patched in place.
+    pub(crate) unpatchable: Option<Unpatchable>,
 }
 
 impl Table {
-    /// The elements of a document with their places in the source, from which its text differs by `patches`; `None` if its
-    /// root is not `<svg>`.
-    pub(crate) fn of(doc: &roxmltree::Document<'_>, patches: &[Patch]) -> Option<Self> {
+    /// Lists the elements of a document whose text differs from the source by `patches`. Returns `None` if the root is not
+    /// `<svg>`.
+    pub(crate) fn of(doc: &roxmltree::Document<'_>, patches: &[TextPatch]) -> Option<Self> {
         let root = doc.root_element();
         if root.tag_name().name() != "svg" || !matches!(root.tag_name().namespace(), Some(SVG) | None) {
             return None;
         }
         let start = root.range().start;
         let mut out = Self { elements: Vec::new(), css: String::new(), unpatchable: None };
-        // The element at hand and those around it.
+        // The current element and its ancestors.
         let mut open: Vec<(Option<roxmltree::NodeId>, ElementId)> = Vec::new();
         let mut next = 0;
         for node in doc.descendants().filter(roxmltree::Node::is_element) {
@@ -38,14 +40,13 @@ impl Table {
             let parent = open.last().map(|o| o.1);
             open.push((Some(node.id()), id));
             let patch = patches.get(next).filter(|p| p.element == id);
-            let before = next.checked_sub(1).and_then(|i| patches.get(i)).map_or(0, Patch::shift);
+            let before = next.checked_sub(1).and_then(|i| patches.get(i)).map_or(0, TextPatch::shift);
             next += usize::from(patch.is_some());
             let places = Places { text: doc.input_text(), patches, patch, before };
-            // An entity's own text stands in the DTD, before the root.
+            // The replacement text of an entity is in the DTD, before the root.
             let element = (node.range().start >= start).then(|| element(&places, node, parent)).flatten();
             out.elements.push(element.unwrap_or_else(|| {
-                let why = "parts of it come from DTD entities, which have no place in the text";
-                out.unpatchable.get_or_insert_with(|| why.to_owned());
+                out.unpatchable.get_or_insert(Unpatchable::Entities);
                 Element {
                     parent: None,
                     tag: Cow::Borrowed(""),
@@ -66,18 +67,18 @@ impl Table {
     }
 }
 
-/// From the parsed text to the source.
+/// Translates positions in the parsed text to positions in the source.
 struct Places<'a> {
     /// The parsed text.
     text: &'a str,
-    patches: &'a [Patch],
-    /// What is new in the opening tag at hand.
-    patch: Option<&'a Patch>,
-    /// By what the tag's start is shifted.
+    patches: &'a [TextPatch],
+    /// The patch inside the current opening tag.
+    patch: Option<&'a TextPatch>,
+    /// Shift of the tag's start.
     before: usize,
 }
 
-/// The element's places in the source; `None` if they are not there (it comes from an entity).
+/// Locates an element in the source. Returns `None` if it comes from an entity.
 fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>) -> Option<Element> {
     let text = places.text;
     let range = node.range();
@@ -86,13 +87,13 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
     let qname = range.start + 1..range.start + 1 + len;
     let name = node.tag_name();
     let local = name.name();
-    // It may have a prefix.
+    // The name may have a prefix.
     let before = rest.get(..len)?.strip_suffix(local.as_bytes())?;
     if !matches!(before.last(), None | Some(b':')) {
         return None;
     }
     let moved = |r: &Range<usize>, shift: usize| r.start.wrapping_sub(shift)..r.end.wrapping_sub(shift);
-    // A new attribute stands before all others.
+    // An inserted attribute precedes all others.
     let mut shift = match places.patch {
         Some(p) if p.replaced().is_none() => p.shift(),
         _ => places.before,
@@ -108,7 +109,7 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
         }
         last = last.max(r.end);
         let full = a.range_qname();
-        let mut one = Attr {
+        let mut attr = Attr {
             name: moved(&(full.end.checked_sub(a.name().len())?..full.end), shift),
             namespace: match a.namespace() {
                 None => Namespace::None,
@@ -124,12 +125,12 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
         if let Some(p) = places.patch.filter(|p| p.is(&v)) {
             let Some(old) = p.replaced() else { continue };
             shift = p.shift();
-            one.range.end = r.end.wrapping_sub(shift);
-            one.value_range = old;
+            attr.range.end = r.end.wrapping_sub(shift);
+            attr.value_range = old;
         }
-        attrs.push(one);
+        attrs.push(attr);
     }
-    // Namespace declarations are no attributes for the parser but stand among them; their quotes may hold a `>`.
+    // The parser does not list namespace declarations as attributes; their quoted values may contain `>`.
     let open_end = tag_end(text, last, range.end)?;
     let close = if open_end < range.end {
         let start = memrchr(b'<', text.as_bytes().get(..range.end)?)?;
@@ -146,7 +147,7 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
         .map(|t| t.trim().to_owned())
         .filter(|t| !t.is_empty());
     let tag = if svg { known(local).map_or_else(|| Cow::Owned(local.to_owned()), Cow::Borrowed) } else { "".into() };
-    let open_end = open_end.wrapping_sub(places.patch.map_or(places.before, Patch::shift));
+    let open_end = open_end.wrapping_sub(places.patch.map_or(places.before, TextPatch::shift));
     Some(Element {
         parent,
         tag,
@@ -159,7 +160,7 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
     })
 }
 
-/// The names that drawings are full of, which need no memory of their own.
+/// Interns common element names to avoid allocating them.
 fn known(tag: &str) -> Option<&'static str> {
     Some(match tag {
         "path" => "path",

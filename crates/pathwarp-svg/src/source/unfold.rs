@@ -1,45 +1,51 @@
-//! How much a drawing unfolds to. `use`, patterns, markers, clip paths, masks and filters show other elements, which may show
-//! others in turn: a few lines can stand for more than any program draws. usvg walks all of it, so it is counted before.
+//! Bounds on the size of a drawing with all references followed. `use`, patterns, markers, clip paths, masks and filters
+//! show other elements, which may show further ones in turn, so a few lines can expand to more elements than any program can
+//! draw. usvg walks them all, so they are counted first.
+//!
+//! The cascade here follows usvg's rules, not CSS's: an `!important` declaration is never overridden, not even by a later
+//! important one, and selectors have no specificity. The count must bound what usvg is going to do. `cascade` resolves
+//! properties that usvg does not know, and follows CSS.
 
+use super::tags::is_shape;
 use pathwarp::Error;
 use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, PseudoClass, StyleSheet};
 use std::collections::HashMap;
 use usvg::roxmltree::{self, Node, NodeId};
 
-/// As many elements as a drawing may unfold to: as many as usvg takes in a file. Of two thousand drawings of all sorts none comes
-/// to two thousand.
+/// Largest number of elements after expansion, equal to usvg's own limit for a file. None of two thousand drawings of all
+/// kinds exceeds two thousand.
 const MOST: u64 = 1_000_000;
-/// As deep as what is shown may nest, references and elements. The stack of 256 MiB holds several times as much, but markers
-/// on markers take usvg the square of their number.
+/// Deepest nesting of references and elements after expansion. The stack of 256 MiB allows several times as much, but
+/// usvg needs quadratic time for markers on markers.
 const DEEPEST: usize = 4_000;
-/// Drawings with so few references unfold to little, whatever they are.
+/// Drawings with at most this many references cannot expand to much.
 const FEW: usize = 16;
-/// In so many bytes there is no room for vertices and a marker whose product were large.
+/// Below this many bytes, vertices times one marker stays small.
 const SMALL: usize = 4096;
 
-/// Whether a drawing may unfold to much: it has markers, which stand on every vertex, or other elements that show what is
-/// referred to (`referring`), and more than a few references.
+/// Returns `true` if a drawing could expand to a large number of elements: it has more than a few references, and either
+/// markers, which are drawn at every vertex, or other elements that show what they refer to (`referring`).
 pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) -> bool {
     let text = doc.input_text();
-    // Entities may hold references.
+    // Entities may contain references.
     let references = || text.bytes().filter(|b| matches!(b, b'#' | b'&')).count();
     markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && references() > FEW
 }
 
-/// Refuses a drawing that unfolds to too much; `name` is what it is called in messages.
+/// Rejects a drawing that expands to too many elements. `name` identifies the drawing in the error.
 ///
 /// # Errors
-/// [`Error::Input`] naming the element.
+/// Returns [`Error::Input`] that names the element.
 pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str) -> Result<(), Error> {
     Unfolding::of(doc).count().map(|_| ()).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
         let problem = match why {
-            TooMuch::Elements => format!("{which} unfolds to more than {MOST} elements"),
-            TooMuch::Depth => format!("what {which} shows nests deeper than {DEEPEST} levels"),
+            TooMuch::Elements => format!("{which} expands to more than {MOST} elements"),
+            TooMuch::Depth => format!("the content of {which} nests deeper than {DEEPEST} levels"),
         };
-        let advice = "by references that lead to references; replace some of them by plain shapes";
+        let advice = "through references to references; replace some of them by plain shapes";
         Error::input(format!("{name}:{line}"), format!("{problem}, {advice}"))
     })
 }
@@ -49,43 +55,43 @@ enum TooMuch {
     Depth,
 }
 
-/// The properties that may refer to something shown.
+/// Properties that may refer to an element to be shown.
 const PROPERTIES: [&str; 7] = ["fill", "stroke", "marker-start", "marker-mid", "marker-end", "clip-path", "mask"];
-/// The first of these are paints, and paints and markers are inherited.
+/// The first two are paints; paints and markers are inherited.
 const PAINTS: usize = 2;
 const INHERITED: usize = 5;
 
-/// What a property says of what is shown.
+/// A property's value, as far as it concerns references.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Says {
-    /// Nothing, or `inherit`.
+enum Reference {
+    /// Not set, or `inherit`.
     #[default]
-    Nothing,
-    /// Something that refers to nothing.
+    Unset,
+    /// Set to a value without a reference.
     Plain,
     Shows(NodeId),
-    /// The fill (0) or stroke (1) of the element around: of a `use`, or of what a marker is on.
+    /// The fill (0) or stroke (1) of the context element: the `use`, or the shape with the marker.
     Context(usize),
 }
 
-/// What the inherited properties show.
+/// Targets of the inherited properties.
 type Inherited = [Option<NodeId>; INHERITED];
 
-/// Something that is shown.
+/// A subtree to be shown, with everything that affects its content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Body {
     node: NodeId,
-    /// What it inherits; `None`: what its own place in the file says.
+    /// Inherited values; `None` means those at the element's own position in the file.
     inherited: Option<Inherited>,
-    /// The paints of the element around.
+    /// Paints of the context element.
     context: [Option<NodeId>; PAINTS],
 }
 
-/// What is inside a body.
+/// Content of a body.
 struct Inside {
     elements: u64,
     depth: usize,
-    /// What is shown there: how often, how deep.
+    /// Bodies shown inside: how many times, at which depth.
     shown: Vec<(Body, u64, usize)>,
 }
 
@@ -93,7 +99,7 @@ struct Unfolding<'a, 'i> {
     doc: &'a roxmltree::Document<'i>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
     sheet: StyleSheet<'a>,
-    /// Elements and depth, by body; `None` while it is being counted.
+    /// Number of elements and depth by body; `None` while the body is being counted.
     known: HashMap<Body, Option<(u64, usize)>>,
 }
 
@@ -111,18 +117,18 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 sheet.parse_more(text);
             }
         }
-        // Of the rules only those can matter that speak of what is shown.
-        let speaks = |d: &Declaration<'_>| matches!(d.name, "marker" | "filter") || PROPERTIES.contains(&d.name);
-        sheet.rules.retain(|r| r.declarations.iter().any(speaks));
+        // Keep only rules with relevant properties.
+        let is_relevant = |d: &Declaration<'_>| matches!(d.name, "marker" | "filter") || PROPERTIES.contains(&d.name);
+        sheet.rules.retain(|r| r.declarations.iter().any(is_relevant));
         Self { doc, by_id, sheet, known: HashMap::new() }
     }
 
-    /// All elements, however often they show, and the deepest nesting.
+    /// Counts all elements with repetitions, and the deepest nesting.
     fn count(&mut self) -> Result<(u64, usize), (Node<'a, 'i>, TooMuch)> {
         let root = Body { node: self.doc.root_element().id(), inherited: None, context: [None; PAINTS] };
         let first = self.inside(root);
-        // What is looked into takes time as well.
-        let mut looked = first.elements;
+        // Visiting elements takes time, too, so it is bounded as well.
+        let mut visited = first.elements;
         let mut open = vec![(root, first)];
         self.known.insert(root, None);
         let mut last = (0, 0);
@@ -134,12 +140,12 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                         inside.elements = inside.elements.saturating_add(elements.saturating_mul(times));
                         inside.depth = inside.depth.max(at + depth);
                     }
-                    // usvg cuts circles.
+                    // A cycle: usvg cuts it here.
                     Some(None) => {}
                     None => {
                         inside.shown.push(next);
                         let new = self.inside(other);
-                        looked += new.elements + new.shown.len() as u64;
+                        visited += new.elements + new.shown.len() as u64;
                         self.known.insert(other, None);
                         open.push((other, new));
                     }
@@ -150,7 +156,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             last = (inside.elements, inside.depth);
             self.known.insert(*body, Some(last));
             open.pop();
-            if last.0.max(looked) > MOST {
+            if last.0.max(visited) > MOST {
                 return Err((node, TooMuch::Elements));
             }
             if last.1.max(open.len()) > DEEPEST {
@@ -160,7 +166,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         Ok(last)
     }
 
-    /// One body without what it shows.
+    /// Examines a body without the bodies shown inside.
     fn inside(&self, body: Body) -> Inside {
         let mut out = Inside { elements: 0, depth: 0, shown: Vec::new() };
         let Some(top) = self.doc.get_node(body.node) else { return out };
@@ -173,13 +179,13 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             if node != top && is_defined(tag) {
                 continue;
             }
-            let (says, filters) = self.says(node);
-            for (slot, say) in inherited.iter_mut().zip(says) {
-                match say {
-                    Says::Shows(id) => *slot = Some(id),
-                    Says::Plain => *slot = None,
-                    Says::Context(paint) => *slot = body.context[paint],
-                    Says::Nothing => {}
+            let (references, filters) = self.references(node);
+            for (slot, reference) in inherited.iter_mut().zip(references) {
+                match reference {
+                    Reference::Shows(id) => *slot = Some(id),
+                    Reference::Plain => *slot = None,
+                    Reference::Context(paint) => *slot = body.context[paint],
+                    Reference::Unset => {}
                 }
             }
             let [fill, stroke, start, middle, end] = inherited;
@@ -194,8 +200,8 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 show(middle.map(on), vertices(node));
                 show(end.map(on), 1);
             }
-            for say in &says[INHERITED..] {
-                if let Says::Shows(target) = say {
+            for reference in &references[INHERITED..] {
+                if let Reference::Shows(target) = reference {
                     show(Some(placed(*target)), 1);
                 }
             }
@@ -218,16 +224,16 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         out
     }
 
-    /// What an element inherits in the place where it stands.
+    /// Finds the values an element inherits at its position in the file.
     fn place(&self, node: Node<'a, 'i>) -> Inherited {
         let mut out = Inherited::default();
         let mut open: Vec<usize> = (0..INHERITED).collect();
         for around in node.ancestors().skip(1).filter(Node::is_element) {
-            let (says, _) = self.says(around);
-            open.retain(|&i| match says[i] {
-                Says::Nothing | Says::Context(_) => true,
-                Says::Plain => false,
-                Says::Shows(target) => {
+            let (references, _) = self.references(around);
+            open.retain(|&i| match references[i] {
+                Reference::Unset | Reference::Context(_) => true,
+                Reference::Plain => false,
+                Reference::Shows(target) => {
                     out[i] = Some(target);
                     false
                 }
@@ -236,10 +242,10 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         out
     }
 
-    /// What the properties of an element say, by attribute, style sheet and style attribute; and the filters named anywhere,
-    /// of which there may be a list.
-    fn says(&self, node: Node<'a, 'i>) -> ([Says; PROPERTIES.len()], Vec<NodeId>) {
-        let mut out = [(Says::Nothing, false); PROPERTIES.len()];
+    /// Resolves the properties of an element from attributes, style sheets and the style attribute. Filters are listed from all
+    /// declarations, as each may hold several.
+    fn references(&self, node: Node<'a, 'i>) -> ([Reference; PROPERTIES.len()], Vec<NodeId>) {
+        let mut out = [(Reference::Unset, false); PROPERTIES.len()];
         let mut filters = Vec::new();
         let mut set = |name: &str, value: &str, important: bool| match name {
             "filter" => filters.extend(urls(value).filter_map(|id| self.by_id.get(id)).map(Node::id)),
@@ -265,12 +271,12 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         (out.map(|o| o.0), filters)
     }
 
-    fn value(&self, value: &str) -> Says {
+    fn value(&self, value: &str) -> Reference {
         match value.trim() {
-            "inherit" => Says::Nothing,
-            "context-fill" => Says::Context(0),
-            "context-stroke" => Says::Context(1),
-            v => urls(v).find_map(|id| self.by_id.get(id)).map_or(Says::Plain, |n| Says::Shows(n.id())),
+            "inherit" => Reference::Unset,
+            "context-fill" => Reference::Context(0),
+            "context-stroke" => Reference::Context(1),
+            v => urls(v).find_map(|id| self.by_id.get(id)).map_or(Reference::Plain, |n| Reference::Shows(n.id())),
         }
     }
 
@@ -281,17 +287,17 @@ impl<'a, 'i> Unfolding<'a, 'i> {
     }
 }
 
-/// What shows only where something refers to it.
+/// Returns `true` for elements that are drawn only by reference.
 fn is_defined(tag: &str) -> bool {
     matches!(tag, "pattern" | "marker" | "clipPath" | "mask" | "filter" | "symbol" | "defs" | "style" | "metadata")
 }
 
-/// What has a fill and a stroke.
+/// Returns `true` for elements with a fill and a stroke.
 fn is_painted(tag: &str) -> bool {
-    crate::source::text::is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath" | "tref")
+    is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath" | "tref")
 }
 
-/// The ids that `url(#…)`s name.
+/// Lists the ids in `url(#…)` references.
 fn urls(value: &str) -> impl Iterator<Item = &str> {
     value.split("url(").skip(1).filter_map(|rest| {
         let inside = rest.split(')').next()?;
@@ -299,7 +305,7 @@ fn urls(value: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// No fewer than the vertices of a path, polyline or polygon: as many as there are numbers and commands.
+/// Bounds the number of vertices of a path, polyline or polygon from above by its numbers and commands.
 fn vertices(node: Node<'_, '_>) -> u64 {
     let text = node.attribute("d").or_else(|| node.attribute("points")).unwrap_or("");
     let mut inside = false;
@@ -312,7 +318,7 @@ fn vertices(node: Node<'_, '_>) -> u64 {
     starts.count() as u64 + 2
 }
 
-/// An element as selectors see it.
+/// Element adapter for selectors.
 struct Element<'a, 'i>(Node<'a, 'i>);
 
 impl simplecss::Element for Element<'_, '_> {
@@ -349,7 +355,7 @@ mod tests {
         counted.map_err(|(node, _)| node.attribute("id").unwrap_or("").to_owned())
     }
 
-    /// Counted by hand: every element where it stands and wherever it shows again.
+    /// Expected counts worked out by hand.
     #[test]
     fn what_shows_again_counts_again() {
         let elements = |body: &str| count(body).unwrap().0;
@@ -366,12 +372,12 @@ mod tests {
         assert_eq!(elements(&format!("{pattern}{group}<use href='#g' fill='url(#p)'/>")), 4 + 2 + 2);
         let context = "<defs><g id='c' fill='context-fill'><rect/><rect/></g></defs>";
         assert_eq!(elements(&format!("{pattern}{context}<use href='#c' fill='url(#p)'/>")), 4 + 3 + 4);
-        // What a pattern holds looks as its own place says, not as where it shows.
+        // The content of a pattern inherits from the pattern's position, not from the shape.
         assert_eq!(
             elements(&format!("<g stroke='url(#q)'>{pattern}</g><pattern id='q'/><rect fill='url(#p)'/>")),
             5 + 2 + 1
         );
-        // A pattern without content shows another's; filters, masks and clip paths.
+        // A pattern without content uses another's; filters, masks and clip paths.
         assert_eq!(elements(&format!("{pattern}<pattern id='q' href='#p'/><rect fill='url(#q)'/>")), 4 + 1 + 2);
         let rest = "<clipPath id='c'><rect/></clipPath><mask id='m'><rect/><rect/></mask>\
                     <filter id='f'><feImage href='#m'/></filter>";
@@ -382,7 +388,7 @@ mod tests {
         // A marker of two elements on at most nine vertices.
         let marker = "<marker id='m'><rect/></marker>";
         assert_eq!(elements(&format!("{marker}<path marker-mid='url(#m)' d='M1,2L3 4zl-5-6'/>")), 3 + 9 * 2);
-        // Circles end.
+        // Cycles terminate.
         assert_eq!(elements("<g id='g'><use href='#g'/></g>"), 3 + 3 - 1);
     }
 

@@ -1,184 +1,98 @@
-//! Writes resolved geometry as SVG of our own: fragments that take an element's place, definitions, and whole files.
+//! Writes resolved geometry: groups, parts, and the definitions that they refer to.
 //!
-//! Transforms of groups are kept and the geometry inside is written in its own user space, so that strokes, filters and paint
-//! servers see the frame they were made for.
+//! Group transforms are kept, and the geometry inside is written in its own user space, so that strokes, filters and paint
+//! servers keep their frames. Groups refer to definitions, which hold groups in turn; this is the one file of that recursion.
 
-use crate::bend::image::{BentImage, Picture};
-use crate::bend::options::WarpOptions;
-use crate::bend::paint::Fit;
-use crate::bend::part::{Done, Notes, Outcome, Placed, Skipped, StrokeDone};
-use crate::document::Document;
+use super::bitmaps;
+use super::defs::{Definitions, server_key};
+use super::input::WriteInput;
+use super::markup::{Markup, Properties, push_all};
+use super::style::{self, CssPaints};
+use super::values::{color, part_data, stroke_scale};
+use super::{filter, gradients, masks, patterns};
+use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::scene::model::{Group, Node, Part};
-use crate::source::number::{escape, matrix, outline_data, path_data, short};
-use crate::source::text::{ElementId, Source};
-use pathwarp::kurbo::{Affine, Rect, Shape as _};
-use pathwarp::map::Map;
-use std::borrow::Cow;
-use std::cell::RefCell;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use crate::source::number::{matrix, path_data, short};
+use crate::source::xml::escape;
+use pathwarp::kurbo::Affine;
 use std::fmt::Write as _;
-use std::ops::Range;
-use usvg::{BlendMode, FillRule, LineCap, LineJoin, Paint, PaintOrder, ShapeRendering};
+use std::sync::Arc;
+use usvg::filter::Filter;
+use usvg::{BlendMode, FillRule, Paint, PaintOrder};
 
-/// Everything a writer needs to know.
-#[derive(Clone, Copy)]
-pub(crate) struct Job<'a> {
-    pub(crate) document: &'a Document,
-    pub(crate) outcomes: &'a [Outcome],
-    pub(crate) pictures: &'a [Picture],
-    pub(crate) slots: &'a [Placed],
-    pub(crate) map: &'a dyn Map,
-    pub(crate) options: &'a WarpOptions,
+/// Note on filters.
+pub(super) const FILTERS: &str = "filters follow the warp as a whole: their regions and lengths are not bent";
+/// Note on patterns.
+const PATTERNS: &str = "patterns follow the warp as a whole: their tiles are not bent";
+/// Note on nested clip paths.
+const CLIPPED_TWICE: &str = "a shape in a clip path has two clip paths of its own; one is left out";
+
+/// Content of a clipped group, with its opacity.
+struct Clipped {
+    content: String,
+    opacity: f32,
 }
 
-/// What is said of filters.
-pub(crate) const FILTERS: &str = "filters follow the warp as a whole: their regions and lengths are not bent";
-
-/// Presentation properties in order.
-pub(crate) type Properties = Vec<(&'static str, String)>;
-
-pub(crate) struct Writer<'a> {
-    pub(crate) job: Job<'a>,
-    /// Elements' prefix, mostly "".
-    prefix: String,
-    /// Whether the result stands in the source, whose definitions can be referred to.
-    pub(crate) in_source: bool,
-    /// Properties go into style attributes, where style sheets cannot reach them.
-    pub(crate) styled: bool,
-    /// Definitions written so far.
-    pub(crate) defs: String,
-    pub(crate) taken: HashSet<String>,
-    /// Ids of clip paths and masks by number, once they have one.
-    pub(crate) clip_ids: Vec<Option<String>>,
-    pub(crate) mask_ids: Vec<Option<String>>,
-    pub(crate) servers: HashMap<(usize, [u64; 6]), String>,
-    pub(crate) filters: HashMap<usize, String>,
-    /// The place of the source's element that is being replaced, and the elements in it whose ids have been written.
-    pub(crate) replaced: Option<(Range<usize>, BTreeSet<ElementId>)>,
-    /// Which properties the source speaks of at all.
-    mentioned: RefCell<HashMap<&'static str, bool>>,
-    pub(crate) skipped: &'a mut Vec<Skipped>,
-    pub(crate) notes: &'a mut Notes,
+pub(super) struct Writer<'a> {
+    pub(super) input: WriteInput<'a>,
+    pub(super) markup: Markup<'a>,
+    pub(super) defs: Definitions,
+    pub(super) skipped: &'a mut Vec<Skipped>,
+    pub(super) notes: &'a mut Notes,
 }
 
 impl<'a> Writer<'a> {
-    pub(crate) fn new(job: Job<'a>, in_source: bool, skipped: &'a mut Vec<Skipped>, notes: &'a mut Notes) -> Self {
-        let source = &job.document.source;
-        let scene = &job.document.scene();
-        let taken = if in_source { source.by_id().keys().cloned().collect() } else { HashSet::new() };
-        Self {
-            job,
-            prefix: if in_source { source.prefix().to_owned() } else { String::new() },
-            in_source,
-            styled: in_source && source.has_css(),
-            defs: String::new(),
-            taken,
-            clip_ids: vec![None; scene.clips.len()],
-            mask_ids: vec![None; scene.masks.len()],
-            servers: HashMap::new(),
-            filters: HashMap::new(),
-            replaced: None,
-            mentioned: RefCell::default(),
-            skipped,
-            notes,
-        }
-    }
-
-    /// `id` if it is free, else with a number.
-    pub(crate) fn new_id(&mut self, id: &str) -> String {
-        let mut out = id.to_owned();
-        let mut n = 1;
-        while !self.taken.insert(out.clone()) {
-            n += 1;
-            out = format!("{id}-{n}");
-        }
-        out
-    }
-
-    /// Whether an ancestor in the source may have set a property, so that its default must be written out.
-    pub(crate) fn may_inherit(&self, name: &'static str) -> bool {
-        let look = || self.job.document.source.text.contains(name);
-        self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(look)
-    }
-
-    pub(crate) fn tag(&self, name: &str) -> String {
-        format!("{}{name}", self.prefix)
-    }
-
-    pub(crate) fn attributes(&self, properties: &Properties) -> String {
-        let mut out = String::new();
-        self.push_attributes(properties, &mut out);
-        out
-    }
-
-    fn push_attributes(&self, properties: &Properties, out: &mut String) {
-        if self.styled {
-            if !properties.is_empty() {
-                let all: Vec<String> = properties.iter().map(|(n, v)| format!("{n}:{v}")).collect();
-                let _ = write!(out, " style=\"{}\"", escape(&all.join(";")));
-            }
-        } else {
-            for (n, v) in properties {
-                // These are only understood in a style.
-                if matches!(*n, "mix-blend-mode" | "isolation") {
-                    let _ = write!(out, " style=\"{n}:{v}\"");
-                } else {
-                    push_all(out, [" ", n, "=\"", &escape(v), "\""]);
-                }
-            }
-        }
+    /// A writer to the source, or to a new file.
+    pub(super) fn new(
+        input: WriteInput<'a>,
+        in_source: bool,
+        skipped: &'a mut Vec<Skipped>,
+        notes: &'a mut Notes,
+    ) -> Self {
+        let markup = Markup::new(input.source, in_source);
+        let defs = Definitions::new(input.source, input.scene, in_source);
+        Self { input, markup, defs, skipped, notes }
     }
 
     fn push_nodes(&mut self, nodes: &[Node], out: &mut String) {
         for n in nodes {
-            let one = self.node(n);
+            let text = self.node(n);
             if out.is_empty() {
-                *out = one;
+                *out = text;
             } else {
-                out.push_str(&one);
+                out.push_str(&text);
             }
         }
     }
 
-    pub(crate) fn node(&mut self, n: &Node) -> String {
+    pub(super) fn node(&mut self, n: &Node) -> String {
         match n {
             Node::Group(g) => self.group(g, ""),
             Node::Part(i) => self.part(*i),
-            Node::Image(i) => self.image(*i),
+            Node::Image(i) => bitmaps::image(&self.input, &self.markup, self.skipped, *i),
             Node::Text { element, content, .. } => {
-                let id = element.map_or(String::new(), |e| self.id_attribute(e));
+                let id = element.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
                 let inner = self.group(content, "");
-                if id.is_empty() { inner } else { format!("<{0}{id}>{inner}</{0}>", self.tag("g")) }
+                self.markup.named_group(&id, inner)
             }
         }
     }
 
-    /// The source's id, for what takes the element's place.
-    pub(crate) fn id_attribute(&mut self, e: ElementId) -> String {
-        let source = &self.job.document.source;
-        let Some(id) = source.attr(e, "id").filter(|i| !i.is_empty()) else { return String::new() };
-        let free = match &mut self.replaced {
-            Some((range, named)) => range.contains(&source.elements[e].range.start) && named.insert(e),
-            None => !self.in_source && self.taken.insert(id.to_string()),
-        };
-        if free { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
-    }
-
-    /// A group; `extra` attributes make it stay even where it does nothing.
-    pub(crate) fn group(&mut self, g: &Group, extra: &str) -> String {
+    /// Writes a group. With `extra` attributes it is written even if it has no effect.
+    pub(super) fn group(&mut self, g: &Group, extra: &str) -> String {
         self.group_with(g, extra, "")
     }
 
-    /// A group with `lead` as the first of its content.
-    pub(crate) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
+    /// Writes a group with `lead` before its content.
+    pub(super) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
         let head = self.head(g, extra);
         let mut inner = lead.to_owned();
         self.push_nodes(&g.children, &mut inner);
         self.wrapped(g, &head, inner)
     }
 
-    /// What a group does, around content that is written already.
-    pub(crate) fn group_around(&mut self, g: &Group, content: &str) -> String {
+    /// Writes a group around content that has been written.
+    pub(super) fn group_around(&mut self, g: &Group, content: &str) -> String {
         let head = self.head(g, "");
         self.wrapped(g, &head, content.to_owned())
     }
@@ -187,13 +101,14 @@ impl<'a> Writer<'a> {
         if head.is_empty() {
             return content;
         }
+        let prefix = &self.markup.prefix;
         let tag = if self.link_of(g).is_empty() { "g" } else { "a" };
-        let mut out = String::with_capacity(head.len() + content.len() + 2 * (self.prefix.len() + "<g></".len()));
-        push_all(&mut out, ["<", &self.prefix, tag, head, ">", &content, "</", &self.prefix, tag, ">"]);
+        let mut out = String::with_capacity(head.len() + content.len() + 2 * (prefix.len() + "<g></".len()));
+        push_all(&mut out, ["<", prefix, tag, head, ">", &content, "</", prefix, tag, ">"]);
         out
     }
 
-    /// A group's attributes.
+    /// Writes a group's attributes.
     fn head(&mut self, g: &Group, extra: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
@@ -217,9 +132,9 @@ impl<'a> Writer<'a> {
         if g.isolate {
             properties.push(("isolation", "isolate".into()));
         }
-        let own = g.source.map_or(String::new(), |e| self.id_attribute(e));
+        let own = g.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
         let mut head = format!("{own}{extra}");
-        let transform = match g.slot.map(|s| (self.job.slots[s].fit, self.job.document.scene().slots[s].before)) {
+        let transform = match g.slot.map(|s| (self.input.slots[s].fit, self.input.scene.slots[s].before)) {
             Some((fit, true)) => fit * g.transform,
             Some((fit, false)) => g.transform * fit,
             None => g.transform,
@@ -227,50 +142,37 @@ impl<'a> Writer<'a> {
         if transform != Affine::IDENTITY {
             let _ = write!(head, " transform=\"{}\"", matrix(transform));
         }
-        head.push_str(&self.attributes(&properties));
+        head.push_str(&self.markup.attributes(&properties));
         head.push_str(&self.link_of(g));
         head
     }
 
-    /// Where a group leads to that was a link, for a file that is written anew.
+    /// The link attribute of a group that was an `<a>`, for a new file.
     fn link_of(&self, g: &Group) -> String {
-        let source = &self.job.document.source;
-        let link = g.source.filter(|&e| !self.in_source && source.elements[e].tag == "a").and_then(|e| source.link(e));
-        link.map_or(String::new(), |to| format!(" {}=\"{}\"", self.link(), escape(&to)))
+        let source = self.input.source;
+        let in_source = self.markup.in_source;
+        let link = g.source.filter(|&e| !in_source && source.elements[e].tag == "a").and_then(|e| source.link(e));
+        link.map_or(String::new(), |to| format!(" {}=\"{}\"", self.markup.link(), escape(&to)))
     }
 
-    pub(crate) fn path(&mut self, d: &str, id: &str, properties: &Properties) -> String {
-        /// As long as the attributes mostly are.
-        const USUAL: usize = 64;
-        let mut out = String::with_capacity(d.len() + id.len() + USUAL);
-        push_all(&mut out, ["<", &self.prefix, "path", id, " d=\"", d, "\""]);
-        self.push_attributes(properties, &mut out);
-        out.push_str("/>");
-        out
-    }
-
-    /// A part as one path, or as two where the stroke has become an outline.
-    pub(crate) fn part(&mut self, i: usize) -> String {
-        let job = self.job;
-        let p = &job.document.scene().parts[i];
-        let done = job.outcomes[i].done();
-        let d = part_data(p, done, &job.document.source);
-        let id = p.source.map_or(String::new(), |e| self.id_attribute(e));
-        if let Some(done) = done.filter(|_| self.pieced(i)) {
-            let both = self.pieces(i, done, &d);
-            return if id.is_empty() { both } else { format!("<{0}{id}>{both}</{0}>", self.tag("g")) };
+    /// Writes a part: as one path, or as two if fill and stroke have different outlines.
+    pub(super) fn part(&mut self, i: usize) -> String {
+        let p = self.input.part(i);
+        let warped = self.input.warped(i);
+        let d = part_data(p, warped, self.input.source);
+        let id = p.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
+        if let Some(warped) = warped.filter(|_| self.input.in_pieces(i)) {
+            let pieces = self.pieces(i, warped, &d);
+            return self.markup.named_group(&id, pieces);
         }
         let mut properties = self.properties(i);
-        let outlined = match (done.map(|d| &d.stroke), &p.stroke) {
-            (Some(StrokeDone::Outlined(o)), Some(s)) => Some((o, s)),
-            _ => None,
-        };
-        let area = done.and_then(|d| d.fill.as_ref());
-        let Some(done) = done.filter(|_| outlined.is_some() || area.is_some()) else {
-            return self.path(&d, &id, &properties);
+        let outlined = warped.and_then(|w| w.stroke.outline()).zip(p.stroke.as_ref());
+        let area = warped.and_then(|w| w.fill.as_ref());
+        let Some(warped) = warped.filter(|_| outlined.is_some() || area.is_some()) else {
+            return self.markup.path(&d, &id, &properties);
         };
         let (top, over) = match outlined {
-            Some((outline, stroke)) => (path_data(outline, done.decimals), self.outlined(p, stroke, done)),
+            Some((outline, stroke)) => (path_data(outline, warped.decimals), self.outlined(p, stroke, warped)),
             None => {
                 let mut over = properties.clone();
                 over.retain(|p| !p.0.starts_with("fill"));
@@ -279,317 +181,283 @@ impl<'a> Writer<'a> {
             }
         };
         if p.fill.is_none() || area.is_some_and(|a| a.elements().is_empty()) {
-            return self.path(&top, &id, &over);
+            return self.markup.path(&top, &id, &over);
         }
-        let top = self.path(&top, "", &over);
+        let top = self.markup.path(&top, "", &over);
         properties.retain(|p| p.0 == "fill" || !p.0.starts_with("stroke") && p.0 != "paint-order");
         properties.push(("stroke", "none".into()));
-        let base = self.path(&area.map_or(d, |a| path_data(a, done.decimals)), "", &properties);
+        let base = self.markup.path(&area.map_or(d, |a| path_data(a, warped.decimals)), "", &properties);
         let both =
             if p.paint_order == PaintOrder::StrokeAndFill { format!("{top}{base}") } else { format!("{base}{top}") };
-        if id.is_empty() { both } else { format!("<{0}{id}>{both}</{0}>", self.tag("g")) }
+        self.markup.named_group(&id, both)
     }
 
-    /// The presentation of a stroke's outline.
-    pub(crate) fn outlined(&mut self, p: &Part, stroke: &usvg::Stroke, done: &Done) -> Properties {
-        let mut over = self.shared(p);
-        let paint = self.paint(stroke.paint(), p, Some(done));
-        over.push(("fill", paint));
-        over.push(("fill-opacity", short(f64::from(stroke.opacity().get()))));
-        over.push(("fill-rule", "nonzero".into()));
-        over.push(("stroke", "none".into()));
-        over.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || self.may_inherit(n));
-        over
+    /// Writes a part's fill and stroke one after the other: patterns as geometry and gradients as pictures, clipped to the
+    /// shape.
+    fn pieces(&mut self, i: usize, warped: &WarpedPart, d: &str) -> String {
+        let fill = self.fill_piece(i, warped, d);
+        let stroke = self.stroke_piece(i, warped, d);
+        if self.input.part(i).paint_order == PaintOrder::StrokeAndFill { stroke + &fill } else { fill + &stroke }
     }
 
-    /// What fill and stroke outline have in common.
-    fn shared(&self, p: &Part) -> Properties {
-        let mut out = Properties::new();
-        if !p.visible {
-            out.push(("visibility", "hidden".into()));
-        } else if self.may_inherit("visibility") {
-            out.push(("visibility", "visible".into()));
-        }
-        match p.rendering {
-            ShapeRendering::GeometricPrecision => {
-                if self.may_inherit("shape-rendering") {
-                    out.push(("shape-rendering", "auto".into()));
-                }
-            }
-            ShapeRendering::OptimizeSpeed => out.push(("shape-rendering", "optimizeSpeed".into())),
-            ShapeRendering::CrispEdges => out.push(("shape-rendering", "crispEdges".into())),
-        }
-        if self.may_inherit("marker") {
-            out.extend(["marker-start", "marker-mid", "marker-end"].map(|n| (n, "none".to_owned())));
-        }
-        out
-    }
-
-    /// The presentation of a part, resolved.
-    pub(crate) fn properties(&mut self, i: usize) -> Properties {
-        self.properties_of(i, true, true)
-    }
-
-    /// The presentation of a part's fill, its stroke, or both.
-    pub(crate) fn properties_of(&mut self, i: usize, fill: bool, stroke: bool) -> Properties {
-        let job = self.job;
-        let p = &job.document.scene().parts[i];
-        let done = job.outcomes[i].done();
-        let mut all = self.shared(p);
-        match p.fill.as_ref().filter(|_| fill) {
-            None => all.push(("fill", "none".into())),
-            Some(f) => {
-                let paint = self.paint(f.paint(), p, done);
-                all.push(("fill", paint));
-                all.push(("fill-opacity", short(f64::from(f.opacity().get()))));
-                all.push(("fill-rule", if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" }.into()));
-            }
-        }
-        match p.stroke.as_ref().filter(|_| stroke) {
-            None => all.push(("stroke", "none".into())),
-            Some(s) => {
-                let paint = self.paint(s.paint(), p, done);
-                let scale = stroke_scale(done);
-                all.push(("stroke", paint));
-                all.push(("stroke-opacity", short(f64::from(s.opacity().get()))));
-                all.push(("stroke-width", short(f64::from(s.width().get()) * scale)));
-                let cap = match s.linecap() {
-                    LineCap::Butt => "butt",
-                    LineCap::Round => "round",
-                    LineCap::Square => "square",
-                };
-                all.push(("stroke-linecap", cap.into()));
-                let join = match s.linejoin() {
-                    LineJoin::Miter => "miter",
-                    LineJoin::MiterClip => "miter-clip",
-                    LineJoin::Round => "round",
-                    LineJoin::Bevel => "bevel",
-                };
-                all.push(("stroke-linejoin", join.into()));
-                all.push(("stroke-miterlimit", short(f64::from(s.miterlimit().get()))));
-                all.push(("stroke-dasharray", dashes(s, scale)));
-                all.push(("stroke-dashoffset", short(f64::from(s.dashoffset()) * scale)));
-            }
-        }
-        if p.fixed_width && stroke && p.stroke.is_some() {
-            all.push(("vector-effect", "non-scaling-stroke".into()));
-        }
-        let order = match p.paint_order {
-            PaintOrder::FillAndStroke => "normal",
-            PaintOrder::StrokeAndFill => "stroke",
+    fn fill_piece(&mut self, i: usize, warped: &WarpedPart, d: &str) -> String {
+        let p = self.input.part(i);
+        let content = if let Some(t) = self.input.fill_tiles(i) {
+            Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity })
+        } else {
+            let opacity = p.fill.as_ref().map_or(1.0, |f| f.opacity().get());
+            let picture = warped.fill_image.as_ref().map(|b| bitmaps::bent(&self.markup, b, Affine::IDENTITY));
+            picture.map(|content| Clipped { content, opacity })
         };
-        all.push(("paint-order", order.into()));
-        all.retain(|(name, value)| {
-            let default = match *name {
-                "fill-opacity" | "stroke-opacity" | "stroke-width" => "1",
-                "fill-rule" => "nonzero",
-                "stroke" | "stroke-dasharray" => "none",
-                "stroke-linecap" => "butt",
-                "stroke-linejoin" => "miter",
-                "stroke-miterlimit" => "4",
-                "stroke-dashoffset" => "0",
-                "paint-order" => "normal",
-                _ => return true,
-            };
-            value != default || self.may_inherit(name)
-        });
-        all
+        // The fill may have an outline of its own, or be empty.
+        let area = warped.fill.as_ref().map_or_else(|| d.to_owned(), |a| path_data(a, warped.decimals));
+        match (p.fill.as_ref().filter(|_| !area.is_empty()), content) {
+            (None, _) => String::new(),
+            (Some(f), Some(content)) => {
+                let rule = if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" };
+                self.clipped_to(&area, rule, &content, i)
+            }
+            (Some(f), None) => {
+                let fill = Some(self.paint(f.paint(), p, Some(warped)));
+                let paints = CssPaints { fill, stroke: None };
+                let properties = style::part_style(&self.markup, p, paints, stroke_scale(Some(warped)));
+                self.markup.path(&area, "", &properties)
+            }
+        }
     }
 
-    /// How a paint server follows the map, unless it stays.
-    pub(crate) fn fit(&self, paint: &Paint, p: &Part, done: Option<&Done>) -> Option<Fit> {
-        let fit = done.and_then(|d| d.fit).filter(|_| self.job.options.moves(paint));
-        fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)))
+    fn stroke_piece(&mut self, i: usize, warped: &WarpedPart, d: &str) -> String {
+        let p = self.input.part(i);
+        let content = if let Some(t) = self.input.stroke_tiles(i) {
+            Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity })
+        } else {
+            let opacity = p.stroke.as_ref().map_or(1.0, |s| s.opacity().get());
+            let picture = warped.stroke_image.as_ref().map(|b| bitmaps::bent(&self.markup, b, Affine::IDENTITY));
+            picture.map(|content| Clipped { content, opacity })
+        };
+        let Some(s) = &p.stroke else { return String::new() };
+        match (&warped.stroke, content) {
+            (StrokeOutcome::Outlined(o), Some(content)) => {
+                self.clipped_to(&path_data(o, warped.decimals), "nonzero", &content, i)
+            }
+            (StrokeOutcome::Outlined(o), None) => {
+                let properties = self.outlined(p, s, warped);
+                self.markup.path(&path_data(o, warped.decimals), "", &properties)
+            }
+            (StrokeOutcome::Scaled(scale), _) => {
+                let stroke = Some(self.paint(s.paint(), p, Some(warped)));
+                let properties = style::part_style(&self.markup, p, CssPaints { fill: None, stroke }, *scale);
+                self.markup.path(d, "", &properties)
+            }
+        }
     }
 
-    /// A paint as CSS says it.
-    pub(crate) fn paint(&mut self, paint: &Paint, p: &Part, done: Option<&Done>) -> String {
-        let fit = self.fit(paint, p, done).map_or(Affine::IDENTITY, |f| f.affine);
+    /// Writes content clipped to an outline.
+    fn clipped_to(&mut self, d: &str, rule: &'static str, inner: &Clipped, i: usize) -> String {
+        let p = self.input.part(i);
+        let name = p.source.or(p.owner).and_then(|e| self.input.source.attr(e, "id")).filter(|n| !n.is_empty());
+        let id = self.defs.new_id(&name.map_or_else(|| "shape-edge".to_owned(), |n| format!("{n}-edge")));
+        let mut properties = Properties::new();
+        if rule != "nonzero" || self.markup.may_inherit("clip-rule") {
+            properties.push(("clip-rule", rule.into()));
+        }
+        let path = self.markup.path(d, "", &properties);
+        self.defs.push(&format!("<{0} id=\"{1}\">{path}</{0}>", self.markup.tag("clipPath"), escape(&id)));
+        let mut outer = vec![("clip-path", format!("url(#{id})"))];
+        if inner.opacity < 1.0 {
+            outer.push(("opacity", short(f64::from(inner.opacity))));
+        }
+        format!("<{0}{1}>{2}</{0}>", self.markup.tag("g"), self.markup.attributes(&outer), inner.content)
+    }
+
+    /// The resolved presentation of a part.
+    pub(super) fn properties(&mut self, i: usize) -> Properties {
+        let p = self.input.part(i);
+        let warped = self.input.warped(i);
+        let fill = p.fill.as_ref().map(|f| self.paint(f.paint(), p, warped));
+        let stroke = p.stroke.as_ref().map(|s| self.paint(s.paint(), p, warped));
+        style::part_style(&self.markup, p, CssPaints { fill, stroke }, stroke_scale(warped))
+    }
+
+    /// The presentation of an expanded stroke.
+    fn outlined(&mut self, p: &Part, stroke: &usvg::Stroke, warped: &WarpedPart) -> Properties {
+        let paint = self.paint(stroke.paint(), p, Some(warped));
+        style::outlined(&self.markup, p, stroke, paint)
+    }
+
+    /// A paint as a CSS value.
+    pub(super) fn paint(&mut self, paint: &Paint, p: &Part, warped: Option<&WarpedPart>) -> String {
+        let fit = self.input.paint_fit(paint, p, warped).map_or(Affine::IDENTITY, |f| f.affine);
         match paint {
-            Paint::Color(c) => format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue),
-            Paint::LinearGradient(g) => {
-                let place = format!(
-                    "x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"",
-                    short(g.x1().into()),
-                    short(g.y1().into()),
-                    short(g.x2().into()),
-                    short(g.y2().into())
-                );
-                self.gradient("linearGradient", g, std::sync::Arc::as_ptr(g) as usize, &place, fit)
-            }
-            Paint::RadialGradient(g) => {
-                let mut place = format!(
-                    "cx=\"{}\" cy=\"{}\" r=\"{}\" fx=\"{}\" fy=\"{}\"",
-                    short(g.cx().into()),
-                    short(g.cy().into()),
-                    short(g.r().get().into()),
-                    short(g.fx().into()),
-                    short(g.fy().into())
-                );
-                if g.fr().get() > 0.0 {
-                    let _ = write!(place, " fr=\"{}\"", short(g.fr().get().into()));
-                }
-                self.gradient("radialGradient", g, std::sync::Arc::as_ptr(g) as usize, &place, fit)
-            }
+            Paint::Color(c) => color(*c),
+            Paint::LinearGradient(g) => gradients::linear(&self.input, &self.markup, &mut self.defs, g, fit),
+            Paint::RadialGradient(g) => gradients::radial(&self.input, &self.markup, &mut self.defs, g, fit),
             Paint::Pattern(pattern) => self.pattern(pattern, fit),
         }
     }
 
-    /// A bent bitmap as an element.
-    pub(crate) fn bent(&self, bent: &BentImage, to: Affine) -> String {
-        let mut all = bent_attributes(bent, to).to_vec();
-        all.push((self.link(), data_uri(bent)));
-        let all: String = all.iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
-        format!("<{}{all}/>", self.tag("image"))
-    }
-
-    fn image(&mut self, i: usize) -> String {
-        let bitmap = &self.job.document.scene().bitmaps[i];
-        let image = &bitmap.image;
-        if !image.is_visible() {
-            return String::new();
+    /// Refers to a pattern, writing it if necessary.
+    fn pattern(&mut self, pattern: &Arc<usvg::Pattern>, fit: Affine) -> String {
+        let key = server_key(Arc::as_ptr(pattern) as usize, fit);
+        if let Some(id) = self.defs.servers.get(&key) {
+            return format!("url(#{id})");
         }
-        match &self.job.pictures[i] {
-            Picture::Placed => {}
-            Picture::Nearly(why) => {
-                let id = bitmap.owner.map_or_else(|| "an image".into(), |e| self.job.document.source.display_name(e));
-                self.skipped.push(Skipped { id, why: why.clone() });
-            }
-            Picture::Bent(bent) => {
-                // Back into the group's own coordinates, the bitmap's pixels: the placing has no turn in it.
-                return self.bent(bent, bitmap.placing.inverse());
-            }
-        }
-        let (kind, data) = match image.kind() {
-            usvg::ImageKind::JPEG(d) => ("image/jpeg", d.clone()),
-            usvg::ImageKind::PNG(d) => ("image/png", d.clone()),
-            usvg::ImageKind::GIF(d) => ("image/gif", d.clone()),
-            usvg::ImageKind::WEBP(d) => ("image/webp", d.clone()),
-            usvg::ImageKind::SVG(t) => {
-                let text = t.to_string(&usvg::WriteOptions::default());
-                ("image/svg+xml", std::sync::Arc::new(text.into_bytes()))
-            }
+        let scene = self.input.scene;
+        let Some(tile) = scene.tiles.iter().find(|t| Arc::ptr_eq(&t.pattern, pattern)) else {
+            return "none".into();
         };
-        let mut properties = Properties::new();
-        match image.rendering_mode() {
-            usvg::ImageRendering::OptimizeQuality => {}
-            usvg::ImageRendering::OptimizeSpeed => properties.push(("image-rendering", "optimizeSpeed".into())),
-            usvg::ImageRendering::Smooth => properties.push(("image-rendering", "smooth".into())),
-            usvg::ImageRendering::HighQuality => properties.push(("image-rendering", "high-quality".into())),
-            usvg::ImageRendering::CrispEdges => properties.push(("image-rendering", "crisp-edges".into())),
-            usvg::ImageRendering::Pixelated => properties.push(("image-rendering", "pixelated".into())),
+        self.notes.add(PATTERNS, pattern.id());
+        let id = self.defs.new_id(pattern.id());
+        self.defs.servers.insert(key, id.clone());
+        let head = patterns::head(pattern, &id, fit);
+        let inner = self.group(&tile.root, "");
+        self.defs.push(&format!("<{0}{head}>{inner}</{0}>", self.markup.tag("pattern")));
+        format!("url(#{id})")
+    }
+
+    /// The id of a clip path, which is written if necessary.
+    pub(super) fn clip_id(&mut self, i: usize) -> String {
+        if let Some(id) = &self.defs.clip_ids[i] {
+            return id.clone();
         }
-        let style = properties.iter().map(|(n, v)| format!(" style=\"{n}:{v}\"")).collect::<String>();
-        let link = self.link();
-        format!(
-            "<{} width=\"{}\" height=\"{}\"{style} {link}=\"data:{kind};base64,{}\"/>",
-            self.tag("image"),
-            short(image.size().width().into()),
-            short(image.size().height().into()),
-            base64(&data)
-        )
+        let id = self.defs.new_id(&self.input.scene.clips[i].id);
+        self.defs.clip_ids[i] = Some(id.clone());
+        let text = self.clip(i, &format!(" id=\"{}\"", escape(&id)));
+        self.defs.push(&text);
+        id
     }
-}
 
-/// Where a bent bitmap goes, as attributes of its element.
-pub(crate) fn bent_attributes(bent: &BentImage, to: Affine) -> [(&'static str, String); 5] {
-    let r = to.transform_rect_bbox(bent.area);
-    [
-        ("x", short(r.x0)),
-        ("y", short(r.y0)),
-        ("width", short(r.width())),
-        ("height", short(r.height())),
-        ("preserveAspectRatio", "none".into()),
-    ]
-}
-
-/// A bent bitmap as a link.
-pub(crate) fn data_uri(bent: &BentImage) -> String {
-    format!("data:image/png;base64,{}", base64(&bent.png))
-}
-
-/// The box around a part's path in its own user space.
-pub(crate) fn part_box(p: &Part, done: Option<&Done>) -> Rect {
-    match done {
-        Some(d) => d.fill.iter().fold(d.path.bounding_box(), |b, f| b.union(f.bounding_box())),
-        None => p.local.bounding_box().unwrap_or_default(),
-    }
-}
-
-/// A part's path data; what is not warped in the source's own words, as far as it has any.
-pub(crate) fn part_data(p: &Part, done: Option<&Done>, source: &Source) -> String {
-    let own = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
-    match (done, p.drawn.and_then(own)) {
-        (Some(d), _) => path_data(&d.path, d.decimals),
-        (None, Some(d)) => escape(&d),
-        (None, None) => outline_data(&p.local),
-    }
-}
-
-pub(crate) fn stroke_scale(done: Option<&Done>) -> f64 {
-    match done.map(|d| &d.stroke) {
-        Some(StrokeDone::Scaled(s)) => *s,
-        _ => 1.0,
-    }
-}
-
-/// `stroke-dasharray`.
-pub(crate) fn dashes(s: &usvg::Stroke, scale: f64) -> String {
-    s.dasharray()
-        .map_or("none".into(), |list| list.iter().map(|d| short(f64::from(*d) * scale)).collect::<Vec<_>>().join(","))
-}
-
-fn push_all<const N: usize>(out: &mut String, parts: [&str; N]) {
-    for p in parts {
-        out.push_str(p);
-    }
-}
-
-fn base64(data: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(data.len().div_ceil(3) * 4);
-    for chunk in data.chunks(3) {
-        let n = chunk.iter().fold(0_u32, |n, b| n << 8 | u32::from(*b)) << (8 * (3 - chunk.len()));
-        for i in 0..4 {
-            let letter = LETTERS[(n >> (18 - 6 * i) & 63) as usize];
-            out.push(if i <= chunk.len() { char::from(letter) } else { '=' });
+    /// Writes a clip path. As it must not contain groups, all transforms are on its paths.
+    pub(super) fn clip(&mut self, i: usize, head: &str) -> String {
+        let c = &self.input.scene.clips[i];
+        let mut out = format!("<{}{head}", self.markup.tag("clipPath"));
+        if c.transform != Affine::IDENTITY {
+            let _ = write!(out, " transform=\"{}\"", matrix(c.transform));
         }
+        if let Some(next) = c.clip {
+            let id = self.clip_id(next);
+            out.push_str(&self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]));
+        }
+        out.push('>');
+        self.clip_children(&c.root, c.root.transform, None, &mut out);
+        let _ = write!(out, "</{}>", self.markup.tag("clipPath"));
+        out
     }
-    out
-}
 
-/// The whole file written anew.
-pub(crate) fn flat(job: &Job<'_>, skipped: &mut Vec<Skipped>, notes: &mut Notes) -> String {
-    let source = &job.document.source;
-    let mut w = Writer::new(*job, false, skipped, notes);
-    if source.animated {
-        w.notes.add("animations are dropped where the file is written anew", "");
-    }
-    let mut out =
-        String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"");
-    let page = job.page().unwrap_or_default();
-    for name in ["id", "class", "width", "height", "viewBox", "preserveAspectRatio"] {
-        let new = page.iter().find(|p| p.0 == name).map(|p| Cow::Borrowed(p.1.as_str()));
-        if let Some(v) = new.or_else(|| source.attr(0, name)) {
-            let _ = write!(out, " {name}=\"{}\"", escape(&v));
-            if name == "id" {
-                w.taken.insert(v.into_owned());
+    fn clip_children(&mut self, g: &Group, t: Affine, clip: Option<usize>, out: &mut String) {
+        if clip.is_some() && g.clip.is_some() {
+            self.notes.add(CLIPPED_TWICE, "");
+        }
+        let clip = g.clip.or(clip);
+        for n in &g.children {
+            match n {
+                Node::Group(g) => self.clip_children(g, t * g.transform, clip, out),
+                Node::Text { content, .. } => self.clip_children(content, t * content.transform, clip, out),
+                Node::Part(i) if self.input.part(*i).visible => {
+                    let path = self.clip_part(*i, t, clip);
+                    out.push_str(&path);
+                }
+                Node::Part(_) | Node::Image(_) => {}
             }
         }
     }
-    out.push_str(">\n");
-    if let Some(t) = source.elements.first().and_then(|e| e.title.as_ref()) {
-        let _ = writeln!(out, "<title>{}</title>", escape(t));
+
+    /// Writes a part of a clip path.
+    fn clip_part(&mut self, i: usize, t: Affine, clip: Option<usize>) -> String {
+        let p = self.input.part(i);
+        let mut properties = Properties::new();
+        let rule = p.fill.as_ref().map_or(FillRule::NonZero, usvg::Fill::rule);
+        if rule == FillRule::EvenOdd {
+            properties.push(("clip-rule", "evenodd".into()));
+        } else if self.markup.may_inherit("clip-rule") {
+            properties.push(("clip-rule", "nonzero".into()));
+        }
+        if let Some(i) = clip {
+            let id = self.clip_id(i);
+            properties.push(("clip-path", format!("url(#{id})")));
+        }
+        let mut head = p.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
+        if t != Affine::IDENTITY {
+            let _ = write!(head, " transform=\"{}\"", matrix(t));
+        }
+        let d = part_data(p, self.input.warped(i), self.input.source);
+        self.markup.path(&d, &head, &properties)
     }
-    let mut body = String::new();
-    for n in &job.document.scene().root.children {
-        body.push_str(&w.node(n));
-        body.push('\n');
+
+    /// The id of a mask, which is written if necessary.
+    pub(super) fn mask_id(&mut self, i: usize) -> String {
+        if let Some(id) = &self.defs.mask_ids[i] {
+            return id.clone();
+        }
+        let id = self.defs.new_id(&self.input.scene.masks[i].id);
+        self.defs.mask_ids[i] = Some(id.clone());
+        let text = self.mask(i, &format!(" id=\"{}\"", escape(&id)));
+        self.defs.push(&text);
+        id
     }
-    if !w.defs.is_empty() {
-        let _ = write!(out, "<defs>\n{}</defs>\n", w.defs);
+
+    pub(super) fn mask(&mut self, i: usize, head: &str) -> String {
+        let m = &self.input.scene.masks[i];
+        let region = masks::region(&self.input, i);
+        let mut properties = Properties::new();
+        if m.kind == usvg::MaskType::Alpha {
+            properties.push(("mask-type", "alpha".into()));
+        }
+        if let Some(next) = m.mask {
+            let id = self.mask_id(next);
+            properties.push(("mask", format!("url(#{id})")));
+        }
+        let mut inner = self.group(&m.root, "");
+        if let Some(edge) = masks::edge(&self.input, i) {
+            let id = self.defs.new_id(&format!("{}-edge", m.id));
+            let path = self.markup.path(&edge, "", &Properties::new());
+            self.defs.push(&format!("<{0} id=\"{1}\">{path}</{0}>", self.markup.tag("clipPath"), escape(&id)));
+            let clip = self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]);
+            inner = format!("<{0}{clip}>{inner}</{0}>", self.markup.tag("g"));
+        }
+        let attrs: String = region.into_iter().map(|(n, v)| format!(" {n}=\"{v}\"")).collect();
+        format!("<{0}{head}{attrs}{1}>{inner}</{0}>", self.markup.tag("mask"), self.markup.attributes(&properties))
     }
-    out.push_str(&body);
-    out.push_str("</svg>\n");
-    out
+
+    /// Refers to a filter: the source's, or one that is written if necessary.
+    pub(super) fn filter(&mut self, f: &Arc<Filter>) -> String {
+        let source = self.input.source;
+        self.notes.add(FILTERS, f.id());
+        let own = source.by_id().get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
+        let foreign = self.input.scene.foreign.contains(&(Arc::as_ptr(f) as usize));
+        if self.markup.in_source && own && !foreign && !self.input.shows_warped(f) {
+            return format!("url(#{})", f.id());
+        }
+        format!("url(#{})", self.filter_id(f))
+    }
+
+    /// The id of a filter in user space, which is written if necessary.
+    pub(super) fn filter_id(&mut self, f: &Arc<Filter>) -> String {
+        let key = Arc::as_ptr(f) as usize;
+        if let Some(id) = self.defs.filters.get(&key) {
+            return id.clone();
+        }
+        let id = self.defs.new_id(f.id());
+        self.defs.filters.insert(key, id.clone());
+        let head = format!(" id=\"{}\"", escape(&id));
+        let pictures = f.primitives().iter().filter_map(|p| match p.kind() {
+            usvg::filter::Kind::Image(i) => Some(self.picture(i.root())),
+            _ => None,
+        });
+        let pictures: Vec<String> = pictures.collect();
+        let text = filter::element(&self.markup, f, &head, pictures);
+        self.defs.push(&text);
+        id
+    }
+
+    /// Writes the content of an `feImage` as a definition; returns the link to it.
+    fn picture(&mut self, root: &usvg::Group) -> String {
+        let Some(picture) = self.input.scene.pictures.get(&(std::ptr::from_ref(root) as usize)) else {
+            return String::new();
+        };
+        let id = self.defs.new_id("picture");
+        let text = self.group(picture, &format!(" id=\"{id}\""));
+        self.defs.push(&text);
+        format!(" {}=\"#{id}\"", self.markup.link())
+    }
 }

@@ -1,29 +1,30 @@
-//! Lettering as an SVG drawing that says where its baselines, heights and letters are.
+//! Lettering as an SVG drawing with data attributes for baselines, heights and letters.
 
-use crate::source::number::{escape, path_data, push};
+use crate::source::number::{path_data, push};
+use crate::source::xml::escape;
 use pathwarp::Error;
 use pathwarp_text::Lettering;
 use std::fmt::Write as _;
 use std::str::FromStr as _;
 
-/// How lettering is written.
+/// Options for writing lettering.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LetteringOptions {
-    /// A CSS colour; without it, the renderer's black.
+    /// A CSS colour; `None` for the renderer's default, black.
     pub fill: Option<String>,
-    /// Room on the page around ink and lines, in user units: at least 0.
+    /// Margin around ink and lines, in user units, at least 0.
     pub margin: f64,
 }
 
-/// Significant digits of coordinates, counted from the page's largest: a hair's breadth on a continent.
+/// Significant digits of the largest coordinate on the page.
 const DIGITS: i32 = 10;
 
-/// A drawing of `lettering`, as large as its ink, its lines and the margin around them.
+/// Writes lettering as a drawing, as large as its ink, its lines and the margin around them.
 ///
-/// The text is a group with its `aria-label`, and the font's heights in user units: `data-ascent` and `data-descent` (both
-/// counted from the baseline, both positive), `data-cap-height`, `data-x-height`. In it is a group for every line, whose
-/// `data-baseline="x0 y0 x1 y1"` goes from the line's left end to its right one, and in that a path for every cluster that has an
-/// outline: its text as `aria-label`, and `data-glyph="x y advance"`, its origin on the baseline and its advance width.
+/// The text is a group with an `aria-label` and the font's heights in user units: `data-ascent` and `data-descent` (both
+/// measured from the baseline, both positive), `data-cap-height`, `data-x-height`. It contains a group for every line with
+/// `data-baseline="x0 y0 x1 y1"`, from the line's left end to its right end. That contains a path for every cluster with an
+/// outline: its text as `aria-label`, and its origin on the baseline and its advance width as `data-glyph="x y advance"`.
 ///
 /// ```
 /// use pathwarp_svg::{LetteringOptions, bundled_font, write_lettering};
@@ -38,19 +39,23 @@ const DIGITS: i32 = 10;
 /// ```
 ///
 /// # Errors
-/// [`Error::Usage`] if the fill is no colour, or the margin is negative or not finite.
+/// Returns [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
 pub fn write_lettering(lettering: &Lettering, options: &LetteringOptions) -> Result<String, Error> {
     let fill = match &options.fill {
         Some(fill) if svgtypes::Color::from_str(fill).is_ok() || fill == "none" || fill == "currentColor" => {
             format!(" fill=\"{}\"", escape(fill))
         }
         Some(fill) => {
-            return Err(Error::usage("fill", fill, "is no CSS colour, such as #c00, navy, rgb(0,0,0) or currentColor"));
+            return Err(Error::usage(
+                "fill",
+                fill,
+                "is not a CSS colour such as #c00, navy, rgb(0,0,0) or currentColor",
+            ));
         }
         None => String::new(),
     };
     if !(options.margin >= 0.0 && options.margin.is_finite()) {
-        return Err(Error::usage("margin", options.margin.to_string(), "is not possible; a margin is at least 0"));
+        return Err(Error::usage("margin", options.margin.to_string(), "is not valid; a margin is at least 0"));
     }
     let page = lettering.page().inflate(options.margin, options.margin);
     let largest = [page.x0, page.y0, page.x1, page.y1].into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));

@@ -1,9 +1,18 @@
 //! The result as text: the source patched in place, or a file written anew.
 
+mod bitmaps;
 mod defs;
+pub(crate) mod document;
 mod filter;
-pub(crate) mod fragment;
-pub(crate) mod keep;
+mod flat;
+mod fragment;
+mod gradients;
+pub(crate) mod input;
+mod keep;
 pub(crate) mod lettering;
-pub(crate) mod page;
-mod pieces;
+mod markup;
+mod masks;
+mod page;
+mod patterns;
+mod style;
+mod values;

@@ -1,14 +1,15 @@
-//! What the tests share: maps that look nonlinear and are not, drawings as text, and pictures to compare.
+//! Helpers for the tests: affine maps that are treated as nonlinear, drawings as text, and comparison of renderings.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Formula, Real};
 use pathwarp::refit;
-use pathwarp_svg::{Document, ReadOptions, WarpOptions, Warped, parse_tree};
+use pathwarp_svg::usvg_tree::{self, parse_tree};
+use pathwarp_svg::{Document, ReadOptions, WarpOptions, WarpedDocument};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Tree;
 
-/// An affine map that does not say it is one, and so takes the way of any smooth map.
+/// An affine map that does not report its class, and is therefore treated like any smooth map.
 pub struct Hidden(pub Affine);
 
 impl Formula for Hidden {
@@ -18,7 +19,7 @@ impl Formula for Hidden {
     }
 }
 
-/// Something curved over the unit-hundred square.
+/// A curved map of the square from 0 to 100.
 pub struct Bend;
 
 impl Formula for Bend {
@@ -27,7 +28,7 @@ impl Formula for Bend {
     }
 }
 
-/// Rotation, skew and two scales about the middle of a hundred square.
+/// Rotation, skew and two scales about the centre of the square.
 pub fn oblique() -> Affine {
     Affine::translate((50.0, 50.0))
         * Affine::new([0.80, 0.15, -0.22, 0.62, 0.0, 0.0])
@@ -35,10 +36,10 @@ pub fn oblique() -> Affine {
 }
 
 pub fn options() -> ReadOptions {
-    ReadOptions { system_fonts: false, ..ReadOptions::default() }
+    ReadOptions::default().with_system_fonts(false)
 }
 
-/// A hundred square with this in it.
+/// Makes a drawing of the square with the given content.
 pub fn drawing(body: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 100 100\">{body}</svg>"
@@ -53,7 +54,7 @@ pub fn warp_options() -> WarpOptions {
     WarpOptions::new(refit::Options::new(1e-4))
 }
 
-pub fn warp(svg: &str, map: Affine) -> Warped {
+pub fn warp(svg: &str, map: Affine) -> WarpedDocument {
     read(svg).warp(&Hidden(map), &warp_options()).unwrap()
 }
 
@@ -64,8 +65,8 @@ pub fn rendered(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     out
 }
 
-/// Drawn four times as large and averaged: the renderer's own edges come in four shades only, and an edge that lies on the
-/// border of two flips between them at a hair's breadth (the renderer's arcs are good to a tenth of a unit).
+/// Renders at four times the size and averages. The renderer's own antialiasing has few levels, and an edge on the border of
+/// two levels flips between them at the slightest change (the renderer's arcs are correct to a tenth of a unit).
 fn picture(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     const OVER: u32 = 4;
     let large = rendered(tree, size * OVER, Affine::scale(f64::from(OVER)) * t);
@@ -84,7 +85,7 @@ fn picture(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     out
 }
 
-/// The share of pixels that differ by more than 16 of 255.
+/// Fraction of pixels that differ by more than 16 of 255.
 pub fn difference(a: &Pixmap, b: &Pixmap) -> f64 {
     let off = |p: &[u8], q: &[u8]| p.iter().zip(q).any(|(x, y)| x.abs_diff(*y) > 16);
     let n = a.data().chunks(4).zip(b.data().chunks(4)).filter(|(p, q)| off(p, q)).count();
@@ -92,13 +93,13 @@ pub fn difference(a: &Pixmap, b: &Pixmap) -> f64 {
 }
 
 /// Warps `svg` by a hidden affine map and compares with the renderer's own transform of the original.
-pub fn check(what: &str, svg: &str, map: Affine, options: &WarpOptions) -> Warped {
+pub fn check(what: &str, svg: &str, map: Affine, options: &WarpOptions) -> WarpedDocument {
     const SIZE: u32 = 300;
     let document = read(svg);
     let warped = document.warp(&Hidden(map), options).unwrap();
     let scale = Affine::scale(f64::from(SIZE) / document.size_px().width);
     let px = document.user_to_px();
-    let expected = picture(document.tree(), SIZE, scale * px * map * px.inverse());
+    let expected = picture(usvg_tree::tree(&document), SIZE, scale * px * map * px.inverse());
     let tree = parse_tree(warped.svg.as_bytes(), what, &self::options()).unwrap();
     let found = picture(&tree, SIZE, scale);
     assert!(expected.data().iter().any(|v| *v != 0), "{what}: nothing to compare");
@@ -110,35 +111,35 @@ pub fn check(what: &str, svg: &str, map: Affine, options: &WarpOptions) -> Warpe
 /// Pixels per unit of an original that is bent pixel by pixel.
 pub const FINE: u32 = 16;
 
-/// A drawing under [`Bend`] beside its own rendering bent pixel by pixel.
+/// Difference between a drawing warped by [`Bend`] and its rendering bent pixel by pixel.
 #[derive(Debug, Clone, Copy)]
 pub struct Gap {
-    /// The mean difference of channels, of 255, over all pixels that show anything.
+    /// Mean difference of channels, of 255, over all pixels with any paint.
     pub mean: f64,
-    /// The share of those pixels that differ by more than 16 of 255.
+    /// Fraction of these pixels that differ by more than 16 of 255.
     pub share: f64,
 }
 
-/// Warps `svg` by [`Bend`], and how far the result is from the original bent pixel by pixel.
-pub fn curved(svg: &str, options: &WarpOptions) -> (Warped, Gap) {
+/// Warps `svg` by [`Bend`] and compares the result with the original bent pixel by pixel.
+pub fn curved(svg: &str, options: &WarpOptions) -> (WarpedDocument, Gap) {
     let warped = read(svg).warp(&Bend, options).unwrap();
     let gap = gap(svg, &warped.svg);
     (warped, gap)
 }
 
-/// Compares a drawing warped by [`Bend`] with the original's rendering, read at four times the resolution where the inverse map
-/// says. The inverse is a fixed-point iteration of its own, which contracts by 0.2 · 0.32. (The renderer makes a pattern's tile
-/// a whole number of pixels and so moves the tiles apart; here, tiles must be whole at [`FINE`] pixels per unit.)
+/// Compares a drawing warped by [`Bend`] with the original's rendering, sampled at four times the resolution through the
+/// inverse map. The inverse is a fixed-point iteration, which contracts by 0.2 · 0.32. (The renderer rounds a pattern's tile to
+/// whole pixels, which moves the tiles apart. Tiles must therefore be whole at [`FINE`] pixels per unit here.)
 pub fn gap(svg: &str, warped: &str) -> Gap {
     /// Pixels per unit of the comparison.
     const SCALE: u32 = 4;
-    /// What is shown: from here, so many units.
+    /// The visible area: its corner and its size in units.
     const FROM: f64 = -20.0;
     const SIDE: u32 = 140;
     let document = read(svg);
     let window = |scale: u32| Affine::scale(f64::from(scale)) * Affine::translate((-FROM, -FROM));
     let px = document.user_to_px();
-    let original = rendered(document.tree(), SIDE * FINE, window(FINE) * px.inverse());
+    let original = rendered(usvg_tree::tree(&document), SIDE * FINE, window(FINE) * px.inverse());
     let tree = parse_tree(warped.as_bytes(), "warped", &options()).unwrap();
     let found = picture(&tree, SIDE * SCALE, window(SCALE) * px.inverse());
     let wide = (SIDE * FINE) as usize;
@@ -179,7 +180,7 @@ pub fn gap(svg: &str, warped: &str) -> Gap {
     Gap { mean: sum / f64::from(count), share: f64::from(off) / f64::from(count) }
 }
 
-/// Two drawings look the same.
+/// Asserts that two drawings look the same.
 pub fn same(what: &str, a: &str, b: &str) {
     const SIZE: u32 = 300;
     let pictures = [a, b].map(|svg| {

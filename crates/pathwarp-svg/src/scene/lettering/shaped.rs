@@ -1,11 +1,11 @@
-//! Lettering as usvg has laid it out: which subpaths are which glyph's, and where it stands.
+//! Lettering of text as laid out by usvg: position and subpaths of each glyph.
 //!
-//! usvg makes one path of all glyphs of a span. Drawing each glyph once more from its font, the same way, tells where one ends
-//! and the next begins; where the two disagree (coloured fonts, bitmap glyphs), nothing is claimed to be known.
+//! usvg merges the outlines of a span's glyphs into one path. To find the boundaries, each glyph is drawn again from its font
+//! in the same way. If the two disagree (colour fonts, bitmap glyphs), the text is treated as having no letters.
 
-use super::{Heights, Letter, Line};
-use crate::scene::geometry::from_usvg;
+use super::line::{Heights, PlacedLetter, TextLine};
 use crate::scene::model::Part;
+use crate::scene::usvg_path::from_usvg;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point};
 use skrifa::MetadataProvider;
@@ -15,10 +15,10 @@ use std::ops::Range;
 use usvg::layout::{PositionedGlyph, Span};
 use usvg::tiny_skia_path as ts;
 
-/// A baseline this far from another, in font sizes, is another line's; less is a raised or lowered letter.
+/// Baselines at least this far apart, in font sizes, belong to different lines; closer ones to raised or lowered letters.
 const ANOTHER_LINE: f64 = 0.5;
 
-/// A glyph, in the text's user space.
+/// A glyph in the text's user space.
 struct Glyph {
     text: String,
     origin: Point,
@@ -27,19 +27,19 @@ struct Glyph {
     heights: Heights,
     part: usize,
     range: Range<usize>,
-    /// The middle of its outline.
+    /// Centre of the outline's box.
     centre: f64,
     turned: bool,
 }
 
-/// The lines of a text whose parts are `parts[first..]`, which `frame` takes to root user space.
+/// Finds the lines of a text whose parts are `parts[first..]`. `frame` maps the text to root user space.
 pub(crate) fn lines(
     text: &usvg::Text,
     fonts: &usvg::fontdb::Database,
     frame: Affine,
     parts: &[Part],
     first: usize,
-) -> Vec<Line> {
+) -> Vec<TextLine> {
     let Some(glyphs) = glyphs(text, fonts, parts, first) else { return Vec::new() };
     let straight = text.chunks().iter().all(|c| matches!(c.text_flow(), usvg::TextFlow::Linear))
         && text.writing_mode() == usvg::WritingMode::LeftToRight;
@@ -57,9 +57,9 @@ pub(crate) fn lines(
     rows.into_iter().filter_map(|row| line(row, frame, straight)).collect()
 }
 
-fn line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<Line> {
+fn line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<TextLine> {
     let (wide, marks): (Vec<Glyph>, Vec<Glyph>) = row.into_iter().partition(|g| g.advance > 0.0);
-    // The baseline is where most of the line stands; raised letters keep their height above it.
+    // The line's baseline is the one with the largest total advance; raised letters keep their height above it.
     let share = |y: f64| wide.iter().filter(|g| g.origin.y == y).map(|g| g.advance).sum::<f64>();
     let y = wide.iter().map(|g| g.origin.y).max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
     let from = wide.iter().map(|g| g.origin.x).fold(f64::INFINITY, f64::min);
@@ -67,31 +67,31 @@ fn line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<Line> {
     let largest = wide.iter().max_by(|a, b| a.size.total_cmp(&b.size))?;
     let straight = straight && !wide.iter().any(|g| g.turned);
     let name: String = wide.iter().map(|g| g.text.as_str()).collect();
-    let mut line = Line::new(name, Point::new(from, y), Point::new(to, y), largest.heights, frame, straight);
+    let mut line = TextLine::new(name, Point::new(from, y), Point::new(to, y), largest.heights, frame, straight);
     let middles: Vec<f64> = wide.iter().map(|g| g.origin.x + 0.5 * g.advance).collect();
     let across = Point::new(1.0, 0.0).to_vec2();
     let stretch = (frame * across.to_point() - frame * Point::ORIGIN).hypot();
     line.letters = wide
         .into_iter()
-        .map(|g| Letter {
+        .map(|g| PlacedLetter {
             name: g.text,
-            // A letter that is raised stands above the baseline all the same.
+            // Raised letters have their origin on the baseline, too.
             origin: frame * Point::new(g.origin.x, y),
             advance: g.advance * stretch,
-            owns: vec![(g.part, g.range)],
+            subpaths: vec![(g.part, g.range)],
         })
         .collect();
-    // Marks without an advance belong to the letter they stand over.
+    // Marks without an advance belong to the nearest letter.
     for m in marks {
         let off = |i: &usize| (middles[*i] - m.centre).abs();
         if let Some(l) = (0..middles.len()).min_by(|a, b| off(a).total_cmp(&off(b))) {
-            line.letters[l].owns.push((m.part, m.range));
+            line.letters[l].subpaths.push((m.part, m.range));
         }
     }
     Some(line)
 }
 
-/// Every glyph that has an outline; `None` where they do not add up to the text's paths.
+/// Lists the glyphs with an outline. Returns `None` if they do not add up to the text's paths.
 fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], first: usize) -> Option<Vec<Glyph>> {
     let mut out = Vec::new();
     let mut part = first;
@@ -99,7 +99,7 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
         part += usize::from(span.overline.is_some()) + usize::from(span.underline.is_some());
         let mut taken = 0;
         for g in &span.positioned_glyphs {
-            let Some((outline, known)) = drawn(g, span, fonts) else { continue };
+            let Some((outline, metrics)) = drawn(g, span, fonts) else { continue };
             let range = taken..taken + outline.subpaths.len();
             if parts.get(part)?.local.subpaths.get(range.clone())? != outline.subpaths {
                 return None;
@@ -110,9 +110,9 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
             out.push(Glyph {
                 text: g.text.clone(),
                 origin: Point::new(f64::from(t.tx), f64::from(t.ty)),
-                advance: f64::from(t.sx).hypot(f64::from(t.ky)) * known.advance,
+                advance: f64::from(t.sx).hypot(f64::from(t.ky)) * metrics.advance,
                 size,
-                heights: known.heights,
+                heights: metrics.heights,
                 part,
                 range,
                 centre: outline.bounding_box().map_or(f64::from(t.tx), |b| b.center().x),
@@ -130,22 +130,22 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
     Some(out)
 }
 
-/// What a font says of a glyph.
-struct Known {
+/// A glyph's metrics from its font.
+struct Metrics {
     /// Font units.
     advance: f64,
     /// The text's user units.
     heights: Heights,
 }
 
-/// A glyph's outline as usvg draws it; `None` if it has none, as a space.
-fn drawn(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Option<(Outline, Known)> {
+/// Draws a glyph as usvg does. Returns `None` if it has no outline, such as a space.
+fn drawn(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Option<(Outline, Metrics)> {
     fonts.with_face_data(g.font, |data, index| {
         let font = skrifa::FontRef::from_index(data, index).ok()?;
         let axes = font.axes();
         let mut set: Vec<(skrifa::Tag, f32)> =
             span.variations.iter().map(|v| (skrifa::Tag::from_be_bytes(v.tag), v.value)).collect();
-        // An optical size follows the font size unless it is set.
+        // The optical size defaults to the font size.
         let optical = skrifa::Tag::new(b"opsz");
         if span.font_optical_sizing == usvg::FontOpticalSizing::Auto
             && axes.get_by_tag(optical).is_some()
@@ -164,7 +164,7 @@ fn drawn(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Op
         let height = |c: char| font.charmap().map(c).and_then(|id| glyphs.bounds(id)).map(|b| b.y_max);
         let per_unit = f64::from(g.font_size()) / f64::from(metrics.units_per_em.max(1));
         let scaled = |v: Option<f32>| v.map_or(0.0, |v| f64::from(v).abs() * per_unit);
-        let known = Known {
+        let own = Metrics {
             advance: f64::from(glyphs.advance_width(id)?),
             heights: Heights {
                 ascent: scaled(Some(metrics.ascent)),
@@ -173,7 +173,7 @@ fn drawn(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Op
                 x_height: scaled(metrics.x_height.filter(|h| *h > 0.0).or_else(|| height('x'))),
             },
         };
-        Some((from_usvg(&path), known))
+        Some((from_usvg(&path), own))
     })?
 }
 

@@ -1,15 +1,16 @@
-//! Filled outlines cut along boxes.
+//! Clips filled outlines to boxes.
 //!
-//! What lies beyond a border is drawn in onto it. Winding numbers inside do not change by that, so both fill rules give the
-//! same inside as before (the idea of I. E. Sutherland and G. W. Hodgman, *Reentrant Polygon Clipping*, 1974, for curves).
+//! Geometry outside of a border is replaced by lines along the border. This does not change winding numbers inside, so the
+//! interior stays the same by either fill rule (I. E. Sutherland and G. W. Hodgman, *Reentrant Polygon Clipping*, 1974,
+//! applied to curves).
 
 use pathwarp::Outline;
 use pathwarp::kurbo::common::{solve_cubic, solve_quadratic};
 use pathwarp::kurbo::{Line, Point, Rect};
 use pathwarp::outline::{Seg, Subpath};
 
-/// The part of a filled outline that lies in a box. Arcs across its border become cubics within `tolerance`.
-pub(crate) fn within(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
+/// Clips a filled outline to a box. Arcs across its border become cubics within `tolerance`.
+pub(super) fn within(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
     if outline.bounding_box().is_none_or(|b| area.union(b) == area) {
         return outline.clone();
     }
@@ -28,20 +29,20 @@ pub(crate) fn within(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
     Outline { subpaths: loops.filter_map(subpath).collect() }
 }
 
-/// Closes a run of pieces.
+/// Closes a run of segments with a line.
 fn join(segs: &mut Vec<Seg>, start: Point) {
     if let Some(end) = segs.last().map(Seg::end).filter(|e| *e != start) {
         segs.push(Seg::Line(Line::new(end, start)));
     }
 }
 
-/// A line along an axis, and which side of it stays.
+/// A line parallel to an axis, with the side to keep.
 #[derive(Debug, Clone, Copy)]
 struct Border {
-    /// 0: it stands at an x; 1: at a y.
+    /// 0 for a vertical border at an x, 1 for a horizontal one at a y.
     across: usize,
     at: f64,
-    /// 1: what is larger stays; -1: what is smaller.
+    /// 1 to keep larger coordinates, -1 to keep smaller ones.
     side: f64,
 }
 
@@ -50,25 +51,25 @@ impl Border {
         if self.across == 0 { p.x } else { p.y }
     }
 
-    /// How far inside a point lies.
+    /// Distance of a point from the border, positive inside.
     fn inside(self, p: Point) -> f64 {
         (self.coordinate(p) - self.at) * self.side
     }
 
-    /// The point moved onto the border.
+    /// Projects a point onto the border.
     fn onto(self, p: Point) -> Point {
         if self.across == 0 { Point::new(self.at, p.y) } else { Point::new(p.x, self.at) }
     }
 
     fn cut(self, segs: Vec<Seg>, tolerance: f64) -> Vec<Seg> {
-        let box_inside = |s: &Seg| {
+        let extent = |s: &Seg| {
             let b = s.bounding_box();
             let (p, q) = (Point::new(b.x0, b.y0), Point::new(b.x1, b.y1));
             (self.inside(p).min(self.inside(q)), self.inside(p).max(self.inside(q)))
         };
         let mut kept: Vec<Seg> = Vec::with_capacity(segs.len());
         for s in segs {
-            match (box_inside(&s), s) {
+            match (extent(&s), s) {
                 ((least, _), s) if least >= 0.0 => kept.push(s),
                 ((_, most), _) if most <= 0.0 => {}
                 (_, Seg::Arc(arc)) => {
@@ -79,7 +80,7 @@ impl Border {
                 (_, s) => self.split(s, &mut kept),
             }
         }
-        // What was left out ran beyond the border from one place on it to another.
+        // Replace the parts outside by lines along the border.
         let mut out: Vec<Seg> = Vec::with_capacity(kept.len() + 2);
         for s in kept {
             if let Some(end) = out.last().map(Seg::end).filter(|e| *e != s.start()) {
@@ -93,26 +94,26 @@ impl Border {
         out
     }
 
-    /// Where a segment, or what goes on beyond its ends, crosses the border.
+    /// Parameters at which a segment, extended past its ends, crosses the border.
     fn crossings(self, s: &Seg) -> Vec<f64> {
-        /// A third power with less than this share of the others' size is none, and would drown the roots in its rounding.
-        const NONE: f64 = 1e-11;
+        /// Treat the cubic coefficient as zero below this fraction of the others; its rounding errors would spoil the roots.
+        const NEGLIGIBLE: f64 = 1e-11;
         let c = s.to_cubic();
         let [a, b, c, d] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.inside(p));
-        let [one, two, three] = [3.0 * (b - a), 3.0 * (a - 2.0 * b + c), d - a + 3.0 * (b - c)];
+        let [linear, square, cubic] = [3.0 * (b - a), 3.0 * (a - 2.0 * b + c), d - a + 3.0 * (b - c)];
         match s {
-            // Exact where there is nothing to solve.
+            // Exact for lines.
             Seg::Line(_) => vec![a / (a - d)],
-            _ if three.abs() <= NONE * (a.abs() + one.abs() + two.abs()) => {
-                solve_quadratic(a, one, two).into_iter().collect()
+            _ if cubic.abs() <= NEGLIGIBLE * (a.abs() + linear.abs() + square.abs()) => {
+                solve_quadratic(a, linear, square).into_iter().collect()
             }
-            _ => solve_cubic(a, one, two, three).into_iter().collect(),
+            _ => solve_cubic(a, linear, square, cubic).into_iter().collect(),
         }
     }
 
-    /// The pieces of a segment that lie inside.
+    /// Splits a segment at the border and keeps the parts inside.
     fn split(self, s: Seg, kept: &mut Vec<Seg>) {
-        /// Crossings nearer to an end than this are the end.
+        /// Crossings closer than this to an end parameter are ignored.
         const END: f64 = 1e-12;
         let mut at = self.crossings(&s);
         at.retain(|t| *t > END && *t < 1.0 - END);
@@ -154,7 +155,7 @@ mod tests {
     use super::*;
     use pathwarp::kurbo::Shape as _;
 
-    /// Winding numbers inside are what they were; outside there are none.
+    /// Winding numbers are unchanged inside and zero outside.
     #[test]
     fn the_inside_keeps_its_windings() {
         let area = Rect::new(2.0, 1.0, 9.0, 8.0);
@@ -188,7 +189,7 @@ mod tests {
         }
     }
 
-    /// What is inside stays as it is, arcs included.
+    /// Outlines inside the box are unchanged, arcs included.
     #[test]
     fn nothing_to_cut() {
         let o = Outline::from_svg("M4,4 a2,2 0 1 1 4,0 Z").unwrap();

@@ -1,87 +1,84 @@
-//! Animations under a warp: they stay unless they move what is warped, or what has become another element.
+//! Animations under a warp. They stay unless they move a warped shape, or apply to an element that has become a group.
 
-use super::{GEOMETRY, Keeper};
-use crate::bend::image::Picture;
-use crate::source::text::ElementId;
+use super::keeper::{GEOMETRY, Keeper};
+use crate::bend::bitmap::EmbeddedImage;
+use crate::source::tags::{ElementId, is_animation};
+use crate::source::text::SourceText;
 
 const OF_GEOMETRY: &str = "animations of a shape's geometry are dropped, as the shape is warped";
-const OF_PLACE: &str = "animations that move warped shapes along straight lines are dropped";
+const OF_POSITION: &str = "animations that move warped shapes along straight lines are dropped";
 const OF_PAINT: &str =
     "animations of fill and stroke are dropped where a shape, text or copy has become a group of several";
 
-/// Whether this is the name of an element that animates.
-pub(crate) fn is_animation(tag: &str) -> bool {
-    matches!(tag, "animate" | "set" | "animateTransform" | "animateMotion" | "animateColor")
-}
-
-impl Keeper<'_, '_> {
-    /// Takes out the animations that no longer fit.
-    pub(super) fn animations(&mut self) {
-        if !self.source.animated {
-            return;
-        }
-        let scene = &self.job.document.scene();
-        let count = self.source.elements.len();
-        let (mut warped, mut around) = (vec![false; count], vec![false; count]);
-        let parts = scene.parts.iter().enumerate().filter(|p| self.done(p.0)).filter_map(|p| p.1.owner.or(p.1.source));
-        let bitmaps = scene.bitmaps.iter().zip(self.job.pictures);
-        let bitmaps = bitmaps.filter(|b| matches!(b.1, Picture::Bent(_))).filter_map(|b| b.0.owner);
-        for e in parts.chain(bitmaps) {
-            warped[e] = true;
-            for a in self.source.ancestors(e) {
-                if std::mem::replace(&mut around[a], true) {
-                    break;
-                }
-            }
-        }
-        let source = self.source;
-        for a in (0..count).filter(|&a| is_animation(&source.elements[a].tag)) {
-            let target = match self.source.href(a) {
-                Some(id) => self.source.by_id().get(&id).and_then(|all| all.first().copied()),
-                None => self.source.elements[a].parent,
-            };
-            let Some(target) = target else { continue };
-            let why = match self.animates(a) {
-                Animates::Geometry if warped[target] => OF_GEOMETRY,
-                Animates::Place if around[target] => OF_PLACE,
-                Animates::Paint if self.fragments.contains(&target) => OF_PAINT,
-                _ => continue,
-            };
-            self.edits.replace(a, String::new());
-            self.writer.notes.add(why, &self.source.display_name(target));
-        }
-    }
-
-    /// The animations right inside an element whose content is written anew, but for those that no longer fit.
-    pub(crate) fn kept_animations(&self, e: ElementId) -> String {
-        let inside = self.source.elements[e].range.end;
-        let children = (e + 1..self.source.elements.len())
-            .take_while(|&c| self.source.elements[c].range.start < inside)
-            .filter(|&c| self.source.elements[c].parent == Some(e) && is_animation(self.tag(c)));
-        let kept = children.filter(|&c| matches!(self.animates(c), Animates::Other));
-        kept.map(|c| &self.source.text[self.source.elements[c].range.clone()]).collect()
-    }
-
-    fn animates(&self, a: ElementId) -> Animates {
-        if matches!(self.tag(a), "animateTransform" | "animateMotion") {
-            return Animates::Place;
-        }
-        match self.source.attr(a, "attributeName").as_deref().map(str::trim) {
-            Some("transform") => Animates::Place,
-            Some("points" | "dx" | "dy" | "rotate" | "textLength" | "font-size" | "href" | "xlink:href") => {
-                Animates::Geometry
-            }
-            Some(n) if GEOMETRY.contains(&n) => Animates::Geometry,
-            Some(n) if n.starts_with("fill") || n.starts_with("stroke") => Animates::Paint,
-            _ => Animates::Other,
-        }
-    }
-}
-
-/// What an animation changes.
-enum Animates {
+/// Property changed by an animation.
+enum Animated {
     Geometry,
-    Place,
+    Position,
     Paint,
     Other,
+}
+
+/// Removes animations that no longer fit.
+pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>) {
+    let source = k.source;
+    if !source.animated {
+        return;
+    }
+    let (warped, around) = warped_elements(k);
+    for a in (0..source.elements.len()).filter(|&a| is_animation(&source.elements[a].tag)) {
+        let target = match source.href(a) {
+            Some(id) => source.by_id().get(&id).and_then(|all| all.first().copied()),
+            None => source.elements[a].parent,
+        };
+        let Some(target) = target else { continue };
+        let why = match animated(source, a) {
+            Animated::Geometry if warped[target] => OF_GEOMETRY,
+            Animated::Position if around[target] => OF_POSITION,
+            Animated::Paint if k.fragments.contains(&target) => OF_PAINT,
+            _ => continue,
+        };
+        k.edits.replace(a, String::new());
+        k.writer.notes.add(why, &source.display_name(target));
+    }
+}
+
+/// Determines for every element whether it is warped, and whether it contains anything warped.
+fn warped_elements(k: &Keeper<'_, '_>) -> (Vec<bool>, Vec<bool>) {
+    let (scene, count) = (k.input.scene, k.source.elements.len());
+    let (mut warped, mut around) = (vec![false; count], vec![false; count]);
+    let parts = scene.parts.iter().zip(k.input.outcomes);
+    let parts = parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element());
+    let bitmaps = scene.bitmaps.iter().zip(k.input.images);
+    let bitmaps = bitmaps.filter(|b| matches!(b.1, EmbeddedImage::Bent(_))).filter_map(|b| b.0.owner);
+    for e in parts.chain(bitmaps) {
+        warped[e] = true;
+        for a in k.source.ancestors(e) {
+            if std::mem::replace(&mut around[a], true) {
+                break;
+            }
+        }
+    }
+    (warped, around)
+}
+
+/// The animations among the children of an element whose content is replaced, except those that no longer fit.
+pub(super) fn kept(source: &SourceText, e: ElementId) -> String {
+    let children = source
+        .descendants(e)
+        .filter(|&c| source.elements[c].parent == Some(e) && is_animation(&source.elements[c].tag));
+    let kept = children.filter(|&c| matches!(animated(source, c), Animated::Other));
+    kept.map(|c| &source.text[source.elements[c].range.clone()]).collect()
+}
+
+fn animated(source: &SourceText, a: ElementId) -> Animated {
+    if matches!(source.elements[a].tag.as_ref(), "animateTransform" | "animateMotion") {
+        return Animated::Position;
+    }
+    match source.attr(a, "attributeName").as_deref().map(str::trim) {
+        Some("transform") => Animated::Position,
+        Some("dx" | "dy" | "rotate" | "textLength" | "font-size" | "href" | "xlink:href") => Animated::Geometry,
+        Some(n) if GEOMETRY.contains(&n) => Animated::Geometry,
+        Some(n) if n.starts_with("fill") || n.starts_with("stroke") => Animated::Paint,
+        _ => Animated::Other,
+    }
 }

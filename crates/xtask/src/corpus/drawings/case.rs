@@ -11,7 +11,7 @@ use pathwarp::map::Map;
 use pathwarp::refit;
 use pathwarp_cli::Bender;
 use pathwarp_raster::{Pixmap, compare};
-use pathwarp_svg::{Document, Gradients, Images, ReadOptions, Structure, WarpOptions, Warped};
+use pathwarp_svg::{Document, Gradients, Images, ReadOptions, Structure, WarpOptions, WarpedDocument, usvg_tree};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -107,7 +107,7 @@ struct FileCase<'a> {
 /// Runs all checks of a file. Files that cannot be opened, or that usvg cannot read either, give no findings.
 pub(super) fn check(file: &Path, options: &CheckOptions) -> Vec<Finding> {
     let Ok(bytes) = std::fs::read(file) else { return Vec::new() };
-    let read = ReadOptions { base_dir: file.parent().map(Path::to_owned), ..options.read.clone() };
+    let read = options.read.clone().with_base_dir(file.parent().map(Path::to_owned));
     let started = Instant::now();
     let document = match Document::read(&bytes, "the file", &read) {
         Ok(d) => d,
@@ -139,7 +139,7 @@ impl FileCase<'_> {
         let size = document.size_px();
         let scale = SIDE / size.width.max(size.height);
         let options = self.warp_options(scale);
-        let Some(original) = pictures::whole(document.tree(), scale) else { return };
+        let Some(original) = pictures::whole(usvg_tree::tree(document), scale) else { return };
         if self.runs("identity") {
             self.identity(&original, scale, &options);
         }
@@ -176,7 +176,7 @@ impl FileCase<'_> {
         let mut last = None;
         for (check, original) in [(AFFINE, Some(document)), (EXACT, exact.as_ref())] {
             if let Some(original) = original {
-                let pair = Pair { a: original.tree(), moved, b: after.tree() };
+                let pair = Pair { a: usvg_tree::tree(&original), moved, b: usvg_tree::tree(&after) };
                 let (share, remark) = pair.share(&scales);
                 if share > SHARE {
                     self.save(check, pair.pictures(&scales));
@@ -212,7 +212,7 @@ impl FileCase<'_> {
             options.copies = if check.copy { vec![Affine::IDENTITY] } else { Vec::new() };
             let map: &dyn Map = if check.hidden { &hidden } else { &Identity };
             let found = self.warped(check.name, map, &options).and_then(|(w, d)| {
-                let picture = pictures::whole(d.tree(), scale).ok_or("no picture")?;
+                let picture = pictures::whole(usvg_tree::tree(&d), scale).ok_or("no picture")?;
                 let difference = compare(original, &picture).map_err(|e| e.to_string())?;
                 Ok((difference, picture, remarks(&w)))
             });
@@ -241,7 +241,7 @@ impl FileCase<'_> {
         check: &'static str,
         map: &dyn Map,
         options: &WarpOptions,
-    ) -> Result<(Warped, Document), String> {
+    ) -> Result<(WarpedDocument, Document), String> {
         let started = Instant::now();
         let warped = self.document.warp(map, options).map_err(|e| e.to_string())?;
         if started.elapsed() > self.slowest.0 {
@@ -262,7 +262,9 @@ impl FileCase<'_> {
             Err(e) => return self.out.push(Finding::failed(CHECK, e)),
             Ok(w) => w,
         };
-        let Some((ours, expected, inside)) = pictures::bent(self.document, after.tree(), &map, scale) else { return };
+        let Some((ours, expected, inside)) = pictures::bent(self.document, usvg_tree::tree(&after), &map, scale) else {
+            return;
+        };
         let Some(mean) = pictures::mean_inside(&ours, &expected, &inside) else { return };
         let passed = mean <= MEAN;
         if !passed {
@@ -272,7 +274,7 @@ impl FileCase<'_> {
     }
 
     /// Checks that the file was patched in place and that ids, classes, titles and nesting are preserved.
-    fn structure(&mut self, warped: &Warped) {
+    fn structure(&mut self, warped: &WarpedDocument) {
         let anew = warped.warnings.iter().find(|w| w.contains("written anew"));
         self.out.push(Finding::new("patched in place", anew.is_none(), anew.cloned().unwrap_or_default()));
         let text = String::from_utf8_lossy(self.document.source()).into_owned();
@@ -305,7 +307,7 @@ fn bending(map: &Arc<dyn Map>, mut options: WarpOptions) -> WarpOptions {
 }
 
 /// The first warnings and skipped elements, as a hint at the cause.
-fn remarks(w: &Warped) -> String {
+fn remarks(w: &WarpedDocument) -> String {
     let skipped = w.skipped.iter().map(|s| format!("{}: {}", s.id, s.why));
     let all: Vec<String> = w.warnings.iter().cloned().chain(skipped).take(3).collect();
     if all.is_empty() { String::new() } else { format!(" ({})", all.join("; ")) }

@@ -62,19 +62,17 @@ pub(super) fn measure(run: &CorpusRun) -> Result<String, Failure> {
         collect(folder, &mut files).map_err(at(folder))?;
         files.sort();
         let files: Vec<PathBuf> = files.into_iter().step_by(run.every.max(1)).collect();
-        let options = ReadOptions {
-            // The families that resvg's test suite uses.
-            generic_families: GenericFamilies {
+        // The families that resvg's test suite uses.
+        let options = ReadOptions::default()
+            .with_generic_families(GenericFamilies {
                 serif: Some("Noto Serif".into()),
                 sans_serif: Some("Noto Sans".into()),
                 cursive: Some("Yellowtail".into()),
                 fantasy: Some("Sedgwick Ave Display".into()),
                 monospace: Some("Noto Mono".into()),
-            },
-            system_fonts: run.fonts.is_none(),
-            fonts: run.fonts.iter().cloned().collect(),
-            ..ReadOptions::default()
-        };
+            })
+            .with_system_fonts(run.fonts.is_none())
+            .with_fonts(run.fonts.iter().cloned().collect());
         if !run.times {
             let checks = CheckOptions { read: options.clone(), pictures: run.pictures.clone(), only: run.only.clone() };
             let found = check_all(&files, &checks);

@@ -4,7 +4,7 @@ use super::scale::{self, Scales};
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::{Map, NewtonInverse};
 use pathwarp_raster::{ImageWarp, Pixmap, Size, compare, diff_image, render, shown, warp_image};
-use pathwarp_svg::Document;
+use pathwarp_svg::{Document, usvg_tree};
 use resvg::tiny_skia::{Color, PixmapPaint, PremultipliedColorU8, Transform};
 use std::path::Path;
 use std::sync::Arc;
@@ -141,9 +141,9 @@ pub(super) fn bent(
     let fine = f64::from(n) * scale;
     let ours = whole(after, fine)?;
     let size = (ours.width(), ours.height());
-    let expected = bend(&whole(document.tree(), SHARPER * fine)?, SHARPER * fine, fine, size)?;
+    let expected = bend(&whole(usvg_tree::tree(document), SHARPER * fine)?, SHARPER * fine, fine, size)?;
     let (ours, expected) = (reduced(&ours, n)?, reduced(&expected, n)?);
-    let mut solid = whole(document.tree(), scale)?;
+    let mut solid = whole(usvg_tree::tree(document), scale)?;
     solid.fill(Color::BLACK);
     let inside = bend(&solid, scale, scale, (ours.width(), ours.height()))?;
     Some((ours, expected, inside))

@@ -1,6 +1,6 @@
 //! The scales at which pictures are drawn.
 
-use pathwarp_svg::Document;
+use pathwarp_svg::{Document, usvg_tree};
 
 /// Longest side of a picture in pixels.
 pub(super) const SIDE: f64 = 300.0;
@@ -35,7 +35,7 @@ impl Scales {
         let size = document.size_px();
         let oversampling = if has_filters(document) { OVERSAMPLING } else { FINE_OVERSAMPLING };
         let largest = LARGE / f64::from(oversampling) / size.width.max(size.height);
-        let thinnest = thinnest(document.tree().root()).unwrap_or(f64::INFINITY);
+        let thinnest = thinnest(usvg_tree::tree(document).root()).unwrap_or(f64::INFINITY);
         let needed = (WIDE / (SQUEEZE * thinnest) / f64::from(oversampling)).max(least);
         Self { whole: needed.min(largest), needed: needed.min(MOST_MAGNIFICATION * largest), oversampling }
     }
@@ -47,7 +47,7 @@ pub(super) fn oversampling(document: &Document) -> u32 {
 }
 
 fn has_filters(document: &Document) -> bool {
-    !document.tree().filters().is_empty()
+    !usvg_tree::tree(document).filters().is_empty()
 }
 
 /// The width of the thinnest stroke in px.

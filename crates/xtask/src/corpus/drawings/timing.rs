@@ -50,12 +50,11 @@ fn timed(file: &Path, options: &ReadOptions, warp: &WarpOptions) -> Option<(f64,
     if text.contains("<text") || text.contains("data:image/svg") {
         return None;
     }
-    let options = ReadOptions {
-        base_dir: file.parent().map(Path::to_owned),
-        system_fonts: false,
-        fonts: Vec::new(),
-        ..options.clone()
-    };
+    let options = options
+        .clone()
+        .with_base_dir(file.parent().map(Path::to_owned))
+        .with_system_fonts(false)
+        .with_fonts(Vec::new());
     let theirs = usvg::Options { resources_dir: options.base_dir.clone(), ..usvg::Options::default() };
     let mut best = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {

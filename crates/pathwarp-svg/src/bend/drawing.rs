@@ -1,0 +1,166 @@
+//! The image of a drawing: all parts, in parallel, with slots and bitmaps.
+
+use super::bitmap::{self, EmbeddedImage};
+use super::letters;
+use super::options::{OnError, TextMode, WarpOptions};
+use super::outcome::{PartOutcome, Skipped, WarpedDocument, WarpedPart};
+use super::part;
+use super::shading::Shading;
+use super::slots::{self, PlacedSlot, written};
+use super::task::{PartContext, PartTask};
+use crate::scene::affine::is_invertible;
+use crate::scene::drawing::Drawing;
+use crate::scene::model::{Bitmap, Part, PartRole};
+use pathwarp::kurbo::Affine;
+use pathwarp::map::{Class, Map};
+use pathwarp::{Error, GeometryError};
+
+/// The image of a drawing.
+pub(crate) struct BentDrawing {
+    /// One for each part.
+    pub(crate) outcomes: Vec<PartOutcome>,
+    /// One for each bitmap.
+    pub(crate) images: Vec<EmbeddedImage>,
+    /// One for each slot.
+    pub(crate) slots: Vec<PlacedSlot>,
+}
+
+/// Returns `true` if nothing moves.
+pub(crate) fn is_identity(map: &dyn Map, options: &WarpOptions) -> bool {
+    map.class() == Class::Affine(Affine::IDENTITY) && options.copies.is_empty() && options.letters.places.is_empty()
+}
+
+/// Bends everything in a drawing and reports to `out`.
+pub(crate) fn bend(
+    drawing: &Drawing,
+    map: &dyn Map,
+    options: &WarpOptions,
+    out: &mut WarpedDocument,
+) -> Result<BentDrawing, Error> {
+    let scene = drawing.scene();
+    let selected = selected_parts(drawing, options);
+    let slots = slots::place(drawing, map, &selected, &options.selection);
+    let results = warp_parts(drawing, map, options, &selected, &slots);
+    let mut outcomes = Vec::with_capacity(scene.parts.len());
+    let mut last = None;
+    for (i, r) in results.into_iter().enumerate() {
+        let part = &scene.parts[i];
+        outcomes.push(match r {
+            None => PartOutcome::Kept,
+            Some(Ok(warped)) => {
+                let id = &drawing.shapes()[i].id;
+                if let Some(why) = &warped.unpainted {
+                    out.warnings.push(format!("a gradient of {id} only follows the best affine fit: {why}"));
+                }
+                let element = part.element();
+                let continues = element.is_some() && element == last;
+                out.report(id.clone(), &warped, options.copies.len().max(1), continues);
+                last = element;
+                PartOutcome::Warped(Box::new(warped))
+            }
+            // Tiles extend past their shape, possibly out of the map's domain. The pattern then follows as a whole.
+            Some(Err(_)) if part.in_tile => PartOutcome::Kept,
+            Some(Err(e)) => {
+                let id = &drawing.shapes()[i].id;
+                let e = e.on_shape(id);
+                if options.on_error == OnError::Stop && part.painted() {
+                    return Err(Error::Geometry(e));
+                }
+                out.skipped.push(Skipped { id: id.clone(), why: e.to_string() });
+                PartOutcome::Kept
+            }
+        });
+    }
+    warn(drawing, options, &outcomes, &slots, out);
+    let elements = options.selection.resolve(&drawing.source);
+    let is_selected = |b: &Bitmap| b.owner.map_or(options.selection.is_everything(), |e| elements[e]);
+    let bend = |b: &Bitmap| bitmap::bend(b, scene, &slots, is_selected(b), map, &options.images);
+    let images = scene.bitmaps.iter().map(bend).collect();
+    Ok(BentDrawing { outcomes, images, slots })
+}
+
+/// Warps the selected parts; `None` for the others.
+fn warp_parts(
+    drawing: &Drawing,
+    map: &dyn Map,
+    options: &WarpOptions,
+    selected: &[bool],
+    slots: &[PlacedSlot],
+) -> Vec<Option<Result<WarpedPart, GeometryError>>> {
+    /// With fewer segments, starting threads takes longer than the work.
+    const WORTH_IT: usize = 100;
+    let scene = drawing.scene();
+    let parts = &scene.parts;
+    let pieces = letters::pieces(drawing, options);
+    let gradients = if options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
+    let context = PartContext { map, options, to_px: scene.to_px, gradients };
+    let identity = is_identity(map, options);
+    let warp = |i: usize| {
+        let p = &parts[i];
+        let write = written(scene, slots, p.slot, p.frame);
+        (selected[i] && !identity && is_invertible(p.frame) && is_invertible(write))
+            .then(|| part::warp(&PartTask::new(p, write, &context, &pieces[i])))
+    };
+    let segments =
+        || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * options.copies.len().max(1) };
+    if identity || segments() < WORTH_IT {
+        (0..parts.len()).map(warp).collect()
+    } else {
+        map_parallel(parts.len(), warp)
+    }
+}
+
+#[cfg(feature = "parallel")]
+fn map_parallel<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    use rayon::prelude::*;
+    (0..n).into_par_iter().map(f).collect()
+}
+
+#[cfg(not(feature = "parallel"))]
+fn map_parallel<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
+    (0..n).map(f).collect()
+}
+
+/// Number of gradients on a part.
+fn gradients(p: &Part) -> usize {
+    let is_gradient = |p: &usvg::Paint| usize::from(Shading::of(p).is_some());
+    p.fill.as_ref().map_or(0, |f| is_gradient(f.paint())) + p.stroke.as_ref().map_or(0, |s| is_gradient(s.paint()))
+}
+
+fn warn(
+    drawing: &Drawing,
+    options: &WarpOptions,
+    outcomes: &[PartOutcome],
+    slots: &[PlacedSlot],
+    out: &mut WarpedDocument,
+) {
+    if options.copies.len() > 1 && outcomes.iter().any(|o| o.warped().is_some_and(|d| d.fit.is_some())) {
+        out.warnings.push("gradients and patterns span the whole row of copies instead of each copy".into());
+    }
+    if options.copies.len() > 1 && slots.iter().any(|s| s.fit != Affine::IDENTITY) {
+        out.warnings.push("images and filtered groups are not repeated; they follow the row as a whole".into());
+    }
+    if !drawing.missed.fonts.is_empty() {
+        let names = drawing.missed.fonts.join(", ");
+        out.warnings.push(format!("text uses another font, as {names} is missing; install it or outline the text"));
+    }
+}
+
+/// Determines the parts to warp. Clip paths and masks follow the elements that refer to them.
+fn selected_parts(drawing: &Drawing, options: &WarpOptions) -> Vec<bool> {
+    let scene = drawing.scene();
+    let mut selected = drawing.selected_parts(&options.selection);
+    let all = options.selection.is_everything();
+    let elements = options.selection.resolve(&drawing.source);
+    let clips = scene.clips.iter().map(|c| (&c.parts, &c.referrers));
+    let masks = scene.masks.iter().map(|m| (&m.parts, &m.referrers));
+    for (parts, referrers) in clips.chain(masks) {
+        let any = all || referrers.iter().any(|r| r.owner.or(r.element).is_some_and(|e| elements[e]));
+        selected[parts.clone()].fill(any);
+    }
+    for (s, p) in selected.iter_mut().zip(&scene.parts) {
+        let text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
+        *s &= p.role != PartRole::Pattern && !(text && options.text == TextMode::Skip);
+    }
+    selected
+}

@@ -1,0 +1,188 @@
+//! Results of warping: per part for the writers, per shape for the report.
+
+use super::paint::PaintFit;
+use super::picture::{BentImage, PictureError};
+use pathwarp::kurbo::{BezPath, Point};
+use pathwarp::refit::{Assurance, PathReport};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A warped document.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct WarpedDocument {
+    /// Text of the file.
+    pub svg: String,
+    /// Report on every warped shape, in painting order.
+    pub shapes: Vec<ShapeReport>,
+    /// Elements that were not warped.
+    pub skipped: Vec<Skipped>,
+    /// Warnings for the user.
+    pub warnings: Vec<String>,
+    /// Distance by which the artwork extends past the page. `None` if it does not, the original does as well, or the page is
+    /// adapted (see [`PageFit`](crate::PageFit)).
+    pub overhang: Option<Overhang>,
+}
+
+/// Report on a warped shape.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ShapeReport {
+    /// Id in the source, or else name and position such as `path at 12:5`.
+    pub id: String,
+    /// Number of copies in the result.
+    pub copies: usize,
+    /// Number of segments before, with closing lines and copies.
+    pub segments_in: usize,
+    /// Number of segments after.
+    pub segments_out: usize,
+    /// Largest distance between exact image and output, rounding included, in root user units.
+    pub max_error: f64,
+    /// Assurance of `max_error`.
+    pub assurance: Assurance,
+    /// Points of the source where the work budget was exhausted before the tolerance was met.
+    pub over_budget: Vec<Point>,
+    /// Largest distance between the map and the affine fit of the shape's gradients or patterns, in root user units; infinite
+    /// if no affine map comes near. `None` if there are no such paints, or they were kept or replaced.
+    pub paint_residual: Option<f64>,
+    /// Number of gradients that became pictures.
+    pub pictures: usize,
+}
+
+/// An element that was not warped. It is unchanged, or left out of a file written anew if it cannot be included.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Skipped {
+    /// Id in the source, or else name and position.
+    pub id: String,
+    /// The reason.
+    pub why: String,
+}
+
+/// Distances by which the warped artwork extends past the page, on sides where the original does not extend as far.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Overhang {
+    /// Left, top, right and bottom, in root user units; 0 for sides without overhang.
+    pub by: [f64; 4],
+    /// The largest overhang as a fraction of the page's width (left, right) or height (top, bottom).
+    pub share: f64,
+}
+
+impl WarpedDocument {
+    /// Adds a part's report to that of its shape. `continues` is `true` if the part belongs to the same element as the
+    /// previous one.
+    pub(super) fn report(&mut self, id: String, part: &WarpedPart, copies: usize, continues: bool) {
+        let r = &part.report;
+        let error = r.max_error + part.rounding;
+        let pictures = usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some());
+        match self.shapes.last_mut() {
+            Some(last) if continues => {
+                last.segments_in += r.segments_in;
+                last.segments_out += r.segments_out;
+                last.max_error = last.max_error.max(error);
+                last.assurance = last.assurance.min(r.assurance);
+                last.over_budget.extend(&r.over_budget);
+                last.pictures += pictures;
+                last.paint_residual = [last.paint_residual, part.residual].into_iter().flatten().reduce(f64::max);
+            }
+            _ => self.shapes.push(ShapeReport {
+                id,
+                copies,
+                segments_in: r.segments_in,
+                segments_out: r.segments_out,
+                max_error: error,
+                assurance: r.assurance,
+                over_budget: r.over_budget.clone(),
+                paint_residual: part.residual,
+                pictures,
+            }),
+        }
+    }
+}
+
+/// Remarks for the user. Each is listed once, with the names of everything it applies to.
+#[derive(Debug, Default)]
+pub(crate) struct Notes(BTreeMap<&'static str, BTreeSet<String>>);
+
+impl Notes {
+    pub(crate) fn add(&mut self, text: &'static str, name: &str) {
+        self.0.entry(text).or_default().insert(name.to_owned());
+    }
+
+    pub(crate) fn lines(self) -> impl Iterator<Item = String> {
+        /// Number of names listed; a few are enough to find the place.
+        const NAMED: usize = 4;
+        self.0.into_iter().map(|(text, all)| {
+            let names: Vec<&str> = all.iter().map(String::as_str).filter(|n| !n.is_empty()).take(NAMED).collect();
+            match (names.len(), all.len()) {
+                (0, _) => text.to_owned(),
+                (n, all) if all > n => format!("{text}: {} and {} more", names.join(", "), all - n),
+                _ => format!("{text}: {}", names.join(", ")),
+            }
+        })
+    }
+}
+
+/// Result for a part.
+#[derive(Debug)]
+pub(crate) enum PartOutcome {
+    Kept,
+    Warped(Box<WarpedPart>),
+}
+
+impl PartOutcome {
+    pub(crate) fn warped(&self) -> Option<&WarpedPart> {
+        match self {
+            Self::Kept => None,
+            Self::Warped(w) => Some(w),
+        }
+    }
+}
+
+#[derive(Debug)]
+pub(crate) struct WarpedPart {
+    /// Outline in the part's user space.
+    pub(crate) path: BezPath,
+    /// The filled outline, if it differs from `path`: an open path is filled as if closed by a line, and that line is bent,
+    /// too. Empty if there is nothing to fill.
+    pub(crate) fill: Option<BezPath>,
+    pub(crate) decimals: u8,
+    pub(crate) stroke: StrokeOutcome,
+    /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
+    pub(crate) fit: Option<PaintFit>,
+    /// Pictures of the fill's and the stroke's gradient.
+    pub(crate) fill_image: Option<BentImage>,
+    pub(crate) stroke_image: Option<BentImage>,
+    /// The reason why a picture is missing.
+    pub(super) unpainted: Option<PictureError>,
+    /// Error of the fit for paints that follow it, in root user units.
+    pub(super) residual: Option<f64>,
+    pub(super) report: PathReport,
+    /// Largest error from rounding coordinates, in root user units.
+    pub(super) rounding: f64,
+}
+
+#[derive(Debug)]
+pub(crate) enum StrokeOutcome {
+    /// Factor for width and dashes.
+    Scaled(f64),
+    /// Outline of the stroke in the part's user space.
+    Outlined(BezPath),
+}
+
+impl StrokeOutcome {
+    /// The outline of an expanded stroke.
+    pub(crate) fn outline(&self) -> Option<&BezPath> {
+        match self {
+            Self::Scaled(_) => None,
+            Self::Outlined(o) => Some(o),
+        }
+    }
+
+    /// Factor for width and dashes; 1 for an expanded stroke.
+    pub(crate) fn scale(&self) -> f64 {
+        match self {
+            Self::Scaled(s) => *s,
+            Self::Outlined(_) => 1.0,
+        }
+    }
+}

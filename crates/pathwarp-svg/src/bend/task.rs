@@ -1,0 +1,86 @@
+//! A part to be warped, with everything that determines its image.
+
+use super::letters::{LetterPiece, placed};
+use super::options::WarpOptions;
+use crate::scene::affine::stretch;
+use crate::scene::model::Part;
+use crate::source::number::MOST_DECIMALS;
+use pathwarp::kurbo::{Affine, BezPath};
+use pathwarp::map::Map;
+use pathwarp::refit::{self, PathReport};
+use pathwarp::{GeometryError, Outline};
+
+/// The fraction of the tolerance that rounding may use.
+const ROUNDING: f64 = 0.01;
+
+/// The surroundings of a part.
+pub(super) struct PartContext<'a> {
+    pub(super) map: &'a dyn Map,
+    pub(super) options: &'a WarpOptions,
+    /// Root user space to px.
+    pub(super) to_px: Affine,
+    /// Number of gradients in the drawing that may become pictures.
+    pub(super) gradients: usize,
+}
+
+/// A part to be warped.
+pub(super) struct PartTask<'a> {
+    pub(super) part: &'a Part,
+    pub(super) context: &'a PartContext<'a>,
+    /// From the part's user space as written to root user space.
+    pub(super) write: Affine,
+    /// From root user space to the part's user space as written.
+    pub(super) back: Affine,
+    /// The placed letters of the part.
+    pub(super) pieces: &'a [LetterPiece],
+    /// The part's outline in root user space.
+    pub(super) whole: Outline,
+    /// The outline to bend: all copies, or the placed letters.
+    pub(super) outline: Outline,
+    /// The map that bends `outline`.
+    pub(super) map: &'a dyn Map,
+    pub(super) decimals: u8,
+    /// Largest error from rounding, in root user units.
+    pub(super) rounding: f64,
+}
+
+impl<'a> PartTask<'a> {
+    pub(super) fn new(part: &'a Part, write: Affine, context: &'a PartContext<'a>, pieces: &'a [LetterPiece]) -> Self {
+        let options = context.options;
+        let whole = part.outline();
+        // Placed letters skip the first step; everything else goes through the whole map.
+        let (outline, map): (Outline, &dyn Map) = if pieces.is_empty() {
+            (whole.repeated(&options.copies), context.map)
+        } else {
+            (placed(&whole, pieces), &options.letters.after)
+        };
+        let size = stretch(write);
+        let tolerance = options.refit.tolerance;
+        let decimals = options.precision.unwrap_or_else(|| {
+            let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
+            if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
+        });
+        let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
+        Self { part, context, write, back: write.inverse(), pieces, whole, outline, map, decimals, rounding }
+    }
+
+    pub(super) fn options(&self) -> &'a WarpOptions {
+        self.context.options
+    }
+
+    /// Bends an outline, leaving room for rounding in the tolerance.
+    pub(super) fn bend(&self, outline: &Outline) -> Result<(BezPath, PathReport), GeometryError> {
+        let options = &self.options().refit;
+        let tolerance = (options.tolerance - self.rounding).max(0.5 * options.tolerance);
+        let warped = refit::warp_path(outline, self.map, &options.clone().with_tolerance(tolerance))?;
+        Ok((self.to_local(warped.path), warped.report))
+    }
+
+    /// Transforms a path from root user space to the part's user space as written.
+    pub(super) fn to_local(&self, mut path: BezPath) -> BezPath {
+        if self.back != Affine::IDENTITY {
+            path.apply_affine(self.back);
+        }
+        path
+    }
+}

@@ -1,0 +1,122 @@
+//! A drawing: its source text, usvg's tree, and the scene resolved from both.
+
+use super::geometry::GeometryReader;
+use super::letters;
+use super::model::Scene;
+use super::resolve::{self, Tiling};
+use super::shape::{self, Shape};
+use crate::source::read::{self, ReadOptions};
+use crate::source::select::Selection;
+use crate::source::stack::{is_shallow, with_stack};
+use crate::source::tags::ElementId;
+use crate::source::text::SourceText;
+use crate::source::tree::{self, Missed};
+use pathwarp::Error;
+use pathwarp::kurbo::{Affine, Rect, Size};
+use std::sync::{Arc, OnceLock};
+
+#[derive(Debug)]
+pub(crate) struct Drawing {
+    pub(crate) name: String,
+    pub(crate) source: Arc<SourceText>,
+    /// Computed on first use, except for deep drawings, which need a large stack.
+    scene: OnceLock<Scene>,
+    shapes: OnceLock<Vec<Shape>>,
+    pub(crate) missed: Missed,
+    /// Size in px.
+    pub(crate) page: Size,
+    /// `true` if walking the drawing takes little stack.
+    shallow: bool,
+    pub(crate) tree: Arc<usvg::Tree>,
+    letters: Arc<letters::Owners>,
+    dpi: f64,
+}
+
+impl Drawing {
+    /// Reads an SVG or svgz file. `name` identifies it in errors.
+    pub(crate) fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
+        let text = read::text(data, name, options)?;
+        let dpi = f64::from(options.dpi);
+        let (source, read) = SourceText::read(text, name, |source, xml| {
+            let shallow = is_shallow(source);
+            let resolve = || {
+                let (tree, missed) = tree::tree(xml, name, options)?;
+                let letters = letters::owners(source, name, options)?;
+                let scene = OnceLock::new();
+                if !shallow {
+                    scene.get_or_init(|| resolve::build(&tree, source, &letters, dpi, None));
+                }
+                Ok((tree, letters, missed, scene))
+            };
+            Ok((if shallow { resolve()? } else { with_stack(name, resolve)? }, shallow))
+        })?;
+        let ((tree, letters, missed, scene), shallow) = read;
+        Ok(Self {
+            name: name.to_owned(),
+            source: Arc::new(source),
+            scene,
+            shapes: OnceLock::new(),
+            missed,
+            page: Size::new(f64::from(tree.size().width()), f64::from(tree.size().height())),
+            shallow,
+            tree: Arc::new(tree),
+            letters: Arc::new(letters),
+            dpi,
+        })
+    }
+
+    /// Resolves the drawing again, with pattern tiles laid out as geometry.
+    pub(crate) fn tiled(&self, tiling: Tiling<'_>) -> Result<Self, Error> {
+        let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.letters, self.dpi, Some(tiling)));
+        let scene = self.with_stack(resolve)?;
+        Ok(Self {
+            name: self.name.clone(),
+            source: self.source.clone(),
+            scene: scene.into(),
+            shapes: OnceLock::new(),
+            missed: self.missed.clone(),
+            page: self.page,
+            shallow: self.shallow,
+            tree: self.tree.clone(),
+            letters: self.letters.clone(),
+            dpi: self.dpi,
+        })
+    }
+
+    /// Runs `f`, which walks the drawing, with enough stack. `f` must not wait for other threads: a caller on a thread pool
+    /// would wait for itself.
+    pub(crate) fn with_stack<T: Send>(&self, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+        if self.shallow { f() } else { with_stack(&self.name, f) }
+    }
+
+    pub(crate) fn scene(&self) -> &Scene {
+        self.scene.get_or_init(|| resolve::build(&self.tree, &self.source, &self.letters, self.dpi, None))
+    }
+
+    /// The shapes, one for each part of the scene.
+    pub(crate) fn shapes(&self) -> &[Shape] {
+        self.shapes.get_or_init(|| shape::shapes(self.scene(), &self.source))
+    }
+
+    pub(crate) fn reader(&self) -> GeometryReader<'_> {
+        GeometryReader { source: &self.source, dpi: self.dpi, page: self.page }
+    }
+
+    /// The visible page in root user units.
+    pub(crate) fn view_box(&self) -> Rect {
+        self.reader().view_box(0).unwrap_or_else(|| Rect::from_origin_size((0.0, 0.0), self.page))
+    }
+
+    /// The transform of an element, including the shift of a `use`.
+    pub(crate) fn own_transform(&self, e: ElementId) -> Affine {
+        self.reader().own_transform(e).unwrap_or_default()
+    }
+
+    /// Determines for every part whether it is selected.
+    pub(crate) fn selected_parts(&self, selection: &Selection) -> Vec<bool> {
+        let elements = selection.resolve(&self.source);
+        let all = selection.is_everything();
+        let parts = self.scene().parts.iter();
+        parts.map(|p| p.element().map_or(all, |e| elements[e])).collect()
+    }
+}

@@ -1,0 +1,68 @@
+//! Expands strokes to filled outlines.
+
+use pathwarp::kurbo::{self, Cap, Circle, Join, Point, Rect, Shape as _, StrokeOpts};
+use pathwarp::{Outline, Seg};
+use usvg::{LineCap, LineJoin, Stroke};
+
+/// Length of a dash that stands for a dot, as a fraction of the stroke width.
+const DOT: f64 = 1e-5;
+
+/// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
+pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -> Outline {
+    let cap = match stroke.linecap() {
+        LineCap::Butt => Cap::Butt,
+        LineCap::Round => Cap::Round,
+        LineCap::Square => Cap::Square,
+    };
+    let join = match stroke.linejoin() {
+        LineJoin::Miter | LineJoin::MiterClip => Join::Miter,
+        LineJoin::Round => Join::Round,
+        LineJoin::Bevel => Join::Bevel,
+    };
+    let mut style = kurbo::Stroke::new(f64::from(stroke.width().get()))
+        .with_caps(cap)
+        .with_join(join)
+        .with_miter_limit(f64::from(stroke.miterlimit().get()));
+    let width = f64::from(stroke.width().get());
+    let dot = if cap == Cap::Butt { 0.0 } else { DOT * width };
+    if let Some(dashes) = stroke.dasharray() {
+        // kurbo drops dashes of zero length, which should show their caps.
+        let dashes: Vec<f64> = dashes.iter().map(|d| f64::from(*d).max(dot)).collect();
+        /// Limit on the dashes of a path. More would take long and look like a grey line.
+        const MOST_DASHES: f64 = 20_000.0;
+        let period: f64 = dashes.iter().sum();
+        if period > 0.0 && rough_length(local) / period * (dashes.len() as f64) < 2.0 * MOST_DASHES {
+            style = style.with_dashes(f64::from(stroke.dashoffset()), dashes);
+        }
+    }
+    // Subpaths of zero length show only their caps.
+    let (points, lines): (Vec<_>, Vec<_>) =
+        local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
+    let path = Outline { subpaths: lines }.to_bez_path(tolerance);
+    let mut out: Outline = (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into();
+    let reach = width / 2.0;
+    for s in points.iter().filter(|s| s.closed || !s.segs.is_empty()) {
+        let dot = match cap {
+            Cap::Butt => continue,
+            Cap::Round => Circle::new(s.start, reach).to_path(tolerance),
+            Cap::Square => Rect::from_center_size(s.start, (2.0 * reach, 2.0 * reach)).to_path(tolerance),
+        };
+        out.subpaths.extend(Outline::from(&dot).subpaths);
+    }
+    out
+}
+
+/// Returns `true` if the whole segment is the point `at`.
+pub(crate) fn is_point(s: &Seg, at: Point) -> bool {
+    let c = s.to_cubic();
+    [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
+}
+
+/// Length of the control polygons, an upper bound of the path's length.
+fn rough_length(o: &Outline) -> f64 {
+    let leg = |s: &Seg| {
+        let c = s.to_cubic();
+        c.p0.distance(c.p1) + c.p1.distance(c.p2) + c.p2.distance(c.p3)
+    };
+    o.segs().map(leg).sum()
+}

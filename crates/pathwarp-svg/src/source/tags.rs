@@ -1,0 +1,34 @@
+//! The vocabulary of SVG: element numbers, namespaces, and classes of elements.
+
+pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
+pub(crate) const XLINK: &str = "http://www.w3.org/1999/xlink";
+pub(crate) const XML: &str = "http://www.w3.org/XML/1998/namespace";
+pub(crate) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
+
+/// An element's number in document order.
+pub(crate) type ElementId = usize;
+
+/// Namespace of an attribute, as far as this crate distinguishes them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Namespace {
+    None,
+    Xlink,
+    Xml,
+    Inkscape,
+    Other,
+}
+
+/// Returns `true` for the basic shapes and `path`.
+pub(crate) fn is_shape(tag: &str) -> bool {
+    matches!(tag, "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon")
+}
+
+/// Returns `true` for elements whose ids usvg keeps in its tree.
+pub(crate) fn is_tracked(tag: &str) -> bool {
+    is_shape(tag) || matches!(tag, "g" | "a" | "use" | "text" | "image" | "svg" | "switch")
+}
+
+/// Returns `true` for animation elements.
+pub(crate) fn is_animation(tag: &str) -> bool {
+    matches!(tag, "animate" | "set" | "animateTransform" | "animateMotion" | "animateColor")
+}

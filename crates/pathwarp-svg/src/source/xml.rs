@@ -1,0 +1,51 @@
+//! XML text: parsing it, and the escapes for writing it.
+
+use memchr::memchr3;
+use pathwarp::Error;
+use usvg::roxmltree;
+
+/// Parses XML. `name` identifies the text in errors.
+pub(crate) fn parse<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
+    /// Limit on elements, text and comment nodes together. usvg accepts at most a million elements.
+    const MOST: u32 = 4_000_000;
+    let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MOST, ..Default::default() };
+    roxmltree::Document::parse_with_options(text, options).map_err(|e| {
+        if matches!(e, roxmltree::Error::NodesLimitReached) {
+            return Error::input(name, format!("it has more than {MOST} elements, texts and comments"));
+        }
+        let at = e.pos();
+        Error::input(format!("{name}:{}:{}", at.row, at.col), format!("not well-formed XML: {e}"))
+    })
+}
+
+/// Escapes text for an attribute value in double quotes. The result is valid as element content, too.
+pub(crate) fn escape(text: &str) -> String {
+    let bytes = text.as_bytes();
+    let has = |a, b, c| memchr3(a, b, c, bytes).is_some();
+    if !has(b'&', b'<', b'>') && !has(b'"', b'\n', b'\r') && !bytes.contains(&b'\t') {
+        return text.to_owned();
+    }
+    escaped(text, true)
+}
+
+/// Escapes text for element content, in which quotes, tabs and line breaks stay as they are.
+pub(crate) fn escape_content(text: &str) -> String {
+    escaped(text, false)
+}
+
+fn escaped(text: &str, in_attribute: bool) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' if in_attribute => out.push_str("&quot;"),
+            '\n' if in_attribute => out.push_str("&#10;"),
+            '\r' if in_attribute => out.push_str("&#13;"),
+            '\t' if in_attribute => out.push_str("&#9;"),
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,58 @@
+//! Writes a warped document: patched in place, or anew.
+
+use super::input::WriteInput;
+use super::{flat, keep, page};
+use crate::bend::options::{Structure, WarpOptions};
+use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
+use crate::scene::drawing::Drawing;
+use crate::source::tree::DATA;
+use pathwarp::Error;
+
+/// Writes the document to `out`, with warnings and everything skipped.
+pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
+    let structure = input.options.structure;
+    let unread = unread_images(input.drawing, input.options);
+    let mut notes = Notes::default();
+    for note in &input.scene.notes {
+        notes.add(note.text, &note.name);
+    }
+    let patched = match (structure, &input.scene.unpatchable) {
+        (Structure::Flatten, _) => None,
+        (_, Some(why)) => Some(Err(why.clone())),
+        _ => Some(keep::write(input, &mut out.skipped, &mut notes)),
+    };
+    out.svg = match (patched, structure) {
+        (Some(Ok(svg)), _) => {
+            out.skipped.extend(unread);
+            svg
+        }
+        (Some(Err(why)), Structure::Keep) => {
+            return Err(Error::input(&input.drawing.name, format!("the file's structure cannot be kept: {why}")));
+        }
+        (patched, _) => {
+            if let Some(Err(why)) = patched {
+                out.warnings.push(format!("the file is written anew, as its structure cannot be kept: {why}"));
+            }
+            out.skipped.extend(unread.map(|s| Skipped { why: s.why + "; it is left out", ..s }));
+            flat::write(input, &mut out.skipped, &mut notes)
+        }
+    };
+    out.warnings.extend(notes.lines());
+    out.overhang = page::overhang(input);
+    Ok(())
+}
+
+/// Lists the selected images that could not be read.
+fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item = Skipped> {
+    let source = &drawing.source;
+    let missed = &drawing.missed.images;
+    let selected = if missed.is_empty() { Vec::new() } else { options.selection.resolve(source) };
+    let images = selected.into_iter().enumerate().filter(|(e, s)| *s && source.elements[*e].tag == "image");
+    images.filter_map(|(e, _)| {
+        let own = source.link(e)?;
+        let is_own = |link: &&String| **link == *own || link.starts_with(DATA) && own.starts_with(link.as_str());
+        let link = missed.iter().find(is_own)?;
+        let reason = if link.contains("://") { "is not a file on this machine" } else { "cannot be read" };
+        Some(Skipped { id: source.display_name(e), why: format!("its image, {link}, {reason}") })
+    })
+}

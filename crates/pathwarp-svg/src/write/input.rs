@@ -1,0 +1,120 @@
+//! Everything that is to be written.
+
+use crate::bend::bitmap::EmbeddedImage;
+use crate::bend::drawing::BentDrawing;
+use crate::bend::options::WarpOptions;
+use crate::bend::outcome::{PartOutcome, WarpedPart};
+use crate::bend::paint::PaintFit;
+use crate::bend::slots::{PlacedSlot, written};
+use crate::scene::drawing::Drawing;
+use crate::scene::model::{Group, Node, Part, Scene, Tiles};
+use crate::source::text::SourceText;
+use pathwarp::kurbo::Affine;
+use pathwarp::map::Map;
+use std::ops::Range;
+use usvg::Paint;
+use usvg::filter::{Filter, Kind};
+
+/// A drawing with its image under a map.
+#[derive(Clone, Copy)]
+pub(crate) struct WriteInput<'a> {
+    pub(super) drawing: &'a Drawing,
+    pub(super) source: &'a SourceText,
+    pub(super) scene: &'a Scene,
+    pub(super) outcomes: &'a [PartOutcome],
+    pub(super) images: &'a [EmbeddedImage],
+    pub(super) slots: &'a [PlacedSlot],
+    pub(super) map: &'a dyn Map,
+    pub(super) options: &'a WarpOptions,
+}
+
+impl<'a> WriteInput<'a> {
+    pub(crate) fn new(drawing: &'a Drawing, bent: &'a BentDrawing, map: &'a dyn Map, options: &'a WarpOptions) -> Self {
+        Self {
+            drawing,
+            source: &drawing.source,
+            scene: drawing.scene(),
+            outcomes: &bent.outcomes,
+            images: &bent.images,
+            slots: &bent.slots,
+            map,
+            options,
+        }
+    }
+
+    pub(super) fn part(&self, i: usize) -> &'a Part {
+        &self.scene.parts[i]
+    }
+
+    /// The image of a part; `None` if it is unchanged.
+    pub(super) fn warped(&self, i: usize) -> Option<&'a WarpedPart> {
+        self.outcomes[i].warped()
+    }
+
+    /// Returns `true` if any of the parts is warped.
+    pub(super) fn changes(&self, parts: Range<usize>) -> bool {
+        self.outcomes[parts].iter().any(|o| o.warped().is_some())
+    }
+
+    /// Maps a frame to the result.
+    pub(super) fn written(&self, slot: Option<usize>, frame: Affine) -> Affine {
+        written(self.scene, self.slots, slot, frame)
+    }
+
+    /// The fit to apply to a paint server, unless it stays as it is.
+    pub(super) fn paint_fit(&self, paint: &Paint, p: &Part, warped: Option<&WarpedPart>) -> Option<PaintFit> {
+        let fit = warped.and_then(|w| w.fit).filter(|_| self.options.moves(paint));
+        fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)))
+    }
+
+    /// Returns `true` if a part is written in several pieces: its fill or stroke consists of tiles or a picture.
+    pub(super) fn in_pieces(&self, i: usize) -> bool {
+        let pictured = |d: &WarpedPart| d.fill_image.is_some() || d.stroke_image.is_some();
+        self.warped(i).is_some_and(pictured) || self.fill_tiles(i).is_some() || self.stroke_tiles(i).is_some()
+    }
+
+    /// The tiles of a part's fill, if all of them are warped.
+    pub(super) fn fill_tiles(&self, i: usize) -> Option<&'a Tiles> {
+        self.warped(i)?;
+        self.part(i).fill_tiles.as_ref().filter(|t| self.all_warped(&t.content))
+    }
+
+    /// The tiles of a part's stroke, if all of them are warped and the stroke is expanded.
+    pub(super) fn stroke_tiles(&self, i: usize) -> Option<&'a Tiles> {
+        self.warped(i)?.stroke.outline()?;
+        self.part(i).stroke_tiles.as_ref().filter(|t| self.all_warped(&t.content))
+    }
+
+    /// Returns `true` if everything in a group is warped, clip paths included.
+    fn all_warped(&self, g: &Group) -> bool {
+        let clips = &self.scene.clips;
+        let mut clip = g.clip;
+        while let Some(i) = clip {
+            if !self.all_warped(&clips[i].root) {
+                return false;
+            }
+            clip = clips[i].clip;
+        }
+        g.children.iter().all(|n| match n {
+            Node::Group(g) => self.all_warped(g),
+            Node::Part(i) => self.warped(*i).is_some(),
+            Node::Image(_) | Node::Text { .. } => false,
+        })
+    }
+
+    /// Returns `true` if a filter of the source shows, by `feImage`, an element that is warped. The filter moves with the group
+    /// it is applied to, and would move that element a second time.
+    pub(super) fn shows_warped(&self, f: &Filter) -> bool {
+        if !f.primitives().iter().any(|p| matches!(p.kind(), Kind::Image(_))) {
+            return false;
+        }
+        let source = self.source;
+        let own = source.by_id().get(f.id()).into_iter().flatten();
+        let images = own.flat_map(|&e| source.descendants(e));
+        let shown = images.filter_map(|e| source.by_id().get(&source.href(e)?)).flatten();
+        shown.map(|&e| &source.elements[e].range).any(|range| {
+            let inside = |p: &Part| p.element().is_some_and(|e| range.contains(&source.elements[e].range.start));
+            self.scene.parts.iter().zip(self.outcomes).any(|(p, o)| o.warped().is_some() && inside(p))
+        })
+    }
+}

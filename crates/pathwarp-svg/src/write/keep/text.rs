@@ -1,0 +1,174 @@
+//! Texts: they become groups of outlines, with a group inside for every named element.
+
+use super::animations;
+use super::keeper::{Keeper, NO_EFFECTS};
+use crate::scene::letters::{inside, is_named, is_naming};
+use crate::scene::model::Group;
+use crate::source::tags::ElementId;
+use crate::source::text::SourceText;
+
+/// A named element of a text, with its content in painting order.
+struct TextSpan {
+    element: ElementId,
+    content: Vec<SpanItem>,
+}
+
+#[derive(Clone, Copy)]
+enum SpanItem {
+    /// Index of an outline.
+    Outline(usize),
+    /// Index of a span.
+    Span(usize),
+}
+
+/// The spans of a text. The first is the text itself.
+struct SpanTree(Vec<TextSpan>);
+
+impl SpanTree {
+    fn new(text: ElementId) -> Self {
+        Self(vec![TextSpan { element: text, content: Vec::new() }])
+    }
+
+    /// Finds or adds the innermost span of a chain of elements, `path`, outermost first. With `reopen`, a span that is no
+    /// longer the last is added again.
+    fn at(&mut self, path: &[ElementId], reopen: bool) -> usize {
+        let mut here = 0;
+        for &e in path {
+            let inside = &self.0[here].content;
+            let is = |i: &SpanItem| matches!(i, SpanItem::Span(s) if self.0[*s].element == e).then_some(*i);
+            let found = match inside.last() {
+                Some(last) if reopen => is(last),
+                _ => inside.iter().rev().find_map(is),
+            };
+            here = if let Some(SpanItem::Span(s)) = found {
+                s
+            } else {
+                let new = self.0.len();
+                self.0.push(TextSpan { element: e, content: Vec::new() });
+                self.0[here].content.push(SpanItem::Span(new));
+                new
+            };
+        }
+        here
+    }
+}
+
+/// Replaces a text by a group of outlines, if it has changed. `owners` lists the source element of each outline.
+pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners: &[ElementId]) {
+    if !content.children.iter().any(|n| k.changed(n)) {
+        return;
+    }
+    let source = k.source;
+    let words = words(source, e);
+    let inner = if owners.len() == content.children.len() {
+        let spans = span_tree(source, e, owners);
+        let written = SpanWriter { k, spans: &spans, content, seen: Vec::new() }.items(0);
+        k.writer.group_around(content, &written)
+    } else {
+        k.writer.group(content, "")
+    };
+    let title = source.elements[e].title.as_ref().unwrap_or(&words);
+    let title = if title.is_empty() { String::new() } else { k.writer.markup.title(title) };
+    k.edits.rename(e, "g");
+    for name in ["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"] {
+        k.edits.remove_attr(e, name);
+    }
+    if !words.is_empty() && source.attr(e, "aria-label").is_none() {
+        k.edits.set_attr(e, "aria-label", words);
+    }
+    k.fragments.insert(e);
+    let animations = animations::kept(source, e);
+    k.edits.set_content(e, format!("{title}{inner}{animations}"));
+}
+
+/// Sorts the outlines of a text into spans.
+fn span_tree(source: &SourceText, text: ElementId, owners: &[ElementId]) -> SpanTree {
+    let mut spans = SpanTree::new(text);
+    let path = |of: ElementId| {
+        let up = source.ancestors(of).take_while(|&a| a != text);
+        let mut path: Vec<ElementId> = up.filter(|&a| is_named(source, a)).collect();
+        path.reverse();
+        path
+    };
+    for (i, &owner) in owners.iter().enumerate() {
+        let span = spans.at(&path(owner), true);
+        spans.0[span].content.push(SpanItem::Outline(i));
+    }
+    for named in inside(source, text).filter(|&n| is_named(source, n)) {
+        spans.at(&path(named), false);
+    }
+    spans
+}
+
+/// Writes the spans of a text.
+struct SpanWriter<'s, 'k, 'a, 'w> {
+    k: &'k mut Keeper<'a, 'w>,
+    spans: &'s SpanTree,
+    content: &'s Group,
+    /// Elements written so far.
+    seen: Vec<ElementId>,
+}
+
+impl SpanWriter<'_, '_, '_, '_> {
+    fn items(&mut self, span: usize) -> String {
+        let spans = self.spans;
+        let mut out = String::new();
+        for item in &spans.0[span].content {
+            match *item {
+                SpanItem::Outline(i) => out.push_str(&self.k.writer.node(&self.content.children[i])),
+                SpanItem::Span(s) => out.push_str(&self.span(s)),
+            }
+        }
+        out
+    }
+
+    fn span(&mut self, span: usize) -> String {
+        let source = self.k.source;
+        let element = self.spans.0[span].element;
+        let el = &source.elements[element];
+        // An element that occurs again has its id and title only once.
+        let again = self.seen.contains(&element);
+        self.seen.push(element);
+        let text = &source.text;
+        let kept = el.attrs.iter().filter(|a| is_naming(a, text) && !(again && a.name(text) == "id"));
+        let mut head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
+        if source.has_css() {
+            head.push_str(NO_EFFECTS);
+        }
+        let title = el.title.as_ref().filter(|_| !again);
+        let title = title.map_or(String::new(), |t| self.k.writer.markup.title(t));
+        let inner = self.items(span);
+        format!("<{0}{head}>{title}{inner}</{0}>", self.k.writer.markup.tag("g"))
+    }
+}
+
+/// The words of a text, without tags and elements that are not drawn.
+fn words(source: &SourceText, e: ElementId) -> String {
+    let el = &source.elements[e];
+    let Some(close) = &el.close else { return String::new() };
+    let text = &source.text;
+    let hidden = source
+        .descendants(e)
+        .map(|c| &source.elements[c])
+        .filter(|c| matches!(c.tag.as_ref(), "title" | "desc" | "metadata" | "style" | "script"));
+    let mut raw = String::new();
+    let mut at = el.open_end;
+    for h in hidden {
+        raw.push_str(text.get(at..h.range.start).unwrap_or(""));
+        at = at.max(h.range.end);
+    }
+    raw.push_str(text.get(at..close.start).unwrap_or(""));
+    let mut out = String::new();
+    let mut in_tag = false;
+    for c in raw.chars() {
+        match c {
+            '<' => in_tag = true,
+            '>' => in_tag = false,
+            c if !in_tag => out.push(c),
+            _ => {}
+        }
+    }
+    let entities = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
+    let out = entities.iter().fold(out, |o, (from, to)| o.replace(from, to));
+    out.split_whitespace().collect::<Vec<_>>().join(" ")
+}
