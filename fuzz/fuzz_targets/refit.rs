@@ -1,4 +1,5 @@
-//! Any segment under any bicubic net: the refit must end, stay finite, and keep its promise or say that it did not.
+//! Any segment under any bicubic net: the refit must terminate, and its output must be finite, and within the tolerance or
+//! reported as over budget.
 //!
 //! `cargo +nightly fuzz run refit`
 
@@ -10,7 +11,7 @@ use pathwarp::map::BicubicNet;
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 
-/// Two bytes to a coordinate of 0..1000; equal bytes give equal coordinates, so that degenerate cases are easy to reach.
+/// Reads a coordinate in 0..1000 from two bytes. Equal bytes give equal coordinates, so degenerate cases are easy to reach.
 fn coordinate(bytes: &[u8], i: usize) -> f64 {
     let at = |k: usize| f64::from(bytes.get(k).copied().unwrap_or(0));
     (at(2 * i) * 256.0 + at(2 * i + 1)) * (1000.0 / 65535.0)

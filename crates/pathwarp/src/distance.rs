@@ -1,21 +1,23 @@
-//! How far two paths are apart.
+//! The Hausdorff distance between two paths.
 
 use crate::outline::{Outline, Seg};
 use kurbo::{Point, Rect};
 
-/// Samples per segment that [`symmetric`] takes on each side.
+/// Intervals per segment that [`symmetric`] samples.
 const PER_SEGMENT: usize = 64;
-/// Stretches of a segment in which a nearest point is sought by itself.
+/// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
 
-/// The symmetric (Hausdorff) distance between two paths: the largest distance from a point of one to the other, either way.
-/// Sampled at 65 points a segment, each with its nearest point found by Newton's method; `None` if one of them is empty.
+/// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
+///
+/// Sampled at 65 points per segment, whose nearest points are found by the Gauss–Newton method from 17 starting points per
+/// segment. A lower bound, exact up to the movement of the distance between samples. `None` if one of the paths is empty.
 #[must_use]
 pub fn symmetric(a: &Outline, b: &Outline) -> Option<f64> {
     Some(one_way(a, b)?.max(one_way(b, a)?))
 }
 
-/// The largest distance from `from` to `to`.
+/// The largest distance from a point of `from` to `to`.
 fn one_way(from: &Outline, to: &Outline) -> Option<f64> {
     let targets: Vec<(Rect, &Seg)> = to.segs().map(|s| (s.bounding_box(), s)).collect();
     let dots: Vec<Point> = to.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| s.start).collect();
@@ -29,7 +31,7 @@ fn one_way(from: &Outline, to: &Outline) -> Option<f64> {
         .chain(alone)
         .map(|p| {
             let mut best = dots.iter().map(|d| d.distance(p)).fold(f64::INFINITY, f64::min);
-            // Neighbouring samples have neighbouring feet: starting with the last winner prunes nearly all the others.
+            // Neighbouring samples have neighbouring foot points: starting at the last winner prunes nearly all other segments.
             let winner = last;
             let near = targets.get(winner).into_iter();
             for (i, (bounds, seg)) in near.map(|t| (winner, t)).chain(targets.iter().enumerate()) {
@@ -51,13 +53,13 @@ fn box_distance(r: &Rect, p: Point) -> f64 {
     dx.hypot(dy)
 }
 
-/// The distance from `p` to `seg`; `known` is a bound that some other segment already reaches.
+/// The distance from `p` to `seg`, or `known` if that is smaller.
 fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
     let mut best = known;
     for i in 0..=STRETCHES {
         let mut t = i as f64 / STRETCHES as f64;
         let mut d = seg.eval(t).distance(p);
-        // Gauss–Newton for the foot.
+        // Gauss–Newton for the foot point.
         for _ in 0..6 {
             let v = seg.deriv(t);
             let n = v.hypot2();
@@ -83,7 +85,7 @@ mod tests {
     #[test]
     fn known_distances() {
         let path = |d: &str| Outline::from_svg(d).unwrap();
-        // Concentric circles, and a line beside one that is longer: its far end is what counts.
+        // Concentric circles; and a line beside a longer one, whose far end has the largest distance.
         let ring = |r: f64| path(&format!("M{r},0 A{r},{r} 0 0 1 -{r},0 A{r},{r} 0 0 1 {r},0 Z"));
         assert!((symmetric(&ring(10.0), &ring(10.5)).unwrap() - 0.5).abs() < 1e-9);
         assert!((symmetric(&path("M0,0 H10"), &path("M0,1 H14")).unwrap() - 17.0_f64.sqrt()).abs() < 1e-12);

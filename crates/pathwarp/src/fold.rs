@@ -1,20 +1,21 @@
-//! Fold-overs: places where a map turns the plane over, so that artwork lies on top of itself.
+//! Detects folds: places at which a map turns the plane over, so that the artwork overlaps itself.
 //!
-//! The Jacobian's determinant is the local area scale, negative where the map mirrors. A map that mirrors everywhere is no
-//! fault; one that changes sign on the artwork folds it.
+//! The Jacobian determinant is the local area scale. It is negative if the map mirrors the neighbourhood of a point. A map that
+//! mirrors everything folds nothing; a map whose determinant changes sign on the artwork folds it.
 
-use crate::map::{Creases, Jet, Map};
+use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::Outline;
 use kurbo::{BezPath, Point, Shape};
 
-/// Where a shape was found to be mirrored and where not.
+/// Signs of the Jacobian determinant over samples of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Orientation {
-    /// Samples with a positive determinant.
+    /// Number of samples with a positive determinant.
     pub positive: usize,
-    /// Samples with a negative determinant.
+    /// Number of samples with a negative determinant.
     pub negative: usize,
-    /// Places where the determinant changes sign between neighbouring samples.
+    /// Number of sign changes between neighbouring samples.
     pub changes: usize,
     /// The first sample with a positive determinant.
     pub first_positive: Option<Point>,
@@ -22,47 +23,26 @@ pub struct Orientation {
     pub first_negative: Option<Point>,
 }
 
-/// Samples along each segment.
+/// Intervals per segment.
 const PER_SEGMENT: usize = 16;
-/// Samples each way over a filled shape's box.
+/// Samples in each direction over the bounding box of a filled shape.
 const GRID: usize = 24;
 
-/// Samples the determinant along `outline`, and inside it if `filled`.
+/// Samples the determinant along `outline`, and inside it if `filled`. An affine map folds nothing; no samples are taken.
 ///
-/// Folds smaller than the sampling (a sixteenth of a segment, a twenty-fourth of the shape's box) can slip through.
+/// Folds narrower than the spacing of the samples (a sixteenth of a segment, a twenty-fourth of the bounding box) can go
+/// unnoticed.
 #[must_use]
 pub fn orientation(outline: &Outline, filled: bool, map: &dyn Map) -> Orientation {
     let mut out = Orientation::default();
-    if let crate::map::Class::Affine(_) = map.class() {
+    if let Class::Affine(_) = map.class() {
         return out;
     }
     let mut creases = Creases::default();
     map.creases(&mut creases);
-    let mut run = |ps: &[Point]| {
-        let mut jets = vec![Jet::default(); ps.len()];
-        map.jets(ps, &mut jets);
-        let mut last = 0.0;
-        for (p, j) in ps.iter().zip(&jets) {
-            let det = j.det();
-            if !det.is_finite() || det == 0.0 {
-                continue;
-            }
-            if det > 0.0 {
-                out.positive += 1;
-                out.first_positive.get_or_insert(*p);
-            } else {
-                out.negative += 1;
-                out.first_negative.get_or_insert(*p);
-            }
-            if det * last < 0.0 {
-                out.changes += 1;
-            }
-            last = det;
-        }
-    };
     for seg in outline.segs() {
-        let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
-        run(&ps);
+        let points: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
+        out.sample(&points, map);
     }
     if let (true, Some(b)) = (filled, outline.bounding_box()) {
         let size = b.width().hypot(b.height());
@@ -73,14 +53,38 @@ pub fn orientation(outline: &Outline, filled: bool, map: &dyn Map) -> Orientatio
                 .map(|i| Point::new(b.x0 + b.width() * (i as f64 + 0.5) / GRID as f64, y))
                 .filter(|p| path.winding(*p) != 0 && creases.defined_at(*p))
                 .collect();
-            run(&row);
+            out.sample(&row, map);
         }
     }
     out
 }
 
 impl Orientation {
-    /// Both together.
+    /// Adds samples in a row.
+    fn sample(&mut self, points: &[Point], map: &dyn Map) {
+        let mut jets = vec![Jet::default(); points.len()];
+        map.jets(points, &mut jets);
+        let mut last = 0.0;
+        for (p, j) in points.iter().zip(&jets) {
+            let det = j.det();
+            if !det.is_finite() || det == 0.0 {
+                continue;
+            }
+            if det > 0.0 {
+                self.positive += 1;
+                self.first_positive.get_or_insert(*p);
+            } else {
+                self.negative += 1;
+                self.first_negative.get_or_insert(*p);
+            }
+            if det * last < 0.0 {
+                self.changes += 1;
+            }
+            last = det;
+        }
+    }
+
+    /// The samples of both.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self {
@@ -92,7 +96,7 @@ impl Orientation {
         }
     }
 
-    /// A place on this shape that is turned over against the rest of the artwork, whose samples `all` counts.
+    /// A point of this shape that is turned over relative to the majority of the artwork's samples, `all`.
     #[must_use]
     pub fn folded_against(&self, all: &Self) -> Option<Point> {
         if all.positive >= all.negative { self.first_negative } else { self.first_positive }
@@ -104,7 +108,7 @@ mod tests {
     use super::*;
     use crate::map::{Formula, Real};
 
-    /// Folds over along x = 0.
+    /// Folds along x = 0.
     struct Fold;
     impl Formula for Fold {
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
@@ -117,11 +121,11 @@ mod tests {
         let across = Outline::from_svg("M-5,0 H10 V10 H-5 Z").unwrap();
         let o = orientation(&across, true, &Fold);
         assert!(o.positive > 0 && o.negative > 0 && o.changes > 0);
-        assert!(o.folded_against(&o).unwrap().x < 0.0, "the smaller part is the folded one");
+        assert!(o.folded_against(&o).unwrap().x < 0.0, "the smaller part is folded");
         let right = Outline::from_svg("M5,0 H10 V10 H5 Z").unwrap();
         let o = orientation(&right, true, &Fold);
         assert!(o.negative == 0 && o.folded_against(&o).is_none());
-        // All on the mirrored side: alone no fold, beside unmirrored artwork one.
+        // Entirely on the mirrored side: no fold alone, but one relative to artwork that is not mirrored.
         let left = Outline::from_svg("M-6,0 H-5 V1 H-6 Z").unwrap();
         let l = orientation(&left, true, &Fold);
         assert!(l.folded_against(&l).is_none() && l.folded_against(&l.and(&o).and(&o)).is_some());

@@ -1,4 +1,4 @@
-//! The refit against an independent oracle: distances both ways by 2,000 samples a direction.
+//! The refit against an independent oracle: Hausdorff distances by 2,000 samples in each direction.
 
 #![allow(clippy::unwrap_used)]
 
@@ -23,7 +23,7 @@ fn maps() -> [(&'static str, Box<dyn Map>); 3] {
     ]
 }
 
-/// Segments out and error ÷ tolerance.
+/// Number of segments, and error ÷ tolerance.
 fn measure(seg: Seg, map: &dyn Map, tolerance: f64) -> (usize, f64) {
     let w = warp_path(&single(seg), map, &Options::new(tolerance)).unwrap();
     let out = support::cubics(&w.path);
@@ -35,9 +35,9 @@ fn cubic(p: [(f64, f64); 4]) -> Seg {
     Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3]))
 }
 
-/// All icons, all maps, all tolerances. Slow: run with `--release -- --ignored --nocapture`.
+/// All icons under all maps at all tolerances. Run with `--release -- --ignored --nocapture`.
 #[test]
-#[ignore = "minutes; needs the fetched icons"]
+#[ignore = "takes minutes; needs the fetched icons"]
 #[allow(clippy::print_stdout)]
 fn corpus_has_no_violation() {
     let (outlines, _) = support::corpus();
@@ -75,9 +75,9 @@ fn corpus_has_no_violation() {
     assert_eq!(bad, 0);
 }
 
-/// The same for merged paths, subpath by subpath.
+/// As above for merged paths, subpath by subpath.
 #[test]
-#[ignore = "minutes; needs the fetched icons"]
+#[ignore = "takes minutes; needs the fetched icons"]
 #[allow(clippy::print_stdout)]
 fn merged_corpus_has_no_violation() {
     let (outlines, _) = support::corpus();
@@ -139,7 +139,7 @@ fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
 
 #[test]
 fn merged_pieces_are_proven_too() {
-    // A wave of many smooth segments, with an arc among them.
+    // A wave of many smoothly joined segments, one of them an arc.
     let outline = Outline::from_svg(
         "M100 500C120 450 140 420 170 420S220 450 240 500 290 580 320 580 390 560 390 500A60 60 0 0 1 450 440
          C470 440 490 450 510 470S560 510 590 510H700C730 510 760 490 780 470",
@@ -163,7 +163,7 @@ fn merged_pieces_are_proven_too() {
     }
 }
 
-/// Paths are worked on for themselves: who else is at work does not show.
+/// Each path is refitted independently of other threads.
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -212,13 +212,13 @@ fn points(el: &kurbo::PathEl) -> Vec<Point> {
 #[test]
 fn failure_modes_stay_within_the_tolerance() {
     let cases = [
-        // A near-cusp that sixteen even samples step over.
+        // Near-cusps that sixteen even samples step over.
         cubic([(200.0, 200.0), (800.0, 790.0), (205.0, 800.0), (800.0, 200.0)]),
         cubic([(492.5, 596.3), (524.6, 443.8), (479.9, 654.5), (509.9, 513.0)]),
         // Out and back along a line.
         cubic([(429.92, 717.63), (430.67, 717.63), (429.92, 717.63), (429.92, 717.63)]),
         cubic([(100.0, 500.0), (900.0, 500.0), (100.0, 500.0), (600.0, 500.0)]),
-        // One closed cubic.
+        // A closed cubic.
         cubic([(500.0, 300.0), (900.0, 900.0), (100.0, 900.0), (500.0, 300.0)]),
         // Coincident handles: at one end, at both, all but one.
         cubic([(100.0, 200.0), (100.0, 200.0), (500.0, 700.0), (800.0, 300.0)]),
@@ -293,7 +293,7 @@ fn iso_lines_of_a_bicubic_come_out_as_their_control_points() {
     }
 }
 
-/// A ripple of the given height.
+/// A sine wave of the given height.
 struct Ripple(f64);
 impl Formula for Ripple {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
@@ -302,8 +302,8 @@ impl Formula for Ripple {
 }
 
 #[test]
-fn what_is_straight_to_rounding_comes_out_as_a_line() {
-    // A line, and a cubic along it, between curves that leave and enter it smoothly.
+fn images_straight_to_rounding_become_lines() {
+    // A line, and a cubic along a line, between curves that join them smoothly.
     let outline =
         Outline::from_svg("M0 400C50 350 90 300 150 300H500C600 300 700 300 900 300C950 300 980 320 1000 400");
     let outline = outline.unwrap();
@@ -316,7 +316,7 @@ fn what_is_straight_to_rounding_comes_out_as_a_line() {
             assert!(support::largest_turn(&support::cubics(&w.path)) < 1e-3, "{height}");
         }
     }
-    // Not where that would take a large share of the tolerance, nor where it would make a corner.
+    // No line if that would use a large share of the tolerance, or make a corner.
     let w = warp_path(&outline, &Ripple(1e-7), &Options::new(1e-6)).unwrap();
     assert!(!w.path.elements().iter().any(|e| matches!(e, kurbo::PathEl::LineTo(_))));
     let hook = cubic([(100.0, 100.0), (100.0, 100.0 + 1e-6), (600.0, 100.0), (900.0, 100.0)]);
@@ -325,7 +325,7 @@ fn what_is_straight_to_rounding_comes_out_as_a_line() {
 }
 
 #[test]
-fn shared_edges_are_the_same_curves_mirrored() {
+fn reversed_edges_become_the_same_curves_reversed() {
     let outline = Outline::from_svg(
         "M100 100C300 50 400 300 700 200L900 350Q500 400 620 800A180 90 20 1 0 300 700C200 600 150 300 100 100Z
          M500 300A120 120 0 0 1 260 300A120 120 0 0 1 500 300Z",
@@ -405,7 +405,7 @@ fn proofs_hold_for_every_kind_of_segment() {
     }
 }
 
-/// Folds the plane over along a curve.
+/// Folds the plane along a curve.
 struct Fold;
 impl Formula for Fold {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {

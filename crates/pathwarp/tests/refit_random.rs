@@ -1,5 +1,5 @@
-//! Random segments under random maps: the refit ends within its budget, is finite, and within the tolerance or says that it is
-//! not. The generators prefer what is degenerate: points that coincide, lie on a line, or nearly do.
+//! Random segments under random maps: the refit stays within its budget, its output is finite and within the tolerance, or the
+//! report says that it is not. The generators prefer degenerate cases: points that coincide, or are collinear, or nearly so.
 
 #![allow(clippy::unwrap_used)]
 
@@ -17,7 +17,7 @@ use proptest::prelude::*;
 use std::f64::consts::TAU;
 use support::Bicubic;
 
-/// Coordinates on a coarse grid coincide and line up often; a few are a hair off it.
+/// Coordinates on a coarse grid, which often coincide or line up; some are off it by a hair.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => (0u8..=8).prop_map(|i| f64::from(i) * 125.0),
@@ -45,13 +45,13 @@ fn seg() -> impl Strategy<Value = Seg> {
     ]
 }
 
-/// Nets from gentle to folded over.
+/// Control nets from the identity to folded over.
 fn map() -> impl Strategy<Value = Bicubic> {
     (prop::array::uniform32(-1.0..1.0f64), prop_oneof![Just(0.0), Just(30.0), Just(150.0), Just(500.0)])
         .prop_map(|(d, size)| Bicubic::moved(|i, j| (size * d[2 * (4 * i + j)], size * d[2 * (4 * i + j) + 1])))
 }
 
-/// Waves of any length both ways: a map that says nothing of itself.
+/// Waves in both directions: a map that declares nothing about itself.
 #[derive(Debug, Clone)]
 struct Waves {
     length: [f64; 2],
@@ -66,7 +66,7 @@ impl Formula for Waves {
     }
 }
 
-/// The steepest of them fold over.
+/// The steepest fold over.
 fn waves() -> impl Strategy<Value = Waves> {
     let pair = |range: std::ops::Range<f64>| prop::array::uniform2(range);
     (pair(30.0..1500.0), pair(0.0..0.25), pair(0.0..TAU)).prop_map(|(length, steep, phase)| Waves {
@@ -76,7 +76,7 @@ fn waves() -> impl Strategy<Value = Waves> {
     })
 }
 
-/// The image of `seg` within the tolerance or reported, and the other way round the same, mirrored.
+/// Checks that the image of `seg` is within the tolerance or reported, and that the reversed segment gives it reversed.
 fn holds(seg: Seg, map: &dyn Map, options: &Options) -> Result<(), TestCaseError> {
     let path = Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] };
     let (tolerance, certify) = (options.tolerance, options.certify);
@@ -90,7 +90,7 @@ fn holds(seg: Seg, map: &dyn Map, options: &Options) -> Result<(), TestCaseError
         let e = support::distance(&seg, map, &out, 1000, 0.9 * tolerance);
         prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} {:?}", e / tolerance, w.report);
     }
-    // Unless the other way round it is the very same segment.
+    // Skip segments that are their own reverse.
     if seg.reversed() == seg {
         return Ok(());
     }
@@ -112,17 +112,17 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
     #[test]
-    fn within_the_tolerance_or_reported(seg in seg(), map in map(), tolerance in tolerance(), certify: bool) {
+    fn within_the_tolerance_under_bicubic_maps(seg in seg(), map in map(), tolerance in tolerance(), certify: bool) {
         holds(seg, &map, &Options::new(tolerance).with_certify(certify))?;
     }
 
     #[test]
-    fn so_are_images_under_maps_that_say_nothing(seg in seg(), map in waves(), tolerance in tolerance(), certify: bool) {
+    fn within_the_tolerance_under_opaque_maps(seg in seg(), map in waves(), tolerance in tolerance(), certify: bool) {
         holds(seg, &map, &Options::new(tolerance).with_certify(certify))?;
     }
 }
 
-/// What such tests have found.
+/// Failures that these tests have found.
 #[test]
 fn errors_between_the_samples_are_seen() {
     let all = cases::risen_between_samples().into_iter().chain(cases::leaps_between_samples()).chain([

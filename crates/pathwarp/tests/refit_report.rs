@@ -1,4 +1,4 @@
-//! What is exact comes out exact and is reported so; what the work budget does not cover is reported too, with its place.
+//! Reports: exact images are reported as exact, and places at which the work budget ran out are listed.
 
 #![allow(clippy::unwrap_used)]
 
@@ -67,7 +67,7 @@ fn without_merging_every_node_of_the_source_stays_a_node() {
     }
 }
 
-/// Torn along x = 500, and does not say so.
+/// Torn along x = 500, without declaring a crease.
 struct Torn;
 impl Map for Torn {
     fn jet(&self, p: Point) -> Jet {
@@ -79,7 +79,7 @@ impl Map for Torn {
 }
 
 #[test]
-fn what_cannot_be_fitted_is_reported_with_its_place() {
+fn misfits_are_reported_with_their_place() {
     for d in ["M200 500L800 520", "M200 300C400 700 600 100 800 300", "M800 300Q500 100 200 900"] {
         let outline = Outline::from_svg(d).unwrap();
         let seg = *outline.segs().next().unwrap();
@@ -92,7 +92,7 @@ fn what_cannot_be_fitted_is_reported_with_its_place() {
                 assert!(r.over_budget.iter().all(|p| (p.x - 500.0).abs() < 1e-3), "{d}: {:?}", r.over_budget);
                 assert!(r.max_error > tolerance && r.assurance == Assurance::Checked, "{d} {tolerance}: {r:?}");
                 assert!(w.path.is_finite() && r.segments_out < 200, "{d} {tolerance}: {}", r.segments_out);
-                // The rest of the image is where it belongs.
+                // The rest of the image is within the tolerance.
                 let out = support::cubics(&w.path);
                 for i in 0..=500 {
                     let p = Torn.point(seg.eval(f64::from(i) / 500.0));
@@ -105,7 +105,7 @@ fn what_cannot_be_fitted_is_reported_with_its_place() {
     }
 }
 
-/// More waves than any budget has pieces for.
+/// More waves than the budget has pieces for.
 struct Noise;
 impl Formula for Noise {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {

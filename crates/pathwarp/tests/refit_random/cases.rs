@@ -1,4 +1,4 @@
-//! Segments and maps that random tests found errors with: where the distance between image and fit rises between samples.
+//! Failures that random tests have found: segments and maps for which the distance between image and fit peaks between samples.
 
 use crate::support::Bicubic;
 use kurbo::{CubicBez, Point};
@@ -10,7 +10,7 @@ fn cubic(ends: [(f64, f64); 4]) -> Seg {
     Seg::Cubic(CubicBez::new(p0, p1, p2, p3))
 }
 
-/// The image stops at a cusp, and a cubic that runs past it and turns back meets every sample but the last stretch.
+/// The image stops at a cusp. A cubic that runs past it and turns back matches every sample, but not the last stretch.
 pub(crate) fn hook_at_a_cusp() -> (Bicubic, Seg) {
     (
         Bicubic {
@@ -31,8 +31,8 @@ pub(crate) fn hook_at_a_cusp() -> (Bicubic, Seg) {
     )
 }
 
-/// A cubic that nearly stops, where the distance has a corner, and a residual that swings over six samples (of two random maps,
-/// and of an arc of nearly a whole turn).
+/// A cubic that nearly stops, so that the distance has a corner, and residuals that oscillate over six samples (under two random
+/// maps, and of an arc of nearly a full turn).
 pub(crate) fn risen_between_samples() -> [(Bicubic, Seg); 3] {
     [
         (
@@ -102,7 +102,7 @@ pub(crate) fn risen_between_samples() -> [(Bicubic, Seg); 3] {
     ]
 }
 
-/// Under the strong map of the benchmarks this one nearly stops between the third and the fourth of eight samples.
+/// Under the strong map of the benchmarks the image nearly stops between the third and the fourth of eight samples.
 pub(crate) fn slow_between_samples() -> (Bicubic, Seg) {
     let slow = cubic([
         (998.9129889467229, 433.3588244498766),
@@ -113,7 +113,7 @@ pub(crate) fn slow_between_samples() -> (Bicubic, Seg) {
     (Bicubic::strong(), slow)
 }
 
-/// The largest error of a fit to eight samples lies in the gap between the two in the middle.
+/// The largest error of a fit to eight samples lies in the gap between the middle two.
 pub(crate) fn hidden_in_the_middle() -> (Bicubic, Seg) {
     (
         Bicubic {
@@ -139,7 +139,7 @@ pub(crate) fn hidden_in_the_middle() -> (Bicubic, Seg) {
     )
 }
 
-/// The image slows down near the end, and the distance has a corner there, half as high again as at the samples on both sides.
+/// The image slows down near the end, where the distance has a corner one and a half times as high as at the samples beside it.
 pub(crate) fn corner_near_the_end() -> (Bicubic, Seg) {
     (
         Bicubic {
@@ -160,7 +160,7 @@ pub(crate) fn corner_near_the_end() -> (Bicubic, Seg) {
     )
 }
 
-/// The tip of a flat ellipse: a spike narrower than the samples' distance.
+/// The tip of a flat ellipse: a spike narrower than the spacing of the samples.
 pub(crate) fn spike_at_a_tip() -> (Bicubic, Seg) {
     (
         Bicubic {
@@ -189,8 +189,8 @@ pub(crate) fn spike_at_a_tip() -> (Bicubic, Seg) {
     )
 }
 
-/// Two feet leap where the image nearly stops between two samples, beside the start and inside an arc; and a corner that half of
-/// the samples do not see.
+/// Foot points far apart because the image nearly stops between two samples, near the start of a cubic and inside an arc; and a
+/// corner between samples halfway.
 pub(crate) fn leaps_between_samples() -> [(Bicubic, Seg); 3] {
     [
         (

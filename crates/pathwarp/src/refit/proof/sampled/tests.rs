@@ -11,7 +11,7 @@ use crate::refit::frame::ChordFrame;
 use crate::refit::samples::{CHECKED, FITTED, between};
 use kurbo::{CubicBez, Line, ParamCurve, QuadBez, Vec2};
 
-/// Numbers in [−1, 1] without pattern.
+/// Pseudo-random numbers in [−1, 1].
 struct Noise(u64);
 impl Noise {
     fn next(&mut self) -> f64 {
@@ -23,8 +23,8 @@ impl Noise {
     }
 }
 
-/// Powers xⁱyʲ up to i, j < 4, over a denominator 1 + a·p.
-struct Test {
+/// Polynomials in xⁱyʲ, i, j < 4, over a denominator that is 1 plus a small one.
+struct RationalMap {
     x: [[f64; 4]; 4],
     y: [[f64; 4]; 4],
     w: [[f64; 4]; 4],
@@ -32,7 +32,7 @@ struct Test {
     rational: bool,
 }
 
-impl Test {
+impl RationalMap {
     fn new(r: &mut Noise, degree: usize, bend: f64, below: f64) -> Self {
         let mut random = |bend: f64, at: (usize, usize)| {
             let mut c: [[f64; 4]; 4] = std::array::from_fn(|i| {
@@ -58,7 +58,7 @@ impl Test {
     }
 }
 
-impl Map for Test {
+impl Map for RationalMap {
     fn rational_degree(&self) -> Option<crate::map::RationalDegree> {
         Some(crate::map::RationalDegree { degree: self.degree, rational: self.rational })
     }
@@ -76,14 +76,14 @@ impl Map for Test {
     }
 }
 
-/// The largest distance of 400 places of the image from the cubic, by brute force and Newton steps.
+/// The largest distance of 400 points of the image from the cubic, by brute force and golden sections.
 fn truth(source: &SourceCurve<'_>, c: &Candidate) -> f64 {
     let cubic = c.frame.cubic(c.p0, c.p0 + c.frame.q, c.a, c.b);
     let mut worst = 0.0f64;
     for i in 0..=400 {
         let p = source.image(c.t0 + (c.t1 - c.t0) * f64::from(i) / 400.0).0;
         let d = |s: f64| cubic.eval(s.clamp(0.0, 1.0)).distance(p);
-        // Every valley of the distance: near a hairpin or a crossing the nearest of even places may lie in the wrong one.
+        // Every local minimum of the distance: near a hairpin or a crossing the nearest sample may lie beside the wrong one.
         let at: Vec<f64> = (-1..=65).map(|j| d(f64::from(j) / 64.0)).collect();
         let mut least = f64::INFINITY;
         for j in (1..66).filter(|j| at[*j] <= at[j - 1] && at[*j] <= at[j + 1]) {
@@ -100,12 +100,12 @@ fn truth(source: &SourceCurve<'_>, c: &Candidate) -> f64 {
     worst
 }
 
-/// Proofs of random pieces: how many there were of the three kinds, and the largest bound ÷ truth.
+/// Proves random pieces. Returns the number of proofs of the three kinds, and the largest and the least bound ÷ truth.
 fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
     let mut r = Noise(17 + degree as u64);
     let (mut kinds, mut loosest, mut tightest) = ([0; 3], 0.0f64, f64::INFINITY);
     for round in 0..rounds {
-        let map = Test::new(&mut r, degree, [0.02, 0.1, 0.3][round % 3], below);
+        let map = RationalMap::new(&mut r, degree, [0.02, 0.1, 0.3][round % 3], below);
         let p = [0; 4].map(|_| r.point(0.6));
         let seg = match round % 4 {
             0 => Seg::Line(Line::new(p[0], p[1])),
@@ -147,7 +147,7 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
         let mut s1 = between(&s0);
         frame.distances(&g[1], a, b, &mut s1, 4);
         let real = truth(&source, &c);
-        // The enough is a real one, so that every stage is met.
+        // The tolerance is near the true error, so that every stage occurs.
         let enough = real * [1.03, 1.1, 1.6, 5.0][round % 4 / 2 * 2 + round / 4 % 2] + 1e-9;
         let mut proof = SampledProof::new(&source, &form, &c, [&g[0], &g[1]], enough);
         let feet = [&s0, &s1];
@@ -155,7 +155,7 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
             let Ok(bound) = bound else { continue };
             if bound <= enough {
                 kinds[k] += 1;
-                // The truth's own rounding.
+                // 1e-12 for the rounding of `truth`.
                 tightest = tightest.min((bound + 1e-12) / real);
                 if real > 1e-6 {
                     loosest = loosest.max(bound / real);
@@ -178,9 +178,9 @@ fn proofs_hold_for_random_pieces() {
     }
 }
 
-/// K(d): random polynomials v²q whose samples are at most one.
+/// K(d) against random polynomials v²q.
 #[test]
-fn nothing_grows_more_than_it_is_said_to() {
+fn growth_factors_hold_for_random_polynomials() {
     let mut r = Noise(5);
     let even: Vec<f64> = (1..17).map(|j| f64::from(j) / 17.0).collect();
     let fine: Vec<f64> = (2..50).map(|j| f64::from(j) / 51.0).collect();
@@ -203,7 +203,7 @@ fn nothing_grows_more_than_it_is_said_to() {
     }
 }
 
-/// y = v²·q(x) over the line from (0, 0) to (1, 0), q given by its zeros and its largest value there.
+/// Bends the line from (0, 0) to (1, 0) to y = v²·q(x), with q given by its zeros and scaled to a largest value of 0.01.
 struct Swing {
     zeros: Vec<f64>,
     size: f64,
@@ -226,15 +226,15 @@ impl Map for Swing {
     }
     fn jet(&self, p: Point) -> Jet {
         let h = 1e-6;
-        // Only the ends' slopes matter, and those are none.
+        // Only the slopes at the ends matter, and those are zero.
         let slope = if p.x == 0.0 || p.x == 1.0 { 0.0 } else { (self.y(p.x + h) - self.y(p.x - h)) / (2.0 * h) };
         Jet { p: Point::new(p.x, p.y + self.y(p.x)), dx: Vec2::new(1.0, slope), dy: Vec2::new(0.0, 1.0) }
     }
 }
 
-/// The bounds by sixteen and thirty-two samples for such an image and the straight line, and the largest sample; the truth is
-/// 0.01.
-fn of_swing(map: &Swing) -> ([f64; 2], f64) {
+/// The bounds by sixteen and thirty-two samples for such an image and the straight line, and the largest sample. The true
+/// distance is 0.01.
+fn swing_bounds(map: &Swing) -> ([f64; 2], f64) {
     let seg = Seg::Line(Line::new((0.0, 0.0), (1.0, 0.0)));
     let source = SourceCurve::new(&seg, map);
     let form = RationalForm::new(&source, map.rational_degree()).unwrap();
@@ -250,15 +250,15 @@ fn of_swing(map: &Swing) -> ([f64; 2], f64) {
     ([proof.sixteen(feet).unwrap(), proof.thirty_two(feet).unwrap()], most)
 }
 
-/// An error of the highest degree that nearly vanishes at the samples: only its coefficients tell.
+/// An error of the highest degree that nearly vanishes at the samples shows only in its coefficients.
 #[test]
-fn what_hides_between_the_samples_is_found() {
+fn errors_hidden_between_samples_are_bounded() {
     let all: Vec<f64> = SAMPLES.to_vec();
     let mut hidden = 0;
     for i in 0..16 {
         for j in 0..i {
             let zeros = all.iter().enumerate().filter(|(k, _)| *k != i && *k != j).map(|(_, t)| *t).collect();
-            let ([few, many], most) = of_swing(&Swing::new(zeros));
+            let ([few, many], most) = swing_bounds(&Swing::new(zeros));
             assert!(few >= 0.01 && many >= 0.01, "{i} {j}: {few} {many}");
             hidden += usize::from(most * GROWTH[GROWTH.len() - 1] < 0.01);
         }
@@ -266,9 +266,9 @@ fn what_hides_between_the_samples_is_found() {
     assert!(hidden > 20, "{hidden}");
 }
 
-/// Where the degree is higher than sixteen samples determine, an error may vanish at all of them: they must not tell.
+/// An error of higher degree than sixteen samples determine may vanish at all of them: then they must prove nothing.
 #[test]
-fn too_high_a_degree_is_left_to_more_samples() {
-    let ([few, many], most) = of_swing(&Swing::new(SAMPLES.to_vec()));
+fn degrees_too_high_for_sixteen_samples_need_thirty_two() {
+    let ([few, many], most) = swing_bounds(&Swing::new(SAMPLES.to_vec()));
     assert!(most < 1e-15 && few == f64::INFINITY && many >= 0.01, "{most} {few} {many}");
 }
