@@ -111,7 +111,7 @@ fn artwork_that_leaves_the_page_is_warned_of_once() {
     };
     let (said, told) = run(&[]);
     assert_eq!(said.lines().count(), 1, "{said}");
-    for part in ["leaves the page by up to 30 units", "30 %; top, right", "--fit grow", "--fit page"] {
+    for part in ["extends past the page by up to 30 units", "30 %; top, right", "--fit grow", "--fit page"] {
         assert!(said.contains(part) && told[0].as_str().unwrap().contains(part), "{part} not in {said}");
     }
     assert_eq!(told.len(), 1);

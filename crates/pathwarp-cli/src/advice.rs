@@ -1,7 +1,24 @@
-//! Advice in flags: what the user can do about an error or warning of the libraries, which know no command line.
+//! Advice in flags: adds the options that help to the errors and warnings of the libraries, which know no command line.
 
 use crate::decimals::three_figures;
+use pathwarp::{Error, GeometryError};
 use pathwarp_svg::{LetteringFrameError, Overhang};
+
+/// The message of an error with advice.
+pub(crate) fn error(e: &Error) -> String {
+    match e {
+        Error::Geometry(GeometryError::Infinity { .. }) => format!("{e} (--on-error skip)"),
+        _ => e.to_string(),
+    }
+}
+
+/// The message of an error about a surface in space, with advice.
+pub(crate) fn surface(e: &pathwarp_mesh::Error) -> String {
+    match e {
+        pathwarp_mesh::Error::TooMany { .. } => format!("{e}; allow a larger --tolerance"),
+        _ => e.to_string(),
+    }
+}
 
 /// Describes artwork that extends past the page, with the options that change it.
 pub(crate) fn overhang(o: Overhang) -> String {
@@ -9,7 +26,7 @@ pub(crate) fn overhang(o: Overhang) -> String {
     let sides: Vec<&str> = names.iter().zip(o.by).filter(|(_, by)| *by > 0.0).map(|(name, _)| *name).collect();
     let most = o.by.into_iter().fold(0.0, f64::max);
     format!(
-        "the artwork leaves the page by up to {} units ({} %; {}); --fit grow makes room for it, --fit page fits the page to it",
+        "the artwork extends past the page by up to {} units ({} %; {}); --fit grow enlarges the page, --fit page fits it to the artwork",
         three_figures(most),
         three_figures(100.0 * o.share),
         sides.join(", ")

@@ -1,6 +1,6 @@
 //! Failures: the errors that end a run, each with its exit code.
 
-use crate::terminal;
+use crate::{advice, terminal};
 use std::fmt::Display;
 use std::path::Path;
 
@@ -80,7 +80,7 @@ impl From<clap::Error> for Failure {
 
 impl From<pathwarp::Error> for Failure {
     fn from(e: pathwarp::Error) -> Self {
-        let m = e.to_string();
+        let m = advice::error(&e);
         match e {
             pathwarp::Error::Input { .. } => Self::Input(m),
             pathwarp::Error::Geometry(_) => Self::Geometry(m),

@@ -65,7 +65,7 @@ fn parse(registry: &Registry, text: &str, folder: &Path) -> Result<SavedRecipe, 
             texts(value).ok_or_else(|| format!("[options] {name}: must be a text, number, switch or list of them"))?;
         // `false` leaves an option at its default.
         for text in texts.iter().filter(|t| *t != "false") {
-            options.push(name, text).map_err(|e| format!("[options] {name}: {e}"))?;
+            options.push(name, text).map_err(|e| format!("[options] {e}"))?;
         }
     }
     let step = |(i, t): (usize, &toml::Table)| step(registry, t, folder).map_err(|e| format!("step {}: {e}", i + 1));

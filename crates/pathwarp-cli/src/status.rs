@@ -1,4 +1,4 @@
-//! How a run that did not fail ended.
+//! The status of a run that did not fail.
 
 /// The result of a run that did not fail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -57,7 +57,7 @@ pub enum Error {
         at: Point,
     },
     /// More triangles than are made.
-    #[error("{shape} would take more than {most} triangles; allow a larger --tolerance")]
+    #[error("{shape} would take more than {most} triangles")]
     TooMany {
         /// The shape.
         shape: String,

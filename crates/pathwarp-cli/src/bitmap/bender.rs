@@ -33,11 +33,11 @@ impl ImageWarper for Bender {
         const MOST: f64 = 16e6;
         let picture = Picture::read_stored(r.data).map_err(|e| e.to_string())?;
         let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
-        let nowhere = "the map is not defined on all of it";
+        let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
         let (width, height) = (e.bounds.width(), e.bounds.height());
         if !(width > 0.0 && height > 0.0) {
-            return Err("nothing is left of its area".into());
+            return Err("its image has no area".into());
         }
         let most = (GROWTH * area.area()).clamp(1.0, MOST);
         let finest = (most / (width * height)).sqrt();
@@ -79,7 +79,7 @@ impl GradientPainter for Bender {
         const MARGIN: f64 = 2.0;
         let (width, height) = (r.target.width(), r.target.height());
         if !(width > 0.0 && height > 0.0 && (width + height).is_finite()) {
-            return Err("nothing is left of the shape's area".into());
+            return Err("the image of the shape has no area".into());
         }
         let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
         let wanted = match self.dpi {

@@ -24,7 +24,7 @@ pub(super) fn command() -> Command {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(f64)).help(help)
     };
     Command::new(NAME)
-        .about("Measure how far two drawings are apart, path by path and pixel by pixel")
+        .about("Measure the distance between two drawings, path by path and pixel by pixel")
         .arg(file_args::file("A", "An SVG file"))
         .arg(file_args::file("B", "An SVG file"))
         .arg(
@@ -33,14 +33,15 @@ pub(super) fn command() -> Command {
                 .value_name("PX")
                 .value_parser(value_parser!(u32).range(1..))
                 .default_value("1000")
-                .help("Width of the pictures that are compared"),
+                .help("Width in pixels of the renderings that are compared"),
         )
-        .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more, in user units"))
-        .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this share of the pixels differs visibly (0 to 1)"))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("As JSON"))
+        .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more than this, in user units"))
+        .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this fraction of the pixels differs visibly (0 to 1)"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
         .after_help(
-            "Paths of the same id are compared, paths without one in their order within the group of an id: the largest distance from a point of one to the other, both ways. A pixel \
-             differs visibly when a channel is off by more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
+            "Paths with the same id are compared; paths without an id are matched by their order within the closest ancestor that \
+             has one. The distance is the largest from a point of either path to the other path. A pixel differs visibly if a \
+             channel differs by more than 16 of 255.\n\nExample:\n  pathwarp compare before.svg after.svg",
         )
 }
 

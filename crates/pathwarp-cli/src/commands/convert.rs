@@ -15,28 +15,28 @@ pub(super) const NAME: &str = "convert";
 
 pub(super) fn command() -> Command {
     Command::new(NAME)
-        .about("Take the paths of a file (XCF and other files of GIMP's, SVG) into an SVG, a point list, or a new XCF")
-        .arg(file_args::file("FILE", "A file of GIMP's or an SVG; FILE#NAME takes one path of GIMP's"))
+        .about("Copy the paths of a file (GIMP files, SVG) into an SVG, a point list, or a new XCF")
+        .arg(file_args::file("FILE", "A GIMP file or an SVG; FILE#NAME copies one path of a GIMP file"))
         .arg(file_args::out(
             "OUT",
-            "Where to write: .svg, .json (GIMP's point lists) or .xcf (paths alone); none writes SVG to standard output",
+            "Output file: .svg, .json (GIMP point list) or .xcf (paths only); none writes SVG to standard output",
         ))
         .arg(
             Arg::new("split")
                 .long("split")
                 .action(ArgAction::SetTrue)
                 .requires("out")
-                .help("A file for every path, its name behind OUT's: out-NAME.svg"),
+                .help("Write every path to its own file, named after OUT and the path: out-NAME.svg"),
         )
         .arg(
             Arg::new("salvage")
                 .long("salvage")
                 .action(ArgAction::SetTrue)
-                .help("Of a damaged file, take the paths before the damage"),
+                .help("Copy the paths before the damage in a damaged file"),
         )
         .after_help(
-            "The SVG has its size in px and a viewBox of the same numbers, so that GIMP imports it without scaling; paths keep \
-             their names as ids. Coordinates are written to the precision in which GIMP keeps them.\n\nExamples:\n  pathwarp convert \
+            "The SVG has its size in px and a matching viewBox, so that GIMP imports it without scaling; path names become ids. \
+             Coordinates are written with the precision that GIMP stores.\n\nExamples:\n  pathwarp convert \
              art.xcf -o art.svg\n  pathwarp convert art.xcf#Cage -o cage.json\n  pathwarp convert art.xcf -o paths.svg --split",
         )
 }

@@ -31,11 +31,11 @@ fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)
 pub(super) fn command(registry: &Registry) -> Command {
     let sets: Vec<&str> = sets(registry).map(|(_, g)| g.set).chain([ALL]).collect();
     Command::new(NAME)
-        .about("Draw artwork under every style on one sheet")
+        .about("Draw artwork under every preset of a set on one sheet")
         .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
         .arg(file_args::out(
             "SHEET.svg|SHEET.png",
-            "Where to write the sheet; - or none writes SVG to standard output",
+            "Write the sheet to this file; - or none writes SVG to standard output",
         ))
         .arg(
             choice("set", sets[0], &sets)
@@ -48,11 +48,11 @@ pub(super) fn command(registry: &Registry) -> Command {
                 .value_name("NUMBER")
                 .allow_hyphen_values(true)
                 .default_value("50%")
-                .help("How far the styles bend"),
+                .help("Amount of bend of the presets that bend"),
         )
         .arg(
             choice("axis", "horizontal", &["horizontal", "vertical"])
-                .help("The direction in which artwork runs through the styles"),
+                .help("Direction in which artwork runs through the presets"),
         )
         .arg(
             Arg::new("columns")
@@ -60,7 +60,7 @@ pub(super) fn command(registry: &Registry) -> Command {
                 .value_name("N")
                 .value_parser(value_parser!(u32).range(1..=64))
                 .default_value("4")
-                .help("Cells side by side"),
+                .help("Number of cells per row"),
         )
         .arg(
             Arg::new("cell")
@@ -68,7 +68,7 @@ pub(super) fn command(registry: &Registry) -> Command {
                 .value_name("WxH")
                 .value_parser(cell)
                 .default_value("260x190")
-                .help("The size of a cell in px"),
+                .help("Size of a cell in px"),
         )
         .arg(
             Arg::new("scale")
@@ -76,10 +76,11 @@ pub(super) fn command(registry: &Registry) -> Command {
                 .value_name("S")
                 .value_parser(value_parser!(f32))
                 .default_value("1")
-                .help("Pixels per px of a PNG sheet"),
+                .help("Pixels per px in a PNG sheet"),
         )
         .after_help(
-            "What is on a sheet has one scale; only what is much larger is made to fit. Labels are outlines: they look the same everywhere.\n\nExamples:\n  \
+            "All cells have the same scale, except that a much larger result is reduced to fit. Labels are outlines, so they look the \
+             same everywhere.\n\nExamples:\n  \
              pathwarp gallery samples/logo.svg -o sheet.svg\n  \
              pathwarp gallery samples/lettering.svg --set wordart --columns 5 -o sheet.png\n  \
              pathwarp gallery samples/badge.svg --bend -30% --axis vertical -o sheet.svg",

@@ -19,17 +19,17 @@ pub(super) const NAME: &str = "install";
 pub(super) fn command() -> Command {
     let flag = |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
     Command::new(NAME)
-        .about("Put the plug-in for another program in its place")
+        .about("Install the plug-in for another program")
         .arg(Arg::new("WHAT").required(true).value_parser(["gimp"]).help("gimp: the plug-in for GIMP 3"))
         .arg(
             Arg::new("dir")
                 .long("dir")
                 .value_name("DIR")
                 .value_parser(value_parser!(PathBuf))
-                .help("GIMP's plug-ins folder (Edit > Preferences > Folders > Plug-ins); default: that of every GIMP 3 found here"),
+                .help("GIMP's plug-ins folder (Edit > Preferences > Folders > Plug-ins) [default: that of every GIMP 3 found]"),
         )
-        .arg(flag("uninstall", "Take it away again"))
-        .arg(flag("dry-run", "Only say what would be done"))
+        .arg(flag("uninstall", "Remove the plug-in"))
+        .arg(flag("dry-run", "Print the changes without making them"))
         .after_help("Examples:\n  pathwarp install gimp\n  pathwarp install gimp --dry-run\n  pathwarp install gimp --uninstall")
 }
 
@@ -40,7 +40,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     };
     if folders.is_empty() {
         return Err(Failure::usage(
-            "no folder of GIMP 3 was found; start GIMP 3 once, or name its plug-ins folder with --dir",
+            "found no folder of GIMP 3; start GIMP 3 once, or name its plug-ins folder with --dir",
         ));
     }
     let dry = m.get_flag("dry-run");

@@ -32,7 +32,7 @@ pub(super) fn run(registry: &Registry) -> Result<Status, Failure> {
         }
         out.push('\n');
     }
-    out.push_str("`pathwarp help NAME` tells more; `+` between two of them chains them.\n");
+    out.push_str("`pathwarp help NAME` describes one; `+` chains several.\n");
     let plain = if std::io::stdout().is_terminal() { out } else { anstream::adapter::strip_str(&out).to_string() };
     output::to_stdout(plain.as_bytes())?;
     Ok(Status::Complete)

@@ -19,42 +19,41 @@ pub(super) const NAME: &str = "map";
 
 pub(super) fn command(registry: &Registry) -> Command {
     let mut c = Command::new(NAME)
-        .about("Map plain points, one x y a line, by a deformation")
+        .about("Map plain points, one x y per line, by a deformation")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .after_help(
-            "Every line of the points gives a line of the result: x' y', with --jacobian also the four partial derivatives \
-             x'x y'x x'y y'y. Where the map has no value the line is nan nan, and the exit code 1. Empty lines and lines \
-             that start with # are passed over.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
+            "Every input line produces one output line: x' y', with --jacobian followed by the four partial derivatives \
+             x'x y'x x'y y'y. Where the map is undefined, the line is nan nan and the exit code is 1. Empty lines and \
+             lines that start with # are skipped.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
              0,0,100,100 --points -",
         );
     for e in registry.entries() {
-        c = c.subcommand(
-            Command::new(e.info().name)
-                .about(e.info().title)
-                .args(steps::args(e.info()))
-                .arg(
-                    Arg::new("points")
-                        .long("points")
-                        .value_name("FILE")
-                        .value_parser(value_parser!(PathBuf))
-                        .default_value("-")
-                        .help("The points; - is standard input"),
-                )
-                .arg(
-                    Arg::new("jacobian")
-                        .long("jacobian")
-                        .action(ArgAction::SetTrue)
-                        .help("Also the partial derivatives"),
-                )
-                .arg(
-                    Arg::new("frame")
-                        .long("frame")
-                        .value_name("X,Y,W,H")
-                        .allow_hyphen_values(true)
-                        .help("The box that percentages and defaults refer to [default: the points' own]"),
-                ),
-        );
+        c =
+            c.subcommand(
+                Command::new(e.info().name)
+                    .about(e.info().title)
+                    .args(steps::args(e.info()))
+                    .arg(
+                        Arg::new("points")
+                            .long("points")
+                            .value_name("FILE")
+                            .value_parser(value_parser!(PathBuf))
+                            .default_value("-")
+                            .help("File of points; - is standard input"),
+                    )
+                    .arg(
+                        Arg::new("jacobian")
+                            .long("jacobian")
+                            .action(ArgAction::SetTrue)
+                            .help("Print the partial derivatives too"),
+                    )
+                    .arg(
+                        Arg::new("frame").long("frame").value_name("X,Y,W,H").allow_hyphen_values(true).help(
+                            "Box that percentages and defaults refer to [default: the bounding box of the points]",
+                        ),
+                    ),
+            );
     }
     c
 }

@@ -24,20 +24,20 @@ use clap::Command;
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
 
-const ABOUT: &str = "Bends, warps and deforms SVG artwork, and gives clean Bézier curves back.";
+const ABOUT: &str = "Bends, warps and deforms SVG artwork, and writes clean Bézier curves.";
 
-const AFTER: &str = "Path references (PATHREF), wherever an option takes a path:
-  FILE#NAME       the path of that id, label or title in an SVG file, or of that name in GIMP's (XCF, point lists)
-  FILE            the only path in the file; a JSON file of points [[x,y],…]
-  #NAME           in the input document; it is then a guide: left out of the artwork, kept in the file
-  'M 0,0 C …'     SVG path data in place
-  'x,y x,y …'     plain points; 50%,0% counts from the frame's left and top
+const AFTER: &str = "Path references (PATHREF), for every option that takes a path:
+  FILE#NAME       the path with that id, label or title in an SVG file, or with that name in a GIMP file (XCF, point list)
+  FILE            the only path in the file, or a JSON file of points [[x,y],…]
+  #NAME           a path of the input document; it becomes a guide: not part of the artwork, but kept in the file
+  'M 0,0 C …'     SVG path data
+  'x,y x,y …'     points; percentages count from the left and top of the frame: 50%,0%
 
 Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
-Everything is composed before any curve is fitted. Inputs are named in the first part; the common options may stand in any.
+All steps are composed before any curve is fitted. Name the inputs in the first part; common options may be in any part.
 
-Exit codes: 0 all done; 1 done, but something was left as it was; 2 wrong usage; 3 input unreadable;
-4 the geometry forbids it. On 2, 3 and 4 no output file is touched.";
+Exit codes: 0 success; 1 done, but something was left unchanged or missed the tolerance; 2 wrong usage;
+3 unreadable input; 4 the geometry does not allow it. On 2, 3 and 4 no output file is touched.";
 
 /// The whole command line.
 pub(crate) fn build(registry: &Registry) -> Command {

@@ -17,18 +17,18 @@ pub(super) fn command() -> Command {
         .about("List the paths of a file: name, closed, anchors, points")
         .arg(file_args::file(
             "FILE",
-            "An SVG file, or a file of GIMP's (XCF, exported SVG, point list, GIMP 1 text); - is standard input",
+            "An SVG file or a GIMP file (XCF, exported SVG, point list, GIMP 1 text); - is standard input",
         ))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("As JSON, with every point"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON with every point"))
         .arg(
             Arg::new("salvage")
                 .long("salvage")
                 .action(ArgAction::SetTrue)
-                .help("Of a damaged file of GIMP's, list the paths before the damage"),
+                .help("List the paths before the damage in a damaged GIMP file"),
         )
         .after_help(
-            "Points are listed as drawing programs keep them: for every anchor its incoming handle, itself, its outgoing \
-             handle. Arcs are listed as cubics. Of GIMP's files every number is listed exactly as it is stored.\n\nExamples:\n  pathwarp paths samples/cages.svg\n  pathwarp paths --json samples/cages.svg\n  pathwarp paths art.xcf",
+            "Every anchor is listed as drawing programs store it: incoming handle, anchor, outgoing handle. Arcs are listed as \
+             cubics. Numbers of GIMP files are listed exactly as stored.\n\nExamples:\n  pathwarp paths samples/cages.svg\n  pathwarp paths --json samples/cages.svg\n  pathwarp paths art.xcf",
         )
 }
 

@@ -1,4 +1,4 @@
-//! `pathwarp render IN.svg -o OUT.png`.
+//! `pathwarp render IN.svg -o OUT.png`: draws an SVG file.
 
 use super::file_args;
 use crate::failure::Failure;
@@ -17,7 +17,7 @@ pub(super) fn command() -> Command {
     Command::new(NAME)
         .about("Draw an SVG file as a PNG")
         .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
-        .arg(file_args::out("OUT.png", "Where to write the picture; - or none writes to standard output"))
+        .arg(file_args::out("OUT.png", "Write the picture to this file; - or none writes to standard output"))
         .arg(pixels("width", "Width in pixels"))
         .arg(pixels("height", "Height in pixels"))
         .arg(
@@ -35,7 +35,7 @@ pub(super) fn command() -> Command {
                 .value_parser(["white", "black", "none"])
                 .hide_possible_values(true)
                 .default_value("none")
-                .help("What shows through"),
+                .help("Colour behind the drawing"),
         )
         .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
 }

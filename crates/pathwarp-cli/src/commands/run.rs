@@ -13,13 +13,13 @@ pub(super) const NAME: &str = "run";
 
 pub(super) fn command() -> Command {
     Command::new(NAME)
-        .about("Run a recipe file, as --write-recipe saves it")
+        .about("Run a recipe file that --write-recipe saved")
         .arg(file_args::file("RECIPE", "A recipe (TOML)"))
         .arg(
             Arg::new(INVERSE)
                 .long(INVERSE)
                 .action(ArgAction::SetTrue)
-                .help("Undo it: the inverse of every step, the last first (give --frame: the source's box)"),
+                .help("Apply the inverse of every step, the last first (give --frame: the source's box)"),
         )
         .args(options::args())
         .args_override_self(true)

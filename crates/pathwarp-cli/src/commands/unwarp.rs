@@ -1,4 +1,4 @@
-//! `pathwarp unwarp FILE`: the source of a drawing that was written with `--embed-recipe`.
+//! `pathwarp unwarp FILE`: restores the source of a drawing that was written with `--embed-recipe`.
 
 use super::file_args;
 use crate::failure::Failure;
@@ -11,10 +11,10 @@ pub(super) const NAME: &str = "unwarp";
 
 pub(super) fn command() -> Command {
     Command::new(NAME)
-        .about("Give back the source of a drawing written with --embed-recipe, byte for byte")
+        .about("Restore the source of a drawing written with --embed-recipe, byte for byte")
         .arg(file_args::file("FILE", "The warped drawing; - is standard input"))
-        .arg(file_args::out("OUT", "Where to write it; - or none writes to standard output"))
-        .arg(Arg::new("recipe").long("recipe").action(ArgAction::SetTrue).help("The recipe instead of the source"))
+        .arg(file_args::out("OUT", "Write the source to this file; - or none writes to standard output"))
+        .arg(Arg::new("recipe").long("recipe").action(ArgAction::SetTrue).help("Write the recipe instead of the source"))
         .after_help("Example:\n  pathwarp unwarp warped.svg -o source.svg\n  pathwarp unwarp --recipe warped.svg -o recipe.toml")
 }
 
@@ -24,7 +24,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let text = String::from_utf8(input::bytes(file)?).map_err(|_| Failure::file(file, "is not UTF-8 text"))?;
     let origin = Origin::read(&text).map_err(|e| Failure::from(e).about(&name))?;
     let origin =
-        origin.ok_or_else(|| Failure::file(file, "holds no source; it was not written with --embed-recipe"))?;
+        origin.ok_or_else(|| Failure::file(file, "holds no source; only drawings written with --embed-recipe do"))?;
     let bytes = if m.get_flag("recipe") { origin.recipe.into_bytes() } else { origin.source };
     output::write(file_args::target(m), &bytes)?;
     Ok(Status::Complete)

@@ -195,7 +195,7 @@ impl GimpArtwork {
                 Err(e) => {
                     let e = e.on_shape(&path.name);
                     if options.on_error == OnError::Stop {
-                        return Err(Failure::Geometry(e.to_string()));
+                        return Err(Error::Geometry(e).into());
                     }
                     out.skipped.push(SkippedShape { id: path.name.clone(), why: e.to_string() });
                     out.strokes.push((i, path.strokes.clone()));

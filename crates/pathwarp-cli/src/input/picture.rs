@@ -94,7 +94,7 @@ impl Artwork for PictureArtwork {
         let map: Arc<dyn Map> = Arc::new(built.map.clone());
         let mut warnings = Vec::new();
         let undefined_at =
-            |p: Point| format!("the map is not defined on all of the picture, such as at {:.4},{:.4}", p.x, p.y);
+            |p: Point| format!("the map is undefined on part of the picture, such as at {:.4},{:.4}", p.x, p.y);
         let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &*map, Affine::IDENTITY)
             .ok_or_else(|| Failure::Geometry(undefined_at(area.center())))?;
         if let Some(p) = undefined {

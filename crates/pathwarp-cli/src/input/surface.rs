@@ -1,5 +1,6 @@
 //! The artwork on a surface in space, as OBJ files: a mesh of the filled shapes, or curves.
 
+use crate::advice;
 use crate::failure::Failure;
 use pathwarp::kurbo::Point;
 use pathwarp::map::Map;
@@ -34,7 +35,7 @@ pub(super) fn files(
             } else {
                 pathwarp_mesh::outlines(&wanted, &place, options.refit.tolerance)
             };
-            let text = made.map_err(|e| Failure::Geometry(format!("--{}: {e}", file.param)))?;
+            let text = made.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface(&e))))?;
             out.push((PathBuf::from(&file.name), text));
         }
     }

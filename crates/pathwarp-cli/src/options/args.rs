@@ -11,8 +11,8 @@ pub(super) const INPUT: &str = "INPUT";
 /// The inputs and the common options.
 pub(crate) fn args() -> impl Iterator<Item = Arg> {
     let inputs = Arg::new(INPUT).num_args(0..).value_parser(value_parser!(PathBuf)).help(
-        "SVG files (also .svgz), PNG or JPEG pictures, GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none reads \
-         standard input",
+        "SVG files (also .svgz), PNG or JPEG pictures, or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none \
+         reads standard input",
     );
     std::iter::once(inputs).chain(options_without_inputs())
 }

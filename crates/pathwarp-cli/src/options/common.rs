@@ -20,7 +20,7 @@ pub(crate) enum FrameChoice {
     Rect(Rect),
 }
 
-/// How gradients follow the artwork.
+/// Treatment of gradients.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum GradientChoice {
     #[default]

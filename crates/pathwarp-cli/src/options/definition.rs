@@ -38,7 +38,7 @@ pub(crate) enum OptionValue {
     File { name: &'static str, set: fn(&mut CommonOptions, PathBuf) },
 }
 
-/// Whether the value of an option may start with a minus.
+/// Values that may start with a minus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LeadingMinus {
     No,

@@ -44,7 +44,7 @@ impl Given {
     /// Adds the value of an option named in a recipe. Of several values for an option that does not repeat, the last wins.
     pub(crate) fn push(&mut self, name: &str, value: &str) -> Result<(), String> {
         let option = OPTIONS.iter().find(|o| o.name == name).ok_or_else(|| unknown(name))?;
-        option.check(value)?;
+        option.check(value).map_err(|e| format!("{name}: {e}"))?;
         let mut all = std::mem::take(self);
         all.values.push((option, vec![value.into()]));
         *self = Self::default().overridden_by(&all);

@@ -22,7 +22,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "out",
             OptionValue::File { name: "OUT", set: |o, file| o.out = Some(file).filter(|f| f.as_os_str() != "-") },
-            "Where to write the result; - or none writes to standard output",
+            "Write the result to this file; - or none writes to standard output",
         )
     },
     CommonOption {
@@ -30,7 +30,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "out-dir",
             OptionValue::File { name: "DIR", set: |o, dir| o.out_dir = Some(dir) },
-            "Where to write the results of several inputs, under their own names",
+            "Write the results of several inputs to this folder, under their own names",
         )
     },
     CommonOption {
@@ -38,27 +38,30 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "into",
             OptionValue::File { name: "COPY.xcf", set: |o, copy| o.into = Some(copy) },
-            "For an XCF: write it to COPY with its paths warped and every other byte kept",
+            "For an XCF: write a copy of it with its paths warped and every other byte kept",
         )
     },
     stored(
         "salvage",
         OptionValue::Switch(|o| o.salvage = true),
-        "Of a damaged file of GIMP's, take the paths before the damage",
+        "Read the paths before the damage in a damaged GIMP file",
     ),
-    stored(
-        "tolerance",
-        OptionValue::Text {
-            name: "D",
-            minus: LeadingMinus::Number,
-            set: |o, text| parse::positive(text).map(|d| o.tolerance = Some(d)),
-        },
-        "Largest distance between the true curve and the output, in user units; default 1e-4 of the artwork's diagonal",
-    ),
+    CommonOption {
+        default: Some("1e-4 of the artwork's diagonal"),
+        ..stored(
+            "tolerance",
+            OptionValue::Text {
+                name: "D",
+                minus: LeadingMinus::Number,
+                set: |o, text| parse::positive(text).map(|d| o.tolerance = Some(d)),
+            },
+            "Largest distance between the exact curve and the output, in user units",
+        )
+    },
     stored(
         "certify",
         OptionValue::Switch(|o| o.certify = true),
-        "Prove the distance where the deformation allows it, rather than measure it",
+        "Prove the distance where the deformation allows it, instead of measuring it",
     ),
     CommonOption {
         default: Some("on"),
@@ -69,7 +72,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         )
     },
     CommonOption {
-        default: Some("artwork; baseline-ascent where a deformation with a --baseline gets lettering and nothing else"),
+        default: Some("artwork; baseline-ascent if a deformation with a baseline gets only lettering"),
         ..stored(
             "frame",
             OptionValue::Text {
@@ -77,9 +80,9 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 minus: LeadingMinus::Any,
                 set: |o, text| parse::frame(text).map(|f| o.frame = f),
             },
-            "The box that percentages and defaults refer to. Of lettering (text, or made by `pathwarp text`) also \
-             baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the lines), \
-             ascent-descent, or ink, the letters' own box",
+            "Box that percentages and defaults refer to. For lettering (text, or output of `pathwarp text`) also \
+             baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the \
+             lines), ascent-descent, or ink (the bounding box of the letters)",
         )
     },
     stored(
@@ -90,13 +93,16 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     stored(
         "exclude",
         OptionValue::List { name: "SEL", push: |o, text| o.exclude.push(text.to_owned()) },
-        "Leave these as they are",
+        "Leave these unchanged; takes the same values as --select",
     ),
-    stored(
-        "precision",
-        OptionValue::Whole { name: "N", range: 0..=15, set: |o, n| o.precision = u8::try_from(n).ok() },
-        "Decimals of coordinates; default: enough for a hundredth of the tolerance",
-    ),
+    CommonOption {
+        default: Some("enough for a hundredth of the tolerance"),
+        ..stored(
+            "precision",
+            OptionValue::Whole { name: "N", range: 0..=15, set: |o, n| o.precision = u8::try_from(n).ok() },
+            "Decimals of coordinates",
+        )
+    },
     CommonOption {
         default: Some("auto"),
         ..stored(
@@ -107,8 +113,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("scale", |o| o.strokes = Strokes::Scale),
                 ("outline", |o| o.strokes = Strokes::Outline),
             ]),
-            "Strokes: keep their width, scale it by the local stretch, or turn them into outlines that are warped; auto scales \
-             where that looks right and outlines elsewhere",
+            "Strokes: keep their width, scale it by the local stretch, or convert them to outlines that are \
+             warped; auto scales where that looks right and outlines elsewhere",
         )
     },
     CommonOption {
@@ -116,7 +122,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..stored(
             "text",
             OptionValue::Choice(&[("outline", |o| o.text = TextMode::Outline), ("skip", |o| o.text = TextMode::Skip)]),
-            "Text: warp its outlines, or leave it as it is",
+            "Text: warp its outlines, or leave it unchanged",
         )
     },
     CommonOption {
@@ -128,8 +134,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("exact", |o| o.gradients = GradientChoice::Exact),
                 ("keep", |o| o.gradients = GradientChoice::Keep),
             ]),
-            "Gradients: follow the artwork as an affine map can, become a picture cut to the shape where that would be seen to \
-             be wrong, or stay",
+            "Gradients: follow the best affine fit, become a picture clipped to the shape where that fit would \
+             look wrong, or stay unchanged",
         )
     },
     CommonOption {
@@ -142,8 +148,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("fit", |o| o.patterns = Patterns::Fit),
                 ("keep", |o| o.patterns = Patterns::Keep),
             ]),
-            "Patterns: warp their tiles one by one, follow the artwork as an affine map can, or stay; auto warps tiles where \
-             the difference is seen and they are not too many",
+            "Patterns: warp every tile, follow the best affine fit, or stay unchanged; auto warps the tiles where the \
+             difference is visible and they are not too many",
         )
     },
     CommonOption {
@@ -155,8 +161,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("grow", |o| o.page = PageFit::Grow),
                 ("page", |o| o.page = PageFit::Page),
             ]),
-            "The page: leave it, grow it to hold the warped artwork, or make it the artwork's box; a warning tells what leaves \
-             it",
+            "Page: leave it unchanged, grow it to hold the warped artwork, or make it the bounding box of the \
+             artwork; artwork that extends past the page causes a warning",
         )
     },
     CommonOption {
@@ -168,7 +174,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("keep", |o| o.structure = Structure::Keep),
                 ("flatten", |o| o.structure = Structure::Flatten),
             ]),
-            "The document: keep its text and structure wherever possible, insist on it, or write a flat new one",
+            "Document: keep its text and structure where possible, fail if they cannot be kept, or write a new \
+             flat document",
         )
     },
     CommonOption {
@@ -176,20 +183,23 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..stored(
             "images",
             OptionValue::Choice(&[("warp", |o| o.warp_images = true), ("keep", |o| o.warp_images = false)]),
-            "Bitmaps in a drawing: warp their pixels, or place them as an affine map can",
+            "Bitmaps in a drawing: warp their pixels, or place them by the best affine fit",
         )
     },
-    stored(
-        "image-dpi",
-        OptionValue::Text {
-            name: "N",
-            minus: LeadingMinus::No,
-            set: |o, text| parse::positive(text).map(|dpi| o.image_dpi = Some(dpi)),
-        },
-        "Resolution of the warped bitmaps in a drawing, in pixels per inch of it; default: as fine as keeps every detail",
-    ),
     CommonOption {
-        default: Some("as large as the warped picture is"),
+        default: Some("high enough to keep every detail"),
+        ..stored(
+            "image-dpi",
+            OptionValue::Text {
+                name: "N",
+                minus: LeadingMinus::No,
+                set: |o, text| parse::positive(text).map(|dpi| o.image_dpi = Some(dpi)),
+            },
+            "Resolution of the warped bitmaps in a drawing, in pixels per inch of the drawing",
+        )
+    },
+    CommonOption {
+        default: Some("the size of the warped picture"),
         ..stored(
             "image-size",
             OptionValue::Text {
@@ -197,7 +207,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 minus: LeadingMinus::No,
                 set: |o, text| parse::image_size(text).map(|size| o.image_size = Some(size)),
             },
-            "Pixels of the result when a PNG or JPEG is warped",
+            "Size in pixels of a warped PNG or JPEG",
         )
     },
     CommonOption {
@@ -205,13 +215,13 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..stored(
             "on-error",
             OptionValue::Choice(&[("stop", |o| o.on_error = OnError::Stop), ("skip", |o| o.on_error = OnError::Skip)]),
-            "A shape that cannot be warped: stop, or leave it as it is",
+            "If a shape cannot be warped: stop, or leave it unchanged",
         )
     },
     of_the_run(
         "report",
         OptionValue::File { name: "FILE", set: |o, file| o.report = Some(file) },
-        "Write what was done, shape by shape, as JSON",
+        "Write a report of every shape as JSON",
     ),
     of_the_run(
         "write-recipe",
@@ -221,7 +231,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     of_the_run(
         "embed-recipe",
         OptionValue::Switch(|o| o.embed_recipe = true),
-        "Keep the recipe and the source in the output's <metadata>; `pathwarp unwarp` gives them back",
+        "Store the recipe and the source in the output's <metadata>; `pathwarp unwarp` restores them",
     ),
     of_the_run(
         "preview",
@@ -231,18 +241,19 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     of_the_run(
         "explain",
         OptionValue::Switch(|o| o.explain = true),
-        "Say what was decided on your behalf: corners, sides, directions",
+        "Print the decisions made for you: corners, sides, directions",
     ),
     CommonOption {
         short: Some('j'),
+        default: Some("one per core"),
         ..of_the_run(
             "jobs",
             OptionValue::Whole { name: "N", range: 1..=u16::MAX, set: |o, n| o.jobs = Some(n.into()) },
-            "Threads to use; default: one per core. The output does not depend on it",
+            "Number of threads; the output does not depend on it",
         )
     },
     CommonOption {
         short: Some('q'),
-        ..of_the_run("quiet", OptionValue::Switch(|o| o.quiet = true), "No warnings, no progress")
+        ..of_the_run("quiet", OptionValue::Switch(|o| o.quiet = true), "Print no warnings and no progress")
     },
 ];

@@ -17,7 +17,7 @@ pub(crate) fn args(info: &Info) -> impl Iterator<Item = Arg> {
         .long(INVERSE)
         .action(ArgAction::SetTrue)
         .help_heading(HEADING)
-        .help("Undo it: the inverse map, where there is one (give --frame: percentages mean the source's box)");
+        .help("Apply the inverse map, if there is one (give --frame: percentages refer to the source's box)");
     info.params.iter().map(arg).chain([inverse])
 }
 
