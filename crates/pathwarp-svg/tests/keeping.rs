@@ -7,7 +7,8 @@ mod common;
 use base64::Engine as _;
 use common::{Bend, drawing, oblique, options, read, warp, warp_options};
 use pathwarp_svg::{
-    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpOptions, WarpedDocument, compressed,
+    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpedDocument,
+    compressed,
 };
 use std::sync::Arc;
 
@@ -126,7 +127,7 @@ impl ImageWarper for Unasked {
 }
 
 #[test]
-fn images_that_are_cut_to_their_place_are_told() {
+fn cropped_images_are_reported() {
     for (aspect, why) in [("xMidYMid slice", "slice"), ("none", "asked")] {
         let body = format!(
             "<image id='i' x='10' y='20' width='60' height='30' preserveAspectRatio='{aspect}' href='data:image/png;base64,\

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Bend, drawing, read, warp_options};
 use pathwarp::kurbo::{Affine, Point, Rect};
-use pathwarp_svg::{LetterPlaces, LetteringFrame, Selection};
+use pathwarp_svg::{LetterPlaces, LetteringFrame, LetteringFrameError, Selection};
 
 const ALL: [LetteringFrame; 5] = [
     LetteringFrame::BaselineAscent,
@@ -84,13 +84,13 @@ fn lines_are_told_apart_and_raised_letters_belong_to_theirs() {
 }
 
 #[test]
-fn where_no_frame_can_be_laid_the_message_says_what_to_do() {
+fn lettering_without_a_frame_gives_the_reason() {
     let fault = |body: &str| {
         let lettering = read(&drawing(body)).lettering(&Selection::default());
         assert!(!lettering.is_level());
-        lettering.frame(LetteringFrame::BaselineAscent).unwrap_err().to_string()
+        lettering.frame(LetteringFrame::BaselineAscent).unwrap_err()
     };
-    assert!(fault("<rect width='40' height='20'/>").contains("pathwarp text"));
+    assert_eq!(fault("<rect width='40' height='20'/>"), LetteringFrameError::NoLettering);
     for turned in [
         HI.replace("x='10'", "transform='rotate(5)' x='10'"),
         HI.replace("x='10'", "rotate='10' x='10'"),
@@ -100,8 +100,8 @@ fn where_no_frame_can_be_laid_the_message_says_what_to_do() {
 <textPath href='#p'>HIH</textPath></text>"
             .to_owned(),
     ] {
-        let said = fault(&turned);
-        assert!(said.contains("HI") && said.contains("level"), "{turned}: {said}");
+        let found = fault(&turned);
+        assert!(matches!(&found, LetteringFrameError::NotLevel { line } if line.contains("HI")), "{turned}: {found}");
     }
     let mixed = read(&drawing(&format!("{HI}<rect width='9' height='9'/>"))).lettering(&Selection::default());
     assert!(mixed.is_level() && !mixed.is_all());

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Hidden, read, rendered, warp_options};
 use pathwarp::kurbo::{Affine, Rect};
-use pathwarp_svg::{Document, PageFit, Selection, WarpOptions};
+use pathwarp_svg::{Document, PageFit, Selection};
 
 /// Pixels per unit of a rendering.
 const FINE: f64 = 8.0;
@@ -19,7 +19,7 @@ fn fitted(svg: &str, map: Affine, page: PageFit) -> Document {
 fn marks(d: &Document) -> Rect {
     let (from, side) = (-60.0, 260.0);
     let window = Affine::scale(FINE) * Affine::translate((-from, -from)) * d.user_to_px().inverse();
-    let picture = rendered(pathwarp_svg::usvg_tree::tree(&d), (side * FINE) as u32, window);
+    let picture = rendered(pathwarp_svg::usvg_tree::tree(d), (side * FINE) as u32, window);
     let wide = picture.width() as usize;
     let marked = picture.pixels().iter().enumerate().filter(|p| p.1.alpha() > 0).map(|p| p.0);
     let boxes = marked.map(|i| Rect::from_origin_size(((i % wide) as f64, (i / wide) as f64), (1.0, 1.0)));

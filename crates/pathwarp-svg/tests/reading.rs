@@ -6,7 +6,7 @@ use common::{Bend, drawing, options, read, warp_options};
 use pathwarp::Error;
 use pathwarp::kurbo::Rect;
 use pathwarp::outline::Seg;
-use pathwarp_svg::{Document, ReadOptions, Selection};
+use pathwarp_svg::{Document, Selection};
 
 fn fault(data: &[u8]) -> String {
     let read = Document::read(data, "f.svg", &options());

@@ -5,7 +5,7 @@ mod common;
 use common::{Bend, Hidden, drawing, oblique, read, warp, warp_options};
 use pathwarp::kurbo::Affine;
 use pathwarp::map::AffineMap;
-use pathwarp_svg::{Selection, Structure, WarpOptions};
+use pathwarp_svg::{Selection, Structure};
 
 #[test]
 fn only_the_edited_attributes_change() {

@@ -6,7 +6,7 @@ mod common;
 
 use common::{Bend, check, curved, drawing, oblique, options, read, warp, warp_options};
 use pathwarp::kurbo::Affine;
-use pathwarp_svg::{Document, ReadOptions, Selection, Structure, WarpOptions};
+use pathwarp_svg::{Document, Selection, Structure};
 
 /// Encodes a drawing as a `data:` link, percent-encoded.
 fn link(svg: &str) -> String {

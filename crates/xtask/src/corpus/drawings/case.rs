@@ -176,7 +176,7 @@ impl FileCase<'_> {
         let mut last = None;
         for (check, original) in [(AFFINE, Some(document)), (EXACT, exact.as_ref())] {
             if let Some(original) = original {
-                let pair = Pair { a: usvg_tree::tree(&original), moved, b: usvg_tree::tree(&after) };
+                let pair = Pair { a: usvg_tree::tree(original), moved, b: usvg_tree::tree(&after) };
                 let (share, remark) = pair.share(&scales);
                 if share > SHARE {
                     self.save(check, pair.pictures(&scales));
