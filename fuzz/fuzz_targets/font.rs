@@ -5,7 +5,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pathwarp_text::{Align, Direction, Font, Style, Variation, layout};
+use pathwarp_text::{Align, Direction, Font, TextStyle, Variation, layout};
 
 /// Kerning, ligatures, marks, joining and reordered letters, both directions, and a character that no font of the tests has.
 const TEXT: &str = "Office AV\nسلام שָׁלוֹם\nहिन्दी क्ष q\u{302} 日";
@@ -14,7 +14,7 @@ const TEXT: &str = "Office AV\nسلام שָׁלוֹם\nहिन्दी क�
 fn set(data: &[u8], index: u32, place: u8) {
     let Ok(font) = Font::new(data, index) else { return };
     let _ = (font.name(), font.has('A'), font.metrics(72.0));
-    let at = |a: &pathwarp_text::Axis| match place % 3 {
+    let at = |a: &pathwarp_text::FontAxis| match place % 3 {
         0 => a.min,
         1 => 0.5 * (a.min + a.max),
         _ => a.max,
@@ -22,10 +22,10 @@ fn set(data: &[u8], index: u32, place: u8) {
     // A damaged font may have invalid axis tags or ranges.
     let places: Vec<Variation> = font.axes().iter().filter_map(|a| Variation::new(&a.tag, at(a)).ok()).collect();
     let Ok(font) = font.with_variations(&places) else { return };
-    let style = Style {
+    let style = TextStyle {
         align: if place & 4 == 0 { Align::Start } else { Align::Justify },
         direction: if place & 8 == 0 { Direction::Auto } else { Direction::Rtl },
-        ..Style::default()
+        ..TextStyle::default()
     };
     let Ok(set) = layout(TEXT, &[font], &style) else { return };
     assert_eq!(set.lines.len(), 3);

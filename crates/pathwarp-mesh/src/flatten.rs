@@ -1,22 +1,23 @@
-//! Outlines to polygons whose images in space are close enough to the true curves.
+//! Flattens outlines to polygons whose images in space are within the tolerance of the true curves.
 
-use crate::{Error, IntoSpace, Shape, Space};
+use crate::error::Error;
+use crate::shape::{NamedShape, Point3, Surface};
 use pathwarp::Seg;
 use pathwarp::kurbo::Point;
 
-/// Halvings of a segment at most.
+/// Maximum number of halvings of a segment.
 const MOST_HALVINGS: u32 = 14;
-/// Points of one shape at most.
+/// Maximum number of points of a shape.
 const MOST_POINTS: usize = 1 << 20;
 
-/// One run of points in the drawing's plane.
+/// A polygon or polyline in the plane of the drawing.
 pub(crate) struct Polygon {
     pub(crate) points: Vec<Point>,
     pub(crate) closed: bool,
 }
 
-/// All runs of a shape.
-pub(crate) fn polygons(shape: &Shape<'_>, space: &IntoSpace<'_>, tolerance: f64) -> Result<Vec<Polygon>, Error> {
+/// Flattens all subpaths of a shape.
+pub(crate) fn polygons(shape: &NamedShape<'_>, space: &Surface<'_>, tolerance: f64) -> Result<Vec<Polygon>, Error> {
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: shape.name.to_owned(), at: p });
     let mut total = 0;
     let mut out = Vec::new();
@@ -37,14 +38,14 @@ pub(crate) fn polygons(shape: &Shape<'_>, space: &IntoSpace<'_>, tolerance: f64)
     Ok(out)
 }
 
-/// Appends the segment's points after its first.
+/// Appends the points of a segment after its first.
 fn flatten(
     seg: &Seg,
-    place: &impl Fn(Point) -> Result<Space, Error>,
+    place: &impl Fn(Point) -> Result<Point3, Error>,
     tolerance: f64,
     out: &mut Vec<Point>,
 ) -> Result<(), Error> {
-    // Quarters to begin with, so that a symmetric bend is not missed.
+    // Start with quarters, so that a symmetric bend is not missed.
     let mut stack: Vec<(f64, f64, u32)> =
         (0..4).rev().map(|i| (0.25 * f64::from(i), 0.25 * f64::from(i + 1), 2)).collect();
     if let Seg::Line(_) = seg {
@@ -67,10 +68,10 @@ fn flatten(
     Ok(())
 }
 
-/// The distance of `q` from the chord between two points.
-pub(crate) fn chord_distance(a: Space, b: Space, q: Space) -> f64 {
-    let minus = |p: Space, o: Space| [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
-    let dot = |p: Space, o: Space| p[0] * o[0] + p[1] * o[1] + p[2] * o[2];
+/// Distance of `q` from the chord between two points.
+pub(crate) fn chord_distance(a: Point3, b: Point3, q: Point3) -> f64 {
+    let minus = |p: Point3, o: Point3| [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
+    let dot = |p: Point3, o: Point3| p[0] * o[0] + p[1] * o[1] + p[2] * o[2];
     let (c, v) = (minus(b, a), minus(q, a));
     let n = dot(c, c);
     let t = if n > 0.0 { (dot(v, c) / n).clamp(0.0, 1.0) } else { 0.0 };

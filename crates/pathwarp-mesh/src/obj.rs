@@ -1,31 +1,32 @@
-//! Wavefront OBJ text.
+//! Writes Wavefront OBJ.
 
-use crate::Space;
-use crate::refine::Mesh;
+use crate::refine::TriangleMesh;
+use crate::shape::Point3;
 use std::fmt::Write as _;
 
-pub(crate) struct Writer {
+/// Collects the text of a file.
+pub(crate) struct ObjWriter {
     text: String,
     vertices: usize,
 }
 
-impl Writer {
+impl ObjWriter {
     pub(crate) fn new() -> Self {
         Self { text: String::from("# pathwarp: x right, y up, z towards the viewer; user units\n"), vertices: 0 }
     }
 
     fn object(&mut self, name: &str) {
-        // Names end at white space in many readers.
+        // Many readers end names at white space.
         let name: String = name.chars().map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c }).collect();
         let _ = writeln!(self.text, "o {name}");
     }
 
-    fn vertex(&mut self, p: &Space) {
-        // Zero without a sign.
+    fn vertex(&mut self, p: &Point3) {
+        // Subtracting avoids negative zeros.
         let _ = writeln!(self.text, "v {} {} {}", p[0], 0.0 - p[1], 0.0 - p[2]);
     }
 
-    pub(crate) fn mesh(&mut self, name: &str, mesh: &Mesh) {
+    pub(crate) fn mesh(&mut self, name: &str, mesh: &TriangleMesh) {
         if mesh.triangles.is_empty() {
             return;
         }
@@ -41,7 +42,7 @@ impl Writer {
         self.vertices += mesh.points.len();
     }
 
-    pub(crate) fn polylines(&mut self, name: &str, lines: &[(Vec<Space>, bool)]) {
+    pub(crate) fn polylines(&mut self, name: &str, lines: &[(Vec<Point3>, bool)]) {
         self.object(name);
         for (points, closed) in lines.iter().filter(|(p, _)| p.len() > 1) {
             for p in points {

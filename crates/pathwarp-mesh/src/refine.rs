@@ -1,49 +1,56 @@
-//! Triangles that follow a surface: edges are halved until their middles are close to it.
+//! Subdivides triangles until the midpoints of their edges are close to the surface.
 
+use crate::error::Error;
 use crate::flatten::chord_distance;
-use crate::tessellate::Flat;
-use crate::{Error, IntoSpace, Space};
+use crate::shape::{Point3, Surface};
+use crate::tessellate::FlatMesh;
 use pathwarp::kurbo::Point;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-/// Triangles of one shape at most.
+/// Maximum number of triangles of a shape.
 const MOST_TRIANGLES: usize = 2_000_000;
-/// Rounds of halving at most: each edge gets at most 2^20 parts.
+/// Maximum number of rounds of halving, which gives at most 2^20 parts per edge.
 const MOST_ROUNDS: usize = 20;
 
 /// Triangles in space.
-pub(crate) struct Mesh {
-    pub(crate) points: Vec<Space>,
+pub(crate) struct TriangleMesh {
+    pub(crate) points: Vec<Point3>,
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// An edge, whichever way round.
+/// An edge in either direction: the smaller index first.
 type Edge = (u32, u32);
 
 fn edge(a: u32, b: u32) -> Edge {
     (a.min(b), a.max(b))
 }
 
-pub(crate) fn to_surface(name: &str, flat: Flat, space: &IntoSpace<'_>, tolerance: f64) -> Result<Mesh, Error> {
+/// Maps a flat mesh to the surface and subdivides it until it follows the surface.
+pub(crate) fn to_surface(
+    name: &str,
+    flat: FlatMesh,
+    space: &Surface<'_>,
+    tolerance: f64,
+) -> Result<TriangleMesh, Error> {
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: name.to_owned(), at: p });
     let mut plane = flat.points;
-    let placed: Result<Vec<Space>, Error> = plane.iter().map(|p| place(*p)).collect();
+    let placed: Result<Vec<Point3>, Error> = plane.iter().map(|p| place(*p)).collect();
     let mut points = placed?;
     let mut triangles = flat.triangles;
-    // Edges known to be close enough.
-    let mut good: HashMap<Edge, ()> = HashMap::new();
+    // Edges that are known to be close enough.
+    let mut close: HashSet<Edge> = HashSet::new();
     for _ in 0..MOST_ROUNDS {
         let mut middles: HashMap<Edge, u32> = HashMap::new();
         for t in &triangles {
             for e in [edge(t[0], t[1]), edge(t[1], t[2]), edge(t[2], t[0])] {
-                if good.contains_key(&e) || middles.contains_key(&e) {
+                if close.contains(&e) || middles.contains_key(&e) {
                     continue;
                 }
                 let (a, b) = (e.0 as usize, e.1 as usize);
                 let m = plane[a].midpoint(plane[b]);
                 let q = place(m)?;
                 if chord_distance(points[a], points[b], q) <= tolerance {
-                    good.insert(e, ());
+                    close.insert(e);
                 } else {
                     middles.insert(e, points.len() as u32);
                     plane.push(m);
@@ -52,7 +59,7 @@ pub(crate) fn to_surface(name: &str, flat: Flat, space: &IntoSpace<'_>, toleranc
             }
         }
         if middles.is_empty() {
-            return Ok(Mesh { points, triangles });
+            return Ok(TriangleMesh { points, triangles });
         }
         let mut finer = Vec::with_capacity(triangles.len() * 2);
         for t in &triangles {
@@ -63,10 +70,10 @@ pub(crate) fn to_surface(name: &str, flat: Flat, space: &IntoSpace<'_>, toleranc
         }
         triangles = finer;
     }
-    Ok(Mesh { points, triangles })
+    Ok(TriangleMesh { points, triangles })
 }
 
-/// The parts of a triangle whose marked edges are halved, orientation kept.
+/// Splits a triangle at the midpoints of its edges, keeping the orientation.
 fn split(t: [u32; 3], middles: &HashMap<Edge, u32>, out: &mut Vec<[u32; 3]>) {
     let [a, b, c] = t;
     let m = |x, y| middles.get(&edge(x, y)).copied();

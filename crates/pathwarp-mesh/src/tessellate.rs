@@ -1,23 +1,25 @@
-//! Polygons to triangles, by lyon. It computes in single precision: the shape is brought to the unit box for it, which leaves
-//! seven digits of the shape's own size.
+//! Triangulates polygons with lyon. Since lyon computes in single precision, shapes are scaled to the unit box first, which leaves
+//! seven digits relative to their size.
 
+use crate::error::Error;
 use crate::flatten::Polygon;
-use crate::{Error, Shape};
+use crate::shape::NamedShape;
 use lyon_tessellation::geom::euclid::default::Point2D;
 use lyon_tessellation::path::Path;
 use lyon_tessellation::{BuffersBuilder, FillOptions, FillRule, FillTessellator, FillVertex, VertexBuffers};
 use pathwarp::kurbo::{Point, Rect};
 
-/// Triangles in the drawing's plane.
-pub(crate) struct Flat {
+/// Triangles in the plane of the drawing.
+pub(crate) struct FlatMesh {
     pub(crate) points: Vec<Point>,
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-pub(crate) fn fill(shape: &Shape<'_>, polygons: &[Polygon]) -> Result<Flat, Error> {
+/// Triangulates a filled shape.
+pub(crate) fn fill(shape: &NamedShape<'_>, polygons: &[Polygon]) -> Result<FlatMesh, Error> {
     let all = polygons.iter().flat_map(|p| &p.points);
     let bounds = all.fold(None, |r: Option<Rect>, p| Some(r.map_or(Rect::from_points(*p, *p), |r| r.union_pt(*p))));
-    let empty = Flat { points: Vec::new(), triangles: Vec::new() };
+    let empty = FlatMesh { points: Vec::new(), triangles: Vec::new() };
     let Some(b) = bounds else { return Ok(empty) };
     let size = b.width().max(b.height());
     if size == 0.0 {
@@ -31,7 +33,7 @@ pub(crate) fn fill(shape: &Shape<'_>, polygons: &[Polygon]) -> Result<Flat, Erro
         for p in &polygon.points[1..] {
             path.line_to(at(p));
         }
-        // Filling closes every run.
+        // Filling closes every subpath.
         path.end(true);
     }
     let mut buffers: VertexBuffers<Point, u32> = VertexBuffers::new();
@@ -48,5 +50,5 @@ pub(crate) fn fill(shape: &Shape<'_>, polygons: &[Polygon]) -> Result<Flat, Erro
         )
         .map_err(|e| Error::Tessellation { shape: shape.name.to_owned(), why: e.to_string() })?;
     let triangles = buffers.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-    Ok(Flat { points: buffers.vertices, triangles })
+    Ok(FlatMesh { points: buffers.vertices, triangles })
 }

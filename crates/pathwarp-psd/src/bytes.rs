@@ -1,22 +1,22 @@
-//! Big-endian reading with bounds: running out is an error with its place, never a panic.
+//! Bounds-checked reading of big-endian data.
 
-use crate::Error;
+use crate::error::Error;
 
-/// A window on a file.
+/// A reader over a window of a file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bytes<'a> {
+pub(crate) struct ByteReader<'a> {
     data: &'a [u8],
     at: usize,
-    /// Where the window begins in the file.
+    /// Offset of the window in the file.
     origin: usize,
 }
 
-impl<'a> Bytes<'a> {
+impl<'a> ByteReader<'a> {
     pub(crate) fn new(data: &'a [u8]) -> Self {
         Self { data, at: 0, origin: 0 }
     }
 
-    pub(crate) fn place(&self) -> usize {
+    pub(crate) fn offset(&self) -> usize {
         self.origin + self.at
     }
 
@@ -24,22 +24,22 @@ impl<'a> Bytes<'a> {
         self.data.len() - self.at
     }
 
-    pub(crate) fn wrong(&self, what: impl Into<String>) -> Error {
-        Error::Format { at: self.place(), what: what.into() }
+    pub(crate) fn error(&self, what: impl Into<String>) -> Error {
+        Error::Format { at: self.offset(), what: what.into() }
     }
 
     pub(crate) fn take(&mut self, n: usize) -> Result<&'a [u8], Error> {
         let end = self.at.checked_add(n).filter(|e| *e <= self.data.len());
-        let end = end.ok_or_else(|| self.wrong(format!("the file ends here, {n} more bytes were to come")))?;
+        let end = end.ok_or_else(|| self.error(format!("the file ends here, but {n} more bytes are needed")))?;
         let out = &self.data[self.at..end];
         self.at = end;
         Ok(out)
     }
 
     fn array<const N: usize>(&mut self) -> Result<[u8; N], Error> {
-        let place = self.place();
+        let offset = self.offset();
         let bytes = self.take(N)?;
-        bytes.try_into().map_err(|_| Error::Format { at: place, what: "is cut short".into() })
+        bytes.try_into().map_err(|_| Error::Format { at: offset, what: "is cut short".into() })
     }
 
     pub(crate) fn u8(&mut self) -> Result<u8, Error> {
@@ -66,18 +66,18 @@ impl<'a> Bytes<'a> {
         self.array()
     }
 
-    /// A length of four bytes, or of eight in large documents.
+    /// Reads a length of four bytes, or eight in large documents.
     pub(crate) fn length(&mut self, wide: bool) -> Result<usize, Error> {
         if !wide {
             return Ok(self.u32()? as usize);
         }
         let long = u64::from_be_bytes(self.array()?);
-        usize::try_from(long).map_err(|_| self.wrong("a length is larger than any file"))
+        usize::try_from(long).map_err(|_| self.error("a length is larger than any file"))
     }
 
-    /// The next `n` bytes as a window of their own.
+    /// Returns a reader over the next `n` bytes.
     pub(crate) fn window(&mut self, n: usize) -> Result<Self, Error> {
-        let origin = self.place();
+        let origin = self.offset();
         Ok(Self { data: self.take(n)?, at: 0, origin })
     }
 }

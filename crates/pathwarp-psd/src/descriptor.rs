@@ -1,15 +1,15 @@
 //! Descriptors: Photoshop's trees of named values (Adobe Photoshop File Formats Specification, *Descriptor structure*).
 
-use crate::Error;
-use crate::bytes::Bytes;
+use crate::bytes::ByteReader;
+use crate::error::Error;
 
-/// Descriptors within one another at most.
+/// Maximum nesting of descriptors.
 const MOST_DEPTH: usize = 32;
 
-/// Values by their keys, in file order.
+/// Values with their keys, in file order.
 pub(crate) type Items = Vec<(String, Value)>;
 
-/// A value; what no warp needs is read over.
+/// A value. Kinds that no warp needs are skipped.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {
     Number(f64),
@@ -20,7 +20,7 @@ pub(crate) enum Value {
     Other,
 }
 
-/// The value under `key`.
+/// Returns the value of a key.
 pub(crate) fn get<'a>(items: &'a Items, key: &str) -> Option<&'a Value> {
     items.iter().find(|(k, _)| k == key).map(|v| &v.1)
 }
@@ -43,14 +43,14 @@ impl Value {
     }
 }
 
-/// A descriptor: its name and class, then its items.
-pub(crate) fn read(b: &mut Bytes<'_>) -> Result<Items, Error> {
+/// Reads a descriptor: its name and class, then its items.
+pub(crate) fn read(b: &mut ByteReader<'_>) -> Result<Items, Error> {
     descriptor(b, 0)
 }
 
-fn descriptor(b: &mut Bytes<'_>, depth: usize) -> Result<Items, Error> {
+fn descriptor(b: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
     if depth > MOST_DEPTH {
-        return Err(b.wrong(format!("descriptors lie more than {MOST_DEPTH} deep in one another")));
+        return Err(b.error(format!("descriptors are nested more than {MOST_DEPTH} deep")));
     }
     text(b)?;
     id(b)?;
@@ -64,34 +64,34 @@ fn descriptor(b: &mut Bytes<'_>, depth: usize) -> Result<Items, Error> {
     Ok(out)
 }
 
-/// A number of things, each of which takes bytes of its own.
-fn counted(b: &mut Bytes<'_>) -> Result<usize, Error> {
+/// Reads a number of elements that take at least a byte each.
+fn counted(b: &mut ByteReader<'_>) -> Result<usize, Error> {
     let n = b.u32()? as usize;
-    if n > b.left() { Err(b.wrong(format!("{n} things cannot fit into what is left"))) } else { Ok(n) }
+    if n > b.left() { Err(b.error(format!("{n} elements do not fit into the bytes left"))) } else { Ok(n) }
 }
 
-/// UTF-16 after its length; the closing zero, if any, goes.
-pub(crate) fn text(b: &mut Bytes<'_>) -> Result<String, Error> {
+/// Reads UTF-16 with its length, without a final zero.
+pub(crate) fn text(b: &mut ByteReader<'_>) -> Result<String, Error> {
     let n = counted(b)?;
     let bytes = b.take(2 * n)?;
     let units: Vec<u16> = bytes.chunks_exact(2).map(|c| u16::from_be_bytes([c[0], c[1]])).collect();
     Ok(String::from_utf16_lossy(&units).trim_end_matches('\0').to_owned())
 }
 
-/// A key: four bytes after a zero, else as long as it says.
-fn id(b: &mut Bytes<'_>) -> Result<String, Error> {
+/// Reads a key: four bytes if its length word is zero, else that many bytes.
+fn id(b: &mut ByteReader<'_>) -> Result<String, Error> {
     let n = counted(b)?;
     let bytes = b.take(if n == 0 { 4 } else { n })?;
     Ok(String::from_utf8_lossy(bytes).trim_end().to_owned())
 }
 
-fn doubles(b: &mut Bytes<'_>) -> Result<Vec<f64>, Error> {
+fn doubles(b: &mut ByteReader<'_>) -> Result<Vec<f64>, Error> {
     let n = counted(b)?;
     let mut inside = b.window(8 * n)?;
     (0..n).map(|_| inside.f64()).collect()
 }
 
-fn value(b: &mut Bytes<'_>, kind: [u8; 4], depth: usize) -> Result<Value, Error> {
+fn value(b: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Value, Error> {
     Ok(match &kind {
         b"doub" => Value::Number(b.f64()?),
         b"UntF" => {
@@ -117,7 +117,7 @@ fn value(b: &mut Bytes<'_>, kind: [u8; 4], depth: usize) -> Result<Value, Error>
         b"ObAr" => Value::Items(array(b, depth + 1)?),
         b"VlLs" => {
             if depth > MOST_DEPTH {
-                return Err(b.wrong(format!("lists lie more than {MOST_DEPTH} deep in one another")));
+                return Err(b.error(format!("lists are nested more than {MOST_DEPTH} deep")));
             }
             let n = counted(b)?;
             let mut numbers = Vec::new();
@@ -141,17 +141,17 @@ fn value(b: &mut Bytes<'_>, kind: [u8; 4], depth: usize) -> Result<Value, Error>
             reference(b)?;
             Value::Other
         }
-        other => return Err(b.wrong(format!("`{}` is no known kind of value", String::from_utf8_lossy(other)))),
+        other => return Err(b.error(format!("unknown type of value `{}`", String::from_utf8_lossy(other)))),
     })
 }
 
-/// Many objects of one class, each key with all its values.
-fn array(b: &mut Bytes<'_>, depth: usize) -> Result<Items, Error> {
+/// Reads objects of one class: each key with all its values.
+fn array(b: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
     b.u32()?;
     descriptor(b, depth)
 }
 
-fn reference(b: &mut Bytes<'_>) -> Result<(), Error> {
+fn reference(b: &mut ByteReader<'_>) -> Result<(), Error> {
     for _ in 0..counted(b)? {
         let kind = b.tag()?;
         text_and_class(b)?;
@@ -164,13 +164,13 @@ fn reference(b: &mut Bytes<'_>) -> Result<(), Error> {
             }
             b"rele" | b"Idnt" | b"indx" => drop(b.u32()?),
             b"name" => drop(text(b)?),
-            other => return Err(b.wrong(format!("`{}` is no known kind of reference", String::from_utf8_lossy(other)))),
+            other => return Err(b.error(format!("unknown type of reference `{}`", String::from_utf8_lossy(other)))),
         }
     }
     Ok(())
 }
 
-fn text_and_class(b: &mut Bytes<'_>) -> Result<(), Error> {
+fn text_and_class(b: &mut ByteReader<'_>) -> Result<(), Error> {
     text(b)?;
     id(b)?;
     Ok(())

@@ -1,9 +1,9 @@
-//! Files made here from the format's description, read back.
+//! Reads files that are built from the description of the format.
 
 mod build;
 
 use build::{block, file, layer, object, placed, points, slices, smart, tagged, text, warp, written};
-use pathwarp_psd::{Error, Warps, warps};
+use pathwarp_psd::{Error, LayerWarps, warps};
 
 fn sixteen() -> (Vec<f64>, Vec<f64>) {
     let x = (0..16).map(|k| 20.0 + 40.0 * f64::from(k % 4)).collect();
@@ -64,12 +64,12 @@ fn all(wide: bool) -> Vec<u8> {
     )
 }
 
-fn found(w: &Warps) -> Vec<(&str, &str, f64)> {
+fn found(w: &LayerWarps) -> Vec<(&str, &str, f64)> {
     w.warps.iter().map(|w| (w.layer.as_str(), w.style.as_str(), w.value)).collect()
 }
 
 #[test]
-fn every_kind_of_layer_is_read_in_both_sizes_of_file() {
+fn every_kind_of_layer_is_read_from_psd_and_psb() {
     for wide in [false, true] {
         let w = warps(&all(wide)).unwrap();
         assert_eq!(
@@ -93,11 +93,11 @@ fn every_kind_of_layer_is_read_in_both_sizes_of_file() {
 }
 
 #[test]
-fn broken_files_are_told_and_end_soon() {
+fn damaged_files_are_errors() {
     assert_eq!(warps(b"GIF89a"), Err(Error::NotPsd));
     assert_eq!(warps(b""), Err(Error::NotPsd));
     let whole = all(false);
-    // Cut anywhere, or with any byte made large: an answer or an error, never a panic.
+    // Truncated anywhere, or with any byte set to 255: a result or an error, never a panic.
     for n in 0..whole.len() {
         let _ = warps(&whole[..n]);
         let mut bad = whole.clone();
@@ -105,11 +105,11 @@ fn broken_files_are_told_and_end_soon() {
         let _ = warps(&bad);
     }
     assert!(matches!(warps(&whole[..200]), Err(Error::Format { at, .. }) if at <= 200));
-    // Descriptors in one another without end.
+    // Deeply nested descriptors.
     let mut deep = warp("warpArc", 1.0, vec![]);
     for _ in 0..100 {
         deep = object("a", &[("warp", tagged("Objc", deep))]);
     }
     let deep = file(false, &[layer(false, "deep", &[block("SoLd", smart(&[("warp", tagged("Objc", deep))]))])]);
-    assert!(warps(&deep).unwrap_err().to_string().contains("deep in one another"));
+    assert!(warps(&deep).unwrap_err().to_string().contains("nested more than 32 deep"));
 }

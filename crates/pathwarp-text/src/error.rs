@@ -1,80 +1,86 @@
-//! What can go wrong between the bytes of a font and its lettering.
+//! Errors of fonts and lettering.
 
+use crate::metrics::FontAxis;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
-/// Why there is no lettering.
+/// The reason why text cannot be set.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The bytes are no font that can be read.
-    #[error("this is no font that can be read: {0}")]
+    /// The bytes are not a readable font.
+    #[error("not a readable font: {0}")]
     NotAFont(String),
-    /// A collection has fewer fonts.
-    #[error("there is no font {index} in this file; it holds {count}, counted from 0")]
+    /// The file has fewer fonts.
+    #[error("the file has no font {index}; it has {count}, counted from 0")]
     NoSuchFace {
-        /// The one asked for.
+        /// Requested index.
         index: u32,
-        /// How many there are.
+        /// Number of fonts.
         count: u32,
     },
     /// A variation names an axis that the font lacks.
-    #[error("the font has no axis `{tag}`; {axes}")]
+    #[error("the font has no axis `{tag}`; {}", list(axes))]
     NoSuchAxis {
-        /// The axis asked for.
+        /// Requested axis.
         tag: String,
-        /// The axes there are, with their ranges, in words.
-        axes: String,
+        /// Axes of the font; empty if it is not a variable font.
+        axes: Vec<FontAxis>,
     },
-    /// A variation is outside its axis.
-    #[error("{value} is outside the axis `{tag}`, which goes from {min} to {max}")]
+    /// The value of a variation is out of range.
+    #[error("{value} is out of range for the axis `{tag}`, which goes from {min} to {max}")]
     OutsideAxis {
-        /// The axis.
+        /// Axis.
         tag: String,
-        /// The value asked for.
+        /// Requested value.
         value: f64,
-        /// Its smallest value.
+        /// Smallest value.
         min: f64,
-        /// Its largest value.
+        /// Largest value.
         max: f64,
     },
-    /// A setting has a form or a value it cannot have.
+    /// A setting is malformed or has an invalid value.
     #[error("`{value}` {problem}")]
     Setting {
-        /// As it was written.
+        /// The setting as written.
         value: String,
-        /// What is wrong with it and what would be legal.
+        /// Description of the problem, continuing the sentence that starts with the setting.
         problem: String,
     },
-    /// A style has a number it cannot have.
-    #[error("{what} of {value} is not possible; {legal}")]
+    /// A property of the style is out of range.
+    #[error("{property} {value} is out of range: it must be {range}")]
     Style {
-        /// What it is.
-        what: &'static str,
+        /// Name of the property.
+        property: &'static str,
         /// Its value.
         value: f64,
-        /// What would be legal.
-        legal: &'static str,
+        /// Valid range in words.
+        range: &'static str,
     },
-    /// No font was given.
-    #[error("no font is given")]
+    /// The list of fonts is empty.
+    #[error("no font given")]
     NoFont,
-    /// There is nothing to set.
-    #[error("there is no text to set: it is empty, or takes no room")]
+    /// The text is empty or has no extent.
+    #[error("no text to set: it is empty or has no extent")]
     Empty,
-    /// More text, or larger outlines, than is set.
-    #[error("{0}; this is more than is set")]
-    TooMuch(String),
+    /// The text or its outlines exceed a limit.
+    #[error("the text has more than {most} {quantity}, which is the limit")]
+    TooLarge {
+        /// Name of the limited quantity.
+        quantity: &'static str,
+        /// The limit.
+        most: usize,
+    },
     /// A glyph is damaged.
     #[error("glyph {glyph} of the font is damaged: {problem}")]
     Glyph {
-        /// Its number.
+        /// Number of the glyph.
         glyph: u32,
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
     },
-    /// The font made its reader or the shaper fail.
-    #[error("the font is damaged: nothing can be set with it")]
+    /// The font makes its reader or the shaper panic.
+    #[error("the font is damaged and cannot be used")]
     Failed,
 }
 
@@ -84,7 +90,17 @@ impl Error {
     }
 }
 
-/// Runs what reads a font. The readers are made for hostile fonts, but they are not ours: should one panic, that is an error.
+/// Lists axes with their ranges.
+fn list(axes: &[FontAxis]) -> String {
+    if axes.is_empty() {
+        return "it is not a variable font".into();
+    }
+    let all: Vec<String> = axes.iter().map(|a| format!("{} ({} to {})", a.tag, a.min, a.max)).collect();
+    format!("its axes are {}", all.join(", "))
+}
+
+/// Runs code that reads a font and turns a panic into an error. The external readers are made for hostile fonts, but this crate
+/// cannot guarantee that they never panic.
 pub(crate) fn guarded<T>(read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
     catch_unwind(AssertUnwindSafe(read)).unwrap_or(Err(Error::Failed))
 }

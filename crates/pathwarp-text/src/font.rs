@@ -1,8 +1,9 @@
-//! A font: its bytes understood, its axes set, its metrics.
+//! Reads fonts and sets their axes.
 
-use crate::error::guarded;
+use crate::error::{Error, guarded};
 use crate::glyph::Outlines;
-use crate::{Error, Variation};
+use crate::metrics::{FontAxis, Metrics};
+use crate::setting::Variation;
 use harfrust::{ShaperData, ShaperInstance};
 use kurbo::Shape as _;
 use skrifa::charmap::Charmap;
@@ -12,49 +13,7 @@ use skrifa::string::StringId;
 use skrifa::{FontRef, GlyphId, MetadataProvider as _};
 use std::fmt;
 
-/// Heights of a font: all positive, counted from the baseline.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Metrics {
-    /// From the baseline up to the top of the line's box.
-    pub ascent: f64,
-    /// From the baseline down to its bottom.
-    pub descent: f64,
-    /// The room that the font wants between one line's box and the next.
-    pub line_gap: f64,
-    /// The height of capitals: from the OS/2 table, or else of the H; without either, the ascent.
-    pub cap_height: f64,
-    /// The height of small letters: from the OS/2 table, or else of the x; without either, the height of capitals.
-    pub x_height: f64,
-}
-
-impl Metrics {
-    pub(crate) fn scaled(self, by: f64) -> Self {
-        Self {
-            ascent: self.ascent * by,
-            descent: self.descent * by,
-            line_gap: self.line_gap * by,
-            cap_height: self.cap_height * by,
-            x_height: self.x_height * by,
-        }
-    }
-}
-
-/// An axis of a variable font.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
-    /// Four characters, such as `wght`.
-    pub tag: String,
-    /// What the font calls it.
-    pub name: String,
-    /// Its smallest value.
-    pub min: f64,
-    /// Its value unless set.
-    pub default: f64,
-    /// Its largest value.
-    pub max: f64,
-}
-
-/// A font read from bytes, at a place on its axes.
+/// A font with a position on its variation axes.
 pub struct Font<'a> {
     pub(crate) font: FontRef<'a>,
     pub(crate) data: ShaperData,
@@ -72,10 +31,10 @@ impl fmt::Debug for Font<'_> {
 }
 
 impl<'a> Font<'a> {
-    /// Reads a font (TrueType or OpenType, `glyf`, CFF or CFF2 outlines); `index` counts the fonts of a collection, from 0.
+    /// Reads a TrueType or OpenType font with `glyf`, CFF or CFF2 outlines. `index` counts the fonts of a collection from 0.
     ///
     /// # Errors
-    /// The bytes are no such font, or the file has fewer.
+    /// The bytes are not such a font, or the file has fewer fonts.
     pub fn new(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
         guarded(|| Self::read(bytes, index))
     }
@@ -88,11 +47,11 @@ impl<'a> Font<'a> {
             Ok(FileRef::Collection(all)) => return Err(Error::NoSuchFace { index, count: all.len() }),
             Err(e) => return Err(not_a_font(bytes, &e)),
         };
-        let missing = |table: &str, e: &ReadError| Error::NotAFont(format!("its {table} table: {e}"));
+        let missing = |table: &str, e: &ReadError| Error::NotAFont(format!("table {table}: {e}"));
         let units_per_em = f64::from(font.head().map_err(|e| missing("head", &e))?.units_per_em());
-        // 16 to 16384 is what the specification allows (OpenType 1.9.1, head); real fonts stray, but not to nothing.
+        // The specification allows 16 to 16384 (OpenType 1.9.1, head). Real fonts use other values, but not zero.
         if units_per_em < 1.0 {
-            return Err(Error::NotAFont("its em has no units".into()));
+            return Err(Error::NotAFont("the em has zero units".into()));
         }
         font.maxp().map_err(|e| missing("maxp", &e))?;
         font.hmtx().map_err(|e| missing("hmtx", &e))?;
@@ -110,10 +69,10 @@ impl<'a> Font<'a> {
         Ok(out)
     }
 
-    /// The same font at another place on its axes; axes that are not named are where the font has them.
+    /// Returns the font at another position on its axes. Axes that are not given take their defaults.
     ///
     /// # Errors
-    /// The font has no such axis (the message names those it has), or the value is outside of it.
+    /// The font has no such axis, or the value is out of range.
     pub fn with_variations(self, variations: &[Variation]) -> Result<Self, Error> {
         guarded(|| self.at(variations))
     }
@@ -123,7 +82,7 @@ impl<'a> Font<'a> {
         for v in variations {
             let tag = v.tag.to_string();
             let Some(axis) = axes.iter().find(|a| a.tag == tag) else {
-                return Err(Error::NoSuchAxis { tag, axes: in_words(&axes) });
+                return Err(Error::NoSuchAxis { tag, axes });
             };
             if !(axis.min..=axis.max).contains(&v.value) {
                 return Err(Error::OutsideAxis { tag, value: v.value, min: axis.min, max: axis.max });
@@ -135,10 +94,10 @@ impl<'a> Font<'a> {
         Ok(self)
     }
 
-    /// The axes of a variable font; none for others.
+    /// Returns the axes of a variable font; empty for other fonts.
     #[must_use]
-    pub fn axes(&self) -> Vec<Axis> {
-        let axis = |a: skrifa::Axis| Axis {
+    pub fn axes(&self) -> Vec<FontAxis> {
+        let axis = |a: skrifa::Axis| FontAxis {
             tag: a.tag().to_string(),
             name: self.string(a.name_id()).unwrap_or_default(),
             min: f64::from(a.min_value()),
@@ -148,7 +107,7 @@ impl<'a> Font<'a> {
         self.font.axes().iter().map(axis).collect()
     }
 
-    /// What the font calls itself; empty if it does not.
+    /// Returns the full name of the font; empty if it has none.
     #[must_use]
     pub fn name(&self) -> String {
         self.string(StringId::FULL_NAME).or_else(|| self.string(StringId::FAMILY_NAME)).unwrap_or_default()
@@ -158,19 +117,19 @@ impl<'a> Font<'a> {
         self.font.localized_strings(id).english_or_first().map(|s| s.to_string())
     }
 
-    /// Units of the font's own coordinates to the em.
+    /// Returns the number of font units per em.
     #[must_use]
     pub fn units_per_em(&self) -> f64 {
         self.units_per_em
     }
 
-    /// The font's heights at a size of one em = `size`.
+    /// Returns the heights of the font at an em of `size`.
     #[must_use]
     pub fn metrics(&self, size: f64) -> Metrics {
         self.metrics.scaled(size / self.units_per_em)
     }
 
-    /// Whether the font has a glyph for a character.
+    /// Returns `true` if the font has a glyph for a character.
     #[must_use]
     pub fn has(&self, c: char) -> bool {
         self.charmap.map(c).is_some_and(|g| g.to_u32() != 0)
@@ -180,7 +139,7 @@ impl<'a> Font<'a> {
         LocationRef::new(self.instance.coords())
     }
 
-    /// The heights, in the font's units.
+    /// Computes the heights in font units.
     fn measure(&mut self) {
         let m = self.font.metrics(Size::unscaled(), self.location());
         let positive = |v: Option<f32>| v.map(f64::from).filter(|v| *v > 0.0 && v.is_finite());
@@ -196,6 +155,7 @@ impl<'a> Font<'a> {
         };
     }
 
+    /// Height of the outline of a character.
     fn top_of(&self, c: char) -> Option<f64> {
         let glyph: GlyphId = self.charmap.map(c)?;
         let outline = self.outlines.draw(glyph, self.location()).ok()?;
@@ -204,18 +164,13 @@ impl<'a> Font<'a> {
     }
 }
 
-fn in_words(axes: &[Axis]) -> String {
-    if axes.is_empty() {
-        return "it is not a variable font".into();
-    }
-    let all: Vec<String> = axes.iter().map(|a| format!("{} ({} to {})", a.tag, a.min, a.max)).collect();
-    format!("it has {}", all.join(", "))
-}
-
+/// Describes why bytes are not a font.
 fn not_a_font(bytes: &[u8], e: &ReadError) -> Error {
     Error::NotAFont(match bytes.get(..4) {
-        Some(b"wOFF" | b"wOF2") => "it is packed for the web (WOFF); unpack it to .ttf or .otf first".into(),
-        Some(b"%!PS" | [0x80, 0x01, ..]) => "it is a Type 1 font; .ttf, .otf, .ttc and .otc files are read".into(),
-        _ => format!("{e}; .ttf, .otf, .ttc and .otc files are read"),
+        Some(b"wOFF" | b"wOF2") => "it is a web font (WOFF); convert it to .ttf or .otf first".into(),
+        Some(b"%!PS" | [0x80, 0x01, ..]) => {
+            "it is a Type 1 font; only .ttf, .otf, .ttc and .otc files can be read".into()
+        }
+        _ => format!("{e}; only .ttf, .otf, .ttc and .otc files can be read"),
     })
 }

@@ -1,6 +1,6 @@
-//! Outlines of glyphs: the font's own curves, y pointing down, in its units.
+//! Outlines of glyphs: the exact curves of the font in font units, with y pointing down.
 
-use crate::Error;
+use crate::error::Error;
 use kurbo::{BezPath, Point};
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::pen::PathStyle;
@@ -11,8 +11,8 @@ use skrifa::raw::tables::loca::Loca;
 use skrifa::{FontRef, GlyphId};
 use std::collections::HashMap;
 
-/// A glyph made of more parts than this, counting parts of parts, is none. The reader bounds points and depth, but parts
-/// without points would keep it busy for ever.
+/// Maximum number of components of a glyph, including nested ones. The reader limits points and depth, but components without
+/// points could occupy it for ever.
 const MOST_PARTS: usize = 10_000;
 
 /// The outlines of a font.
@@ -25,7 +25,7 @@ impl<'a> Outlines<'a> {
     pub(crate) fn new(font: &FontRef<'a>) -> Result<Self, Error> {
         let kinds = [OutlineGlyphFormat::Glyf, OutlineGlyphFormat::Cff2, OutlineGlyphFormat::Cff];
         let Some(glyphs) = kinds.into_iter().find_map(|k| OutlineGlyphCollection::with_format(font, k)) else {
-            return Err(Error::NotAFont("it has no outlines (bitmap fonts are not set)".into()));
+            return Err(Error::NotAFont("it has no outlines (bitmap fonts are not supported)".into()));
         };
         let composites = match glyphs.format() {
             Some(OutlineGlyphFormat::Glyf) => font.glyf().ok().zip(font.loca(None).ok()),
@@ -34,15 +34,15 @@ impl<'a> Outlines<'a> {
         Ok(Self { glyphs, composites })
     }
 
-    /// The outline of a glyph; empty for spaces.
+    /// Returns the outline of a glyph; empty for spaces.
     pub(crate) fn draw(&self, glyph: GlyphId, at: LocationRef<'_>) -> Result<BezPath, Error> {
         let damaged = |problem: String| Error::Glyph { glyph: glyph.to_u32(), problem };
         if self.parts(glyph, 0, &mut HashMap::new())? > MOST_PARTS {
             return Err(damaged(format!("it has more than {MOST_PARTS} parts")));
         }
-        let mut pen = Pen::default();
+        let mut pen = GlyphPen::default();
         if let Some(outline) = self.glyphs.get(glyph) {
-            // HarfBuzz's way keeps fractions of units in variable fonts, where FreeType's rounds.
+            // The HarfBuzz style keeps fractions of units in variable fonts; the FreeType style rounds.
             let settings = DrawSettings::unhinted(Size::unscaled(), at).with_path_style(PathStyle::HarfBuzz);
             outline.draw(settings, &mut pen).map_err(|e| damaged(e.to_string()))?;
         }
@@ -52,16 +52,16 @@ impl<'a> Outlines<'a> {
         Ok(pen.path)
     }
 
-    /// How many parts drawing a glyph takes, all the way down; each glyph is counted once and its sum remembered. A part
-    /// without points but with data for them, which the reader does not survive, is an error.
+    /// Counts the components of a glyph, including nested ones, with memoized sums. A component without points but with data for
+    /// them is an error, since the reader would panic.
     fn parts(&self, glyph: GlyphId, depth: usize, known: &mut HashMap<u32, usize>) -> Result<usize, Error> {
-        /// One more than the reader follows.
+        /// One level more than the reader follows.
         const DEEP: usize = 33;
         if let Some(n) = known.get(&glyph.to_u32()) {
             return Ok(*n);
         }
         let Some((glyf, loca)) = &self.composites else { return Ok(1) };
-        // Met again inside itself: the reader refuses that.
+        // A glyph inside itself counts as too many; the reader rejects it.
         known.insert(glyph.to_u32(), MOST_PARTS + 1);
         let n = match loca.get_glyf(glyph, glyf) {
             Ok(Some(Glyph::Composite(c))) if depth < DEEP => {
@@ -84,8 +84,9 @@ impl<'a> Outlines<'a> {
     }
 }
 
+/// Collects a path.
 #[derive(Default)]
-struct Pen {
+struct GlyphPen {
     path: BezPath,
 }
 
@@ -93,7 +94,7 @@ fn point(x: f32, y: f32) -> Point {
     Point::new(f64::from(x), -f64::from(y))
 }
 
-impl OutlinePen for Pen {
+impl OutlinePen for GlyphPen {
     fn move_to(&mut self, x: f32, y: f32) {
         self.path.move_to(point(x, y));
     }
@@ -119,11 +120,11 @@ impl OutlinePen for Pen {
 mod tests {
     use super::*;
 
-    /// The last contour ends at point 65535, so that the number of points wraps to none; or there are no contours, but data.
+    /// The last contour ends at point 65535, so the number of points wraps to zero; or there is data but no contour.
     #[test]
-    fn glyphs_without_points_are_refused() {
+    fn glyphs_without_points_are_errors() {
         const HEBREW: &[u8] = include_bytes!("../tests/fonts/hebrew.ttf");
-        /// The box and the number of contours come first (OpenType 1.9.1, glyf).
+        /// Size of the number of contours and the bounding box, which come first (OpenType 1.9.1, glyf).
         const HEADER: usize = 10;
         let (font, shin) = (FontRef::new(HEBREW).unwrap(), GlyphId::new(10));
         let draw =

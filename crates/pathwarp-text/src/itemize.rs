@@ -1,4 +1,4 @@
-//! A line cut into runs of one direction and one script, in visual order.
+//! Splits a line into runs of one direction and one script, in visual order.
 
 use harfrust::Script as ShapeScript;
 use skrifa::Tag;
@@ -9,13 +9,13 @@ use unicode_script::{Script, UnicodeScript as _};
 /// Text of one direction and one script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Run {
-    /// Bytes of the line.
+    /// Bytes in the line.
     pub(crate) range: Range<usize>,
     pub(crate) rtl: bool,
     pub(crate) script: Script,
 }
 
-/// The runs of a line from left to right (Unicode annex 9, rules L1 and L2).
+/// Returns the runs of a line from left to right (Unicode annex 9, rules L1 and L2).
 pub(crate) fn runs(line: &str, rtl: bool, script: Option<Script>) -> Vec<Run> {
     let base = if rtl { Level::rtl() } else { Level::ltr() };
     let scripts = scripts(line, script);
@@ -39,7 +39,7 @@ pub(crate) fn runs(line: &str, rtl: bool, script: Option<Script>) -> Vec<Run> {
     out
 }
 
-/// Stretches of one script: what is common to many belongs to what stands before it, or else after it (Unicode annex 24, 5.1).
+/// Splits a line by script. Characters common to many scripts join the preceding text, or else the following (Unicode annex 24, 5.1).
 fn scripts(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Script)> {
     if let Some(script) = all {
         return vec![(0..line.len(), script)];
@@ -54,7 +54,7 @@ fn scripts(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Script)> {
                 debug_assert_eq!(range.end, i);
                 range.end = end;
             }
-            // What was common so far takes the first script there is.
+            // Leading common characters take the first script found.
             Some((range, s)) if *s == Script::Common => {
                 range.end = end;
                 *s = script.unwrap_or(*s);
@@ -65,12 +65,12 @@ fn scripts(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Script)> {
     out
 }
 
-/// The script as the shaper names it.
+/// Converts a script for the shaper.
 pub(crate) fn for_shaper(script: Script) -> Option<ShapeScript> {
     ShapeScript::from_iso15924_tag(Tag::from_u32(script.as_iso15924_tag()))
 }
 
-/// Whether letters are joined: adding room between them would tear them apart (CSS Text 3, "Cursive Scripts").
+/// Returns `true` for scripts with joined letters, which letter spacing would tear apart (CSS Text 3, "Cursive Scripts").
 pub(crate) fn joins(script: Script) -> bool {
     matches!(
         script,
@@ -84,7 +84,7 @@ pub(crate) fn joins(script: Script) -> bool {
     )
 }
 
-/// Whether the first character that has a direction goes to the left (Unicode annex 9, rules P2 and P3).
+/// Returns `true` if the first character with a direction is right-to-left (Unicode annex 9, rules P2 and P3).
 pub(crate) fn starts_rtl(text: &str) -> bool {
     matches!(unicode_bidi::get_base_direction_full(text), unicode_bidi::Direction::Rtl)
 }
@@ -93,16 +93,16 @@ pub(crate) fn starts_rtl(text: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn cut(line: &str, rtl: bool) -> Vec<(String, bool, Script)> {
+    fn split(line: &str, rtl: bool) -> Vec<(String, bool, Script)> {
         runs(line, rtl, None).into_iter().map(|r| (line[r.range].to_owned(), r.rtl, r.script)).collect()
     }
 
     #[test]
-    fn directions_and_scripts_are_told_apart() {
+    fn lines_are_split_by_direction_and_script() {
         let (latin, hebrew, greek) = (Script::Latin, Script::Hebrew, Script::Greek);
-        assert_eq!(cut("(abc 12)", false), [("(abc 12)".into(), false, latin)]);
+        assert_eq!(split("(abc 12)", false), [("(abc 12)".into(), false, latin)]);
         assert_eq!(
-            cut("ab גד 12 ef", false),
+            split("ab גד 12 ef", false),
             [
                 ("ab ".into(), false, latin),
                 ("12".into(), false, hebrew),
@@ -111,8 +111,8 @@ mod tests {
                 ("ef".into(), false, latin)
             ]
         );
-        assert_eq!(cut("גד ef", true), [("ef".into(), false, latin), ("גד ".into(), true, hebrew)]);
-        assert_eq!(cut("aβ", false), [("a".into(), false, latin), ("β".into(), false, greek)]);
+        assert_eq!(split("גד ef", true), [("ef".into(), false, latin), ("גד ".into(), true, hebrew)]);
+        assert_eq!(split("aβ", false), [("a".into(), false, latin), ("β".into(), false, greek)]);
         assert!(starts_rtl("12 ג a") && !starts_rtl("a ג") && !starts_rtl("1 2"));
     }
 }

@@ -1,38 +1,45 @@
-//! Lettering: text shaped and laid out to outlines.
+//! Sets text as outlines.
 //!
-//! A [`Font`] is read from bytes, [`layout`] sets text in it: scripts and directions are told apart (Unicode annexes 9 and 24),
-//! every run is shaped as its font asks (kerning, ligatures, marks, joined and reordered scripts), what a font lacks is taken
-//! from the next one, and lines are spaced and aligned. The result is a [`Lettering`]: lines of clusters, each with its place on
-//! the baseline, its advance width and its outline, the font's own curves with y pointing down.
+//! [`Font`] reads a font from bytes. [`layout`] sets text: it separates directions and scripts (Unicode annexes 9 and 24), shapes
+//! every run (kerning, ligatures, marks, joined and reordered scripts), takes missing characters from the next font, and spaces
+//! and aligns lines. The result is a [`Lettering`]: lines of clusters, each with its place on the baseline, its advance width and
+//! its outline, the exact curves of the font with y pointing down.
 //!
-//! There is no file access and no global state: same bytes and text, same outlines.
+//! The crate accesses no files and has no global state: the same bytes and text always give the same outlines.
 //!
 //! ```
-//! use pathwarp_text::{Font, Style, layout};
+//! use pathwarp_text::{Font, TextStyle, layout};
 //!
 //! # let bytes = include_bytes!("../../pathwarp-svg/fonts/NotoSans-Regular.subset.ttf");
 //! let font = Font::new(bytes, 0)?;
-//! let lettering = layout("Welcome", &[font], &Style { size: 100.0, ..Style::default() })?;
+//! let lettering = layout("Welcome", &[font], &TextStyle { size: 100.0, ..TextStyle::default() })?;
 //!
 //! let line = &lettering.lines[0];
 //! assert_eq!(line.clusters.len(), 7);
 //! assert_eq!(line.clusters[0].text, "W");
-//! // The advance width of Noto Sans's W is 0.93 em; the e after it is drawn 0.02 em closer by kerning.
+//! // The advance width of W in Noto Sans is 0.93 em; kerning moves the following e 0.02 em closer.
 //! assert!((line.clusters[1].origin.x - 91.0).abs() < 1e-9);
 //! assert!(!line.clusters[0].outline.is_empty());
 //! # Ok::<(), pathwarp_text::Error>(())
 //! ```
 
+mod align;
 mod error;
 mod font;
 mod glyph;
 mod itemize;
 mod layout;
+mod lettering;
+mod metrics;
+mod painter;
 mod setting;
 mod shape;
+mod style;
 
 pub use error::Error;
-pub use font::{Axis, Font, Metrics};
-pub use layout::{Align, Cluster, Direction, Lettering, Ligatures, Line, Style, layout};
+pub use font::Font;
+pub use layout::layout;
+pub use lettering::{Cluster, Glyph, Lettering, TextLine};
+pub use metrics::{FontAxis, Metrics};
 pub use setting::{Feature, Variation, features, variations};
-pub use shape::Glyph;
+pub use style::{Align, Direction, Ligatures, TextStyle};

@@ -1,64 +1,52 @@
-//! Runs to glyphs: shaped with the first font; what that lacks, with the next.
+//! Shapes runs with the first font, and the parts that it lacks with the next.
 
+use crate::error::Error;
+use crate::font::Font;
 use crate::itemize::{Run, for_shaper};
-use crate::{Error, Feature, Font};
+use crate::lettering::Glyph;
+use crate::setting::Feature;
 use harfrust::{BufferFlags, Direction, Language, ShapeOptions, UnicodeBuffer};
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-/// More glyphs than this in one text are not set: no honest font comes near it within the text allowed.
+/// Maximum number of glyphs in a text, far above what a sound font gives for the longest text.
 pub(crate) const MOST_GLYPHS: usize = 1 << 19;
 
-/// A glyph at its place in its cluster, in user units, y down.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Glyph {
-    /// Which of the fonts it is from.
-    pub font: usize,
-    /// Its number in that font; 0 is the one for what is missing.
-    pub id: u32,
-    /// From the cluster's origin to the glyph's.
-    pub dx: f64,
-    /// From the cluster's origin to the glyph's.
-    pub dy: f64,
-    /// How far the pen goes on after it.
-    pub advance: f64,
-}
-
-/// Glyphs that belong together, in user units.
+/// A cluster of glyphs, in user units.
 #[derive(Debug, Clone)]
 pub(crate) struct ShapedCluster {
-    /// Bytes of the line.
+    /// Bytes in the line.
     pub(crate) range: Range<usize>,
     pub(crate) advance: f64,
     pub(crate) glyphs: Vec<Glyph>,
-    /// No font has all of its characters.
+    /// `true` if no font has all of its characters.
     pub(crate) missing: bool,
 }
 
-/// What stays the same for all runs of a text.
-pub(crate) struct Shaper<'s, 'f> {
+/// Shapes all runs of a text.
+pub(crate) struct RunShaper<'s, 'f> {
     pub(crate) fonts: &'s [Font<'f>],
     pub(crate) size: f64,
     pub(crate) features: Vec<harfrust::Feature>,
     pub(crate) language: Option<Language>,
-    /// How many glyphs there may still be.
+    /// Number of further glyphs allowed.
     pub(crate) budget: usize,
 }
 
-impl Shaper<'_, '_> {
-    /// The clusters of a run from left to right.
+impl RunShaper<'_, '_> {
+    /// Shapes a run; the clusters go from left to right.
     pub(crate) fn run(&mut self, line: &str, run: &Run) -> Result<Vec<ShapedCluster>, Error> {
         self.shape(line, run, run.range.clone(), 0)
     }
 
-    /// The clusters of a part of a run, with the fonts from `first` on.
+    /// Shapes a part of a run with the fonts from `first` on.
     fn shape(&mut self, line: &str, run: &Run, range: Range<usize>, first: usize) -> Result<Vec<ShapedCluster>, Error> {
         let own = self.with_font(line, run, &range, first)?;
         if first + 1 >= self.fonts.len() || !own.iter().any(|c| c.missing) {
             return Ok(own);
         }
         let mut out = Vec::with_capacity(own.len());
-        // A damaged font may name a place more than once; what is missing is looked for once.
+        // A damaged font may repeat a place; shape each missing part once.
         let mut sought = BTreeSet::new();
         for group in own.chunk_by(|a, b| a.missing == b.missing) {
             if group.iter().all(|c| !c.missing) {
@@ -74,6 +62,7 @@ impl Shaper<'_, '_> {
         Ok(out)
     }
 
+    /// Shapes a part of a run with one font.
     fn with_font(
         &mut self,
         line: &str,
@@ -84,10 +73,10 @@ impl Shaper<'_, '_> {
         let Some(font) = self.fonts.get(index) else { return Err(Error::NoFont) };
         let mut buffer = UnicodeBuffer::new();
         for (i, c) in line[range.clone()].char_indices() {
-            // Lines are far shorter than u32 can count.
+            // Lines are far shorter than `u32::MAX`.
             buffer.add(c, (range.start + i) as u32);
         }
-        // Letters join across the ends of a run.
+        // Letters may join across the ends of a run.
         buffer.set_pre_context(&line[..range.start]);
         buffer.set_post_context(&line[range.end..]);
         let mut flags = BufferFlags::empty();
@@ -103,14 +92,12 @@ impl Shaper<'_, '_> {
         }
         let shaper = font.data.shaper(&font.font).instance(Some(&font.instance)).build();
         let shaped = shaper.shape(buffer, ShapeOptions::new().features(&self.features));
-        self.budget = self
-            .budget
-            .checked_sub(shaped.len())
-            .ok_or_else(|| Error::TooMuch(format!("the font makes more than {MOST_GLYPHS} glyphs of this text")))?;
+        self.budget =
+            self.budget.checked_sub(shaped.len()).ok_or(Error::TooLarge { quantity: "glyphs", most: MOST_GLYPHS })?;
 
         let scale = self.size / font.units_per_em();
         let infos = shaped.glyph_infos();
-        // A cluster reaches to where the next one, in the order of the text, starts.
+        // A cluster ends at the start of the next one in text order.
         let starts: BTreeSet<usize> = infos.iter().map(|g| g.cluster as usize).collect();
         let ends: HashMap<usize, usize> =
             starts.iter().copied().zip(starts.iter().skip(1).copied().chain([range.end])).collect();
@@ -139,7 +126,7 @@ impl Shaper<'_, '_> {
     }
 }
 
-/// Features as the shaper takes them, for the whole text.
+/// Converts features for the shaper, applying them to the whole text.
 pub(crate) fn for_whole_text(features: &[Feature]) -> Vec<harfrust::Feature> {
     features.iter().map(|f| harfrust::Feature::new(f.tag, f.value, ..)).collect()
 }

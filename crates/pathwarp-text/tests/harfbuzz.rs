@@ -1,22 +1,22 @@
-//! Glyphs, places, outlines and heights are those of HarfBuzz (`fonts/make.py` asked it).
+//! Compares glyphs, positions, outlines and heights with HarfBuzz (recorded by `fonts/make.py`).
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
 use common::{bundled, file};
 use kurbo::{Affine, BezPath, PathEl, Point};
-use pathwarp_text::{Direction, Feature, Font, Style, Variation, layout};
+use pathwarp_text::{Direction, Feature, Font, TextStyle, Variation, layout};
 use serde_json::Value;
 
-/// A thousandth of a font unit: single precision, of which HarfBuzz's outlines are, at coordinates up to some thousands.
+/// A thousandth of a font unit: the single precision of HarfBuzz's outlines at coordinates up to some thousands.
 const TOLERANCE: f64 = 1e-3;
 
-struct Case {
+struct HarfBuzzCase {
     name: String,
     all: Value,
 }
 
-impl Case {
+impl HarfBuzzCase {
     fn text(&self, key: &str) -> String {
         self.all[key].as_str().unwrap().to_owned()
     }
@@ -42,24 +42,24 @@ impl Case {
         Font::new(bytes, 0).unwrap().with_variations(&places).unwrap()
     }
 
-    /// The text, set so that a font unit is a user unit.
-    fn style(&self) -> Style {
-        Style {
+    /// A style in which a font unit is a user unit.
+    fn style(&self) -> TextStyle {
+        TextStyle {
             size: self.upem(),
             direction: if self.text("direction") == "rtl" { Direction::Rtl } else { Direction::Ltr },
             language: Some(self.text("language")),
             features: self.pairs("features").iter().map(|(tag, v)| Feature::new(tag, *v as u32).unwrap()).collect(),
-            ..Style::default()
+            ..TextStyle::default()
         }
     }
 
-    /// HarfBuzz's glyphs: number, byte of the text, advance, offsets.
+    /// The glyphs of HarfBuzz: number, byte in the text, advance, offsets.
     fn glyphs(&self) -> Vec<[f64; 5]> {
         let numbers = |g: &Value| -> Vec<f64> { g.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect() };
         self.all["glyphs"].as_array().unwrap().iter().map(|g| numbers(g).try_into().unwrap()).collect()
     }
 
-    /// HarfBuzz's outline of a glyph, y up, in font units.
+    /// The outline of a glyph from HarfBuzz, y up, in font units.
     fn outline(&self, glyph: u32) -> BezPath {
         let mut path = BezPath::new();
         for op in self.all["outlines"][glyph.to_string()].as_array().unwrap() {
@@ -78,14 +78,14 @@ impl Case {
     }
 }
 
-fn cases() -> Vec<Case> {
+fn cases() -> Vec<HarfBuzzCase> {
     let all: Value = serde_json::from_slice(&file("harfbuzz.json")).unwrap();
     let cases = all["cases"].as_array().unwrap();
     assert!(cases.len() >= 19);
-    cases.iter().map(|c| Case { name: c["name"].as_str().unwrap().to_owned(), all: c.clone() }).collect()
+    cases.iter().map(|c| HarfBuzzCase { name: c["name"].as_str().unwrap().to_owned(), all: c.clone() }).collect()
 }
 
-/// Without the line back to the start that closing a subpath draws anyway.
+/// Removes a line back to the start, which closing the subpath draws anyway.
 fn without_closing_lines(path: &BezPath) -> Vec<PathEl> {
     let mut out: Vec<PathEl> = Vec::new();
     let mut start = Point::ZERO;
@@ -126,7 +126,7 @@ fn same(ours: &BezPath, theirs: &BezPath, what: &str) {
 }
 
 #[test]
-fn glyphs_and_places_are_harfbuzzs() {
+fn glyphs_and_positions_match_harfbuzz() {
     for case in cases() {
         let bytes = case.font_bytes();
         let set = layout(&case.text("text"), &[case.font(&bytes)], &case.style()).unwrap();
@@ -146,9 +146,9 @@ fn glyphs_and_places_are_harfbuzzs() {
     }
 }
 
-/// A cluster's characters are those from its own first one to the next cluster's.
+/// The characters of a cluster extend from its first one to the first one of the next cluster.
 #[test]
-fn clusters_are_harfbuzzs() {
+fn clusters_match_harfbuzz() {
     for case in cases() {
         let (bytes, text) = (case.font_bytes(), case.text("text"));
         let set = layout(&text, &[case.font(&bytes)], &case.style()).unwrap();
@@ -164,7 +164,7 @@ fn clusters_are_harfbuzzs() {
 }
 
 #[test]
-fn outlines_are_harfbuzzs() {
+fn outlines_match_harfbuzz() {
     for case in cases() {
         let bytes = case.font_bytes();
         let set = layout(&case.text("text"), &[case.font(&bytes)], &case.style()).unwrap();
@@ -183,7 +183,7 @@ fn outlines_are_harfbuzzs() {
 }
 
 #[test]
-fn heights_are_harfbuzzs() {
+fn heights_match_harfbuzz() {
     for case in cases() {
         let bytes = case.font_bytes();
         let ours = case.font(&bytes).metrics(case.upem());
@@ -195,7 +195,7 @@ fn heights_are_harfbuzzs() {
             ("cap_height", ours.cap_height),
             ("x_height", ours.x_height),
         ] {
-            // HarfBuzz rounds what a variable font varies to whole units.
+            // HarfBuzz rounds the variations of a variable font to whole units.
             assert!((ours - theirs(key)).abs() <= 0.5 + TOLERANCE, "{}: {key} {ours}", case.name);
         }
     }

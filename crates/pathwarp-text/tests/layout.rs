@@ -1,4 +1,4 @@
-//! Lines, spacing, alignment, fonts that follow, and what is refused. Figures are Noto Sans's own, at a thousand units to the em.
+//! Lines, spacing, alignment, fallback fonts and errors. Figures are those of Noto Sans, at 1000 units per em.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -6,11 +6,11 @@ mod common;
 use common::{bundled, file};
 use kurbo::{BezPath, Point, Shape};
 use pathwarp_text::{
-    Align, Direction, Error, Font, Lettering, Ligatures, Line, Style, Variation, features, layout, variations,
+    Align, Direction, Error, Font, Lettering, Ligatures, TextLine, TextStyle, Variation, features, layout, variations,
 };
 use proptest::prelude::*;
 
-/// Advances of Noto Sans Regular (its hmtx table); `ab c` has no kerning.
+/// Advances of Noto Sans Regular (table hmtx); `ab c` has no kerning.
 const A: f64 = 561.0;
 const B: f64 = 615.0;
 const C: f64 = 480.0;
@@ -18,16 +18,16 @@ const SPACE: f64 = 260.0;
 const ASCENT: f64 = 1069.0;
 const DESCENT: f64 = 293.0;
 
-fn em() -> Style {
-    Style { size: 1000.0, ..Style::default() }
+fn em() -> TextStyle {
+    TextStyle { size: 1000.0, ..TextStyle::default() }
 }
 
 #[track_caller]
-fn set(text: &str, style: &Style) -> Lettering {
+fn set(text: &str, style: &TextStyle) -> Lettering {
     layout(text, &[Font::new(&bundled(), 0).unwrap()], style).unwrap()
 }
 
-fn width(line: &Line) -> f64 {
+fn width(line: &TextLine) -> f64 {
     line.end.x - line.start.x
 }
 
@@ -39,34 +39,34 @@ fn near(a: f64, b: f64) {
 #[test]
 fn letters_and_words_are_spaced() {
     near(width(&set("ab c", &em()).lines[0]), A + B + SPACE + C);
-    let spaced = set("ab c", &Style { letter_spacing: 50.0, word_spacing: -30.0, ..em() });
+    let spaced = set("ab c", &TextStyle { letter_spacing: 50.0, word_spacing: -30.0, ..em() });
     let line = &spaced.lines[0];
     let at: Vec<f64> = line.clusters.iter().map(|c| c.origin.x).collect();
-    // Room follows every letter but the last, and every space has its own besides.
+    // Letter spacing follows every letter but the last; spaces also have word spacing.
     let expected = [0.0, A + 50.0, A + B + 100.0, A + B + SPACE + 120.0];
     at.iter().zip(expected).for_each(|(a, b)| near(*a, b));
     near(width(line), A + B + SPACE + C + 3.0 * 50.0 - 30.0);
-    // What is spaced is not what was shaped.
+    // Spacing does not change the shaped advances.
     near(line.clusters[0].advance, A);
     near(line.clusters[2].advance, SPACE);
 }
 
 #[test]
-fn spaced_letters_are_no_ligature() {
-    let glyphs = |style: &Style| set("ffi", style).lines[0].clusters.iter().map(|c| c.glyphs.len()).sum::<usize>();
-    let spaced = Style { letter_spacing: 1.0, ..em() };
+fn spaced_letters_form_no_ligature() {
+    let glyphs = |style: &TextStyle| set("ffi", style).lines[0].clusters.iter().map(|c| c.glyphs.len()).sum::<usize>();
+    let spaced = TextStyle { letter_spacing: 1.0, ..em() };
     assert_eq!(glyphs(&em()), 1);
     assert_eq!(glyphs(&spaced), 3);
-    assert_eq!(glyphs(&Style { ligatures: Ligatures::On, ..spaced }), 1);
-    assert_eq!(glyphs(&Style { ligatures: Ligatures::Off, ..em() }), 3);
-    // The user's own features have the last word.
-    let on = Style { ligatures: Ligatures::Off, features: features("liga").unwrap(), ..em() };
+    assert_eq!(glyphs(&TextStyle { ligatures: Ligatures::On, ..spaced }), 1);
+    assert_eq!(glyphs(&TextStyle { ligatures: Ligatures::Off, ..em() }), 3);
+    // Explicit features have precedence.
+    let on = TextStyle { ligatures: Ligatures::Off, features: features("liga").unwrap(), ..em() };
     assert_eq!(glyphs(&on), 1);
 }
 
 #[test]
 fn kerning_can_be_switched_off() {
-    let (on, off) = (set("AV", &em()), set("AV", &Style { kerning: false, ..em() }));
+    let (on, off) = (set("AV", &em()), set("AV", &TextStyle { kerning: false, ..em() }));
     near(width(&off.lines[0]), 639.0 + 600.0);
     near(width(&on.lines[0]), 639.0 + 600.0 - 40.0);
 }
@@ -75,20 +75,20 @@ fn kerning_can_be_switched_off() {
 fn joined_letters_stay_joined() {
     let bytes = file("arabic.ttf");
     let wide = |spacing| {
-        let style = Style { letter_spacing: spacing, ..em() };
+        let style = TextStyle { letter_spacing: spacing, ..em() };
         width(&layout("سلام عليكم", &[Font::new(&bytes, 0).unwrap()], &style).unwrap().lines[0])
     };
     near(wide(100.0), wide(0.0));
 }
 
 #[test]
-fn lines_stand_under_each_other() {
+fn lines_are_stacked() {
     let text = set("ab\r\nc\n\na", &em());
     assert_eq!(text.text, "ab\nc\n\na");
     let baselines: Vec<f64> = text.lines.iter().map(|l| l.start.y).collect();
     let expected: Vec<f64> = (0..4).map(|i| ASCENT + f64::from(i) * (ASCENT + DESCENT)).collect();
     assert_eq!(baselines, expected);
-    let tight = set("ab\nc", &Style { line_height: Some(900.0), ..em() });
+    let tight = set("ab\nc", &TextStyle { line_height: Some(900.0), ..em() });
     near(tight.lines[1].start.y, ASCENT + 900.0);
     near(tight.line_box().y0, 0.0);
     near(tight.line_box().y1, ASCENT + 900.0 + DESCENT);
@@ -105,23 +105,23 @@ fn lines_are_aligned() {
         (Align::Center, [(long - first) / 2.0, (long - short) / 2.0, 0.0]),
         (Align::Right, [long - first, long - short, 0.0]),
     ] {
-        let lines = set(text, &Style { align, ..em() }).lines;
+        let lines = set(text, &TextStyle { align, ..em() }).lines;
         for (line, start) in lines.iter().zip(starts) {
             near(line.start.x, start);
             near(line.clusters[0].origin.x, start);
-            // Ink goes where the line goes: a's outline begins 46 units in.
+            // The outlines move with the line; that of a starts 46 units in.
             near(line.clusters[0].outline.bounding_box().x0, start + 46.0);
         }
     }
-    let lines = set(text, &Style { align: Align::Justify, ..em() }).lines;
+    let lines = set(text, &TextStyle { align: Align::Justify, ..em() }).lines;
     near(lines[0].end.x, long);
     near(lines[0].clusters[3].origin.x, long - C);
-    // Without a space there is nothing to widen.
+    // A line without spaces cannot be widened.
     near(lines[1].end.x, short);
 }
 
 #[test]
-fn text_to_the_left_starts_at_the_right() {
+fn right_to_left_text_starts_at_the_right() {
     let (hebrew, latin) = (file("hebrew.ttf"), bundled());
     let fonts = || [Font::new(&hebrew, 0).unwrap(), Font::new(&latin, 0).unwrap()];
     let text = layout("שלום\nברכה שלום", &fonts(), &em()).unwrap();
@@ -131,9 +131,9 @@ fn text_to_the_left_starts_at_the_right() {
     // The first letter is the rightmost.
     assert_eq!(text.lines[0].clusters.last().unwrap().text, "ש");
 
-    // Latin words within keep their own direction; the base direction says which comes first.
+    // Latin words keep their direction; the base direction determines the order of words.
     let order = |direction| {
-        let style = Style { direction, ..em() };
+        let style = TextStyle { direction, ..em() };
         let line = layout("ab שלום", &fonts(), &style).unwrap().lines.remove(0);
         line.clusters.iter().map(|c| c.text.as_str()).collect::<String>()
     };
@@ -142,7 +142,7 @@ fn text_to_the_left_starts_at_the_right() {
 }
 
 #[test]
-fn what_a_font_lacks_is_taken_from_the_next() {
+fn missing_characters_come_from_the_next_font() {
     let (hebrew, latin) = (file("hebrew.ttf"), bundled());
     let fonts = [Font::new(&hebrew, 0).unwrap(), Font::new(&latin, 0).unwrap()];
     let text = layout("aש日a", &fonts, &em()).unwrap();
@@ -150,12 +150,12 @@ fn what_a_font_lacks_is_taken_from_the_next() {
         text.lines[0].clusters.iter().map(|c| (c.glyphs[0].font, c.glyphs[0].id == 0)).collect();
     assert_eq!(from, [(1, false), (0, false), (1, true), (1, false)]);
     assert_eq!(text.missing, ['日']);
-    // The first font's heights are the text's.
+    // The heights are those of the first font.
     near(text.metrics.ascent, 1068.0);
 }
 
 #[test]
-fn axes_are_named_and_bounded() {
+fn axes_have_names_and_ranges() {
     let bytes = file("variable.ttf");
     let font = || Font::new(&bytes, 0).unwrap();
     let axes: Vec<(String, f64, f64)> = font().axes().into_iter().map(|a| (a.tag, a.min, a.max)).collect();
@@ -169,44 +169,44 @@ fn axes_are_named_and_bounded() {
 }
 
 #[test]
-fn what_cannot_be_set_is_refused() {
+fn impossible_requests_are_errors() {
     let bytes = bundled();
-    let refused = |text: &str, style: &Style| layout(text, &[Font::new(&bytes, 0).unwrap()], style).unwrap_err();
+    let refused = |text: &str, style: &TextStyle| layout(text, &[Font::new(&bytes, 0).unwrap()], style).unwrap_err();
     for text in ["", "\n", "\n\n"] {
         assert_eq!(refused(text, &em()), Error::Empty, "{text:?}");
     }
-    assert!(matches!(refused(&"a".repeat(20_001), &em()), Error::TooMuch(_)));
+    assert!(matches!(refused(&"a".repeat(20_001), &em()), Error::TooLarge { quantity: "characters", .. }));
     assert_eq!(layout("a", &[], &em()).unwrap_err(), Error::NoFont);
     for size in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e7] {
-        assert!(refused("a", &Style { size, ..em() }).to_string().contains("size"));
+        assert!(refused("a", &TextStyle { size, ..em() }).to_string().contains("size"));
     }
     for wrong in [
-        Style { letter_spacing: f64::NAN, ..em() },
-        Style { word_spacing: 1e9, ..em() },
-        Style { line_height: Some(-1.0), ..em() },
+        TextStyle { letter_spacing: f64::NAN, ..em() },
+        TextStyle { word_spacing: 1e9, ..em() },
+        TextStyle { line_height: Some(-1.0), ..em() },
     ] {
         assert!(matches!(refused("a", &wrong), Error::Style { .. }), "{wrong:?}");
     }
-    assert!(refused("a", &Style { script: Some("Wxyz".into()), ..em() }).to_string().contains("`Wxyz`"));
-    assert!(refused("a", &Style { language: Some("s r".into()), ..em() }).to_string().contains("`s r`"));
-    // Spaces alone take room; there is a line, but no ink.
+    assert!(refused("a", &TextStyle { script: Some("Wxyz".into()), ..em() }).to_string().contains("`Wxyz`"));
+    assert!(refused("a", &TextStyle { language: Some("s r".into()), ..em() }).to_string().contains("`s r`"));
+    // Spaces alone have extent but no outlines.
     assert!(layout("  ", &[Font::new(&bytes, 0).unwrap()], &em()).unwrap().ink().is_none());
 }
 
 #[test]
-fn files_that_are_no_fonts_are_told() {
-    for (bytes, said) in
-        [(&b""[..], ".ttf"), (b"<svg/>", ".ttf"), (b"wOF2\0\0\0\0", "unpack"), (b"%!PS-AdobeFont-1.0", "Type 1")]
+fn other_files_are_errors() {
+    for (bytes, message) in
+        [(&b""[..], ".ttf"), (b"<svg/>", ".ttf"), (b"wOF2\0\0\0\0", "convert"), (b"%!PS-AdobeFont-1.0", "Type 1")]
     {
         let e = Font::new(bytes, 0).unwrap_err().to_string();
-        assert!(e.contains(said), "{e}");
+        assert!(e.contains(message), "{e}");
     }
     assert_eq!(Font::new(&bundled(), 2).unwrap_err(), Error::NoSuchFace { index: 2, count: 1 });
 }
 
-/// Fonts cut off or altered anywhere give an error or some lettering, whose outlines are finite.
+/// Fonts that are truncated or altered give an error, or lettering with finite outlines.
 #[test]
-fn damaged_fonts_do_no_harm() {
+fn damaged_fonts_are_harmless() {
     /// xorshift64 (Marsaglia, Journal of Statistical Software 8(14), 2003).
     fn random(state: &mut u64) -> usize {
         *state ^= *state << 13;
@@ -250,14 +250,13 @@ fn damaged_fonts_do_no_harm() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
-    /// Whatever the text: every character is in exactly one cluster, clusters follow each other without gaps, and the same text
-    /// is the same lettering.
+    /// For any text, every character is in exactly one cluster, clusters are adjacent, and the result is reproducible.
     #[test]
     fn clusters_partition_every_line(text in "[a-zA-Z \\n\\täß\u{301}\u{308}éשלاب日\u{200d}\u{1f600}()0-9क्षि]{1,40}") {
         let bytes = bundled();
         let font = || [Font::new(&bytes, 0).unwrap()];
         let Ok(set) = layout(&text, &font(), &em()) else {
-            // A joiner alone joins nothing, and shows as little as an empty line.
+            // A joiner alone has no extent, like an empty line.
             let silent = |c: char| c == '\n' || c == '\u{200d}';
             prop_assert!(text.chars().all(silent));
             return Ok(());

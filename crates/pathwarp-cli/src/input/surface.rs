@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use pathwarp::kurbo::Point;
 use pathwarp::map::Map;
 use pathwarp::recipe::BuiltRecipe;
-use pathwarp_mesh::Shape;
+use pathwarp_mesh::NamedShape;
 use pathwarp_svg::{Document, WarpOptions};
 use std::path::PathBuf;
 
@@ -28,8 +28,8 @@ pub(super) fn files(
         let shapes: Vec<_> = doc.selected(&options.selection).collect();
         for file in &space.files {
             let wanted = shapes.iter().filter(|s| s.filled || !file.filled);
-            let wanted: Vec<Shape<'_>> =
-                wanted.map(|s| Shape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
+            let wanted: Vec<NamedShape<'_>> =
+                wanted.map(|s| NamedShape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
             let made = if file.filled {
                 pathwarp_mesh::filled(&wanted, &place, options.refit.tolerance)
             } else {

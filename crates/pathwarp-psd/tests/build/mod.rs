@@ -1,11 +1,11 @@
-//! Photoshop files made from the format's description.
+//! Builds Photoshop files from the description of the format.
 
 pub(crate) fn text(t: &str) -> Vec<u8> {
     let units: Vec<u16> = t.encode_utf16().chain([0]).collect();
     [(units.len() as u32).to_be_bytes().to_vec(), units.iter().flat_map(|u| u.to_be_bytes()).collect()].concat()
 }
 
-/// Four letters after a zero, others after their length.
+/// A key: four letters after a zero, others after their length.
 pub(crate) fn id(t: &str) -> Vec<u8> {
     let n = if t.len() == 4 { 0 } else { t.len() as u32 };
     [n.to_be_bytes().to_vec(), t.as_bytes().to_vec()].concat()
@@ -64,7 +64,7 @@ pub(crate) fn warp(style: &str, value: f64, more: Vec<(&'static str, Vec<u8>)>) 
         ("warpRotate", name("Ornt", "Vrtc")),
         ("bounds", tagged("Objc", bounds)),
         ("uOrder", tagged("long", 4_i32.to_be_bytes().to_vec())),
-        // Kinds that no warp needs are read over.
+        // Types that no warp needs are skipped.
         ("note", tagged("TEXT", text("ok"))),
         (
             "list",

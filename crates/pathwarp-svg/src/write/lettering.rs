@@ -28,10 +28,10 @@ const DIGITS: i32 = 10;
 ///
 /// ```
 /// use pathwarp_svg::{LetteringOptions, bundled_font, write_lettering};
-/// use pathwarp_text::{Font, Style, layout};
+/// use pathwarp_text::{Font, TextStyle, layout};
 ///
 /// let font = Font::new(bundled_font(), 0)?;
-/// let text = layout("Hi", &[font], &Style { size: 100.0, ..Style::default() })?;
+/// let text = layout("Hi", &[font], &TextStyle { size: 100.0, ..TextStyle::default() })?;
 /// let svg = write_lettering(&text, &LetteringOptions { fill: Some("#c00".into()), margin: 10.0 })?;
 /// assert!(svg.contains(r#"viewBox="-10 -10 119.9 156.2""#));
 /// assert!(svg.contains(r#"data-cap-height="71.4""#) && svg.contains(r#"<path aria-label="H" data-glyph="0 106.9 74.1" d="M"#));

@@ -1,14 +1,14 @@
-//! The tests' fonts.
+//! Fonts for the tests.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use std::path::Path;
 
-/// A file beside `fonts/README.md`.
+/// Reads a file from `fonts`.
 pub fn file(name: &str) -> Vec<u8> {
     read(&format!("tests/fonts/{name}"))
 }
 
-/// Noto Sans, as the program bundles it: 1000 units to the em; A is 639 wide, i 258, the space 260.
+/// Reads the bundled Noto Sans: 1000 units per em; A is 639 wide, i 258, the space 260.
 pub fn bundled() -> Vec<u8> {
     read("../pathwarp-svg/fonts/NotoSans-Regular.subset.ttf")
 }

@@ -4,17 +4,17 @@ use crate::failure::Failure;
 use clap::ArgMatches;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Axis, Frame, Settings};
-use pathwarp_text::{Align, Direction, Ligatures, Style, features};
+use pathwarp_text::{Align, Direction, Ligatures, TextStyle, features};
 
-pub(super) fn style(m: &ArgMatches) -> Result<Style, Failure> {
+pub(super) fn style(m: &ArgMatches) -> Result<TextStyle, Failure> {
     let word = |name: &str| m.get_one::<String>(name).map(String::as_str);
-    let base = Style::default();
+    let base = TextStyle::default();
     let size = length(m, "size", base.size)?.unwrap_or(base.size);
     let mut all = Vec::new();
     for list in m.get_many::<String>("features").into_iter().flatten() {
         all.extend(features(list).map_err(|e| Failure::usage(format!("--features: {e}")))?);
     }
-    Ok(Style {
+    Ok(TextStyle {
         size,
         letter_spacing: length(m, "letter-spacing", size)?.unwrap_or(0.0),
         word_spacing: length(m, "word-spacing", size)?.unwrap_or(0.0),

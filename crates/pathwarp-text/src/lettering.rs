@@ -1,0 +1,87 @@
+//! Text as outlines: lines of clusters of glyphs.
+
+use crate::metrics::Metrics;
+use kurbo::{BezPath, Point, Rect};
+
+/// A glyph and its place in its cluster, in user units, y down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Glyph {
+    /// Index of its font.
+    pub font: usize,
+    /// Its number in the font; 0 is the glyph for missing characters.
+    pub id: u32,
+    /// Horizontal offset from the origin of the cluster.
+    pub dx: f64,
+    /// Vertical offset from the origin of the cluster.
+    pub dy: f64,
+    /// Its advance width.
+    pub advance: f64,
+}
+
+/// Characters that form a unit (a letter with its marks, a ligature), with their outline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cluster {
+    /// Its characters.
+    pub text: String,
+    /// Left end on the baseline.
+    pub origin: Point,
+    /// Advance width as shaped: includes kerning, but not letter and word spacing.
+    pub advance: f64,
+    /// Outline in place; empty for a space. Fill it by the nonzero rule, since glyphs may overlap.
+    pub outline: BezPath,
+    /// The glyphs of the outline.
+    pub glyphs: Vec<Glyph>,
+}
+
+/// A line of text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextLine {
+    /// Its characters.
+    pub text: String,
+    /// Left end of the baseline: the start of the first advance.
+    pub start: Point,
+    /// Right end of the baseline: the end of the last advance.
+    pub end: Point,
+    /// The clusters from left to right.
+    pub clusters: Vec<Cluster>,
+}
+
+/// Text as outlines. The longest line starts at x = 0, and the ascent of the first line is at y = 0; y points down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lettering {
+    /// The text with newlines between lines; control characters are replaced by spaces.
+    pub text: String,
+    /// Heights of the first font.
+    pub metrics: Metrics,
+    /// `true` if the base direction is right to left.
+    pub rtl: bool,
+    /// The lines from top to bottom.
+    pub lines: Vec<TextLine>,
+    /// Characters that no font has, without duplicates.
+    pub missing: Vec<char>,
+}
+
+impl Lettering {
+    /// Returns the bounding box of all outlines; `None` if all are empty.
+    #[must_use]
+    pub fn ink(&self) -> Option<Rect> {
+        let outlines = self.lines.iter().flat_map(|l| &l.clusters).map(|c| &c.outline).filter(|o| !o.is_empty());
+        outlines.map(kurbo::Shape::bounding_box).reduce(|a, b| a.union(b))
+    }
+
+    /// Returns the bounding box of all lines: the baselines horizontally, from the first ascent to the last descent vertically.
+    #[must_use]
+    pub fn line_box(&self) -> Rect {
+        let of = |l: &TextLine| {
+            Rect::new(l.start.x, l.start.y - self.metrics.ascent, l.end.x, l.end.y + self.metrics.descent).abs()
+        };
+        self.lines.iter().map(of).reduce(|a, b| a.union(b)).unwrap_or_default()
+    }
+
+    /// Returns the bounding box of outlines and lines.
+    #[must_use]
+    pub fn page(&self) -> Rect {
+        let lines = self.line_box();
+        self.ink().map_or(lines, |ink| ink.union(lines))
+    }
+}

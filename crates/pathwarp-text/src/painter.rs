@@ -1,0 +1,71 @@
+//! Draws the glyphs of lines.
+
+use crate::error::Error;
+use crate::font::Font;
+use crate::lettering::{Cluster, Glyph, TextLine};
+use crate::shape::ShapedCluster;
+use kurbo::{Affine, BezPath, Point};
+use skrifa::GlyphId;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+/// Maximum number of path elements in a text: about 200 MB.
+pub(crate) const MOST_ELEMENTS: usize = 1 << 22;
+
+/// A cluster and the space after it.
+pub(crate) struct SpacedCluster {
+    pub(crate) cluster: ShapedCluster,
+    pub(crate) gap: f64,
+}
+
+/// Draws glyphs, keeping outlines that were drawn before.
+pub(crate) struct GlyphPainter<'s, 'f> {
+    pub(crate) fonts: &'s [Font<'f>],
+    pub(crate) size: f64,
+    /// Outlines by font and glyph.
+    pub(crate) drawn: HashMap<(usize, u32), BezPath>,
+    /// Number of further path elements allowed.
+    pub(crate) budget: usize,
+}
+
+impl GlyphPainter<'_, '_> {
+    /// Draws a line with its baseline at `y`.
+    pub(crate) fn line(&mut self, text: &str, spaced: Vec<SpacedCluster>, y: f64) -> Result<TextLine, Error> {
+        let mut x = 0.0;
+        let mut clusters = Vec::with_capacity(spaced.len());
+        for SpacedCluster { cluster, gap } in spaced {
+            let origin = Point::new(x, y);
+            let mut outline = BezPath::new();
+            for g in &cluster.glyphs {
+                self.draw(g, origin, &mut outline)?;
+            }
+            x += cluster.advance + gap;
+            clusters.push(Cluster {
+                text: text[cluster.range].to_owned(),
+                origin,
+                advance: cluster.advance,
+                outline,
+                glyphs: cluster.glyphs,
+            });
+        }
+        Ok(TextLine { text: text.to_owned(), start: Point::new(0.0, y), end: Point::new(x, y), clusters })
+    }
+
+    /// Appends a glyph to an outline.
+    fn draw(&mut self, g: &Glyph, origin: Point, out: &mut BezPath) -> Result<(), Error> {
+        let Some(font) = self.fonts.get(g.font) else { return Ok(()) };
+        let key = (g.font, g.id);
+        let glyph = match self.drawn.entry(key) {
+            Entry::Occupied(e) => e.into_mut(),
+            Entry::Vacant(e) => e.insert(font.outlines.draw(GlyphId::new(g.id), font.location())?),
+        };
+        self.budget = self
+            .budget
+            .checked_sub(glyph.elements().len())
+            .ok_or(Error::TooLarge { quantity: "path elements", most: MOST_ELEMENTS })?;
+        let place =
+            Affine::translate((origin.x + g.dx, origin.y + g.dy)) * Affine::scale(self.size / font.units_per_em());
+        out.extend(glyph.elements().iter().map(|el| place * *el));
+        Ok(())
+    }
+}
