@@ -1,6 +1,7 @@
 //! What ends a run, and with which exit code.
 
-use crate::terminal;
+use crate::{flags, terminal};
+use pathwarp::GeometryError;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -81,8 +82,11 @@ impl From<pathwarp::Error> for Failure {
         let m = e.to_string();
         match e {
             pathwarp::Error::Input { .. } => Self::Input(m),
-            pathwarp::Error::Geometry(_) => Self::Geometry(m),
-            _ => Self::Usage(m),
+            pathwarp::Error::Geometry(GeometryError::FlatFrame { .. }) => {
+                Self::Geometry(format!("{m} (--frame X,Y,W,H, or --base where there is one)"))
+            }
+            pathwarp::Error::Geometry(_) => Self::Geometry(flags::led(&m)),
+            _ => Self::Usage(format!("--{m}")),
         }
     }
 }

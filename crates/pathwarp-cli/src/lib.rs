@@ -19,6 +19,7 @@ mod convert;
 mod data_file;
 mod deform;
 mod failure;
+mod flags;
 mod gallery;
 mod gimp;
 mod install;
@@ -70,6 +71,7 @@ pub fn command(registry: &Registry) -> clap::Command {
 /// Runs the program on `args`, the first of which is the program's name.
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    flags::know(registry);
     match dispatch(registry, &args.into_iter().collect::<Vec<_>>()) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Partly) => ExitCode::from(1),

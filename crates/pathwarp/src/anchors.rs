@@ -230,15 +230,15 @@ pub(crate) struct FourToFour {
     pub(crate) overlays: Vec<Overlay>,
 }
 
-/// Reads `--base` and `--target` with four anchors each; the Base is the frame's corners by default.
+/// Reads `base` and `target` with four anchors each; the Base is the frame's corners by default.
 pub(crate) fn four_to_four(s: &Settings<'_>) -> Result<FourToFour, Error> {
     let base = match from_settings(s, "base", "base-as-drawn")? {
         Some(b) => b,
         None => frame_corners(s)?,
     };
-    let missing = || Error::Missing { param: "--target".into(), hint: "four anchors where the Base is to land".into() };
+    let missing = || Error::Missing { param: "target".into(), hint: "four anchors where the Base is to land".into() };
     let target = from_settings(s, "target", "target-as-drawn")?.ok_or_else(missing)?;
-    let (from, to) = (four("--base", &base)?, four("--target", &target)?);
+    let (from, to) = (four("base", &base)?, four("target", &target)?);
     let overlay = |role, q| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
     Ok(FourToFour { from, to, overlays: vec![overlay(Role::Base, from), overlay(Role::Target, to)] })
 }

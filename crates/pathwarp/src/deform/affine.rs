@@ -62,7 +62,7 @@ impl Deformation for AffineDeformation {
             Some(v) => {
                 let parts = ["scale-x", "scale-y", "skew-x", "skew-y", "rotate", "move-x", "move-y", "about"];
                 if let Some(part) = parts.iter().find(|p| s.given(p)) {
-                    return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with --{part}")));
+                    return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with `{part}`")));
                 }
                 Affine::new(std::array::from_fn(|i| v[i]))
             }

@@ -68,7 +68,7 @@ impl Deformation for Bilinear {
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let anchors::FourToFour { from, to, overlays } = anchors::four_to_four(s)?;
-        let before = anchors::to_standard("--base", &Anchors::Four(from))?;
+        let before = anchors::to_standard("base", &Anchors::Four(from))?;
         let map = BilinearMap::new(to);
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
         let mut built = Built::new(Arc::new(Chain::new([before, map.or_affine()])));

@@ -98,7 +98,7 @@ impl Deformation for Lens {
                 return Err(Error::usage(
                     "field",
                     format!("{:.6}", 2.0 * half.to_degrees()),
-                    format!("is more than the lens of --{name} can see: it must be below {most} degrees"),
+                    format!("is more than the lens of `{name}` can see: it must be below {most} degrees"),
                 ));
             }
         }
@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn too_wide_a_field_is_refused_and_the_edge_of_a_lens_is_an_edge() {
         let e = build(&[("field", "180")]).err().unwrap().to_string();
-        assert!(e.contains("--from") && e.contains("180 degrees"), "{e}");
+        assert!(e.contains("`from`") && e.contains("180 degrees"), "{e}");
         let m = build(&[("from", "equidistant"), ("to", "rectilinear"), ("field", "160")]).unwrap().map;
         let art = crate::Outline::from_svg("M50,50 H200").unwrap();
         assert!(crate::refit::warp_path(&art, &*m, &crate::refit::Options::new(0.1)).is_err());

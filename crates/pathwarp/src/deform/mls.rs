@@ -105,7 +105,7 @@ impl Deformation for Mls {
         let mut built = Built::new(match handles[..] {
             [] => {
                 return Err(Error::Missing {
-                    param: "--pair".into(),
+                    param: "pair".into(),
                     hint: "a point and where it goes, such as 10,20:15,20".into(),
                 });
             }
@@ -117,7 +117,7 @@ impl Deformation for Mls {
             _ => {
                 if kind == Stiffness::Affine && on_a_line(&from) {
                     return Err(GeometryError::Collinear {
-                        path: "the points to be moved (--kind affine)".into(),
+                        path: "the points to be moved (`kind affine`)".into(),
                         which: [1, 2, handles.len()],
                         points: from.into_iter().take(8).collect(),
                     }
@@ -163,7 +163,7 @@ fn handles(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
         }
         (None, None) => {}
         (from, _) => {
-            let (here, missing) = if from.is_some() { ("--from", "--to") } else { ("--to", "--from") };
+            let (here, missing) = if from.is_some() { ("from", "to") } else { ("to", "from") };
             return Err(Error::Missing { param: missing.into(), hint: format!("{here} needs it beside it") });
         }
     }
@@ -375,12 +375,12 @@ mod tests {
     #[test]
     fn faults_are_named() {
         let fault = |pairs: &[(&str, &str)]| build(pairs).err().unwrap().to_string();
-        assert!(fault(&[]).contains("--pair is needed"));
+        assert!(fault(&[]).contains("pair is needed"));
         assert!(fault(&[("pair", "1,2")]).contains("colon"));
         assert!(fault(&[("pin", "1,2"), ("pair", "1,2:3,4")]).contains("coincide"));
         assert!(fault(&[("pin", "1,1"), ("pin", "2,2"), ("pin", "3,3"), ("kind", "affine")]).contains("one line"));
         assert!(fault(&[("pin", "1,1"), ("pin", "9,1"), ("kind", "affine")]).contains("one line"));
         assert!(fault(&[("from", "0,0 1,1"), ("to", "0,0 1,1 2,2")]).contains("3 anchors"));
-        assert!(fault(&[("from", "0,0 1,1")]).contains("--to is needed"));
+        assert!(fault(&[("from", "0,0 1,1")]).contains("to is needed"));
     }
 }

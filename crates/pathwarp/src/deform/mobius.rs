@@ -105,13 +105,13 @@ impl Deformation for Mobius {
                 (by_pole(frame.center(), pole), "pole")
             }
             (Some(_), ..) => {
-                return Err(Error::usage("coefficients", "", "are the whole map: leave --pole, --from and --to away"));
+                return Err(Error::usage("coefficients", "", "are the whole map: leave `pole`, `from` and `to` away"));
             }
             (None, Some(_), Some(_)) => {
-                return Err(Error::usage("pole", "", "follows from --from and --to: leave it away"));
+                return Err(Error::usage("pole", "", "follows from `from` and `to`: leave it away"));
             }
             (None, from, _) => {
-                let (here, missing) = if from.is_some() { ("--from", "--to") } else { ("--to", "--from") };
+                let (here, missing) = if from.is_some() { ("from", "to") } else { ("to", "from") };
                 return Err(Error::Missing { param: missing.into(), hint: format!("{here} needs it beside it") });
             }
         };

@@ -31,6 +31,8 @@ mod wordart;
 pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile};
 pub use entry::{Case, Deformation, Example, Info, Law, Pairs};
 pub use registry::Registry;
+pub use warp::Style;
+pub use wordart::TextShape;
 
 use std::sync::Arc;
 

@@ -108,7 +108,7 @@ impl Deformation for Polar {
             return Err(Error::usage("sweep", degrees, "cannot bend artwork that has no width"));
         }
         if conformal && outer.is_some() {
-            return Err(Error::usage("outer", "", "follows from --inner and --sweep with --spacing conformal"));
+            return Err(Error::usage("outer", "", "follows from `inner` and `sweep` with `spacing conformal`"));
         }
         let (near, far) = match (inner, outer) {
             (None, None) => (width / sweep.abs(), width / sweep.abs() + height),

@@ -59,7 +59,7 @@ impl Deformation for Projective {
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let anchors::FourToFour { from, to, overlays } = anchors::four_to_four(s)?;
-        let map = anchors::projective("--target", from, to)?;
+        let map = anchors::projective("target", from, to)?;
         let map: Arc<dyn Map> = match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
             _ => Arc::new(map),

@@ -57,7 +57,7 @@ impl Deformation for Similitude {
         let two = |name: &str| -> Result<[Point; 2], Error> {
             let path = s
                 .path_if(name)?
-                .ok_or_else(|| Error::Missing { param: format!("--{name}"), hint: "a path with two anchors".into() })?;
+                .ok_or_else(|| Error::Missing { param: name.to_owned(), hint: "a path with two anchors".into() })?;
             match anchors::two_or_four(&path)? {
                 Anchors::Two(p) => Ok(p),
                 Anchors::Four(q) => Err(GeometryError::AnchorCount {
@@ -71,7 +71,7 @@ impl Deformation for Similitude {
         };
         let ([a, b], [p, q]) = (two("base")?, two("target")?);
         let map = AffineMap::similitude(a, b, p, q).ok_or_else(|| GeometryError::Coincident {
-            path: "--base".into(),
+            path: "base".into(),
             which: [1, 2],
             at: a,
         })?;

@@ -97,7 +97,7 @@ impl Deformation for Wave {
         let mut built = Built::new(Arc::new(map));
         if push && (height / length).abs() * TAU > 1.0 {
             built.warn(format!(
-                "wave: with --kind push the artwork folds over itself where --height is more than --length/2π = {:.6}",
+                "wave: with `kind push` the artwork folds over itself where `height` is more than `length`/2π = {:.6}",
                 length / TAU
             ));
         }

@@ -4,7 +4,6 @@
 //! numbers); [`Chain`] composes maps; [`Homography`] and [`AffineMap`] are the two classes that fold into one another.
 
 mod affine;
-pub mod anamorph;
 pub(crate) mod arclength;
 #[doc(hidden)]
 pub mod batch;
@@ -14,7 +13,6 @@ pub(crate) mod bspline;
 mod chain;
 mod coons;
 mod crease;
-pub mod dilation;
 mod dual;
 mod formula;
 mod homography;
@@ -24,16 +22,13 @@ mod lattice;
 mod local;
 mod monoid;
 pub mod net;
-mod patch;
-mod pins;
-mod quotient;
+pub(crate) mod patch;
+pub(crate) mod quotient;
 mod rational;
 pub mod ruled;
 mod side;
-pub mod surface;
 mod tiled;
 mod traits;
-pub mod triangle;
 
 pub use affine::AffineMap;
 pub use birational::{Birational, BirationalInverse, Rows};
@@ -50,14 +45,12 @@ pub use local::Local;
 pub use monoid::{Monoid, Ray};
 pub use net::BicubicNet;
 pub use patch::Patch;
-pub use pins::{MOST_PINS, pull};
 pub use quotient::Quotient;
 pub use rational::RationalBezier;
 pub use ruled::{Along, Guide};
 pub use side::{Pace, Side};
 pub use tiled::{Row, Tiled};
 pub use traits::Map;
-pub use triangle::TriangleNet;
 
 use kurbo::Affine;
 

@@ -295,7 +295,7 @@ fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
 }
 
 /// Bernstein coefficients over (s, t), row by row, to powers of u = 2s − 1 and v = 2t − 1.
-pub(super) fn powers(degree: [usize; 2], b: &[f64]) -> Vec<f64> {
+pub(crate) fn powers(degree: [usize; 2], b: &[f64]) -> Vec<f64> {
     let (m, n) = (degree[0] + 1, degree[1] + 1);
     let (across, down) = (centred(degree[0]), centred(degree[1]));
     let mut rows = vec![0.0; m * n];

@@ -17,26 +17,26 @@ const NOISE: f64 = 4e-15;
 
 /// A polynomial in two variables, by its coefficients of aⁱ in rows of bʲ.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Plane(Vec<Vec<f64>>);
+pub(crate) struct Plane(Vec<Vec<f64>>);
 
 impl Plane {
     /// Rows of coefficients: `rows[j][i]` belongs to aⁱbʲ.
-    pub(super) fn new(rows: Vec<Vec<f64>>) -> Self {
+    pub(crate) fn new(rows: Vec<Vec<f64>>) -> Self {
         Self(rows)
     }
 
     /// c + ca·a + cb·b.
-    pub(super) fn linear([c, ca, cb]: [f64; 3]) -> Self {
+    pub(crate) fn linear([c, ca, cb]: [f64; 3]) -> Self {
         Self(vec![vec![c, ca], vec![cb]])
     }
 
-    pub(super) fn at<S: Real>(&self, a: S, b: S) -> S {
+    pub(crate) fn at<S: Real>(&self, a: S, b: S) -> S {
         let row = |r: &[f64]| r.iter().rev().fold(S::from(0.0), |v, c| v * a + *c);
         self.0.iter().rev().fold(S::from(0.0), |v, r| v * b + row(r))
     }
 
     /// self + k·other.
-    pub(super) fn plus(mut self, k: f64, other: &Self) -> Self {
+    pub(crate) fn plus(mut self, k: f64, other: &Self) -> Self {
         for (j, from) in other.0.iter().enumerate() {
             if self.0.len() <= j {
                 self.0.push(Vec::new());
@@ -50,12 +50,12 @@ impl Plane {
         self
     }
 
-    pub(super) fn scaled(&self, k: f64) -> Self {
+    pub(crate) fn scaled(&self, k: f64) -> Self {
         Self(self.0.iter().map(|r| r.iter().map(|c| c * k).collect()).collect())
     }
 
     /// The product with c + ca·a + cb·b.
-    pub(super) fn times_linear(&self, [c, ca, cb]: [f64; 3]) -> Self {
+    pub(crate) fn times_linear(&self, [c, ca, cb]: [f64; 3]) -> Self {
         let shifted = |di: usize, dj: usize| {
             let rows = self.0.iter().map(|r| std::iter::repeat_n(0.0, di).chain(r.iter().copied()).collect());
             Self(std::iter::repeat_n(Vec::new(), dj).chain(rows).collect())
@@ -70,12 +70,12 @@ impl Plane {
     }
 
     /// The total degree.
-    pub(super) fn degree(&self) -> usize {
+    pub(crate) fn degree(&self) -> usize {
         self.terms().map(|(i, j, _)| i + j).max().unwrap_or(0)
     }
 
     /// The coefficient of aⁱbʲ.
-    pub(super) fn coefficient(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn coefficient(&self, i: usize, j: usize) -> f64 {
         self.0.get(j).and_then(|r| r.get(i)).copied().unwrap_or(0.0)
     }
 
@@ -130,7 +130,7 @@ pub struct Quotient {
 
 impl Quotient {
     /// p ↦ p + (x, y). `pre` makes (a, b) of the source point; `domain` is where the inverse is looked for.
-    pub(super) fn polynomial(pre: Affine, x: Plane, y: Plane, domain: Rect) -> Self {
+    pub(crate) fn polynomial(pre: Affine, x: Plane, y: Plane, domain: Rect) -> Self {
         let size = x.largest().max(y.largest());
         let (x, y) = (x.tidied(size), y.tidied(size));
         let degree = x.degree().max(y.degree()).max(1);
@@ -138,7 +138,7 @@ impl Quotient {
     }
 
     /// p ↦ `origin` + (x, y)/w.
-    pub(super) fn rational(pre: Affine, origin: Point, x: Plane, y: Plane, w: Plane, domain: Rect) -> Self {
+    pub(crate) fn rational(pre: Affine, origin: Point, x: Plane, y: Plane, w: Plane, domain: Rect) -> Self {
         let size = x.largest().max(y.largest());
         let (x, y) = (x.tidied(size), y.tidied(size));
         let below = w.largest();
@@ -156,12 +156,12 @@ impl Quotient {
     }
 
     /// The same, known to have no pole where it is used.
-    pub(super) fn without_poles(self) -> Self {
+    pub(crate) fn without_poles(self) -> Self {
         Self { sound: true, ..self }
     }
 
     /// The same, defined only where `guard` is positive.
-    pub(super) fn guarded(self, guard: Plane) -> Self {
+    pub(crate) fn guarded(self, guard: Plane) -> Self {
         Self { guard: Some(guard), ..self }
     }
 
@@ -209,7 +209,7 @@ impl Quotient {
 }
 
 /// The source's x and y as linear functions of (a, b): constant, a, b.
-pub(super) fn source(pre: Affine) -> [[f64; 3]; 2] {
+pub(crate) fn source(pre: Affine) -> [[f64; 3]; 2] {
     let [a, b, c, d, e, f] = pre.inverse().as_coeffs();
     [[e, a, c], [f, b, d]]
 }

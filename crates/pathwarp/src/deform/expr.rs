@@ -1,21 +1,16 @@
 //! Any formula: x' and y' as the user writes them.
 //!
-//! The text becomes a list of operations ([`parse`], [`program`]), which runs on plain and on dual numbers: the derivatives are
+//! The text becomes a list of operations ([`formula`](crate::formula)), which runs on plain and on dual numbers: the derivatives are
 //! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each, and a branch is the list
 //! with the side known.
-
-pub(super) mod calc;
-mod parse;
-mod program;
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
+use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
 use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
 use crate::param::{Frame, Kind, Param, Settings};
 use kurbo::{Affine, Point};
-use parse::{Fault, Names};
-use program::{Binary, Program};
 use std::sync::Arc;
 
 pub(super) struct Expr;
@@ -93,7 +88,7 @@ impl Deformation for Expr {
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         if !s.given("x") && !s.given("y") {
             let hint = "a formula for x, y or both, such as 'x + 4*sin(y/16)'";
-            return Err(Error::Missing { param: "--x".into(), hint: hint.into() });
+            return Err(Error::Missing { param: "x".into(), hint: hint.into() });
         }
         let mut program = Program::default();
         let few = "the first few operations always fit";
@@ -103,23 +98,23 @@ impl Deformation for Expr {
                 return Err(Error::usage("let", text, "is not NAME=FORMULA"));
             };
             let (name, skipped) = (name.trim(), text.len() - formula.len());
-            if !parse::is_name(name) {
+            if !is_name(name) {
                 return Err(Error::usage(
                     "let",
                     text,
                     format!("`{name}` is no name: letters, digits and _ after a letter"),
                 ));
             }
-            if names.get(name).is_some() || parse::is_function(name) {
+            if names.get(name).is_some() || is_function(name) {
                 return Err(Error::usage("let", text, format!("`{name}` is taken already")));
             }
-            let value = parse::parse(formula, &names, &mut program)
-                .map_err(|f| Error::usage("let", text, Fault { at: f.at + skipped, ..f }.show(text)))?;
+            let value = parse(formula, &names, &mut program)
+                .map_err(|f| Error::usage("let", text, SyntaxError { at: f.at + skipped, ..f }.show(text)))?;
             names.set(name, value);
         }
         let mut read = |param: &str| -> Result<u32, Error> {
             let text = s.texts(param).last().copied().unwrap_or(param);
-            parse::parse(text, &names, &mut program).map_err(|f| Error::usage(param, text, f.show(text)))
+            parse(text, &names, &mut program).map_err(|f| Error::usage(param, text, f.show(text)))
         };
         let (x, y) = (read("x")?, read("y")?);
         Ok(Built::new(Arc::new(ExprMap { program: Arc::new(program), x, y })))
@@ -284,19 +279,19 @@ mod tests {
         let fault = |text: &str| build(&[("x", text)]).err().unwrap().to_string();
         for (text, column, part) in [
             ("x + sin(y", 7, "never closed"),
-            ("x + * y", 4, "value should stand"),
+            ("x + * y", 4, "expected a value"),
             ("2x", 1, "operator is missing"),
             ("2 + fud(x)", 4, "no `fud`"),
-            ("x +", 3, "ends where"),
+            ("x +", 3, "missing at the end"),
             ("x)", 1, "never opened"),
             ("sin x", 4, "in brackets"),
             ("hypot(x)", 7, "two arguments"),
             ("sin(x, y)", 5, "comma"),
-            ("ä + 1", 0, "value should stand"),
-            ("x + ü", 4, "value should stand"),
+            ("ä + 1", 0, "expected a value"),
+            ("x + ü", 4, "expected a value"),
             ("x ; y", 2, "no meaning"),
             ("1e999", 0, "too large"),
-            ("", 0, "ends where"),
+            ("", 0, "missing at the end"),
         ] {
             let said = fault(text);
             let lines: Vec<&str> = said.lines().collect();
@@ -305,7 +300,7 @@ mod tests {
             assert_eq!(lines[lines.len() - 2], format!("  {text}"), "{said}");
         }
         let e = build(&[("let", "k = 2 +* 3"), ("x", "k")]).err().unwrap().to_string();
-        assert!(e.starts_with("--let") && e.ends_with("\n         ^"), "{e}");
+        assert!(e.starts_with("let: `k") && e.ends_with("\n         ^"), "{e}");
         for text in ["sin=3", "x=3", "4=3", "k"] {
             assert!(build(&[("let", text), ("x", "y")]).is_err(), "{text}");
         }
