@@ -195,7 +195,6 @@ impl Error {
 }
 
 /// Returns `value` if it is within the range, ends included.
-#[allow(dead_code)]
 pub(crate) fn within(param: &str, value: f64, least: f64, most: f64) -> Result<f64, Error> {
     if (least..=most).contains(&value) {
         return Ok(value);

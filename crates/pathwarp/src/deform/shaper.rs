@@ -139,7 +139,7 @@ impl Deformation for Shaper {
 
         let base = match anchors::from_settings(s, "base", "base-as-drawn")? {
             Some(b) => b,
-            None => anchors::frame_corners(s)?,
+            None => anchors::frame_corners(s.frame())?,
         };
         let target = anchors::from_settings(s, "target", "target-as-drawn")?;
         notes.push(format!("base: {} ({})", list(base.points()), wrapper(&base)));

@@ -138,7 +138,7 @@ impl Deformation for Envelope {
 
 /// The map of the frame into these sides that keeps what is to be kept; `by` is the pace, where it was given.
 pub(super) fn over(ring: &Ring, s: &Settings<'_>, keep: &str, by: Option<&str>) -> Result<Built, Error> {
-    let frame = anchors::frame_corners(s)?;
+    let frame = anchors::frame_corners(s.frame())?;
     let rect = s.frame().rect;
     let pre = Affine::new([
         1.0 / rect.width(),
