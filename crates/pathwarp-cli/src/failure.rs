@@ -1,6 +1,7 @@
 //! Failures: the errors that end a run, each with its exit code.
 
-use crate::{advice, terminal};
+use crate::{advice, flags, terminal};
+use pathwarp::GeometryError;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -83,8 +84,11 @@ impl From<pathwarp::Error> for Failure {
         let m = advice::error(&e);
         match e {
             pathwarp::Error::Input { .. } => Self::Input(m),
-            pathwarp::Error::Geometry(_) => Self::Geometry(m),
-            _ => Self::Usage(m),
+            pathwarp::Error::Geometry(GeometryError::FlatFrame { .. }) => {
+                Self::Geometry(format!("{m} (--frame X,Y,W,H, or --base where there is one)"))
+            }
+            pathwarp::Error::Geometry(_) => Self::Geometry(flags::led(&m)),
+            _ => Self::Usage(format!("--{m}")),
         }
     }
 }

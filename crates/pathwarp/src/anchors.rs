@@ -3,12 +3,12 @@
 //! A user seldom knows which way a path runs or where a closed one starts. The shaper paper's rule: the side that lies lowest
 //! on the screen is the bottom, and it runs left to right.
 
-use crate::deform::{Overlay, Role};
+use crate::deform::{Built, Role};
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Homography, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Frame, NamedPath, Settings};
-use kurbo::{Affine, Line, Point};
+use kurbo::{Affine, Line, Point, Rect};
 use std::sync::Arc;
 
 /// Anchors closer than this part of their spread coincide; three anchors whose triangle is flatter than this part of their
@@ -213,34 +213,55 @@ pub(crate) fn from_settings(s: &Settings<'_>, name: &str, as_drawn: &str) -> Res
 }
 
 /// The frame's corners as anchors: what Base is by default.
-pub(crate) fn frame_corners(s: &Settings<'_>) -> Result<Anchors, Error> {
-    let c = s.frame().corners();
+pub(crate) fn frame_corners(frame: &Frame) -> Result<Anchors, Error> {
+    let c = frame.corners();
     if general("", &c).is_err() {
-        let (width, height) = (s.frame().rect.width(), s.frame().rect.height());
+        let (width, height) = (frame.rect.width(), frame.rect.height());
         return Err(GeometryError::FlatFrame { width, height }.into());
     }
     Ok(Anchors::Four(c))
 }
 
-/// Base and Target of four anchors each.
+/// Base and target of four anchors each.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FourToFour {
     pub(crate) from: [Point; 4],
     pub(crate) to: [Point; 4],
-    /// What a preview draws of them.
-    pub(crate) overlays: Vec<Overlay>,
+    /// The artwork's box.
+    pub(crate) frame: Rect,
 }
 
-/// Reads `--base` and `--target` with four anchors each; the Base is the frame's corners by default.
+impl FourToFour {
+    /// Takes the points in this order; the artwork's box is the base's.
+    pub(crate) fn new(from: [Point; 4], to: [Point; 4]) -> Self {
+        let frame = from.iter().fold(Rect::from_points(from[0], from[1]), |r, p| r.union_pt(*p));
+        Self { from, to, frame }
+    }
+
+    /// Refuses coincident anchors, and three on a line.
+    pub(crate) fn check(&self) -> Result<(), GeometryError> {
+        general("base", &self.from)?;
+        general("target", &self.to)
+    }
+
+    /// Adds the preview's guides.
+    pub(crate) fn shown_on(&self, mut built: Built) -> Built {
+        for (role, points) in [(Role::Base, self.from), (Role::Target, self.to)] {
+            built.overlay(role, Anchors::Four(points).outline().to_bez_path(0.0));
+        }
+        built
+    }
+}
+
+/// Reads `base` and `target` with four anchors each. Without a base, the frame's corners are taken.
 pub(crate) fn four_to_four(s: &Settings<'_>) -> Result<FourToFour, Error> {
     let base = match from_settings(s, "base", "base-as-drawn")? {
         Some(b) => b,
-        None => frame_corners(s)?,
+        None => frame_corners(s.frame())?,
     };
-    let missing = || Error::Missing { param: "--target".into(), hint: "four anchors where the Base is to land".into() };
+    let missing = || Error::missing("target", "four anchors, the images of the base's");
     let target = from_settings(s, "target", "target-as-drawn")?.ok_or_else(missing)?;
-    let (from, to) = (four("--base", &base)?, four("--target", &target)?);
-    let overlay = |role, q| Overlay { role, path: Anchors::Four(q).outline().to_bez_path(0.0) };
-    Ok(FourToFour { from, to, overlays: vec![overlay(Role::Base, from), overlay(Role::Target, to)] })
+    Ok(FourToFour { from: four("base", &base)?, to: four("target", &target)?, frame: s.frame().rect })
 }
 
 fn four(name: &str, a: &Anchors) -> Result<[Point; 4], Error> {

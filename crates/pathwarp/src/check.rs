@@ -91,18 +91,18 @@ fn table(entry: &dyn Deformation, faults: &mut Faults) {
     }
     for p in info.params {
         if !is_kebab(p.name) || names.contains(&p.name) {
-            faults.add(format!("--{} is not a new kebab-case name", p.name));
+            faults.add(format!("{} is not a new kebab-case name", p.name));
         }
         names.push(p.name);
         if !p.help.ends_with('.') {
-            faults.add(format!("--{}: its help does not end with a full stop", p.name));
+            faults.add(format!("{}: its help does not end with a full stop", p.name));
         }
         if p.needed && p.default.is_some() {
-            faults.add(format!("--{} is needed and has a default", p.name));
+            faults.add(format!("{} is needed and has a default", p.name));
         }
         let (least, most) = p.range;
         if p.ui.0 < least || p.ui.1 > most || p.ui.0 >= p.ui.1 {
-            faults.add(format!("--{}: its slider is outside its range", p.name));
+            faults.add(format!("{}: its slider is outside its range", p.name));
         }
         if p.default.is_some() {
             let (args, frame) = (Args::new(), frame());
@@ -119,7 +119,7 @@ fn table(entry: &dyn Deformation, faults: &mut Faults) {
                 Kind::Number | Kind::Length(_) | Kind::Angle | Kind::Count => s.number(p.name).map(|_| ()),
             });
             if let Err(e) = got {
-                faults.add(format!("--{}: its default is no good: {e}", p.name));
+                faults.add(format!("{}: its default is no good: {e}", p.name));
             }
         }
     }

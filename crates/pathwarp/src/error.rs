@@ -1,31 +1,32 @@
-//! Errors for people: what is wrong, where, and what to do about it.
+//! Errors: the problem, its place, and a remedy.
 //!
-//! There are three kinds, told apart by who can mend them: [`Error::Usage`] (the command or recipe), [`Error::Input`]
-//! (a file) and [`Error::Geometry`] (the drawing does not allow what was asked).
+//! The kinds differ in who can fix them: [`Error::Usage`] and [`Error::Missing`] (the caller), [`Error::Input`] (a file) and
+//! [`Error::Geometry`] (the drawing does not allow the deformation). Messages call parameters by their bare names; the command
+//! line adds its dashes.
 
 use kurbo::Point;
 use thiserror::Error;
 
-/// Anything that can go wrong between a typed command and a warped path.
+/// Any error between a parameter's value and a warped path.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A parameter has a value it cannot have.
-    #[error("{param}: `{value}` {problem}")]
+    #[error("{param}{} {problem}", quoted(.value))]
     Usage {
-        /// The parameter as the user writes it, e.g. `--bottom`.
+        /// The parameter's name, such as `bottom`.
         param: String,
-        /// The value as the user wrote it.
+        /// The value as the user wrote it; empty if the parameter should not be there at all.
         value: String,
-        /// What is wrong with it and what would be legal.
+        /// The problem, and legal values: the end of a sentence that begins with the value.
         problem: String,
     },
-    /// A parameter that is needed was not given.
+    /// A required parameter was not given.
     #[error("{param} is needed: {hint}")]
     Missing {
-        /// The parameter as the user writes it.
+        /// The parameter's name.
         param: String,
-        /// What to write.
+        /// A description of the value to give.
         hint: String,
     },
     /// A file cannot be read or understood.
@@ -33,15 +34,15 @@ pub enum Error {
     Input {
         /// File and place in it (line:column or byte), or the path reference.
         place: String,
-        /// What is wrong and what to do.
+        /// The problem and a remedy.
         problem: String,
     },
-    /// The geometry forbids it.
+    /// The geometry forbids the deformation.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
 }
 
-/// The drawing, or the cage it is to be bent into, does not allow the deformation.
+/// The drawing, or a path that controls the deformation, does not allow it.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GeometryError {
@@ -53,9 +54,9 @@ pub enum GeometryError {
     NotClosed {
         /// The path as the user named it.
         path: String,
-        /// Where it starts.
+        /// Its first point.
         start: Point,
-        /// Where it ends.
+        /// Its last point.
         end: Point,
     },
     /// A path has the wrong number of anchors.
@@ -63,11 +64,11 @@ pub enum GeometryError {
     AnchorCount {
         /// The path as the user named it.
         path: String,
-        /// How many anchors it has.
+        /// The number of anchors it has.
         found: usize,
         /// The first anchors (at most eight).
         anchors: Vec<Point>,
-        /// How many it needs, in words.
+        /// The number it needs, in words.
         expected: &'static str,
     },
     /// Three of four corners lie on one line.
@@ -90,7 +91,7 @@ pub enum GeometryError {
         path: String,
         /// The anchors' numbers, counted from 1 in path order.
         which: [usize; 2],
-        /// Where.
+        /// Their position.
         at: Point,
     },
     /// A control point of a row lies on, or beyond, the line through the row's end and the facing row's.
@@ -103,18 +104,18 @@ pub enum GeometryError {
         path: String,
         /// The point's number, counted from 1.
         which: usize,
-        /// Where it is.
+        /// Its position.
         at: Point,
-        /// Which end: first or last.
+        /// The rows' end: first or last.
         end: &'static str,
         /// The line.
         line: [Point; 2],
-        /// Whether it lies on the line itself, where no weight helps.
+        /// `true` if it lies on the line itself, where no weight helps.
         on: bool,
     },
-    /// The artwork is as flat as a line, and its box was to be the Base.
+    /// The artwork is as flat as a line, so that its box cannot be the base.
     #[error(
-        "the artwork's box is {width} wide and {height} high: too flat to be the Base; give --base, or --frame X,Y,W,H"
+        "the artwork's box is {width} wide and {height} high: too flat to be deformed as a box; name another base or frame"
     )]
     FlatFrame {
         /// The box's width.
@@ -122,9 +123,9 @@ pub enum GeometryError {
         /// The box's height.
         height: f64,
     },
-    /// A projective map between these corners has its horizon among them.
+    /// The horizon of the projective map between these corners lies among them.
     #[error(
-        "{path}: the projective map from {} to {} hits infinity between these corners, because one of the quadrilaterals is convex and the other is not; move a corner, or mind their order",
+        "{path}: the projective map from {} to {} hits infinity between these corners, because one of the quadrilaterals is convex and the other is not; move a corner, or change their order",
         show_all(from),
         show_all(to)
     )]
@@ -136,7 +137,7 @@ pub enum GeometryError {
         /// The target corners.
         to: Vec<Point>,
     },
-    /// The map is infinite, or undefined, somewhere on a shape.
+    /// The map is infinite or undefined at a point of a shape.
     #[error(
         "{shape} hits infinity at {}: the map has no finite value there; move the anchors so that the artwork stays on one side of the horizon, or leave this shape out",
         show(*at)
@@ -144,7 +145,7 @@ pub enum GeometryError {
     Infinity {
         /// The shape's id.
         shape: String,
-        /// The place in the source drawing.
+        /// The point in the source drawing.
         at: Point,
     },
     /// A coordinate is not a finite number, or too large to compute with.
@@ -152,21 +153,21 @@ pub enum GeometryError {
     NotFinite {
         /// The shape's id or the path as the user named it.
         shape: String,
-        /// The place in the source drawing.
+        /// The point in the source drawing.
         at: Point,
     },
-    /// A map cannot be turned round.
+    /// A map has no inverse.
     #[error("{what} has no inverse: {why}")]
     NoInverse {
         /// The deformation.
         what: String,
-        /// Why not.
+        /// The reason.
         why: String,
     },
 }
 
 impl GeometryError {
-    /// The same error, naming `shape` as the one it happened on.
+    /// Returns the same error, naming the shape it happened on.
     #[must_use]
     pub fn on_shape(mut self, name: &str) -> Self {
         if let Self::Infinity { shape, .. } | Self::NotFinite { shape, .. } = &mut self {
@@ -177,18 +178,36 @@ impl GeometryError {
 }
 
 impl Error {
-    /// A wrong value for a parameter.
+    /// Creates an [`Error::Usage`].
     pub fn usage(param: &str, value: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self::Usage { param: format!("--{param}"), value: value.into(), problem: problem.into() }
+        Self::Usage { param: param.to_owned(), value: value.into(), problem: problem.into() }
     }
 
-    /// A file or path reference that cannot be used.
+    /// Creates an [`Error::Missing`].
+    pub fn missing(param: &str, hint: impl Into<String>) -> Self {
+        Self::Missing { param: param.to_owned(), hint: hint.into() }
+    }
+
+    /// Creates an [`Error::Input`].
     pub fn input(place: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Input { place: place.into(), problem: problem.into() }
     }
 }
 
-/// A point as people write it.
+/// Returns `value` if it is within the range, ends included.
+pub(crate) fn within(param: &str, value: f64, least: f64, most: f64) -> Result<f64, Error> {
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    Err(Error::usage(param, value.to_string(), format!("is out of range: {least} to {most}")))
+}
+
+/// The value of an [`Error::Usage`] in backticks, after the parameter.
+fn quoted(value: &str) -> String {
+    if value.is_empty() { String::new() } else { format!(": `{value}`") }
+}
+
+/// Formats a point for a message.
 pub(crate) fn show(p: Point) -> String {
     format!("{},{}", round6(p.x), round6(p.y))
 }
@@ -197,7 +216,7 @@ fn show_all(points: &[Point]) -> String {
     points.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")
 }
 
-/// Six decimals are enough to find a place, and keep messages short.
+/// Rounds to six decimals: enough to find a place, and short.
 fn round6(v: f64) -> f64 {
     let r = (v * 1e6).round() / 1e6;
     if r.is_finite() { r + 0.0 } else { v }

@@ -11,6 +11,7 @@ pub mod deform;
 pub mod distance;
 mod error;
 pub mod fold;
+pub(crate) mod formula;
 pub(crate) mod lattice_file;
 pub mod map;
 pub mod outline;

@@ -6,11 +6,111 @@ use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::map::AffineMap;
-use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Affine, Vec2};
+use crate::param::{Axis, Frame, Kind, Param, Settings};
+use kurbo::{Affine as Matrix, Point, Rect, Vec2};
 use std::sync::Arc;
 
-pub(super) struct AffineDeformation;
+/// An affine map: a matrix, or scale, skew, rotation and shift, in this order, about a fixed point.
+///
+/// ```
+/// use pathwarp::{deform::Affine, kurbo::Point, map::Map};
+///
+/// let turn = Affine::new().about((10.0, 10.0)).rotate(90.0).build()?;
+/// assert!(turn.map.point(Point::new(12.0, 10.0)).distance(Point::new(10.0, 12.0)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine {
+    matrix: Option<Matrix>,
+    scale: Vec2,
+    skew: Vec2,
+    rotate: f64,
+    shift: Vec2,
+    about: Point,
+    /// The box that an error about a singular matrix shows.
+    frame: Rect,
+}
+
+impl Default for Affine {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl From<Matrix> for Affine {
+    /// The whole map by its matrix; the parts have no effect then.
+    fn from(matrix: Matrix) -> Self {
+        Self { matrix: Some(matrix), ..Self::new() }
+    }
+}
+
+impl Affine {
+    /// Creates the identity.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            matrix: None,
+            scale: Vec2::new(1.0, 1.0),
+            skew: Vec2::ZERO,
+            rotate: 0.0,
+            shift: Vec2::ZERO,
+            about: Point::ORIGIN,
+            frame: Rect::new(0.0, 0.0, 1.0, 1.0),
+        }
+    }
+
+    /// Sets the scale across and down.
+    #[must_use]
+    pub fn scale(self, x: f64, y: f64) -> Self {
+        Self { scale: Vec2::new(x, y), ..self }
+    }
+
+    /// Sets the angles by which verticals and horizontals turn, degrees.
+    #[must_use]
+    pub fn skew(self, x: f64, y: f64) -> Self {
+        Self { skew: Vec2::new(x, y), ..self }
+    }
+
+    /// Sets the rotation, degrees, clockwise on the screen.
+    #[must_use]
+    pub fn rotate(self, angle: f64) -> Self {
+        Self { rotate: angle, ..self }
+    }
+
+    /// Sets the shift, user units.
+    #[must_use]
+    pub fn shift(self, by: impl Into<Vec2>) -> Self {
+        Self { shift: by.into(), ..self }
+    }
+
+    /// Sets the point that scale, skew and rotation leave in place. Default: the origin.
+    #[must_use]
+    pub fn about(self, point: impl Into<Point>) -> Self {
+        Self { about: point.into(), ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`GeometryError::Collinear`] for a singular matrix.
+    pub fn build(&self) -> Result<Built, Error> {
+        let m = self.matrix.unwrap_or_else(|| {
+            let o = self.about.to_vec2();
+            let skew = Matrix::skew(self.skew.x.to_radians().tan(), self.skew.y.to_radians().tan());
+            Matrix::translate(o + self.shift)
+                * Matrix::rotate(without_whole_turns(self.rotate).to_radians())
+                * skew
+                * Matrix::scale_non_uniform(self.scale.x, self.scale.y)
+                * Matrix::translate(-o)
+        });
+        if m.determinant() == 0.0 {
+            let points = Frame::new(self.frame).corners().map(|c| m * c).to_vec();
+            let path = "the image of the artwork's box".into();
+            return Err(GeometryError::Collinear { path, which: [1, 2, 3], points }.into());
+        }
+        Ok(Built::new(Arc::new(AffineMap(m))))
+    }
+}
 
 static INFO: Info = Info::new("affine", "scale, skew, rotate and move, or apply any matrix")
     .group("Basics")
@@ -52,44 +152,39 @@ points are moved exactly; no node is added.")
         Case { args: &[("skew-x", "45"), ("about", "0,0")], at: (0.0, 2.0), to: (2.0, 2.0), tolerance: 1e-14 },
     ]);
 
-impl Deformation for AffineDeformation {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let m = match s.numbers_if("matrix")? {
+        let matrix = match s.numbers_if("matrix")? {
             Some(v) => {
                 let parts = ["scale-x", "scale-y", "skew-x", "skew-y", "rotate", "move-x", "move-y", "about"];
                 if let Some(part) = parts.iter().find(|p| s.given(p)) {
-                    return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with --{part}")));
+                    return Err(Error::usage("matrix", "", format!("is the whole map; it cannot go with `{part}`")));
                 }
-                Affine::new(std::array::from_fn(|i| v[i]))
+                Some(Matrix::new(std::array::from_fn(|i| v[i])))
             }
-            None => {
-                let o = s.point("about")?.to_vec2();
-                let skew = Affine::skew(s.number("skew-x")?.to_radians().tan(), s.number("skew-y")?.to_radians().tan());
-                Affine::translate(o + Vec2::new(s.number("move-x")?, s.number("move-y")?))
-                    * Affine::rotate(whole_turns_off(s.number("rotate")?).to_radians())
-                    * skew
-                    * Affine::scale_non_uniform(s.number("scale-x")?, s.number("scale-y")?)
-                    * Affine::translate(-o)
-            }
+            None => None,
         };
-        if m.determinant() == 0.0 {
-            let corners = s.frame().corners().map(|c| m * c);
-            return Err(GeometryError::Collinear {
-                path: "the image of the artwork's box".into(),
-                which: [1, 2, 3],
-                points: corners.to_vec(),
-            }
-            .into());
-        }
-        Ok(Built::new(Arc::new(AffineMap(m))))
+        let affine = Affine {
+            matrix,
+            scale: Vec2::new(s.number("scale-x")?, s.number("scale-y")?),
+            skew: Vec2::new(s.number("skew-x")?, s.number("skew-y")?),
+            rotate: s.number("rotate")?,
+            shift: Vec2::new(s.number("move-x")?, s.number("move-y")?),
+            about: s.point("about")?,
+            frame: s.frame().rect,
+        };
+        affine.build()
     }
 }
 
-/// A whole turn is no turn, to the last bit.
-fn whole_turns_off(degrees: f64) -> f64 {
+/// Removes whole turns, so that they are the identity to the last bit.
+fn without_whole_turns(degrees: f64) -> f64 {
     degrees % 360.0
 }

@@ -10,7 +10,7 @@
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::anchors::{self, Anchors};
+use crate::anchors::{self, Anchors, FourToFour};
 use crate::error::Error;
 use crate::map::{
     AffineMap, Chain, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real, bernstein::Scaled,
@@ -19,17 +19,56 @@ use crate::param::{Param, Settings};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
-pub(super) struct Bilinear;
+/// The bilinear map of a quadrilateral, usually a box, onto four corners, its sides divided evenly.
+///
+/// F(u, v) = (1−u)(1−v)·P + u(1−v)·Q + uv·R + (1−u)v·S, with (u, v) from the base's corners by a projective map.
+///
+/// ```
+/// use pathwarp::{deform::Bilinear, kurbo::Point, map::Map};
+///
+/// let base = [(0.0, 100.0), (100.0, 100.0), (100.0, 0.0), (0.0, 0.0)];
+/// let skewed = Bilinear::new(base, [(0.0, 100.0), (95.0, 90.0), (75.0, 20.0), (15.0, 5.0)]).build()?;
+/// assert!(skewed.map.point(Point::new(50.0, 50.0)).distance(Point::new(46.25, 53.75)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bilinear {
+    corners: FourToFour,
+}
+
+impl Bilinear {
+    /// Creates the map that takes the points `from` to the points `to`, in the order given.
+    pub fn new(from: [impl Into<Point>; 4], to: [impl Into<Point>; 4]) -> Self {
+        Self { corners: FourToFour::new(from.map(Into::into), to.map(Into::into)) }
+    }
+
+    /// Builds the map. A target that is not convex gives a warning, because the artwork folds over itself there.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`] if points coincide or three lie on a line, or if the base is not convex.
+    pub fn build(&self) -> Result<Built, Error> {
+        let FourToFour { from, to, .. } = self.corners;
+        self.corners.check()?;
+        let before = anchors::to_standard("base", &Anchors::Four(from))?;
+        let map = BilinearMap::new(to);
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
+        let mut built = self.corners.shown_on(Built::new(Arc::new(Chain::new([before, map.or_affine()]))));
+        if corners.iter().any(|d| *d > 0.0) && corners.iter().any(|d| *d < 0.0) {
+            built.warn("bilinear: the target is not convex: the artwork folds over itself");
+        }
+        Ok(built)
+    }
+}
 
 static INFO: Info = Info::new("bilinear", "stretch artwork to four corners, its sides divided evenly")
     .group("Envelopes")
-    .about("Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Uprights and levels stay straight \
+    .about("Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Verticals and horizontals stay straight \
 and keep their even spacing, where projective would crowd them towards the far side; slanting lines become parabolas.\n\nBoth start \
 with the side that lies lowest on the screen, left to right, unless --base-as-drawn or --target-as-drawn say otherwise.")
     .source("G. Wolberg, Digital Image Warping, 1990, section 3.6")
     .params(&[
         Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
-        Param::path("target", "Four anchors where they are to land.").default("0%,100% 100%,80% 100%,20% 0%,0%"),
+        Param::path("target", "Four anchors: the images of the base's.").default("0%,100% 100%,80% 100%,20% 0%,0%"),
         Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
     ])
@@ -61,22 +100,16 @@ with the side that lies lowest on the screen, left to right, unless --base-as-dr
 
 const FOUR: super::entry::Pairs = &[("target", "0,100 95,90 75,20 15,5")];
 
-impl Deformation for Bilinear {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let anchors::FourToFour { from, to, overlays } = anchors::four_to_four(s)?;
-        let before = anchors::to_standard("--base", &Anchors::Four(from))?;
-        let map = BilinearMap::new(to);
-        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
-        let mut built = Built::new(Arc::new(Chain::new([before, map.or_affine()])));
-        if corners.iter().any(|d| *d > 0.0) && corners.iter().any(|d| *d < 0.0) {
-            built.warn("bilinear: the Target is not convex: the artwork folds over itself");
-        }
-        built.explanation.overlays = overlays;
-        Ok(built)
+        Bilinear { corners: anchors::four_to_four(s)? }.build()
     }
 }
 
@@ -202,12 +235,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Bilinear);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Built {
-        Bilinear.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap()
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap()
     }
 
     #[test]

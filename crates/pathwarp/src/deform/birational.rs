@@ -110,22 +110,22 @@ impl Deformation for BirationalDeformation {
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let [top, bottom, left, right] = ["top", "bottom", "left", "right"].map(|n| row(s, n));
         let (rows, names, first, second) = match (top?, bottom?, left?, right?) {
-            (Some(a), Some(b), None, None) => (Rows::TopBottom, ["--top", "--bottom"], a, b),
-            (None, None, Some(a), Some(b)) => (Rows::LeftRight, ["--left", "--right"], a, b),
+            (Some(a), Some(b), None, None) => (Rows::TopBottom, ["top", "bottom"], a, b),
+            (None, None, Some(a), Some(b)) => (Rows::LeftRight, ["left", "right"], a, b),
             (None, None, None, None) => {
                 return Err(Error::Missing {
-                    param: "--top and --bottom".into(),
-                    hint: "two rows of equally many points, left to right (or --left and --right, top to bottom)"
+                    param: "top and bottom".into(),
+                    hint: "two rows of equally many points, left to right (or `left` and `right`, top to bottom)"
                         .into(),
                 });
             }
-            (None, Some(_), None, None) => return Err(lone("--top", "--bottom")),
-            (Some(_), None, None, None) => return Err(lone("--bottom", "--top")),
-            (None, None, None, Some(_)) => return Err(lone("--left", "--right")),
-            (None, None, Some(_), None) => return Err(lone("--right", "--left")),
+            (None, Some(_), None, None) => return Err(lone("top", "bottom")),
+            (Some(_), None, None, None) => return Err(lone("bottom", "top")),
+            (None, None, None, Some(_)) => return Err(lone("left", "right")),
+            (None, None, Some(_), None) => return Err(lone("right", "left")),
             _ => {
                 let name = if s.given("left") { "left" } else { "right" };
-                return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with --top and --bottom"));
+                return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with `top` and `bottom`"));
             }
         };
         let counts = |expected| GeometryError::AnchorCount {
@@ -148,7 +148,7 @@ impl Deformation for BirationalDeformation {
             return Err(counts(if spline.is_some() {
                 "at most 64 more than the degree"
             } else {
-                "at most 11; take --spline 3 for more"
+                "at most 11; take `spline 3` for more"
             })
             .into());
         }

@@ -4,38 +4,87 @@
 //!
 //! - sharp: q' = m²q / (1 + (m² − 1)·q), so k = m/√(1 + (m² − 1)·q). In q this is a projective map of the line that keeps 0
 //!   and 1: the inverse is the same with 1/m. At the rim the radial scale jumps from 1/m² to 1,
-//! - soft: k = exp(ln m·(1 − q)²). At the rim value and slope run out. d ln r'/d ln r = 1 − 4·ln m·q(1 − q) > 0 as long as
+//! - soft: k = exp(ln m·(1 − q)²). At the rim value and slope vanish. d ln r'/d ln r = 1 − 4·ln m·q(1 − q) > 0 as long as
 //!   |ln m| < 1, which holds for amounts up to 1; the inverse is one equation in one unknown, solved by bracketed Newton.
 //!
 //! Both are smooth at the centre, being smooth in r². Elementary.
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Jet, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Point, Vec2};
 use std::f64::consts::LN_2;
 use std::sync::Arc;
 
-pub(super) struct Bulge;
+/// A bulge, or a pinch: artwork pushed out from a centre, or drawn in, within a disc.
+///
+/// Every point stays on its ray; with q = (r/R)² and m = 2^amount it moves by the factor exp(ln m·(1 − q)²), or with a sharp
+/// edge m/√(1 + (m² − 1)·q).
+///
+/// ```
+/// use pathwarp::{deform::Bulge, kurbo::Point, map::Map};
+///
+/// let bulge = Bulge::new((50.0, 50.0), 40.0).amount(1.0).build()?;
+/// let jet = bulge.map.jet(Point::new(50.0, 50.0));
+/// assert!((jet.dx.x - 2.0).abs() < 1e-12); // The centre is twice as large.
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bulge {
+    center: Point,
+    radius: f64,
+    amount: f64,
+    sharp: bool,
+}
+
+impl Bulge {
+    /// Creates a bulge of amount 0.7 that ends at `radius`, 1e-6 to 1e9 user units from `center`.
+    pub fn new(center: impl Into<Point>, radius: f64) -> Self {
+        Self { center: center.into(), radius, amount: 0.7, sharp: false }
+    }
+
+    /// Sets the amount, −1 to 1: the scale at the centre is 2^amount, so that negative amounts pinch.
+    #[must_use]
+    pub fn amount(self, amount: f64) -> Self {
+        Self { amount, ..self }
+    }
+
+    /// Ends with a kink at the rim. A sharp pinch is the exact inverse of the sharp bulge.
+    #[must_use]
+    pub fn sharp(self, sharp: bool) -> Self {
+        Self { sharp, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for an amount or a radius out of range.
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { center, sharp, .. } = *self;
+        let ln_m = within("amount", self.amount, -1.0, 1.0)? * LN_2;
+        let radius = within("radius", self.radius, 1e-6, 1e9)?;
+        Ok(Built::new(Arc::new(BulgeMap(Inner { center, radius, ln_m, sharp }))))
+    }
+}
 
 static INFO: Info = Info::new("bulge", "blow up the middle, or pinch it")
     .group("Classics")
     .about("Pushes artwork away from a centre, most in the middle and not at all at the radius; with a negative amount draws it in \
-(pinch). Outside the radius nothing moves. --edge soft runs out without a kink at the rim; --edge sharp is rounder, and its pinch \
+(pinch). Outside the radius nothing moves. --edge soft ends without a kink at the rim; --edge sharp is rounder, and its pinch \
 undoes its bulge exactly.")
     .source("elementary; see the formulas at the top of deform/bulge.rs")
     .params(&[
         Param::number("amount", "At 1 the middle is twice as large, at -1 half as large (pinch).")
             .default("0.7")
             .within(-1.0, 1.0),
-        Param::new("center", Kind::Point, "The point that everything is pushed away from.").default("50%,50%"),
-        Param::length("radius", Axis::Diagonal, "Where the bulge ends; 50% reaches the artwork's corners.")
+        Param::new("center", Kind::Point, "Centre of the bulge.").default("50%,50%"),
+        Param::length("radius", Axis::Diagonal, "Radius at which the bulge ends; 50% reaches the artwork's corners.")
             .default("50%")
             .within(1e-6, 1e9)
             .slider(1.0, 1000.0),
-        Param::new("edge", Kind::Choice(&["soft", "sharp"]), "How it ends at the rim: without a kink, or with one.")
+        Param::new("edge", Kind::Choice(&["soft", "sharp"]), "Edge at the rim: without a kink, or with one.")
             .default("soft"),
     ])
     .demo(&[("amount", "1"), ("radius", "40")])
@@ -70,22 +119,21 @@ undoes its bulge exactly.")
         },
     ]);
 
-impl Deformation for Bulge {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        Ok(Built::new(Arc::new(BulgeMap(Inner {
-            center: s.point("center")?,
-            radius: s.number("radius")?,
-            ln_m: s.number("amount")? * LN_2,
-            sharp: s.choice("edge")? == "sharp",
-        }))))
+        let (center, radius, amount) = (s.point("center")?, s.number("radius")?, s.number("amount")?);
+        Bulge { center, radius, amount, sharp: s.choice("edge")? == "sharp" }.build()
     }
 }
 
-/// The bulge as it is inside the disc, continued outside.
+/// The formula inside the disc, continued outside.
 #[derive(Debug, Clone, Copy)]
 struct Inner {
     center: Point,
@@ -169,7 +217,7 @@ impl SoftInverse {
         // g(q) = ln q + 2·ln m·(1 − q)² − ln q' grows from −∞ to above 0 over (0, 1].
         let (mut lo, mut hi) = (0.0, 1.0);
         let mut q = (target * (-2.0 * ln_m * (1.0 - target).powi(2)).exp()).clamp(f64::MIN_POSITIVE, 1.0);
-        /// Newton doubles the digits; halving, where it must step in, needs a few more.
+        /// Newton doubles the digits each time; bisection steps need a few more.
         const ROUNDS: usize = 60;
         for _ in 0..ROUNDS {
             let g = (q / target).ln() + 2.0 * ln_m * (1.0 - q).powi(2);
@@ -226,12 +274,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Bulge);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Arc<dyn Map> {
-        Bulge.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap().map
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).unwrap().map
     }
 
     #[test]

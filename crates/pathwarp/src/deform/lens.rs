@@ -1,4 +1,4 @@
-//! Lenses: from one way in which lenses draw the world to another, as fisheye pictures are made and straightened.
+//! Changes of lens, as fisheye pictures are made and straightened.
 //!
 //! A ray that makes the angle θ with the axis meets the picture at a distance r = f·ρ(θ) from its middle:
 //!
@@ -16,14 +16,118 @@
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Kind, Param, Settings};
-use kurbo::{Affine, Point};
+use kurbo::{Affine, Point, Rect};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-pub(super) struct Lens;
+/// A change of lens: artwork drawn by one [`LensModel`], redrawn by another, as fisheye pictures are made and straightened.
+///
+/// r' = f'·ρ'(ρ⁻¹(r/f)) about the centre, ρ and ρ' being the two models. The focal lengths f and f' follow from the field of
+/// view across the diagonal of the artwork's box.
+///
+/// ```
+/// use pathwarp::{deform::{Lens, LensModel}, kurbo::{Point, Rect}, map::Map};
+///
+/// let fisheye = Lens::new(Rect::new(0.0, 0.0, 100.0, 100.0)).to(LensModel::Equidistant).field(90.0).build()?;
+/// let corner = Point::new(100.0, 0.0);
+/// assert!(fisheye.map.point(corner).distance(corner) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    frame: Rect,
+    center: Point,
+    from: LensModel,
+    to: LensModel,
+    field: f64,
+    keep_middle: bool,
+}
+
+impl Lens {
+    /// Creates the change from a rectilinear to an equisolid lens that looks at the middle of the artwork's box with a field
+    /// of view of 110° and keeps the corners in place.
+    #[must_use]
+    pub fn new(frame: Rect) -> Self {
+        let (from, to) = (LensModel::Rectilinear, LensModel::Equisolid);
+        Self { frame, center: frame.center(), from, to, field: 110.0, keep_middle: false }
+    }
+
+    /// Sets the lens that the artwork is drawn with.
+    #[must_use]
+    pub fn from(self, from: LensModel) -> Self {
+        Self { from, ..self }
+    }
+
+    /// Sets the lens to redraw it with.
+    #[must_use]
+    pub fn to(self, to: LensModel) -> Self {
+        Self { to, ..self }
+    }
+
+    /// Sets the angle of view across the diagonal of the artwork's box, 0.01 to 359 degrees. Rectilinear and orthographic
+    /// lenses see less than 180.
+    #[must_use]
+    pub fn field(self, field: f64) -> Self {
+        Self { field, ..self }
+    }
+
+    /// Sets the point that the lens looks at.
+    #[must_use]
+    pub fn center(self, center: impl Into<Point>) -> Self {
+        Self { center: center.into(), ..self }
+    }
+
+    /// Keeps the scale in the middle instead of the position of the corners.
+    #[must_use]
+    pub fn keep_middle(self, keep_middle: bool) -> Self {
+        Self { keep_middle, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a field of view that a lens cannot see, or artwork without size.
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { frame, center, from, to, .. } = *self;
+        let half = within("field", self.field, 0.01, 359.0)?.to_radians() / 2.0;
+        let shown = || format!("{:.6}", 2.0 * half.to_degrees());
+        for (name, lens) in [("from", from), ("to", to)] {
+            if half >= lens.most() {
+                let most = 2.0 * lens.most().to_degrees();
+                let problem = format!("is more than the lens of `{name}` can see: it must be below {most} degrees");
+                return Err(Error::usage("field", shown(), problem));
+            }
+        }
+        let corner = 0.5 * frame.width().hypot(frame.height());
+        if corner <= 0.0 {
+            return Err(Error::usage("field", shown(), "spans artwork that has no size"));
+        }
+        let f = corner / from.radius(half);
+        let f1 = if self.keep_middle { f } else { corner / to.radius(half) };
+        let mut built = Built::new(Arc::new(LensMap { center, from, to, f, f1 }));
+        built.note(format!("focal lengths {f:.6} and {f1:.6}"));
+        Ok(built)
+    }
+}
+
+/// The way a lens draws a ray at the angle θ from its axis: at the distance f·ρ(θ) from the middle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LensModel {
+    /// ρ = tan θ: a pinhole; straight lines stay straight.
+    Rectilinear,
+    /// ρ = 2·tan(θ/2): small shapes are kept.
+    Stereographic,
+    /// ρ = θ: angles from the axis to scale.
+    Equidistant,
+    /// ρ = 2·sin(θ/2): areas to scale.
+    Equisolid,
+    /// ρ = sin θ.
+    Orthographic,
+}
 
 const LENSES: &[&str] = &["rectilinear", "stereographic", "equidistant", "equisolid", "orthographic"];
 
@@ -40,11 +144,11 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)")
         Param::angle("field", "The angle of view across the diagonal of the artwork's box.")
             .default("110")
             .within(0.01, 359.0),
-        Param::new("center", Kind::Point, "Where the lens looks at.").default("50%,50%"),
+        Param::new("center", Kind::Point, "The point the lens looks at.").default("50%,50%"),
         Param::new(
             "keep",
             Kind::Choice(&["corners", "middle"]),
-            "What keeps its size: the corners stay in place (corners), or the scale in the middle is kept (middle).",
+            "Keep the corners in place (corners), or the scale in the middle (middle).",
         )
         .default("corners"),
     ])
@@ -84,53 +188,28 @@ lenses, IEEE PAMI 28, 2006, equations (1)-(5)")
         },
     ]);
 
-impl Deformation for Lens {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let (from, to) = (Kernel::named(s.choice("from")?), Kernel::named(s.choice("to")?));
-        let half = s.number("field")?.to_radians() / 2.0;
-        for (name, lens) in [("from", from), ("to", to)] {
-            if half >= lens.most() {
-                let most = 2.0 * lens.most().to_degrees();
-                return Err(Error::usage(
-                    "field",
-                    format!("{:.6}", 2.0 * half.to_degrees()),
-                    format!("is more than the lens of --{name} can see: it must be below {most} degrees"),
-                ));
-            }
-        }
-        let rect = s.frame().rect;
-        let corner = 0.5 * rect.width().hypot(rect.height());
-        if corner <= 0.0 {
-            return Err(Error::usage(
-                "field",
-                format!("{:.6}", 2.0 * half.to_degrees()),
-                "spans artwork that has no size",
-            ));
-        }
-        let f = corner / from.radius(half);
-        let f1 = if s.choice("keep")? == "middle" { f } else { corner / to.radius(half) };
-        let map = LensMap { center: s.point("center")?, from, to, f, f1 };
-        let mut built = Built::new(Arc::new(map));
-        built.note(format!("focal lengths {f:.6} and {f1:.6}"));
-        Ok(built)
+        let lens = Lens {
+            frame: s.frame().rect,
+            center: s.point("center")?,
+            from: LensModel::named(s.choice("from")?),
+            to: LensModel::named(s.choice("to")?),
+            field: s.number("field")?,
+            keep_middle: s.choice("keep")? == "middle",
+        };
+        lens.build()
     }
 }
 
-/// How a lens draws.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kernel {
-    Rectilinear,
-    Stereographic,
-    Equidistant,
-    Equisolid,
-    Orthographic,
-}
-
-impl Kernel {
+impl LensModel {
     fn named(name: &str) -> Self {
         match name {
             "stereographic" => Self::Stereographic,
@@ -141,7 +220,7 @@ impl Kernel {
         }
     }
 
-    /// The angle it reaches.
+    /// Returns the largest angle θ that the lens can see.
     fn most(self) -> f64 {
         if matches!(self, Self::Rectilinear | Self::Orthographic) { PI / 2.0 } else { PI }
     }
@@ -172,24 +251,24 @@ impl Kernel {
     }
 }
 
-/// The map itself.
+/// The map.
 #[derive(Debug, Clone, Copy)]
 struct LensMap {
     center: Point,
-    from: Kernel,
-    to: Kernel,
+    from: LensModel,
+    to: LensModel,
     /// Focal lengths.
     f: f64,
     f1: f64,
 }
 
 impl LensMap {
-    /// Where the source's lens, or the other one, ends; infinite if neither does.
+    /// Returns the distance from the centre at which either lens ends; infinite if neither does.
     fn reach(&self) -> f64 {
         let most = self.from.most().min(self.to.most());
         let ends = match self.from {
-            Kernel::Rectilinear => false,
-            Kernel::Stereographic => most < PI,
+            LensModel::Rectilinear => false,
+            LensModel::Stereographic => most < PI,
             _ => true,
         };
         if ends { self.f * self.from.radius(most) } else { f64::INFINITY }
@@ -198,7 +277,7 @@ impl LensMap {
 
 impl Formula for LensMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        /// ρ and ρ⁻¹ are r·(1 + O(r²)): nearer to the middle the scale is f'/f to the last bit.
+        /// ρ and ρ⁻¹ are r·(1 + O(r²)): closer to the middle the scale is f'/f to the last bit.
         const TINY: f64 = 1e-9;
         let (u, v) = (x - self.center.x, y - self.center.y);
         let r = u.hypot(v) / self.f;
@@ -238,12 +317,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Lens);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Lens.build_from(&Args::from_pairs(pairs), &check::frame())
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     #[test]
@@ -275,7 +354,7 @@ mod tests {
     #[test]
     fn too_wide_a_field_is_refused_and_the_edge_of_a_lens_is_an_edge() {
         let e = build(&[("field", "180")]).err().unwrap().to_string();
-        assert!(e.contains("--from") && e.contains("180 degrees"), "{e}");
+        assert!(e.contains("`from`") && e.contains("180 degrees"), "{e}");
         let m = build(&[("from", "equidistant"), ("to", "rectilinear"), ("field", "160")]).unwrap().map;
         let art = crate::Outline::from_svg("M50,50 H200").unwrap();
         assert!(crate::refit::warp_path(&art, &*m, &crate::refit::Options::new(0.1)).is_err());

@@ -12,31 +12,119 @@
 //! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
 //! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
 
-use super::built::{Built, Overlay, Role};
+use super::built::{Built, Role};
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors;
-use crate::error::{Error, GeometryError};
+use crate::error::{Error, GeometryError, within};
 use crate::map::{AffineMap, Formula, Real};
 use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Affine, BezPath, Point, Vec2};
+use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
-pub(super) struct Mls;
+/// Moving least squares: points of the artwork are moved, everything else follows as stiffly as asked.
+///
+/// ```
+/// use pathwarp::{deform::Mls, kurbo::Point, map::Map};
+///
+/// let bend = Mls::new([((10.0, 20.0), (10.0, 20.0)), ((50.0, 50.0), (60.0, 45.0)), ((80.0, 10.0), (80.0, 15.0))]).build()?;
+/// assert_eq!(bend.map.point(Point::new(50.0, 50.0)), Point::new(60.0, 45.0));
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mls {
+    handles: Vec<(Point, Point)>,
+    stiffness: Stiffness,
+    alpha: f64,
+    /// Size of the preview's crosses.
+    mark: f64,
+}
+
+impl Mls {
+    /// Creates the map that takes the first point of each pair to the second; equal points stay in place. At most 1000
+    /// pairs, whose first points are distinct.
+    pub fn new(pairs: impl IntoIterator<Item = (impl Into<Point>, impl Into<Point>)>) -> Self {
+        let handles: Vec<(Point, Point)> = pairs.into_iter().map(|(p, q)| (p.into(), q.into())).collect();
+        let points = handles.iter().flat_map(|h| [h.0, h.1]).map(|p| Rect::from_points(p, p));
+        let bounds = points.reduce(|a, b| a.union(b)).unwrap_or_default();
+        Self { handles, stiffness: Stiffness::Rigid, alpha: 1.0, mark: bounds.width().hypot(bounds.height()) / 100.0 }
+    }
+
+    /// Sets the kind of local map. Default: rigid.
+    #[must_use]
+    pub fn stiffness(self, stiffness: Stiffness) -> Self {
+        Self { stiffness, ..self }
+    }
+
+    /// Sets α, 1 to 4: the influence of a pair falls off with this power of the squared distance. Default: 1.
+    #[must_use]
+    pub fn alpha(self, alpha: f64) -> Self {
+        Self { alpha, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// No pairs or too many, first points that coincide, or all on one line for [`Stiffness::Affine`].
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { handles, stiffness, .. } = self;
+        let (stiffness, alpha) = (*stiffness, within("alpha", self.alpha, 1.0, 4.0)?);
+        let from: Vec<Point> = handles.iter().map(|h| h.0).collect();
+        if handles.len() > MAX_HANDLES {
+            let problem = format!("pairs are too many: at most {MAX_HANDLES}");
+            return Err(Error::usage("pair", handles.len().to_string(), problem));
+        }
+        anchors::distinct("the points to be moved", &from)?;
+        let mut built = Built::new(match handles[..] {
+            [] => return Err(Error::missing("pair", "a point and its image, such as 10,20:15,20")),
+            [(p, q)] => Arc::new(AffineMap(Affine::translate(q - p))),
+            [(p, q), (p1, q1)] if stiffness == Stiffness::Similar => {
+                // Distinct points always have a similitude.
+                Arc::new(AffineMap::similitude(p, p1, q, q1).unwrap_or(AffineMap::IDENTITY))
+            }
+            _ => {
+                if stiffness == Stiffness::Affine && on_a_line(&from) {
+                    return Err(GeometryError::Collinear {
+                        path: "the points to be moved (`kind affine`)".into(),
+                        which: [1, 2, handles.len()],
+                        points: from.into_iter().take(8).collect(),
+                    }
+                    .into());
+                }
+                Arc::new(MlsMap { handles: handles.clone(), stiffness, alpha })
+            }
+        });
+        built.overlay(Role::Base, crosses(handles.iter().map(|h| h.0), self.mark));
+        built.overlay(Role::Target, crosses(handles.iter().map(|h| h.1), self.mark));
+        Ok(built)
+    }
+}
+
+/// The kind of map that moving least squares fits at every point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stiffness {
+    /// Rigid motions: shapes are kept as well as possible.
+    Rigid,
+    /// Similitudes: shapes may also grow and shrink.
+    Similar,
+    /// Affine maps: shapes may also shear. Needs three pairs whose first points are not on one line.
+    Affine,
+}
 
 static INFO: Info = Info::new("mls", "move points of the artwork, and let the rest follow")
     .group("Points")
-    .about("Say where points of the artwork are to go; everything else follows smoothly, most where it is near. --pair moves a \
+    .about("Moves points of the artwork; everything else follows smoothly, most where it is near. --pair moves a \
 point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \
 it can, similar also lets them grow and shrink, affine lets them shear as well (it needs three pairs that are not on one line).")
     .source("S. Schaefer, T. McPhail, J. Warren, Image deformation using moving least squares, SIGGRAPH 2006")
     .params(&[
-        Param::new("pair", Kind::Text("X,Y:X,Y"), "A point of the artwork and where it goes; may be given many times.")
+        Param::new("pair", Kind::Text("X,Y:X,Y"), "A point of the artwork and its image; may be given many times.")
             .repeated(),
         Param::new("pin", Kind::Text("X,Y"), "A point that stays; may be given many times.").repeated(),
         Param::path("from", "A path whose anchors are moved, in order, to those of --to."),
         Param::path("to", "A path with as many anchors as --from."),
-        Param::new("kind", Kind::Choice(&["rigid", "similar", "affine"]), "How stiff it is.").default("rigid"),
-        Param::number("alpha", "How local: the influence of a pair falls off with this power of the squared distance.")
+        Param::new("kind", Kind::Choice(&["rigid", "similar", "affine"]), "Stiffness of the artwork.").default("rigid"),
+        Param::number("alpha", "Locality: the influence of a pair falls off with this power of the squared distance.")
             .default("1")
             .within(1.0, 4.0),
     ])
@@ -82,58 +170,25 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
 
 const THREE: super::entry::Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")];
 
-/// More handles than this would make every point a day's work.
-const MOST: usize = 1000;
+/// Limit on handles: every point of the artwork visits all of them.
+const MAX_HANDLES: usize = 1000;
 
-impl Deformation for Mls {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let kind = match s.choice("kind")? {
+        let stiffness = match s.choice("kind")? {
             "similar" => Stiffness::Similar,
             "affine" => Stiffness::Affine,
             _ => Stiffness::Rigid,
         };
-        let handles = handles(s)?;
-        let from: Vec<Point> = handles.iter().map(|h| h.0).collect();
-        if handles.len() > MOST {
-            return Err(Error::usage("pair", handles.len().to_string(), format!("pairs are too many: at most {MOST}")));
-        }
-        anchors::distinct("the points to be moved", &from)?;
-        let mut built = Built::new(match handles[..] {
-            [] => {
-                return Err(Error::Missing {
-                    param: "--pair".into(),
-                    hint: "a point and where it goes, such as 10,20:15,20".into(),
-                });
-            }
-            [(p, q)] => Arc::new(AffineMap(Affine::translate(q - p))),
-            [(p, q), (p1, q1)] if kind == Stiffness::Similar => {
-                // The points are distinct.
-                Arc::new(AffineMap::similitude(p, p1, q, q1).unwrap_or(AffineMap::IDENTITY))
-            }
-            _ => {
-                if kind == Stiffness::Affine && on_a_line(&from) {
-                    return Err(GeometryError::Collinear {
-                        path: "the points to be moved (--kind affine)".into(),
-                        which: [1, 2, handles.len()],
-                        points: from.into_iter().take(8).collect(),
-                    }
-                    .into());
-                }
-                Arc::new(MlsMap { handles: handles.clone(), kind, alpha: s.number("alpha")? })
-            }
-        });
-        let crosses = |pick: fn(&(Point, Point)) -> Point| {
-            crosses(handles.iter().map(pick), s.frame().extent(Axis::Diagonal) / 100.0)
-        };
-        built.explanation.overlays = vec![
-            Overlay { role: Role::Base, path: crosses(|h| h.0) },
-            Overlay { role: Role::Target, path: crosses(|h| h.1) },
-        ];
-        Ok(built)
+        let mark = s.frame().extent(Axis::Diagonal) / 100.0;
+        Mls { handles: handles(s)?, stiffness, alpha: s.number("alpha")?, mark }.build()
     }
 }
 
@@ -163,14 +218,14 @@ fn handles(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
         }
         (None, None) => {}
         (from, _) => {
-            let (here, missing) = if from.is_some() { ("--from", "--to") } else { ("--to", "--from") };
-            return Err(Error::Missing { param: missing.into(), hint: format!("{here} needs it beside it") });
+            let (given, missing) = if from.is_some() { ("from", "to") } else { ("to", "from") };
+            return Err(Error::missing(missing, format!("`{given}` goes with it")));
         }
     }
     Ok(out)
 }
 
-/// Whether all points lie on one line, to the rounding that the affine fit could live with.
+/// Returns `true` if all points lie on one line, up to the rounding that the affine fit tolerates.
 fn on_a_line(p: &[Point]) -> bool {
     let n = p.len() as f64;
     let mean = p.iter().fold(Vec2::ZERO, |s, q| s + q.to_vec2()) / n;
@@ -193,18 +248,11 @@ fn crosses(points: impl Iterator<Item = Point>, size: f64) -> BezPath {
     out
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Stiffness {
-    Rigid,
-    Similar,
-    Affine,
-}
-
-/// The map itself, for two handles or more.
+/// The map, for two handles or more.
 #[derive(Debug, Clone)]
 struct MlsMap {
     handles: Vec<(Point, Point)>,
-    kind: Stiffness,
+    stiffness: Stiffness,
     alpha: f64,
 }
 
@@ -228,7 +276,7 @@ impl MlsMap {
     fn matrix<S: Real>(&self, pp: [S; 3], qp: Matrix<S>) -> Matrix<S> {
         let [xx, xy, yy] = pp;
         let [[a, b], [c, d]] = qp;
-        if self.kind == Stiffness::Affine {
+        if self.stiffness == Stiffness::Affine {
             let det = xx * yy - xy * xy;
             return [
                 [(a * yy - b * xy) / det, (b * xx - a * xy) / det],
@@ -237,12 +285,12 @@ impl MlsMap {
         }
         // Σ q̂·conj(p̂).
         let (re, im) = (a + d, c - b);
-        let n = if self.kind == Stiffness::Rigid { re.hypot(im) } else { xx + yy };
+        let n = if self.stiffness == Stiffness::Rigid { re.hypot(im) } else { xx + yy };
         let (re, im) = (re / n, im / n);
         [[re, -im], [im, re]]
     }
 
-    /// The sums with these weights, the places counted from p* and q*; `only` leaves handle k out.
+    /// Returns the sums with these weights, relative to p* and q*; `leave` omits handle k.
     fn sums<S: Real>(
         &self,
         weights: &dyn Fn(Point) -> S,
@@ -272,7 +320,7 @@ impl MlsMap {
 
 impl Formula for MlsMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        /// Squared distance, against the nearest handle's distance from the next: nearer counts as on the handle.
+        /// Squared distance below which a point counts as on the handle, relative to that of the next handle.
         const ON: f64 = 1e-28;
         let zero = S::from(0.0);
         let v = Point::new(x.value(), y.value());
@@ -292,7 +340,7 @@ impl Formula for MlsMap {
             let ratio = S::from(d2) / (dx * dx + dy * dy);
             if self.alpha == 1.0 { ratio } else { ratio.powf(self.alpha) }
         };
-        // Means, counted from the nearest handle.
+        // Means, relative to the nearest handle.
         let (mut w, mut p, mut q) = (zero, [zero; 2], [zero; 2]);
         for (pi, qi) in &self.handles {
             let wi = weight(*pi);
@@ -318,12 +366,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Mls);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Mls.build_from(&Args::from_pairs(pairs), &check::frame())
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     /// Continuous and finite with its derivative on, and next to, every handle.
@@ -375,12 +423,12 @@ mod tests {
     #[test]
     fn faults_are_named() {
         let fault = |pairs: &[(&str, &str)]| build(pairs).err().unwrap().to_string();
-        assert!(fault(&[]).contains("--pair is needed"));
+        assert!(fault(&[]).contains("pair is needed"));
         assert!(fault(&[("pair", "1,2")]).contains("colon"));
         assert!(fault(&[("pin", "1,2"), ("pair", "1,2:3,4")]).contains("coincide"));
         assert!(fault(&[("pin", "1,1"), ("pin", "2,2"), ("pin", "3,3"), ("kind", "affine")]).contains("one line"));
         assert!(fault(&[("pin", "1,1"), ("pin", "9,1"), ("kind", "affine")]).contains("one line"));
         assert!(fault(&[("from", "0,0 1,1"), ("to", "0,0 1,1 2,2")]).contains("3 anchors"));
-        assert!(fault(&[("from", "0,0 1,1")]).contains("--to is needed"));
+        assert!(fault(&[("from", "0,0 1,1")]).contains("to is needed"));
     }
 }

@@ -16,17 +16,88 @@ use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors;
 use crate::error::{Error, GeometryError, show};
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real, bernstein::Scaled};
-use crate::param::{Kind, Param, Settings};
-use kurbo::{Affine, Point, Vec2};
+use crate::outline::Outline;
+use crate::param::{Kind, NamedPath, Param, Settings};
+use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
-pub(super) struct Mobius;
+/// A Möbius map w = (a·z + b)/(c·z + d) of complex numbers z = x + iy. Circles become circles, angles are kept.
+///
+/// ```
+/// use pathwarp::{deform::Mobius, kurbo::{Point, Rect}, map::Map};
+///
+/// let map = Mobius::by_pole(Rect::new(0.0, 0.0, 100.0, 100.0), (50.0, 250.0)).build()?.map;
+/// assert!(map.point(Point::new(50.0, 150.0)).distance(Point::new(50.0, 250.0)) < 1e-11);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mobius {
+    frame: Rect,
+    /// a, b, c, d.
+    m: [Vec2; 4],
+    /// The parameter to blame for a map that does not exist.
+    param: &'static str,
+    overlays: Vec<Overlay>,
+}
+
+impl Mobius {
+    /// Creates the map that takes `pole` to infinity and leaves the middle of the artwork's box as it is.
+    pub fn by_pole(frame: Rect, pole: impl Into<Point>) -> Self {
+        Self { frame, m: by_pole(frame.center(), pole.into()), param: "pole", overlays: Vec::new() }
+    }
+
+    /// Creates the map that takes three distinct points to three distinct points.
+    pub fn by_points(frame: Rect, from: [impl Into<Point>; 3], to: [impl Into<Point>; 3]) -> Self {
+        let (p, q) = (from.map(Into::into), to.map(Into::into));
+        let shown = |role, p: &[Point]| Overlay { role, path: Outline::from_points(p, false).to_bez_path(0.0) };
+        Self { frame, m: by_points(p, q), param: "to", overlays: vec![shown(Role::Base, &p), shown(Role::Target, &q)] }
+    }
+
+    /// Creates the map with the coefficients a, b, c, d; x is the real part, y the imaginary one.
+    #[must_use]
+    pub fn by_coefficients(frame: Rect, coefficients: [Vec2; 4]) -> Self {
+        Self { frame, m: coefficients, param: "coefficients", overlays: Vec::new() }
+    }
+
+    /// Builds the map. It is undefined within 2 % of the box's diagonal from the pole.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if ad = bc: points that coincide, or a pole in the middle of the box.
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { frame, m, .. } = *self;
+        let [a, b, c, d] = m;
+        let det = mul(a, d) - mul(b, c);
+        let size = mul(a, d).hypot() + mul(b, c).hypot();
+        if !(det.hypot() > 1e-12 * size && det.hypot().is_finite()) {
+            return Err(Error::usage(self.param, "", "gives no Möbius map: everything would go to one point"));
+        }
+        // Artwork that is a point still needs a scale.
+        let diagonal = frame.width().hypot(frame.height()).max(1e-9);
+        let explanation = Explanation { overlays: self.overlays.clone(), ..Explanation::default() };
+        let pole = (c != Vec2::ZERO).then(|| div(-d, c).to_point());
+        let near = pole.filter(|p| p.distance(frame.center()) < FAR * diagonal);
+        let Some(pole) = near else {
+            let (a, b) = (div(a, d), div(b, d));
+            let m = Affine::new([a.x, a.y, -a.y, a.x, b.x, b.y]);
+            return Ok(Built::new(Arc::new(AffineMap(m))).explained(explanation));
+        };
+        let mut built = Built::new(Arc::new(MobiusMap { m, clear: CLEAR * diagonal })).explained(explanation);
+        built.note(format!("pole at {}", show(pole)));
+        if frame.contains(pole) {
+            built.warn(format!(
+                "mobius: the pole {} lies within the artwork's box: shapes around it are turned inside out",
+                show(pole)
+            ));
+        }
+        Ok(built)
+    }
+}
 
 static INFO: Info = Info::new("mobius", "take circles to circles, by a pole, three points or coefficients")
     .group("Classics")
     .about("Straight lines become arcs of circles, circles stay circles, and angles are kept: small squares stay small squares. The \
-simplest way in is the pole, the point that goes to infinity: artwork grows towards it and shrinks away from it. Or say where three \
-points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d), z = x + iy.\n\nArtwork must keep clear of the pole.")
+simplest way in is the pole, the point that goes to infinity: artwork grows towards it and shrinks away from it. Or give three \
+points and their images (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d), z = x + iy.\n\nArtwork must keep clear of the pole.")
     .source("L. Ahlfors, Complex Analysis, 3rd edition 1979, section 3.3")
     .params(&[
         Param::new(
@@ -35,7 +106,7 @@ points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d),
             "The point that goes to infinity; the middle of the artwork stays as it is. Default: below the middle, 1.6 diagonals away.",
         ),
         Param::path("from", "Three anchors in the source; with --to, instead of --pole."),
-        Param::path("to", "Three anchors where they are to land."),
+        Param::path("to", "Three anchors: the images of those of --from."),
         Param::new("coefficients", Kind::Numbers(8), "Real and imaginary parts of a, b, c, d; instead of --pole."),
     ])
     .demo(&[("pole", "60,250")])
@@ -73,78 +144,54 @@ points go (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d),
         },
     ]);
 
-/// The artwork must keep this share of the frame's diagonal away from the pole.
+/// Distance from the pole within which the map is undefined, as a share of the frame's diagonal.
 const CLEAR: f64 = 0.02;
-/// How far away the pole is unless it is given, in diagonals of the frame.
+/// Default distance of the pole, in diagonals of the frame.
 const DEFAULT_DISTANCE: f64 = 1.6;
 /// A pole farther away than this many diagonals is rounding: the map is a similitude.
 const FAR: f64 = 1e12;
 
-impl Deformation for Mobius {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let frame = s.frame().rect;
-        let mut overlays = Vec::new();
-        let (m, named) = match (s.numbers_if("coefficients")?, s.path_if("from")?, s.path_if("to")?) {
+        let mobius = match (s.numbers_if("coefficients")?, s.path_if("from")?, s.path_if("to")?) {
             (Some(v), None, None) if !s.given("pole") => {
-                (std::array::from_fn(|i| Vec2::new(v[2 * i], v[2 * i + 1])), "coefficients")
+                Mobius::by_coefficients(frame, std::array::from_fn(|i| Vec2::new(v[2 * i], v[2 * i + 1])))
             }
             (None, Some(from), Some(to)) if !s.given("pole") => {
-                let (p, q) = (three(&from)?, three(&to)?);
-                for (role, path) in [(Role::Base, &from), (Role::Target, &to)] {
-                    overlays.push(Overlay { role, path: path.outline.to_bez_path(0.0) });
-                }
-                (by_points(p, q), "to")
+                let shown = |role, path: &NamedPath| Overlay { role, path: path.outline.to_bez_path(0.0) };
+                let overlays = vec![shown(Role::Base, &from), shown(Role::Target, &to)];
+                Mobius { overlays, ..Mobius::by_points(frame, three(&from)?, three(&to)?) }
             }
             (None, None, None) => {
                 let below = Vec2::new(0.0, DEFAULT_DISTANCE * frame.width().hypot(frame.height()));
                 let pole = if s.given("pole") { s.point("pole")? } else { frame.center() + below };
-                (by_pole(frame.center(), pole), "pole")
+                Mobius::by_pole(frame, pole)
             }
             (Some(_), ..) => {
-                return Err(Error::usage("coefficients", "", "are the whole map: leave --pole, --from and --to away"));
+                return Err(Error::usage("coefficients", "", "are the whole map: omit `pole`, `from` and `to`"));
             }
             (None, Some(_), Some(_)) => {
-                return Err(Error::usage("pole", "", "follows from --from and --to: leave it away"));
+                return Err(Error::usage("pole", "", "follows from `from` and `to`: omit it"));
             }
             (None, from, _) => {
-                let (here, missing) = if from.is_some() { ("--from", "--to") } else { ("--to", "--from") };
-                return Err(Error::Missing { param: missing.into(), hint: format!("{here} needs it beside it") });
+                let (given, missing) = if from.is_some() { ("from", "to") } else { ("to", "from") };
+                return Err(Error::missing(missing, format!("`{given}` goes with it")));
             }
         };
-        let [a, b, c, d] = m;
-        let det = mul(a, d) - mul(b, c);
-        let size = mul(a, d).hypot() + mul(b, c).hypot();
-        if !(det.hypot() > 1e-12 * size && det.hypot().is_finite()) {
-            return Err(Error::usage(named, "", "gives no Möbius map: everything would go to one point"));
-        }
-        // The diagonal, or something like it where the artwork is a point.
-        let diagonal = frame.width().hypot(frame.height()).max(1e-9);
-        let pole = (c != Vec2::ZERO).then(|| div(-d, c).to_point());
-        let near = pole.filter(|p| p.distance(frame.center()) < FAR * diagonal);
-        let Some(pole) = near else {
-            let (a, b) = (div(a, d), div(b, d));
-            let m = Affine::new([a.x, a.y, -a.y, a.x, b.x, b.y]);
-            return Ok(Built::new(Arc::new(AffineMap(m))).explained(Explanation { overlays, ..Explanation::default() }));
-        };
-        let mut built = Built::new(Arc::new(MobiusMap { m, clear: CLEAR * diagonal }));
-        built.explanation.overlays = overlays;
-        built.note(format!("pole at {}", show(pole)));
-        if frame.contains(pole) {
-            built.warn(format!(
-                "mobius: the pole {} lies within the artwork's box: shapes around it are turned inside out",
-                show(pole)
-            ));
-        }
-        Ok(built)
+        mobius.build()
     }
 }
 
 /// The three distinct anchors of a path.
-fn three(path: &crate::param::NamedPath) -> Result<[Point; 3], Error> {
+fn three(path: &NamedPath) -> Result<[Point; 3], Error> {
     let a = anchors::only_subpath(path, "three")?.anchors();
     let [p, q, r] = a[..] else {
         return Err(GeometryError::AnchorCount {
@@ -187,12 +234,12 @@ fn by_points(p: [Point; 3], q: [Point; 3]) -> [Vec2; 4] {
     [mul(d, e) - mul(b, g), mul(d, f) - mul(b, i), mul(a, g) - mul(c, e), mul(a, i) - mul(c, f)]
 }
 
-/// The map itself, with c ≠ 0.
+/// The map, with c ≠ 0.
 #[derive(Debug, Clone, Copy)]
 struct MobiusMap {
     /// a, b, c, d.
     m: [Vec2; 4],
-    /// Undefined nearer to the pole than this.
+    /// Distance from the pole within which the map is undefined.
     clear: f64,
 }
 
@@ -247,12 +294,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Mobius);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Mobius.build_from(&Args::from_pairs(pairs), &check::frame())
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     /// The circle through three points of the image holds all other points of the image.
@@ -289,7 +336,7 @@ mod tests {
         assert!(build(&[("pole", "50,50")]).is_err());
         let b = build(&[("pole", "50,80")]).unwrap();
         assert!(b.explanation.warnings[0].contains("pole 50,80"));
-        let art = crate::Outline::from_svg("M0,80 H100").unwrap();
+        let art = Outline::from_svg("M0,80 H100").unwrap();
         let e = crate::refit::warp_path(&art, &*b.map, &crate::refit::Options::new(0.1)).unwrap_err();
         assert!(e.to_string().contains("infinity at 4"), "{e}");
     }

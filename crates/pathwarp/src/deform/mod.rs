@@ -28,9 +28,23 @@ mod warp;
 mod wave;
 mod wordart;
 
+pub use affine::Affine;
+pub use bilinear::Bilinear;
 pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile};
+pub use bulge::Bulge;
 pub use entry::{Case, Deformation, Example, Gallery, Info, Law, Pairs};
+pub use expr::Expr;
+pub use lens::{Lens, LensModel};
+pub use mls::{Mls, Stiffness};
+pub use mobius::Mobius;
+pub use polar::Polar;
+pub use projective::Projective;
 pub use registry::Registry;
+pub use similitude::Similitude;
+pub use swirl::{Falloff, Swirl};
+pub use warp::Style;
+pub use wave::Wave;
+pub use wordart::TextShape;
 
 use std::sync::Arc;
 
@@ -41,23 +55,23 @@ pub(crate) fn builtin() -> Vec<Arc<dyn Deformation>> {
         Arc::new(envelope::Envelope),
         Arc::new(warp::Warp),
         Arc::new(wordart::WordArt),
-        Arc::new(bilinear::Bilinear),
+        Arc::new(bilinear::Entry),
         Arc::new(birational::BirationalDeformation),
         Arc::new(bend::Bend),
-        Arc::new(polar::Polar),
+        Arc::new(polar::Entry),
         Arc::new(ffd::Ffd),
         Arc::new(mesh::Mesh),
         Arc::new(triangle::Triangle),
-        Arc::new(mls::Mls),
-        Arc::new(projective::Projective),
+        Arc::new(mls::Entry),
+        Arc::new(projective::Entry),
         Arc::new(anamorph::Anamorph),
-        Arc::new(wave::Wave),
-        Arc::new(swirl::Swirl),
-        Arc::new(bulge::Bulge),
-        Arc::new(lens::Lens),
-        Arc::new(mobius::Mobius),
-        Arc::new(expr::Expr),
-        Arc::new(similitude::Similitude),
-        Arc::new(affine::AffineDeformation),
+        Arc::new(wave::Entry),
+        Arc::new(swirl::Entry),
+        Arc::new(bulge::Entry),
+        Arc::new(lens::Entry),
+        Arc::new(mobius::Entry),
+        Arc::new(expr::Entry),
+        Arc::new(similitude::Entry),
+        Arc::new(affine::Entry),
     ]
 }

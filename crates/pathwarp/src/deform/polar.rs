@@ -1,33 +1,167 @@
 //! Polar coordinates: a rectangle bent into a sector of a ring, or into the whole ring.
 //!
-//! Uprights become rays and levels become circles. With κ = sweep / width and x counted from the artwork's middle, the angle
+//! Verticals become rays and horizontals become circles. With κ = sweep / width and x counted from the artwork's middle, the angle
 //! from the vertical is φ = κ·x, and with y counted upwards from the inner edge the radius is
 //!
-//! - even: r = ρ + g·y, uprights are divided evenly; g = 1 unless both radii are given,
+//! - even: r = ρ + g·y, verticals are divided evenly; g = 1 unless both radii are given,
 //! - conformal: r = ρ·exp(κ·y), the complex exponential: angles are kept, heights grow with the radius.
 //!
 //! ρ = 1/κ gives the inner edge its own length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
 //! inner one. F = C + r·(sin φ, −cos φ) is computed from the image O of the artwork's middle, F = O + (r·sin φ, r(yₘ) − r +
 //! 2r·sin²(φ/2)), which loses nothing where the sweep is small and C far away. Inverse: r and φ from the distance to C and the
-//! direction, exact up to the ray opposite the middle. A whole turn meets itself there; what crosses it is cut and drawn on by a
-//! straight line, and the recipe warns of it. Elementary.
+//! direction, exact up to the ray opposite the middle. A whole turn meets itself there; artwork that crosses it is cut and joined
+//! by a straight line, and the recipe warns of it. Elementary.
 
 use super::built::{Built, Seam};
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Point, Vec2};
+use kurbo::{Point, Rect, Vec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-pub(super) struct Polar;
+/// Polar coordinates: a box bent into a sector of a ring, or into the whole ring.
+///
+/// Verticals become rays and horizontals become arcs about one centre: the angle from the vertical is φ = κ·x with κ =
+/// sweep/width, and the radius r = ρ + g·y, or ρ·exp(κ·y) if conformal, with y counted upwards from the inner edge.
+///
+/// ```
+/// use pathwarp::{deform::Polar, kurbo::{Point, Rect}, map::Map};
+///
+/// let ring = Polar::new(Rect::new(0.0, 0.0, 100.0, 100.0)).sweep(360.0).inner(10.0).outer(60.0).center((0.0, 0.0)).build()?;
+/// assert!(ring.map.point(Point::new(75.0, 0.0)).distance(Point::new(60.0, 0.0)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Polar {
+    frame: Rect,
+    sweep: f64,
+    inner: Option<f64>,
+    outer: Option<f64>,
+    turn: f64,
+    center: Option<Point>,
+    conformal: bool,
+}
+
+impl Polar {
+    /// Creates an arch of 60° whose inner edge keeps its length and whose middle stays in place.
+    #[must_use]
+    pub fn new(frame: Rect) -> Self {
+        Self { frame, sweep: 60.0, inner: None, outer: None, turn: 0.0, center: None, conformal: false }
+    }
+
+    /// Sets the angle that the artwork's width is bent into, −360 to 360 degrees; negative bends downwards.
+    #[must_use]
+    pub fn sweep(self, sweep: f64) -> Self {
+        Self { sweep, ..self }
+    }
+
+    /// Sets the radius of the inner edge, user units. Without it, the inner edge keeps its length.
+    #[must_use]
+    pub fn inner(self, inner: f64) -> Self {
+        Self { inner: Some(inner), ..self }
+    }
+
+    /// Sets the radius of the outer edge, user units. Without it, heights are kept.
+    #[must_use]
+    pub fn outer(self, outer: f64) -> Self {
+        Self { outer: Some(outer), ..self }
+    }
+
+    /// Sets an angle to turn the result by, degrees, clockwise on the screen.
+    #[must_use]
+    pub fn turn(self, turn: f64) -> Self {
+        Self { turn, ..self }
+    }
+
+    /// Sets the centre of the ring. Without it, the middle of the artwork stays in place.
+    #[must_use]
+    pub fn center(self, center: impl Into<Point>) -> Self {
+        Self { center: Some(center.into()), ..self }
+    }
+
+    /// Keeps angles: heights grow with the radius.
+    #[must_use]
+    pub fn conformal(self, conformal: bool) -> Self {
+        Self { conformal, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for radii that leave no ring, values that contradict each other, or artwork without width.
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { frame: rect, inner, outer, conformal, .. } = *self;
+        let sweep = within("sweep", self.sweep, -360.0, 360.0)?.to_radians();
+        for (name, radius) in [("inner", inner), ("outer", outer)] {
+            radius.map(|r| within(name, r, 0.0, 1e9)).transpose()?;
+        }
+        let degrees = sweep.to_degrees().to_string();
+        if sweep == 0.0 {
+            if inner.or(outer).is_some() || self.center.is_some() {
+                return Err(Error::usage("sweep", degrees, "bends nothing, so there is no radius and no centre"));
+            }
+            return Ok(Built::new(Arc::new(AffineMap::IDENTITY)));
+        }
+        let (width, height) = (rect.width(), rect.height());
+        if width <= 0.0 {
+            return Err(Error::usage("sweep", degrees, "cannot bend artwork that has no width"));
+        }
+        let (near, far) = self.radii(sweep)?;
+        let up = sweep.signum();
+        let mut map = PolarMap {
+            conformal,
+            up,
+            sweep: sweep.abs(),
+            k: sweep / width,
+            radius: up * near,
+            gain: if height > 0.0 && !conformal { (far - near) / height } else { 1.0 },
+            edge: if up > 0.0 { rect.y1 } else { rect.y0 },
+            middle: rect.center(),
+            to: rect.center(),
+            turn: Vec2::from_angle(self.turn.to_radians()),
+        };
+        if let Some(center) = self.center {
+            // The centre lies r(yₘ) below the image of the middle, before the turn.
+            map.to = center + map.turned(Vec2::new(0.0, -map.radius_at(map.middle.y)));
+        }
+        let mut built = Built::new(Arc::new(map));
+        if map.is_whole() {
+            let c = map.centre();
+            built.seam = Some(Seam { end: c, through: c + map.turned(Vec2::new(0.0, up)) });
+        }
+        built.note(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
+        Ok(built)
+    }
+
+    /// Returns the radii of the inner and outer edge.
+    fn radii(&self, sweep: f64) -> Result<(f64, f64), Error> {
+        let Self { frame, inner, outer, conformal, .. } = *self;
+        let (width, height) = (frame.width(), frame.height());
+        if conformal && outer.is_some() {
+            return Err(Error::usage("outer", "", "follows from `inner` and `sweep` with `spacing conformal`"));
+        }
+        let (near, far) = match (inner, outer) {
+            (None, None) => (width / sweep.abs(), width / sweep.abs() + height),
+            (Some(i), None) => (i, i + height),
+            (None, Some(o)) => (o - height, o),
+            (Some(i), Some(o)) => (i, o),
+        };
+        if near < 0.0 || far <= near && height > 0.0 || conformal && near == 0.0 {
+            let name = if outer.is_some() { "outer" } else { "inner" };
+            let problem = format!("leaves no ring: the inner radius would be {near:.6}, the outer one {far:.6}");
+            return Err(Error::usage(name, "", problem));
+        }
+        Ok((near, far))
+    }
+}
 
 static INFO: Info = Info::new("polar", "bend artwork into an arch or a whole ring")
     .group("Bends")
-    .about("Uprights become rays, levels become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
+    .about("Verticals become rays, horizontals become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
 --inner and --outer set the radii instead. A negative sweep bends downwards (a smile). The middle of the artwork stays where it is, \
-unless --center says where the centre lies. With --spacing conformal, squares stay squares: heights grow with the width.")
+unless --center gives the centre. With --spacing conformal, squares stay squares: heights grow with the width.")
     .source("elementary (polar coordinates; the complex exponential)")
     .params(&[
         Param::angle("sweep", "The angle that the artwork's width is bent into; negative bends downwards.")
@@ -39,12 +173,12 @@ unless --center says where the centre lies. With --spacing conformal, squares st
         Param::length("outer", Axis::X, "Radius of the outer edge. Default: so that heights are kept.")
             .within(0.0, 1e9)
             .slider(0.0, 500.0),
-        Param::angle("turn", "Turn the whole, clockwise on the screen.").default("0"),
-        Param::new("center", Kind::Point, "Where the rays meet. Default: so that the middle of the artwork stays."),
+        Param::angle("turn", "Turn the result, clockwise on the screen.").default("0"),
+        Param::new("center", Kind::Point, "Centre of the ring. Default: so that the middle of the artwork stays."),
         Param::new(
             "spacing",
             Kind::Choice(&["even", "conformal"]),
-            "How heights become radii: even, or conformal (angles are kept).",
+            "Spacing of the radii: even, or conformal (angles are kept).",
         )
         .default("even"),
     ])
@@ -86,71 +220,29 @@ const RING: super::entry::Pairs = &[("sweep", "360"), ("inner", "10"), ("outer",
 const SMILE: super::entry::Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
 const SMILE_AT_0: super::entry::Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
 
-impl Deformation for Polar {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let rect = s.frame().rect;
-        let sweep = s.number("sweep")?.to_radians();
-        let (inner, outer) = (s.number_if("inner")?, s.number_if("outer")?);
-        let conformal = s.choice("spacing")? == "conformal";
-        let degrees = sweep.to_degrees().to_string();
-        if sweep == 0.0 {
-            if inner.or(outer).is_some() || s.given("center") {
-                return Err(Error::usage("sweep", degrees, "bends nothing, so there is no radius and no centre"));
-            }
-            return Ok(Built::new(Arc::new(AffineMap::IDENTITY)));
-        }
-        let (width, height) = (rect.width(), rect.height());
-        if width <= 0.0 {
-            return Err(Error::usage("sweep", degrees, "cannot bend artwork that has no width"));
-        }
-        if conformal && outer.is_some() {
-            return Err(Error::usage("outer", "", "follows from --inner and --sweep with --spacing conformal"));
-        }
-        let (near, far) = match (inner, outer) {
-            (None, None) => (width / sweep.abs(), width / sweep.abs() + height),
-            (Some(i), None) => (i, i + height),
-            (None, Some(o)) => (o - height, o),
-            (Some(i), Some(o)) => (i, o),
+        let polar = Polar {
+            frame: s.frame().rect,
+            sweep: s.number("sweep")?,
+            inner: s.number_if("inner")?,
+            outer: s.number_if("outer")?,
+            turn: s.number("turn")?,
+            center: if s.given("center") { Some(s.point("center")?) } else { None },
+            conformal: s.choice("spacing")? == "conformal",
         };
-        if near < 0.0 || far <= near && height > 0.0 || conformal && near == 0.0 {
-            return Err(Error::usage(
-                if outer.is_some() { "outer" } else { "inner" },
-                "",
-                format!("leaves no ring: the inner radius would be {near:.6}, the outer one {far:.6}"),
-            ));
-        }
-        let up = sweep.signum();
-        let mut map = PolarMap {
-            conformal,
-            up,
-            sweep: sweep.abs(),
-            k: sweep / width,
-            radius: up * near,
-            gain: if height > 0.0 && !conformal { (far - near) / height } else { 1.0 },
-            edge: if up > 0.0 { rect.y1 } else { rect.y0 },
-            middle: rect.center(),
-            to: rect.center(),
-            turn: Vec2::from_angle(s.number("turn")?.to_radians()),
-        };
-        if s.given("center") {
-            // The centre lies r(yₘ) below the image of the middle, before the turn.
-            map.to = s.point("center")? + map.turned(Vec2::new(0.0, -map.radius_at(map.middle.y)));
-        }
-        let mut built = Built::new(Arc::new(map));
-        if map.is_whole() {
-            let c = map.centre();
-            built.seam = Some(Seam { end: c, through: c + map.turned(Vec2::new(0.0, up)) });
-        }
-        built.note(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
-        Ok(built)
+        polar.build()
     }
 }
 
-/// The map itself.
+/// The map.
 #[derive(Debug, Clone, Copy)]
 struct PolarMap {
     conformal: bool,
@@ -166,7 +258,7 @@ struct PolarMap {
     gain: f64,
     /// The inner edge's y.
     edge: f64,
-    /// The artwork's middle, and where it goes.
+    /// The artwork's middle and its image.
     middle: Point,
     to: Point,
     /// The unit vector that the x direction is turned to.
@@ -184,7 +276,7 @@ impl PolarMap {
         if self.conformal { (h * self.k).exp() * self.radius } else { h * self.gain + self.radius }
     }
 
-    /// Whether the turn is a whole one, but for rounding.
+    /// Returns `true` for a whole turn, up to rounding.
     fn is_whole(&self) -> bool {
         self.sweep > TAU * (1.0 - 1e-9)
     }
@@ -205,7 +297,7 @@ impl Formula for PolarMap {
         (a * t.x - b * t.y + self.to.x, a * t.y + b * t.x + self.to.y)
     }
 
-    /// The level that becomes the centre.
+    /// The horizontal that becomes the centre.
     fn creases(&self, out: &mut Creases) {
         if !self.conformal {
             let c = self.up * (self.radius + self.gain * self.edge);
@@ -222,7 +314,7 @@ impl Formula for PolarMap {
 #[derive(Debug, Clone, Copy)]
 struct Unrolled {
     ring: PolarMap,
-    /// Of a whole turn: the sign of the angles in the half that is meant, edges included.
+    /// Of a whole turn: the sign of the angles in this half, edges included.
     half: Option<f64>,
 }
 
@@ -286,12 +378,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Polar);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-        Polar.build_from(&Args::from_pairs(pairs), &check::frame())
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
     #[test]

@@ -3,15 +3,53 @@
 //! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
 //! Image Warping*, 1989, §2.2). Straight lines stay straight.
 
-use super::built::{Built, Explanation};
+use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::anchors;
+use crate::anchors::{self, FourToFour};
 use crate::error::Error;
 use crate::map::{AffineMap, Class, Map};
-use crate::param::{Param, Settings};
+use crate::param::{Frame, Param, Settings};
+use kurbo::Point;
 use std::sync::Arc;
 
-pub(super) struct Projective;
+/// The projective map that takes four points to four points: a picture in perspective. Straight lines stay straight.
+///
+/// (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs.
+///
+/// ```
+/// use pathwarp::{deform::Projective, kurbo::Point, map::Map};
+///
+/// let base = [(0.0, 100.0), (100.0, 100.0), (100.0, 0.0), (0.0, 0.0)];
+/// let floor = Projective::new(base, [(0.0, 100.0), (100.0, 100.0), (75.0, 0.0), (25.0, 0.0)]).build()?;
+/// assert!(floor.map.point(Point::new(50.0, 50.0)).distance(Point::new(50.0, 100.0 / 3.0)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Projective {
+    corners: FourToFour,
+}
+
+impl Projective {
+    /// Creates the map that takes the points `from` to the points `to`, in the order given.
+    pub fn new(from: [impl Into<Point>; 4], to: [impl Into<Point>; 4]) -> Self {
+        Self { corners: FourToFour::new(from.map(Into::into), to.map(Into::into)) }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`] if points coincide or three lie on a line, or if only one of the quadrilaterals is convex.
+    pub fn build(&self) -> Result<Built, Error> {
+        let FourToFour { from, to, frame } = self.corners;
+        self.corners.check()?;
+        let map = anchors::projective("target", from, to)?;
+        let map: Arc<dyn Map> = match map.class() {
+            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, &Frame::new(frame)))),
+            _ => Arc::new(map),
+        };
+        Ok(self.corners.shown_on(Built::new(map)))
+    }
+}
 
 static INFO: Info = Info::new("projective", "put artwork in perspective: four points to four points, lines stay straight")
     .group("Perspective and anamorphosis")
@@ -21,7 +59,7 @@ unless --base-as-drawn or --target-as-drawn say otherwise.")
     .source("P. Heckbert, Fundamentals of Texture Mapping and Image Warping, 1989, section 2.2")
     .params(&[
         Param::path("base", "Four anchors in the source. Default: the corners of the artwork's box."),
-        Param::path("target", "Four anchors where they are to land.").needed(),
+        Param::path("target", "Four anchors: the images of the base's.").needed(),
         Param::flag("base-as-drawn", "Take the Base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the Target's anchors in the order they were drawn."),
     ])
@@ -52,18 +90,15 @@ unless --base-as-drawn or --target-as-drawn say otherwise.")
         Case { args: &[("target", "0,100 100,100 75,0 25,0")], at: (100.0, 0.0), to: (75.0, 0.0), tolerance: 1e-12 },
     ]);
 
-impl Deformation for Projective {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let anchors::FourToFour { from, to, overlays } = anchors::four_to_four(s)?;
-        let map = anchors::projective("--target", from, to)?;
-        let map: Arc<dyn Map> = match map.class() {
-            Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
-            _ => Arc::new(map),
-        };
-        Ok(Built::new(map).explained(Explanation { overlays, ..Explanation::default() }))
+        Projective { corners: anchors::four_to_four(s)? }.build()
     }
 }

@@ -108,7 +108,7 @@ impl Deformation for Shaper {
                 return Err(Error::usage(
                     "net",
                     net[0].name.clone(),
-                    "cannot go with --shaper: one of them gives the net",
+                    "cannot go with `shaper`: one of them gives the net",
                 ));
             }
             (Some(path), _) => {
@@ -120,7 +120,7 @@ impl Deformation for Shaper {
                     return Err(Error::usage(
                         "net",
                         rows[0].name.clone(),
-                        "is taken as given; --bottom and --reverse-shaper go with --shaper",
+                        "is taken as given; `bottom` and `reverse-shaper` go with `shaper`",
                     ));
                 }
                 let net = from_rows(&rows)?;
@@ -129,8 +129,8 @@ impl Deformation for Shaper {
             }
             _ => {
                 return Err(Error::Missing {
-                    param: "--shaper".into(),
-                    hint: "the closed path of four sides to bend the artwork into (or --net with 16 points)".into(),
+                    param: "shaper".into(),
+                    hint: "the closed path of four sides to bend the artwork into (or `net` with 16 points)".into(),
                 });
             }
         };
@@ -139,7 +139,7 @@ impl Deformation for Shaper {
 
         let base = match anchors::from_settings(s, "base", "base-as-drawn")? {
             Some(b) => b,
-            None => anchors::frame_corners(s)?,
+            None => anchors::frame_corners(s.frame())?,
         };
         let target = anchors::from_settings(s, "target", "target-as-drawn")?;
         notes.push(format!("base: {} ({})", list(base.points()), wrapper(&base)));
@@ -153,7 +153,7 @@ impl Deformation for Shaper {
                 Some(to_target(&name, &corners, t)?)
             }
         };
-        let map = compose(&anchors::to_standard("--base", &base)?, net, after);
+        let map = compose(&anchors::to_standard("base", &base)?, net, after);
         let map = match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(anchors::settled(m, s.frame()))),
             _ => map,
@@ -193,7 +193,7 @@ fn to_target(name: &str, corners: &[Point; 4], target: &Anchors) -> Result<Arc<d
             })?;
             Ok(Arc::new(m))
         }
-        Anchors::Four(q) => Ok(Arc::new(anchors::projective("--target", *corners, q)?)),
+        Anchors::Four(q) => Ok(Arc::new(anchors::projective("target", *corners, q)?)),
     }
 }
 
@@ -411,15 +411,15 @@ mod tests {
     fn every_fault_is_named() {
         let fault = |pairs: &[(&str, &str)]| build(pairs).err().unwrap().to_string();
         let square = "0,0 100,0 100,100 0,100";
-        assert!(fault(&[("shaper", "M0,0 L1,0 L1,1 L0,1 L0,0.5")]).contains("--shaper is not closed"));
+        assert!(fault(&[("shaper", "M0,0 L1,0 L1,1 L0,1 L0,0.5")]).contains("shaper is not closed"));
         assert!(fault(&[("shaper", "M0,0 L1,0 L1,1 Z")]).contains("has 3 anchors (0,0 1,0 1,1)"));
         assert!(fault(&[("shaper", "M0,0 L1,0 L2,0 L0,1 Z")]).contains("anchors 1, 2 and 3"));
-        assert!(fault(&[("shaper", square), ("base", "5,5 5,5")]).contains("--base: anchors 1 and 2 coincide at 5,5"));
-        assert!(fault(&[("shaper", square), ("target", "0,0 1,0 2,0 0,1")]).contains("--target: anchors 1, 2 and 3"));
-        assert!(fault(&[("shaper", square), ("base", "1,1 2,2 3,5")]).contains("--base has 3 anchors"));
-        assert!(fault(&[("shaper", square), ("bottom", "5")]).contains("--bottom: `5` is out of range"));
+        assert!(fault(&[("shaper", square), ("base", "5,5 5,5")]).contains("base: anchors 1 and 2 coincide at 5,5"));
+        assert!(fault(&[("shaper", square), ("target", "0,0 1,0 2,0 0,1")]).contains("target: anchors 1, 2 and 3"));
+        assert!(fault(&[("shaper", square), ("base", "1,1 2,2 3,5")]).contains("base has 3 anchors"));
+        assert!(fault(&[("shaper", square), ("bottom", "5")]).contains("bottom: `5` is out of range"));
         assert!(fault(&[("shaper", square), ("base", "0,0 10,0 2,2 0,10")]).contains("hits infinity"));
-        assert!(fault(&[]).contains("--shaper is needed"));
+        assert!(fault(&[]).contains("shaper is needed"));
         assert!(fault(&[("shaper", "M0,0 L1,0 L1,1 L0,1 Z M5,5 L6,6")]).contains("has 6 anchors"));
     }
 }

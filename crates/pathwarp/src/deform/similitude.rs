@@ -2,7 +2,7 @@
 //!
 //! In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
 
-use super::built::{Built, Explanation, Overlay, Role};
+use super::built::{Built, Role};
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors};
 use crate::error::{Error, GeometryError};
@@ -11,16 +11,55 @@ use crate::param::{Param, Settings};
 use kurbo::Point;
 use std::sync::Arc;
 
-pub(super) struct Similitude;
+/// The direct similitude that takes two points to two points: turn, uniform scale and shift.
+///
+/// In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
+///
+/// ```
+/// use pathwarp::{deform::Similitude, kurbo::Point, map::Map};
+///
+/// let turn = Similitude::new([(0.0, 0.0), (1.0, 0.0)], [(0.0, 0.0), (0.0, 2.0)]).build()?;
+/// assert!(turn.map.point(Point::new(3.0, 5.0)).distance(Point::new(-10.0, 6.0)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Similitude {
+    from: [Point; 2],
+    to: [Point; 2],
+}
 
-static INFO: Info = Info::new("similitude", "turn, scale and shift by two anchors; shapes stay what they are")
+impl Similitude {
+    /// Creates the similitude that takes the points `from` to the points `to`.
+    pub fn new(from: [impl Into<Point>; 2], to: [impl Into<Point>; 2]) -> Self {
+        Self { from: from.map(Into::into), to: to.map(Into::into) }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`GeometryError::Coincident`] if both points of a pair are the same.
+    pub fn build(&self) -> Result<Built, Error> {
+        anchors::distinct("base", &self.from)?;
+        anchors::distinct("target", &self.to)?;
+        let ([a, b], [p, q]) = (self.from, self.to);
+        let coincident = || GeometryError::Coincident { path: "base".into(), which: [1, 2], at: a };
+        let map = AffineMap::similitude(a, b, p, q).ok_or_else(coincident)?;
+        let mut built = Built::new(Arc::new(map));
+        for (role, points) in [(Role::Base, self.from), (Role::Target, self.to)] {
+            built.overlay(role, Anchors::Two(points).outline().to_bez_path(0.0));
+        }
+        Ok(built)
+    }
+}
+
+static INFO: Info = Info::new("similitude", "turn, scale and shift by two anchors; shapes stay the same")
     .group("Basics")
     .about("Takes the first anchor of the Base to the first of the Target and the second to the second, as drawn. Everything is \
 turned, scaled evenly and shifted; nothing is bent, and no node is added.")
     .source("elementary; the wrapper of M. Koppinen, A plane transformation from 16 control points")
     .params(&[
         Param::path("base", "Two anchors in the source.").default("0%,100% 100%,100%"),
-        Param::path("target", "Two anchors where they are to land.").needed(),
+        Param::path("target", "Two anchors: the images of the base's.").needed(),
     ])
     .demo(&[("target", "20,90 80,70")])
     .examples(&[
@@ -48,16 +87,17 @@ turned, scaled evenly and shifted; nothing is bent, and no node is added.")
         },
     ]);
 
-impl Deformation for Similitude {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let two = |name: &str| -> Result<[Point; 2], Error> {
-            let path = s
-                .path_if(name)?
-                .ok_or_else(|| Error::Missing { param: format!("--{name}"), hint: "a path with two anchors".into() })?;
+            let path = s.path_if(name)?.ok_or_else(|| Error::missing(name, "a path with two anchors"))?;
             match anchors::two_or_four(&path)? {
                 Anchors::Two(p) => Ok(p),
                 Anchors::Four(q) => Err(GeometryError::AnchorCount {
@@ -69,14 +109,6 @@ impl Deformation for Similitude {
                 .into()),
             }
         };
-        let ([a, b], [p, q]) = (two("base")?, two("target")?);
-        let map = AffineMap::similitude(a, b, p, q).ok_or_else(|| GeometryError::Coincident {
-            path: "--base".into(),
-            which: [1, 2],
-            at: a,
-        })?;
-        let overlay = |role, p: [Point; 2]| Overlay { role, path: Anchors::Two(p).outline().to_bez_path(0.0) };
-        let overlays = vec![overlay(Role::Base, [a, b]), overlay(Role::Target, [p, q])];
-        Ok(Built::new(Arc::new(map)).explained(Explanation { overlays, ..Explanation::default() }))
+        Similitude { from: two("base")?, to: two("target")? }.build()
     }
 }

@@ -1,40 +1,99 @@
-//! A swirl: artwork turned about a centre, the more the nearer to it.
+//! A swirl: artwork turned about a centre, by an angle that falls off with the distance.
 //!
 //! In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), with one of
 //!
-//! - soft: f(ρ) = (1 − ρ²)² inside the disc ρ < 1, nothing outside; value and slope run out at the rim, the curvature jumps,
-//! - sharp: f(ρ) = 1 − ρ inside, nothing outside; the slope jumps at the rim,
-//! - endless: f(ρ) = exp(−2ρ²), smooth everywhere and nothing only far out.
+//! - soft: f(ρ) = (1 − ρ²)² inside the disc ρ < 1, 0 outside; value and slope vanish at the rim, the curvature jumps,
+//! - sharp: f(ρ) = 1 − ρ inside, 0 outside; the slope jumps at the rim,
+//! - endless: f(ρ) = exp(−2ρ²), smooth everywhere.
 //!
 //! r is kept, so areas are kept (the map is a shear in r²/2 and θ) and the inverse is the same swirl with −α. Elementary; the
 //! twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius for the axis.
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::map::{AffineMap, Class, Crease, Creases, Formula, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
-pub(super) struct Swirl;
+/// A swirl: artwork turned about a centre, by an angle that falls off with the distance.
+///
+/// In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), f being the [`Falloff`]. Areas are kept.
+///
+/// ```
+/// use pathwarp::{deform::Swirl, kurbo::Point, map::Map};
+///
+/// let swirl = Swirl::new((50.0, 50.0), 40.0).angle(90.0).build()?;
+/// assert_eq!(swirl.map.point(Point::new(90.0, 50.0)), Point::new(90.0, 50.0)); // The rim stays.
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Swirl {
+    center: Point,
+    radius: f64,
+    angle: f64,
+    falloff: Falloff,
+}
+
+impl Swirl {
+    /// Creates a swirl by 45° that ends at `radius`, 1e-6 to 1e9 user units from `center`.
+    pub fn new(center: impl Into<Point>, radius: f64) -> Self {
+        Self { center: center.into(), radius, angle: 45.0, falloff: Falloff::Soft }
+    }
+
+    /// Sets α, the angle at the centre, degrees, clockwise on the screen.
+    #[must_use]
+    pub fn angle(self, angle: f64) -> Self {
+        Self { angle, ..self }
+    }
+
+    /// Sets how the angle falls off.
+    #[must_use]
+    pub fn falloff(self, falloff: Falloff) -> Self {
+        Self { falloff, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a radius out of range.
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { center, angle, falloff, .. } = *self;
+        let radius = within("radius", self.radius, 1e-6, 1e9)?;
+        let inner = Inner { center, radius, angle: angle.to_radians(), falloff };
+        Ok(Built::new(if falloff == Falloff::Endless { Arc::new(inner) } else { Arc::new(SwirlMap(inner)) }))
+    }
+}
+
+/// The share f(ρ) of a swirl's angle at ρ = r/R.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Falloff {
+    /// (1 − ρ²)² up to the rim, then nothing: smooth, its curvature jumps at the rim.
+    Soft,
+    /// 1 − ρ up to the rim, then nothing: a kink at the rim.
+    Sharp,
+    /// exp(−2ρ²) everywhere.
+    Endless,
+}
 
 static INFO: Info = Info::new("swirl", "turn the middle, and keep the rim")
     .group("Classics")
-    .about("Turns artwork about a centre by an angle that falls off to nothing at the radius. Circles about the centre stay what \
-they are, no area changes, and outside the radius nothing moves (with --falloff endless, hardly anything).")
+    .about("Turns artwork about a centre by an angle that falls off to nothing at the radius. Circles about the centre stay \
+themselves, no area changes, and outside the radius nothing moves (with --falloff endless, hardly anything).")
     .source("elementary; the twist of A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984, in the plane")
     .params(&[
-        Param::angle("angle", "How far the middle is turned, clockwise on the screen.").default("45").slider(-360.0, 360.0),
-        Param::new("center", Kind::Point, "The point it turns about.").default("50%,50%"),
-        Param::length("radius", Axis::Diagonal, "Where the swirl ends; 50% reaches the artwork's corners.")
+        Param::angle("angle", "Angle at the centre, clockwise on the screen.").default("45").slider(-360.0, 360.0),
+        Param::new("center", Kind::Point, "Centre of the swirl.").default("50%,50%"),
+        Param::length("radius", Axis::Diagonal, "Radius at which the swirl ends; 50% reaches the artwork's corners.")
             .default("50%")
             .within(1e-6, 1e9)
             .slider(1.0, 1000.0),
         Param::new(
             "falloff",
             Kind::Choice(&["soft", "sharp", "endless"]),
-            "How the angle falls off: soft at centre and rim, sharp (evenly, with a kink at the rim), or endless (a bell curve).",
+            "Falloff of the angle: soft at centre and rim, sharp (linear, with a kink at the rim), or endless (a bell curve).",
         )
         .default("soft"),
     ])
@@ -74,7 +133,10 @@ they are, no area changes, and outside the radius nothing moves (with --falloff 
         },
     ]);
 
-impl Deformation for Swirl {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
@@ -85,24 +147,12 @@ impl Deformation for Swirl {
             "endless" => Falloff::Endless,
             _ => Falloff::Soft,
         };
-        let inner = Inner {
-            center: s.point("center")?,
-            radius: s.number("radius")?,
-            angle: s.number("angle")?.to_radians(),
-            falloff,
-        };
-        Ok(Built::new(if falloff == Falloff::Endless { Arc::new(inner) } else { Arc::new(SwirlMap(inner)) }))
+        let (center, radius, angle) = (s.point("center")?, s.number("radius")?, s.number("angle")?);
+        Swirl { center, radius, angle, falloff }.build()
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Falloff {
-    Soft,
-    Sharp,
-    Endless,
-}
-
-/// The swirl as it is inside the disc, continued outside.
+/// The formula inside the disc, continued outside.
 #[derive(Debug, Clone, Copy)]
 struct Inner {
     center: Point,
@@ -174,7 +224,7 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Swirl);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
@@ -182,7 +232,7 @@ mod tests {
     fn the_centre_turns_by_the_whole_angle() {
         for falloff in ["soft", "sharp", "endless"] {
             let b =
-                Swirl.build_from(&Args::from_pairs(&[("falloff", falloff), ("angle", "90")]), &check::frame()).unwrap();
+                Entry.build_from(&Args::from_pairs(&[("falloff", falloff), ("angle", "90")]), &check::frame()).unwrap();
             let j = b.map.jet(Point::new(50.0, 50.0));
             assert!((j.dx - kurbo::Vec2::new(0.0, 1.0)).hypot() < 1e-12, "{falloff}: {j:?}");
             assert!((j.dy - kurbo::Vec2::new(-1.0, 0.0)).hypot() < 1e-12, "{falloff}: {j:?}");

@@ -1,7 +1,7 @@
 //! A sine wave: artwork pushed to and fro across the direction the wave runs in, or along it.
 //!
-//! With the unit vector d along the wave, n a quarter turn to its left on the screen, and s = (p − o)·d counted from where the
-//! artwork begins,
+//! With the unit vector d along the wave, n a quarter turn to its left on the screen, and s = (p − o)·d counted from the start of
+//! the artwork,
 //!
 //! shear: F(p) = p + a(s)·sin(2π·s/λ + φ)·n,  push: F(p) = p + a(s)·sin(2π·s/λ + φ)·d,
 //!
@@ -11,27 +11,126 @@
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::map::{Class, Formula, Map, Real};
-use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Affine, Vec2};
+use crate::param::{Axis, Frame, Kind, Param, Settings};
+use kurbo::{Affine, Rect, Vec2};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-pub(super) struct Wave;
+/// A sine wave: artwork pushed to and fro across the direction of the wave, or along it.
+///
+/// F(p) = p + a(s)·sin(2π·s/λ + φ)·n with s counted along the wave from where the artwork begins, n the unit vector across
+/// it, and a(s) = h·(1 − g + g·s/S), S being the artwork's extent along the wave.
+///
+/// ```
+/// use pathwarp::{deform::Wave, kurbo::{Point, Rect}, map::Map};
+///
+/// let wave = Wave::new(Rect::new(0.0, 0.0, 100.0, 100.0)).length(40.0).height(3.0).build()?;
+/// assert!(wave.map.point(Point::new(10.0, 5.0)).distance(Point::new(10.0, 2.0)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wave {
+    frame: Rect,
+    height: f64,
+    length: f64,
+    angle: f64,
+    phase: f64,
+    grow: f64,
+    push: bool,
+}
+
+impl Wave {
+    /// Creates a wave over the artwork's box, running to the right, 10 % of the box high and 60 % of it long.
+    #[must_use]
+    pub fn new(frame: Rect) -> Self {
+        let (height, length) = (0.1 * frame.height(), 0.6 * frame.width());
+        Self { frame, height, length, angle: 0.0, phase: 0.0, grow: 0.0, push: false }
+    }
+
+    /// Sets h, the distance of a crest from the middle, user units.
+    #[must_use]
+    pub fn height(self, height: f64) -> Self {
+        Self { height, ..self }
+    }
+
+    /// Sets λ, the distance from crest to crest, 1e-3 to 1e9 user units.
+    #[must_use]
+    pub fn length(self, length: f64) -> Self {
+        Self { length, ..self }
+    }
+
+    /// Sets the direction of the wave, degrees: 0 to the right, 90 downwards.
+    #[must_use]
+    pub fn angle(self, angle: f64) -> Self {
+        Self { angle, ..self }
+    }
+
+    /// Sets φ, the phase at which the artwork begins, degrees: 0 in the middle, 90 on a crest.
+    #[must_use]
+    pub fn phase(self, phase: f64) -> Self {
+        Self { phase, ..self }
+    }
+
+    /// Sets g, the share of the height that is missing at the start, 0 to 1.
+    #[must_use]
+    pub fn grow(self, grow: f64) -> Self {
+        Self { grow, ..self }
+    }
+
+    /// Moves points along the wave instead of across it.
+    #[must_use]
+    pub fn push(self, push: bool) -> Self {
+        Self { push, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a length or growth out of range.
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { height, push, .. } = *self;
+        let length = within("length", self.length, 1e-3, 1e9)?;
+        let grow = within("grow", self.grow, 0.0, 1.0)?;
+        let d = Vec2::from_angle(self.angle.to_radians());
+        let along: Vec<f64> = Frame::new(self.frame).corners().iter().map(|c| c.to_vec2().dot(d)).collect();
+        let start = along.iter().copied().fold(f64::INFINITY, f64::min);
+        let extent = along.iter().copied().fold(f64::NEG_INFINITY, f64::max) - start;
+        let map = WaveMap {
+            d,
+            to: if push { d } else { Vec2::new(d.y, -d.x) },
+            origin: start,
+            wave: TAU / length,
+            phase: self.phase.to_radians(),
+            height,
+            // Artwork without extent leaves no room for the wave to grow.
+            grow: if extent > 0.0 { grow / extent } else { 0.0 },
+            least: 1.0 - grow,
+        };
+        let mut built = Built::new(Arc::new(map));
+        if push && (height / length).abs() * TAU > 1.0 {
+            built.warn(format!(
+                "wave: with `kind push` the artwork folds over itself where `height` exceeds `length`/2π = {:.6}",
+                length / TAU
+            ));
+        }
+        Ok(built)
+    }
+}
 
 static INFO: Info = Info::new("wave", "wave artwork like water, or like a flag in the wind")
     .group("Classics")
     .about("Pushes the artwork up and down in a sine wave that runs from left to right, or in any direction. Lines across the wave \
-stay straight, and no area changes. With --grow the wave is nothing at the start and full at the end: a flag at its pole. \
---kind push moves points along the wave instead of across it: the artwork is squeezed and stretched in turns.")
+stay straight, and no area changes. With --grow the wave starts flat and reaches its full height at the end: a flag at its pole. \
+--kind push moves points along the wave instead of across it: the artwork is squeezed and stretched in turn.")
     .source("elementary; offsets along an axis as in A. Barr, Global and local deformations of solid primitives, SIGGRAPH 1984")
     .params(&[
-        Param::length("height", Axis::Y, "How far a crest is from the middle.").default("10%").slider(0.0, 100.0),
-        Param::length("length", Axis::X, "From crest to crest.").default("60%").within(1e-3, 1e9).slider(1.0, 1000.0),
-        Param::angle("angle", "Where the wave runs: 0 to the right, 90 downwards.").default("0"),
-        Param::angle("phase", "Where in the wave the artwork begins: 0 in the middle, 90 on a crest.").default("0"),
-        Param::number("grow", "How much of the height is missing at the start: 0 none of it, 1 all.")
+        Param::length("height", Axis::Y, "Distance of a crest from the middle.").default("10%").slider(0.0, 100.0),
+        Param::length("length", Axis::X, "Distance from crest to crest.").default("60%").within(1e-3, 1e9).slider(1.0, 1000.0),
+        Param::angle("angle", "Direction of the wave: 0 to the right, 90 downwards.").default("0"),
+        Param::angle("phase", "Phase at which the artwork begins: 0 in the middle, 90 on a crest.").default("0"),
+        Param::number("grow", "Share of the height that is missing at the start: 0 none of it, 1 all.")
             .default("0")
             .within(0.0, 1.0),
         Param::new("kind", Kind::Choice(&["shear", "push"]), "Move points across the wave (shear) or along it (push).")
@@ -71,48 +170,36 @@ stay straight, and no area changes. With --grow the wave is nothing at the start
         },
     ]);
 
-impl Deformation for Wave {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let d = Vec2::from_angle(s.number("angle")?.to_radians());
-        let along: Vec<f64> = s.frame().corners().iter().map(|c| c.to_vec2().dot(d)).collect();
-        let start = along.iter().copied().fold(f64::INFINITY, f64::min);
-        let extent = along.iter().copied().fold(f64::NEG_INFINITY, f64::max) - start;
-        let push = s.choice("kind")? == "push";
-        let (height, length, grow) = (s.number("height")?, s.number("length")?, s.number("grow")?);
-        let map = WaveMap {
-            d,
-            to: if push { d } else { Vec2::new(d.y, -d.x) },
-            origin: start,
-            wave: TAU / length,
-            phase: s.number("phase")?.to_radians(),
-            height,
-            // Artwork without extent has no room for the wave to grow.
-            grow: if extent > 0.0 { grow / extent } else { 0.0 },
-            least: 1.0 - grow,
+        let wave = Wave {
+            frame: s.frame().rect,
+            height: s.number("height")?,
+            length: s.number("length")?,
+            angle: s.number("angle")?,
+            phase: s.number("phase")?,
+            grow: s.number("grow")?,
+            push: s.choice("kind")? == "push",
         };
-        let mut built = Built::new(Arc::new(map));
-        if push && (height / length).abs() * TAU > 1.0 {
-            built.warn(format!(
-                "wave: with --kind push the artwork folds over itself where --height is more than --length/2π = {:.6}",
-                length / TAU
-            ));
-        }
-        Ok(built)
+        wave.build()
     }
 }
 
-/// The map itself.
+/// The map.
 #[derive(Clone)]
 struct WaveMap {
     /// Unit vector the wave runs along.
     d: Vec2,
     /// Unit vector points are moved along.
     to: Vec2,
-    /// p·d where the artwork begins.
+    /// p·d at the start of the artwork.
     origin: f64,
     /// Radians per unit.
     wave: f64,
@@ -135,7 +222,7 @@ impl Formula for WaveMap {
         if self.height == 0.0 { Class::Affine(Affine::IDENTITY) } else { Class::Smooth }
     }
 
-    /// Where points move across the wave, s is kept and the offset can be taken off again.
+    /// If points move across the wave, s is kept and the offset can be subtracted again.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let across = self.d.dot(self.to) == 0.0;
         across.then(|| Arc::new(Self { height: -self.height, ..self.clone() }) as Arc<dyn Map>)
@@ -151,14 +238,14 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Wave);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     #[test]
     fn a_push_that_folds_is_told_and_has_no_closed_inverse() {
         let build = |h: &str| {
-            Wave.build_from(&Args::from_pairs(&[("kind", "push"), ("length", "40"), ("height", h)]), &check::frame())
+            Entry.build_from(&Args::from_pairs(&[("kind", "push"), ("length", "40"), ("height", h)]), &check::frame())
         };
         let (gentle, steep) = (build("6").unwrap(), build("7").unwrap());
         assert!(

@@ -33,8 +33,6 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-#[allow(private_interfaces)]
-pub mod anamorph;
 #[doc(hidden)]
 pub mod batch;
 mod birational;
@@ -42,8 +40,6 @@ mod chain;
 mod class;
 mod crease;
 pub(crate) mod curves;
-#[allow(private_interfaces)]
-pub mod dilation;
 mod dual;
 mod formula;
 mod homography;
@@ -52,15 +48,10 @@ mod lattice;
 pub(crate) mod nets;
 mod newton;
 pub(crate) mod piecewise;
-mod pins;
 pub(crate) mod polynomial;
 mod projective;
 mod rational_bezier;
-#[allow(private_interfaces)]
-pub mod surface;
 mod traits;
-#[allow(private_interfaces)]
-pub mod triangle;
 
 pub use birational::{Birational, BirationalInverse, Rows};
 pub use chain::Chain;
@@ -84,9 +75,6 @@ pub(crate) use curves::{Along, Guide};
 pub(crate) use nets as net;
 pub(crate) use nets as patch;
 pub(crate) use nets::bspline;
-pub(crate) use piecewise as local;
 pub(crate) use piecewise::{Local, TileRow, Tiled, ruled};
-pub use pins::{MOST_PINS, pull};
 pub(crate) use polynomial as quotient;
 pub(crate) use polynomial::bernstein;
-pub use triangle::TriangleNet;

@@ -34,7 +34,7 @@ impl<'a> Settings<'a> {
         }
         for p in params {
             if p.needed && args.get(p.name).is_empty() {
-                return Err(Error::Missing { param: format!("--{}", p.name), hint: p.help.to_owned() });
+                return Err(Error::missing(p.name, p.help));
             }
         }
         Ok(Self { params, args, frame })
@@ -232,7 +232,7 @@ impl<'a> Settings<'a> {
 
     fn path_from(&self, name: &str, text: &str) -> Result<NamedPath, Error> {
         if let Some(p) = self.args.looked_up(text) {
-            return Ok(NamedPath { name: format!("--{name} {}", p.name), outline: p.outline.clone() });
+            return Ok(NamedPath { name: format!("{name} {}", p.name), outline: p.outline.clone() });
         }
         let outline = if args::is_path_data(text) {
             Outline::from_svg(text).map_err(|e| Error::usage(name, text, format!("is not sound path data: {e}")))?
@@ -242,9 +242,9 @@ impl<'a> Settings<'a> {
             Outline::from_points(&points, false)
         };
         if let Some(bad) = outline.segs().find(|s| !s.is_finite()) {
-            return Err(crate::error::GeometryError::NotFinite { shape: format!("--{name}"), at: bad.start() }.into());
+            return Err(crate::error::GeometryError::NotFinite { shape: name.to_owned(), at: bad.start() }.into());
         }
-        Ok(NamedPath { name: format!("--{name}"), outline })
+        Ok(NamedPath { name: name.to_owned(), outline })
     }
 
     fn param(&self, name: &str) -> Option<&'a Param> {
@@ -260,6 +260,6 @@ impl<'a> Settings<'a> {
 
     fn missing(&self, name: &str) -> Error {
         let hint = self.param(name).map_or("no such parameter", |p| p.help);
-        Error::Missing { param: format!("--{name}"), hint: hint.to_owned() }
+        Error::missing(name, hint)
     }
 }

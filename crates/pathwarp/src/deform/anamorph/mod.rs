@@ -2,9 +2,9 @@
 //!
 //! Every point moves along its ray through the eye O: p̂ = O + (p − O)/δ(p). Three ways to say δ:
 //!
-//! - the eye lies in the plane of the drawing, and control points are pushed along rays ([`map::dilation`]);
-//! - the eye stands in front of it, and the drawing is thrown onto a surface ([`map::surface`]): unrolled true to size, or seen
-//!   by another camera ([`map::anamorph`]);
+//! - the eye lies in the plane of the drawing, and control points are pushed along rays ([`dilation`]);
+//! - the eye stands in front of it, and the drawing is thrown onto a surface ([`surface`]): unrolled true to size, or seen
+//!   by another camera ([`camera`]);
 //! - the eye stands in front, and control points are pushed along rays in space: at degree 1 of a triangle they span a plane, at
 //!   degree 2 a quadric through O, on which straight lines become conics.
 //!
@@ -12,32 +12,32 @@
 //! others stay, so that inside and outside of the reference join along the sides that do not move (its Fig. 9).
 //!
 //! The size on a ramp rising by α: the place at slant L is L·sin α high and L·cos α behind the picture plane, and is seen at
-//! height H + (L·sin α − H)·D/(D + L·cos α) there, H being the eye's height and D its distance. `--length` solves this for the
+//! height H + (L·sin α − H)·D/(D + L·cos α) there, H being the eye's height and D its distance. `length` solves this for the
 //! scale.
 //!
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016); D. Hansford, D. Collins, *Anamorphic 3D
 //! geometry*, Computing 79 (2007).
 //!
-//! [`map::dilation`]: crate::map::dilation
-//! [`map::surface`]: crate::map::surface
-//! [`map::anamorph`]: crate::map::anamorph
 
+mod camera;
+mod dilation;
 mod net;
 mod onto;
+mod surface;
 #[cfg(test)]
 mod tests;
 
 use super::built::{Built, InSpace, Role, SpaceFile};
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
-use crate::map::anamorph::Camera;
-use crate::map::surface::{Anamorphosis, Radial, Surface};
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::outline::Outline;
 use crate::param::{Axis, Frame, Kind, Param, Settings};
 use crate::refit;
+use camera::Camera;
 use kurbo::{Affine, BezPath, Point, Rect, Shape};
 use std::sync::Arc;
+use surface::{Anamorphosis, Radial, Surface};
 
 pub(super) struct Anamorph;
 
@@ -224,8 +224,8 @@ fn in_plane(s: &Settings<'_>) -> Result<Built, Error> {
     if let Some(name) =
         ["onto", "view", "seen", "eye-height", "picture-width", "length", "mesh", "curves"].iter().find(|n| s.given(n))
     {
-        let hint = format!("how far in front of the drawing the eye is; --{name} wants it");
-        return Err(Error::Missing { param: "--distance".into(), hint });
+        let hint = format!("how far in front of the drawing the eye is; `{name}` wants it");
+        return Err(Error::Missing { param: "distance".into(), hint });
     }
     let scene = Scene { frame: s.frame().rect, scale: Affine::IDENTITY, eye: s.point("eye")? };
     let local = s.flag("local")?;
@@ -246,14 +246,14 @@ fn in_plane(s: &Settings<'_>) -> Result<Built, Error> {
 /// The eye in front of the drawing.
 fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
     if s.flag("local")? {
-        return Err(Error::usage("local", "", "works for an eye in the drawing only, without --distance"));
+        return Err(Error::usage("local", "", "works for an eye in the drawing only, without `distance`"));
     }
     let scene = Scene::new(s, distance)?;
     let foot = scene.eye;
     let surface = match s.texts("onto").pop() {
         Some(text) => {
             if let Some(name) = net::NAMES.iter().find(|n| s.given(n)) {
-                return Err(Error::usage(name, "", "moves control points, but --onto has the surface already"));
+                return Err(Error::usage(name, "", "moves control points, but `onto` has the surface already"));
             }
             onto::surface(s, text, &scene, distance)?
         }
@@ -266,7 +266,7 @@ fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
     onto::must_be_met(s, &cast, scene.frame)?;
     let map = if s.flag("seen")? {
         if s.given("view") {
-            return Err(Error::usage("view", "", "and --seen exclude each other"));
+            return Err(Error::usage("view", "", "and `seen` exclude each other"));
         }
         cast.seen()
     } else if let Some(text) = s.texts("view").pop() {
@@ -279,8 +279,8 @@ fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
         map
     } else {
         cast.unrolled().ok_or_else(|| {
-            let hint = "such a surface cannot be laid flat; say from where it is to be seen, X,Y,Z with Z in front of the drawing, or give --seen";
-            Error::Missing { param: "--view".into(), hint: hint.into() }
+            let hint = "such a surface cannot be laid flat; say from where it is to be seen, X,Y,Z with Z in front of the drawing, or give `seen`";
+            Error::Missing { param: "view".into(), hint: hint.into() }
         })?
     };
     let mut built =
@@ -308,7 +308,7 @@ impl Scene {
         let drawn = s.frame().rect;
         let height = s.number_if("eye-height")?;
         if height.is_some() && s.given("eye") {
-            return Err(Error::usage("eye-height", "", "and --eye both say where the eye is; give one"));
+            return Err(Error::usage("eye-height", "", "and `eye` both say where the eye is; give one"));
         }
         let wanted = s.number_if("picture-width")?;
         let k = match (wanted, s.number_if("length")?) {
@@ -316,7 +316,7 @@ impl Scene {
                 return Err(Error::usage(
                     "length",
                     "",
-                    "and --picture-width both say how large the artwork is; give one",
+                    "and `picture-width` both say how large the artwork is; give one",
                 ));
             }
             (Some(w), None) => w / drawn.width(),
@@ -343,7 +343,7 @@ impl Scene {
         refit::warp_path(&outline, map, &refit::Options::new(tolerance)).ok().map(|w| w.path)
     }
 
-    /// A line for `--explain`: how large artwork and result are.
+    /// A line for `explain`: how large artwork and result are.
     fn size(&self, map: &dyn Map) -> String {
         const METRE: f64 = 96.0 / 0.0254;
         let r = self.frame;

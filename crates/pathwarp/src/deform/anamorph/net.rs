@@ -1,10 +1,10 @@
 //! The control points and where they are pushed.
 
 use super::Scene;
+use super::dilation::{Dilation, Reference};
+use super::surface::SpacePlane;
 use crate::deform::built::Built;
 use crate::error::{Error, GeometryError};
-use crate::map::dilation::{Dilation, Reference};
-use crate::map::surface::SpacePlane;
 use crate::param::{Axis, Settings};
 use kurbo::{Point, Rect, Shape};
 
@@ -36,7 +36,7 @@ pub(super) fn dilation(s: &Settings<'_>, scene: &Scene, distance: f64) -> Result
             return Err(Error::usage(
                 "at",
                 text,
-                "says a place in the drawing, but the eye is in front of it; use --push or --away",
+                "says a place in the drawing, but the eye is in front of it; use `push` or `away`",
             ));
         }
         let (node, rest) = node(s, "at", text, &reference)?;
@@ -56,7 +56,7 @@ pub(super) fn dilation(s: &Settings<'_>, scene: &Scene, distance: f64) -> Result
         let p = scene.scale * s.point_in("point", place)?;
         let delta = sound("point", text, 1.0 / s.number_in("point", factor)?)?;
         let moved = out.prescribe(p, delta, held).ok_or_else(|| {
-            Error::usage("point", text, "is on a side that is held, or there is no control point free to move; raise --degree or choose another --reference")
+            Error::usage("point", text, "is on a side that is held, or there is no control point free to move; raise `degree` or choose another `reference`")
         })?;
         sound("point", text, out.of(moved))?;
     }
@@ -73,7 +73,7 @@ fn reference(s: &Settings<'_>, scene: &Scene) -> Result<Reference, Error> {
         [a, b, c] => {
             let area = (b - a).cross(c - a).abs();
             if area <= 1e-12 * (b - a).hypot2().max((c - a).hypot2()) {
-                return Err(GeometryError::Collinear { path: "--reference".into(), which: [1, 2, 3], points }.into());
+                return Err(GeometryError::Collinear { path: "reference".into(), which: [1, 2, 3], points }.into());
             }
             Ok(Reference::Triangle([a, b, c], degree(text, text)?))
         }
@@ -139,7 +139,7 @@ pub(super) fn tell_torn_sides(d: &Dilation, frame: Rect, built: &mut Built) {
         if meets && !d.side_is_fixed(k) {
             built.warn(format!(
                 "the side of the reference from {} to {} has control points moved: what crosses it is torn apart; keep that side's \
-points in place, choose another --reference, or leave out --local",
+points in place, choose another `reference`, or leave out `local`",
                 crate::error::show(a),
                 crate::error::show(b)
             ));

@@ -1,9 +1,9 @@
 //! What the artwork is thrown onto, as the user writes it.
 
 use super::Scene;
+use super::camera::Camera;
+use super::surface::{Anamorphosis, Radial, Round, Space, SpacePlane, Sphere, Surface};
 use crate::error::Error;
-use crate::map::anamorph::Camera;
-use crate::map::surface::{Anamorphosis, Radial, Round, Space, SpacePlane, Sphere, Surface};
 use crate::param::{Axis, Settings};
 use kurbo::{Point, Rect};
 
@@ -66,7 +66,7 @@ impl<'t> Words<'t> {
     }
 }
 
-/// Reads `--onto`.
+/// Reads `onto`.
 pub(super) fn surface(s: &Settings<'_>, text: &str, scene: &Scene, distance: f64) -> Result<Surface, Error> {
     let w = Words::new(text);
     let r = scene.frame;
@@ -167,13 +167,13 @@ pub(super) fn scale_for(s: &Settings<'_>, length: f64, eye_height: Option<f64>, 
         return Err(Error::usage(
             "length",
             "",
-            "is for --onto plane:floor and plane:ramp=ANGLE; elsewhere use --picture-width",
+            "is for `onto plane:floor` and plane:ramp=ANGLE; elsewhere use `picture-width`",
         ));
     };
     let Some(eye) = eye_height else {
         return Err(Error::Missing {
-            param: "--eye-height".into(),
-            hint: "how high the eye is above the floor; --length needs it".into(),
+            param: "eye-height".into(),
+            hint: "how high the eye is above the floor; `length` needs it".into(),
         });
     };
     let (up, away) = (length * angle.sin(), length * angle.cos());
@@ -205,17 +205,17 @@ pub(super) fn must_be_met(s: &Settings<'_>, cast: &Anamorphosis, frame: Rect) ->
     let Some(p) = missed else { return Ok(()) };
     let advice = match cast.surface {
         Surface::Plane(_) => {
-            "the ray there never comes down on the plane; raise the eye, go nearer, or make the artwork smaller (--picture-width, --length)"
+            "the ray there never comes down on the plane; raise the eye, go nearer, or make the artwork smaller (`picture-width`, `length`)"
         }
         Surface::Radial(_) => "the control points are pushed through infinity there; push them less",
-        _ => "the ray there misses the surface; make the artwork smaller (--picture-width) or the radius larger",
+        _ => "the ray there misses the surface; make the artwork smaller (`picture-width`) or the radius larger",
     };
     let name = if s.given("onto") { "onto" } else { "push" };
     let text = s.texts(name).pop().unwrap_or("");
     Err(Error::usage(name, text, format!("does not hold the artwork's box: at {} {advice}", crate::error::show(p))))
 }
 
-/// Where `--view` stands.
+/// Where `view` stands.
 pub(super) fn view(s: &Settings<'_>, text: &str, scene: &Scene) -> Result<Space, Error> {
     let parts: Vec<&str> = text.split(',').collect();
     let [x, y, z] = parts[..] else {

@@ -1,12 +1,24 @@
+use super::camera::Camera;
+use super::dilation::{Dilation, Reference};
+use super::surface::{Round, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
-use crate::map::anamorph::Camera;
-use crate::map::dilation::{Dilation, Reference};
-use crate::map::surface::{Round, Space, SpacePlane, Sphere};
-use crate::map::{Class, Homography, RationalBezier};
+use crate::map::{Class, Dual, Homography, RationalBezier};
 use crate::outline::Seg;
 use crate::param::{Args, Frame};
 use std::f64::consts::PI;
+
+/// The derivatives of a point in space along the drawing's x and y.
+#[derive(Debug)]
+struct SpaceJet {
+    dx: Space,
+    dy: Space,
+}
+
+fn space_jet(cast: &Anamorphosis, p: Point) -> SpaceJet {
+    let q = cast.at(Dual { v: p.x, x: 1.0, y: 0.0 }, Dual { v: p.y, x: 0.0, y: 1.0 });
+    SpaceJet { dx: q.map(|d| d.x), dy: q.map(|d| d.y) }
+}
 
 type Given = &'static [(&'static str, &'static str)];
 
@@ -132,7 +144,7 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
                 Surface::Radial(_) => 0.0,
             };
             assert!(off.abs() < 1e-10, "{cast:?} {p:?} {off:e}");
-            let (jet, h) = (cast.jet(p), 1e-4);
+            let (jet, h) = (space_jet(&cast, p), 1e-4);
             let slope = |d: kurbo::Vec2| {
                 let (a, b) = (cast.point(p + d), cast.point(p - d));
                 std::array::from_fn(|i| (a[i] - b[i]) / (2.0 * h))
@@ -155,7 +167,7 @@ fn what_is_unrolled_is_true_to_size() {
         flat += 1;
         let back = map.inverse().unwrap();
         for p in grid() {
-            let (s, j) = (cast.jet(p), map.jet(p));
+            let (s, j) = (space_jet(&cast, p), map.jet(p));
             for (a, b) in [
                 (product(s.dx, s.dx), j.dx.hypot2()),
                 (product(s.dx, s.dy), j.dx.dot(j.dy)),
@@ -413,7 +425,7 @@ fn a_prescribed_place_gets_there_and_torn_sides_are_told() {
 #[test]
 fn what_is_wrong_is_said() {
     let cases: &[(Given, &str)] = &[
-        (&[("onto", "plane:floor")], "--distance is needed"),
+        (&[("onto", "plane:floor")], "distance is needed"),
         (&[("distance", "100"), ("onto", "plane:floor")], "never comes down"),
         (&[("distance", "100"), ("eye", "50,200"), ("onto", "plane:floor")], "from behind"),
         (&[("distance", "100"), ("onto", "plane:slope")], "does not know"),
@@ -423,16 +435,16 @@ fn what_is_wrong_is_said() {
         (&[("distance", "100"), ("onto", "cylinder:radius=-20")], "not positive"),
         (&[("distance", "100"), ("onto", "cone:top=20")], "radii"),
         (&[("distance", "100"), ("onto", "torus:radius=20")], "no surface"),
-        (&[("distance", "100"), ("onto", "sphere:radius=200")], "--view is needed"),
+        (&[("distance", "100"), ("onto", "sphere:radius=200")], "view is needed"),
         (&[("distance", "100"), ("onto", "sphere:eye"), ("push", "0,0:2")], "has the surface already"),
-        (&[("distance", "100"), ("degree", "2"), ("push", "1,1:2")], "--view is needed"),
+        (&[("distance", "100"), ("degree", "2"), ("push", "1,1:2")], "view is needed"),
         (&[("distance", "100"), ("onto", "plane:wall=10"), ("view", "50,50,-9"), ("eye", "50,50")], "too near"),
         (&[("distance", "100"), ("onto", "plane:wall=10"), ("view", "50,50")], "X,Y,Z"),
-        (&[("distance", "100"), ("onto", "plane:floor"), ("length", "10"), ("eye", "5,5")], "--eye-height is needed"),
-        (&[("distance", "100"), ("onto", "cylinder:radius=99"), ("length", "10")], "--picture-width"),
+        (&[("distance", "100"), ("onto", "plane:floor"), ("length", "10"), ("eye", "5,5")], "eye-height is needed"),
+        (&[("distance", "100"), ("onto", "cylinder:radius=99"), ("length", "10")], "picture-width"),
         (&[("distance", "100"), ("eye-height", "9"), ("eye", "0,0"), ("onto", "plane:floor")], "give one"),
         (&[("distance", "0"), ("onto", "plane:floor")], "out of range"),
-        (&[("distance", "9"), ("local", "true")], "without --distance"),
+        (&[("distance", "9"), ("local", "true")], "without `distance`"),
         (&[("push", "2,0:2")], "I runs from 0 to 1"),
         (&[("push", "1,0:0")], "through the eye"),
         (&[("push", "1,0:-1")], "through the eye"),

@@ -150,7 +150,7 @@ pub(super) fn warnings(letters: &[Letter], places: &[Vec<Affine>]) -> Vec<String
     let lost: Vec<&str> = lost.map(|(l, _)| l.name.as_str()).collect();
     if !lost.is_empty() {
         out.push(format!(
-            "bend: the skeleton is too steep or runs backwards at the letters {}: they are squeezed flat or mirrored; --glyphs rotate \
+            "bend: the skeleton is too steep or runs backwards at the letters {}: they are squeezed flat or mirrored; `glyphs rotate` \
 and stair keep every letter readable",
             listed(&lost)
         ));
@@ -175,7 +175,7 @@ and stair keep every letter readable",
         let names: Vec<&str> = crowded.iter().map(|(n, _)| n.as_str()).collect();
         out.push(format!(
             "bend: the letters {} run into each other, first near {}: the skeleton is too short for them or bends too tightly; a \
-smaller --width, --spacing even or a gentler bend avoids that",
+smaller `width`, `spacing even` or a gentler bend avoids that",
             listed(&names),
             show(*at)
         ));

@@ -99,7 +99,7 @@ impl BendMap {
         };
         Some(format!(
             "bend: {who}, worst near {} of the skeleton, where {reaches} more than {centre:.6} away from it, beyond the centre of \
-curvature; a smaller --width, another --baseline or a gentler bend avoids that",
+curvature; a smaller `width`, another `baseline` or a gentler bend avoids that",
             show(self.point(Point::new(p.x, self.place.base)))
         ))
     }

@@ -181,7 +181,7 @@ impl Deformation for Bend {
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let missing = || Error::Missing { param: "--along".into(), hint: "the path to bend the artwork along".into() };
+        let missing = || Error::Missing { param: "along".into(), hint: "the path to bend the artwork along".into() };
         let mut path = s.path_if("along")?.ok_or_else(missing)?;
         if let Some(degree) = s.number_if("spline")? {
             path = spline::through(&path, degree as usize)?;
@@ -207,7 +207,7 @@ impl Deformation for Bend {
                 return Err(Error::usage(
                     "spacing",
                     "even",
-                    "goes with lengths (--by arclength) and without --handles",
+                    "goes with lengths (`by arclength`) and without `handles`",
                 ));
             }
             "even" => {
@@ -287,7 +287,7 @@ impl Deformation for Bend {
         if k * rect.width() > length * (1.0 + 1e-9) {
             let what = if closed { "runs over itself" } else { "runs straight on beyond its ends" };
             built.warn(format!(
-                "bend: the artwork is {:.6} wide, the skeleton only {length:.6} long: it {what}; see --stretch",
+                "bend: the artwork is {:.6} wide, the skeleton only {length:.6} long: it {what}; see `stretch`",
                 k * rect.width()
             ));
         }
@@ -328,7 +328,7 @@ fn setting(s: &Settings<'_>) -> Result<Option<Setting>, Error> {
     let setting = Setting::named(name);
     if setting.is_some() && s.frame().letters.is_empty() {
         let problem = "needs letters on a level baseline: text, or outlines made by `pathwarp text`. Other outlines do not tell where \
-a letter begins; --glyphs bend bends them";
+a letter begins; `glyphs bend` bends them";
         return Err(Error::usage("glyphs", name, problem));
     }
     Ok(setting)

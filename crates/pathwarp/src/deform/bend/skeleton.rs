@@ -75,7 +75,7 @@ impl Skeleton {
             if let Some(u) = all.find(|u| rate(seg, *u).is_nan() || rate(seg, *u) < SLOWEST) {
                 let problem = format!(
                     "needs a gentler bend: near {} the centre of curvature is no further from the skeleton than half the \
-artwork's height; a smaller --width avoids that too",
+artwork's height; a smaller `width` avoids that too",
                     show(seg.eval(u))
                 );
                 return Err(Error::usage("spacing", "even", problem));
@@ -104,7 +104,7 @@ artwork's height; a smaller --width avoids that too",
         if scale > 0.0 && scale.is_finite() {
             return Ok(scale);
         }
-        let problem = "the artwork is so high against its width that no size of it fits; use --spacing baseline";
+        let problem = "the artwork is so high against its width that no size of it fits; use `spacing baseline`";
         Err(Error::usage("spacing", "even", problem))
     }
 
@@ -204,7 +204,7 @@ artwork's height; a smaller --width avoids that too",
         let (sides, corners) = if given.is_some() { (Vec::new(), Vec::new()) } else { self.sides()? };
         if let Some(g) = given.filter(|g| g.len() != self.segs.len()) {
             let problem = format!("has handles for {} pieces; the skeleton has {}", g.len(), self.segs.len());
-            return Err(Error::input("--handles", problem));
+            return Err(Error::input("handles", problem));
         }
         let mut ribbons = Vec::with_capacity(self.segs.len());
         for (i, (seg, _)) in self.segs.iter().enumerate() {
@@ -222,7 +222,7 @@ artwork's height; a smaller --width avoids that too",
                     wanted.join(", "),
                     levels.iter().map(Vec::len).collect::<Vec<_>>()
                 );
-                Error::input("--handles", problem)
+                Error::input("handles", problem)
             })?;
             ribbons.push(ribbon);
         }
@@ -239,7 +239,7 @@ artwork's height; a smaller --width avoids that too",
                     b.x,
                     b.y
                 );
-                return Err(Error::input("--handles", problem));
+                return Err(Error::input("handles", problem));
             }
         }
         let shapes = self.segs.iter().zip(ribbons).map(|((_, table), ribbon)| {

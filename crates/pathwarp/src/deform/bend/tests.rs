@@ -224,7 +224,7 @@ fn even_spacing_keeps_widths_at_half_the_height() {
         build(&pairs).err().map(|e| e.to_string()).unwrap_or_default()
     };
     assert!(fault(("baseline", "0")).contains("gentler bend"), "{}", fault(("baseline", "0")));
-    assert!(fault(("by", "parameter")).contains("--by arclength"));
+    assert!(fault(("by", "parameter")).contains("`by arclength`"));
 }
 
 /// On a circle of radius 100 about 0,0 a letter whose middle is at distance s from the top is turned by s/100.

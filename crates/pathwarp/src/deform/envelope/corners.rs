@@ -62,14 +62,14 @@ pub(super) fn ring(path: &NamedPath, s: &Settings<'_>) -> Result<Ring, Error> {
             corners.join(" ")
         ),
         format!(
-            "bottom side: side {} as drawn, run {}, so that nothing is mirrored; --bottom-side and --reverse overrule that",
+            "bottom side: side {} as drawn, run {}, so that nothing is mirrored; `bottom-side` and `reverse` overrule that",
             order[bottom] + 1,
             if backwards { "backwards" } else { "forwards" }
         ),
     ];
     if s.flag("reverse")? {
         sides = mirrored(sides);
-        notes.push("--reverse: the bottom side is run the other way, the result is mirrored".into());
+        notes.push("reverse: the bottom side is run the other way, the result is mirrored".into());
     }
     Ok(Ring { sides, notes })
 }
@@ -202,7 +202,7 @@ fn found(name: &str, sub: &Subpath, bounds: Rect) -> Result<([Place; 4], &'stati
         (_, Some(boxed)) => Ok((boxed, "the places nearest to the corners of its box")),
         (None, None) => {
             let problem = format!(
-                "has {} corners by angle, and none can be told from its box: say where they are with --corners (four node numbers, or four points)",
+                "has {} corners by angle, and none can be told from its box: say where they are with `corners` (four node numbers, or four points)",
                 sharp.len()
             );
             Err(Error::usage("envelope", name, problem))

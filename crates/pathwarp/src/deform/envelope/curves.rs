@@ -34,7 +34,7 @@ pub(super) fn ring(s: &Settings<'_>) -> Result<Option<Ring>, Error> {
         notes.push(format!("the facing side: the same curve, {height:.6} away"));
     } else if s.given("height") {
         let text = s.texts("height").join(" ");
-        return Err(Error::usage("height", text, "goes with --bottom or --top alone: here the facing side is drawn"));
+        return Err(Error::usage("height", text, "goes with `bottom` or `top` alone: here the facing side is drawn"));
     }
 
     // Which pair is drawn on both sides: its ends are the corners.
@@ -85,7 +85,7 @@ pub(super) fn ring(s: &Settings<'_>) -> Result<Option<Ring>, Error> {
     }
     if s.flag("reverse")? {
         sides = mirrored(sides);
-        notes.push("--reverse: the curves are run the other way, the result is mirrored".into());
+        notes.push("reverse: the curves are run the other way, the result is mirrored".into());
     }
     let corners = sides.each_ref().map(|s| show(start(s))).join(" ");
     notes.insert(0, format!("corners: {corners} (bottom left, bottom right, top right, top left)"));
@@ -94,8 +94,8 @@ pub(super) fn ring(s: &Settings<'_>) -> Result<Option<Ring>, Error> {
 
 fn facing(name: &str) -> Error {
     Error::Missing {
-        param: format!("--{name}"),
-        hint: "the curve that faces the given one (or --bottom or --top alone, with --height)".into(),
+        param: name.to_owned(),
+        hint: "the curve that faces the given one (or `bottom` or `top` alone, with `height`)".into(),
     }
 }
 
@@ -107,7 +107,7 @@ fn curve(s: &Settings<'_>, name: &str) -> Result<Option<Vec<Seg>>, Error> {
         return Err(Error::usage(
             name,
             path.name,
-            "is closed: a side is an open curve; for a closed path use --envelope",
+            "is closed: a side is an open curve; for a closed path use `envelope`",
         ));
     }
     if sub.segs.is_empty() {

@@ -138,7 +138,7 @@ impl Deformation for Envelope {
 
 /// The map of the frame into these sides that keeps what is to be kept; `by` is the pace, where it was given.
 pub(super) fn over(ring: &Ring, s: &Settings<'_>, keep: &str, by: Option<&str>) -> Result<Built, Error> {
-    let frame = anchors::frame_corners(s)?;
+    let frame = anchors::frame_corners(s.frame())?;
     let rect = s.frame().rect;
     let pre = Affine::new([
         1.0 / rect.width(),
@@ -154,12 +154,12 @@ pub(super) fn over(ring: &Ring, s: &Settings<'_>, keep: &str, by: Option<&str>) 
 
     if keep == "lines" {
         for (k, side) in ring.sides.iter().enumerate() {
-            demand_straight(side, NAMES[k], "--keep lines needs four straight sides")?;
+            demand_straight(side, NAMES[k], "`keep lines` needs four straight sides")?;
         }
         let corners = ring.sides.each_ref().map(|side| side.first().map_or(Point::ORIGIN, Seg::start));
         let anchors::Anchors::Four(from) = frame else { return Err(no_length("frame")) };
         notes.push("kept: every line, by the projective map of the four corners".into());
-        let map = anchors::projective("--envelope", from, corners)?;
+        let map = anchors::projective("envelope", from, corners)?;
         return Ok(Built::new(Arc::new(map)).explained(Explanation { notes, overlays, warnings }));
     }
 
@@ -182,28 +182,28 @@ fn ring(s: &Settings<'_>) -> Result<Ring, Error> {
     match (s.path_if("envelope")?, curves::ring(s)?) {
         (Some(path), None) => {
             if s.given("height") {
-                return Err(Error::usage("height", s.texts("height").join(" "), "goes with --bottom or --top alone"));
+                return Err(Error::usage("height", s.texts("height").join(" "), "goes with `bottom` or `top` alone"));
             }
             corners::ring(&path, s)
         }
         (Some(path), Some(_)) => Err(Error::usage(
             "envelope",
             path.name,
-            "cannot go with --bottom, --top, --left and --right: a closed path has all four",
+            "cannot go with `bottom`, `top`, `left` and `right`: a closed path has all four",
         )),
         (None, Some(ring)) => {
             if let Some(name) = ["corners", "bottom-side"].into_iter().find(|n| s.given(n)) {
                 return Err(Error::usage(
                     name,
                     s.texts(name).join(" "),
-                    "goes with --envelope: here the sides are drawn one by one",
+                    "goes with `envelope`: here the sides are drawn one by one",
                 ));
             }
             Ok(ring)
         }
         (None, None) => Err(Error::Missing {
-            param: "--envelope".into(),
-            hint: "the closed path to put the artwork into (or --bottom and --top: the curves below and above)".into(),
+            param: "envelope".into(),
+            hint: "the closed path to put the artwork into (or `bottom` and `top`: the curves below and above)".into(),
         }),
     }
 }
@@ -228,7 +228,7 @@ fn paced(
     };
     let side = |c: &[Seg], k: usize, pace: Pace| Side::new(c, pace).ok_or_else(|| unwalkable(NAMES[k], pace, by));
     let straight = |c: &[Seg], k: usize| {
-        let what = format!("--keep {keep} needs the {} and the {} side straight", NAMES[(k + 2) % 4], NAMES[k]);
+        let what = format!("`keep {keep}` needs the {} and the {} side straight", NAMES[(k + 2) % 4], NAMES[k]);
         demand_straight(c, NAMES[k], &what)?;
         let ends = c.first().zip(c.last()).map(|(a, b)| (a.start(), b.end()));
         ends.and_then(|(a, b)| Side::straight(a, b)).ok_or_else(|| no_length(NAMES[k]))
@@ -290,7 +290,7 @@ fn demand_straight(c: &[Seg], name: &str, what: &str) -> Result<(), Error> {
     }
     let problem = format!(
         "{what}; the {name} side is curved: near {} it is {off:.6} off the line between its ends. No map keeps such lines then: \
-draw two curves only (--bottom and --top keep verticals, --left and --right horizontals), or leave --keep away",
+draw two curves only (`bottom` and `top` keep verticals, `left` and `right` keep horizontals), or leave `keep` away",
         show(at)
     );
     Err(Error::usage("keep", "the envelope", problem))
@@ -304,7 +304,7 @@ fn unwalkable(name: &str, pace: Pace, by: &str) -> Error {
     if matches!(pace, Pace::Width | Pace::Height) {
         let across = if pace == Pace::Width { "left to right" } else { "bottom to top" };
         let problem =
-            format!("needs sides that run {across} without turning back; the {name} side does not: use --by length");
+            format!("needs sides that run {across} without turning back; the {name} side does not: use `by length`");
         Error::usage("by", by, problem)
     } else {
         no_length(name)

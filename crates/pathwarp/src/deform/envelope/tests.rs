@@ -201,7 +201,7 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 turned.segs.rotate_left(start);
                 turned.start = turned.segs[0].start();
                 let path =
-                    crate::param::NamedPath { name: "--envelope".into(), outline: Outline { subpaths: vec![turned] } };
+                    crate::param::NamedPath { name: "envelope".into(), outline: Outline { subpaths: vec![turned] } };
                 let args = Args::new();
                 let frame = Frame::new(SQUARE);
                 let s = Settings::new(INFO.params, &args, &frame).unwrap();
@@ -260,7 +260,7 @@ fn corners_by_the_stated_rule() {
     assert!(m.point(Point::new(10.0, 80.0)).distance(Point::new(90.0, 80.0)) < 1e-12);
 }
 
-/// Criterion: `--keep verticals`, measured on the refitted result: upright within 0.1° and straight.
+/// Criterion: `keep verticals`, measured on the refitted result: upright within 0.1° and straight.
 #[test]
 fn uprights_stay_upright_through_the_refit() {
     const TOLERANCE: f64 = 0.005;
@@ -311,7 +311,9 @@ fn keep_says_when_nothing_can() {
     let curved = "M0,0 L100,0 Q130,50 100,100 L0,100 Z";
     let e = fault(&[("envelope", curved), ("keep", "verticals")]);
     assert!(
-        e.contains("--keep") && e.contains("right side is curved: near 115,50") && e.contains("--bottom and --top"),
+        e.contains("`keep verticals`")
+            && e.contains("right side is curved: near 115,50")
+            && e.contains("`bottom` and `top`"),
         "{e}"
     );
     let e = fault(&[("envelope", curved), ("keep", "lines")]);
@@ -356,18 +358,18 @@ fn crossings_and_folds_are_named() {
 
 #[test]
 fn every_fault_is_named() {
-    assert!(fault(&[]).contains("--envelope is needed"));
+    assert!(fault(&[]).contains("envelope is needed"));
     assert!(fault(&[("envelope", "M0,0 Q50,50 100,0")]).contains("not closed"));
     assert!(fault(&[("envelope", "0,0 100,0 200,0")]).contains("is flat"));
-    assert!(fault(&[("bottom", "M0,0 L1,0 L1,1 Z")]).contains("for a closed path use --envelope"));
-    assert!(fault(&[("left", "0,0 0,9")]).contains("--right is needed"));
-    assert!(fault(&[("bottom", "0,9 9,9"), ("left", "0,9 0,0")]).contains("--top is needed"));
+    assert!(fault(&[("bottom", "M0,0 L1,0 L1,1 Z")]).contains("for a closed path use `envelope`"));
+    assert!(fault(&[("left", "0,0 0,9")]).contains("right is needed"));
+    assert!(fault(&[("bottom", "0,9 9,9"), ("left", "0,9 0,0")]).contains("top is needed"));
     assert!(fault(&[("bottom", "0,9 9,9"), ("top", "0,0 9,0"), ("left", "1,9 1,0")]).contains("does not meet"));
-    assert!(fault(&[("bottom", "0,9 9,9"), ("top", "0,0 9,0"), ("height", "3")]).contains("--height"));
+    assert!(fault(&[("bottom", "0,9 9,9"), ("top", "0,0 9,0"), ("height", "3")]).contains("height: `3` goes with"));
     assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("top", "0,0 9,0")]).contains("cannot go with"));
     assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3,7")]).contains("nodes 1 to 4"));
     assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3,3")]).contains("twice"));
-    assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3")]).contains("--corners"));
+    assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3")]).contains("corners: `1,2,3`"));
     assert!(fault(&[("bottom", "M0,0 C150,20 -50,20 100,0"), ("by", "extent")]).contains("bottom side does not"));
     let many = (0..2100).map(|i| format!("{},{}", i, (i % 7) * (i % 5))).collect::<Vec<_>>().join(" ");
     assert!(fault(&[("envelope", &many)]).contains("2000 are the most"));

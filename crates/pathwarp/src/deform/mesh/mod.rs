@@ -92,8 +92,8 @@ impl Deformation for Mesh {
         let frame = s.frame().rect;
         let given: Vec<&str> = ["net", "mesh", "psd"].into_iter().filter(|n| s.given(n)).collect();
         let [source] = given[..] else {
-            let hint = "a path (--net), a file (--mesh) or a Photoshop file (--psd): one of them";
-            return Err(Error::Missing { param: "--net".into(), hint: hint.into() });
+            let hint = "a path (`net`), a file (`mesh`) or a Photoshop file (`psd`): one of them";
+            return Err(Error::Missing { param: "net".into(), hint: hint.into() });
         };
         let own = s.rect_if("region")?;
         let region = own.unwrap_or(frame);
@@ -104,7 +104,7 @@ impl Deformation for Mesh {
         let quilt = match source {
             "net" => match s.path_if("net")? {
                 Some(path) => Quilt::from_path(&path, region)?,
-                None => return Err(Error::Missing { param: "--net".into(), hint: "a path".into() }),
+                None => return Err(Error::Missing { param: "net".into(), hint: "a path".into() }),
             },
             "psd" => match psd::read(s, region)? {
                 psd::Found::Style(built) => return Ok(built),
@@ -118,7 +118,7 @@ impl Deformation for Mesh {
                     let quilt = Quilt::read(&file.name, &file.text, region)?;
                     if s.given("region") { quilt.on(region) } else { quilt }
                 }
-                None => return Err(Error::Missing { param: "--mesh".into(), hint: "a file".into() }),
+                None => return Err(Error::Missing { param: "mesh".into(), hint: "a file".into() }),
             },
         };
         built(s, quilt, notes)
@@ -142,14 +142,14 @@ fn built(s: &Settings<'_>, mut quilt: Quilt, mut notes: Vec<String>) -> Result<B
     let (f, beyond) = (s.frame().rect, r.inflate(BEYOND * r.width(), BEYOND * r.height()));
     if !matches!(built.map.class(), Class::Affine(_)) && f.union(beyond) != beyond {
         built.warn(format!(
-            "mesh: its box {} {} to {} {} does not hold the artwork, which runs far beyond it, where a mesh says little: --region \
-artwork lays it onto the artwork",
+            "mesh: its box {} {} to {} {} does not hold the artwork, which runs far beyond it, where a mesh says little: `region artwork` \
+lays it onto the artwork",
             r.x0, r.y0, r.x1, r.y1
         ));
     }
     if kinks > 0 {
         built.warn(format!(
-            "mesh: {kinks} pairs of control points beside joints make kinks (by up to {:.0} % of the slope); --smooth evens them out",
+            "mesh: {kinks} pairs of control points beside joints make kinks (by up to {:.0} % of the slope); `smooth` evens them out",
             100.0 * most
         ));
     }

@@ -2,7 +2,7 @@
 
 use super::quilt::{File, Quilt};
 use crate::deform::built::Built;
-use crate::deform::warp::{self, style};
+use crate::deform::warp::{self, Bent, Style};
 use crate::error::Error;
 use crate::param::Settings;
 use kurbo::Rect;
@@ -49,7 +49,7 @@ pub(super) enum Found {
 /// The warp of the layer asked for, over `region`.
 pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
     let Some(file) = s.file_if("psd")? else {
-        return Err(Error::Missing { param: "--psd".into(), hint: "a Photoshop file".into() });
+        return Err(Error::Missing { param: "psd".into(), hint: "a Photoshop file".into() });
     };
     let parsed: Warps = serde_json::from_str(&file.text).map_err(|_| {
         Error::input(
@@ -70,22 +70,22 @@ pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
         (None, _) if listed.is_empty() => return Err(wrong("has no layer with a warp".into())),
         (None, _) => return Err(wrong(format!("has no such warped layer; there are {listed}"))),
         (Some(_), Some(_)) => {
-            return Err(wrong(format!("has several warped layers; say which with --layer: {listed}")));
+            return Err(wrong(format!("has several warped layers; say which with `layer`: {listed}")));
         }
     };
     if let Some(mesh) = warp.mesh {
         return Ok(Found::Quilt(Quilt::from_file(&file.name, mesh, region)?.on(region), warp.layer));
     }
-    let style = style::builtin().into_iter().find(|k| k.is_called(&warp.style)).ok_or_else(|| {
+    let style = Style::named(&warp.style).ok_or_else(|| {
         wrong(format!("layer `{}` has the warp {}, which has no known formula", warp.layer, warp.style))
     })?;
-    let bent = style::Bent {
+    let bent = Bent {
         bend: warp.value / 100.0,
         distortion: [warp.perspective / 100.0, warp.perspective_other / 100.0],
         vertical: warp.vertical,
     };
     let net = style.net(region.width(), region.height(), &bent).map_err(|e| wrong(format!("its style {e}")))?;
     let mut built = warp::over(region, &net)?;
-    built.note(format!("layer {}: style {}, bend {}%", warp.layer, style.name, warp.value));
+    built.note(format!("layer {}: style {}, bend {}%", warp.layer, style.name(), warp.value));
     Ok(Found::Style(built))
 }

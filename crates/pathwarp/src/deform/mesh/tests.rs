@@ -69,7 +69,7 @@ fn every_patch_is_its_net() {
 fn joints_are_smoothed() {
     let text = json(&points(), "\"region\": [0,0,120,60], \"x\": [0.25],");
     let rough = with("mesh", &text, &[]).unwrap();
-    assert!(rough.explanation.warnings[0].contains("--smooth"), "{:?}", rough.explanation.warnings);
+    assert!(rough.explanation.warnings[0].contains("`smooth`"), "{:?}", rough.explanation.warnings);
     let smooth = with("mesh", &text, &[("smooth", "true")]).unwrap();
     assert!(smooth.explanation.warnings.is_empty());
     let jump = |m: &dyn Map, p: (f64, f64), q: (f64, f64)| {
@@ -152,7 +152,7 @@ fn warps_written_by_hand() {
 fn a_mesh_far_from_the_artwork_is_told() {
     let warned = |region: &str, more: &[(&str, &str)]| {
         let b = with("mesh", &json(&points(), region), more).unwrap();
-        b.explanation.warnings.iter().any(|w| w.contains("--region artwork"))
+        b.explanation.warnings.iter().any(|w| w.contains("`region artwork`"))
     };
     assert!(warned("\"region\": [0,0,1,1],", &[]));
     assert!(!warned("\"region\": [0,0,1,1],", &[("region", "artwork")]));
@@ -171,5 +171,5 @@ fn faults_are_named() {
     assert!(fault(&json(&ragged, "")).contains("row 2"));
     assert!(fault("{\"points\": 3}").contains("file.json:1:"));
     let none = Mesh.build_from(&Args::new(), &check::frame()).map(|_| ()).unwrap_err().to_string();
-    assert!(none.contains("--net"));
+    assert!(none.contains("net is needed"));
 }

@@ -5,7 +5,10 @@
 //! (AnatomikPerq, 2026); the arcs are the usual cubics of circles' arcs, and the inner points of the families with bent sides are
 //! equation (7) of K. Koppinen, *A plane transformation from 16 control points*, which is the bilinear Coons patch.
 
-pub(crate) mod style;
+mod style;
+
+pub(super) use style::Bent;
+pub use style::Style;
 
 use super::built::{Built, Explanation, Overlay, Role};
 use super::entry::{Case, Deformation, Example, Gallery, Info, Law};
@@ -17,7 +20,7 @@ use crate::outline::Seg;
 use crate::param::{Kind, Param, Settings};
 use kurbo::{Affine, CubicBez, Point, Rect};
 use std::sync::Arc;
-use style::{Bent, Style};
+use style::StyleError;
 
 pub(super) struct Warp;
 
@@ -141,7 +144,7 @@ impl Deformation for Warp {
         let vertical = s.choice("axis")? == "vertical";
         let bent = Bent { bend, distortion: [s.number("horizontal")?, s.number("vertical")?], vertical };
         let rect = s.frame().rect;
-        let wrong = |what: String| Error::usage("style", s.texts("style").join(" "), what);
+        let wrong = |e: StyleError| Error::usage("style", s.texts("style").join(" "), e.to_string());
         let net = style.net(rect.width(), rect.height(), &bent).map_err(wrong)?;
         let keep = s.choice("keep")?;
         let mut built = if keep == "nothing" { over(rect, &net)? } else { kept(s, &style, keep, &net, &bent)? };
@@ -174,7 +177,7 @@ fn kept(s: &Settings<'_>, style: &Style, keep: &str, net: &Net, bent: &Bent) -> 
             let net = style.net(frame.width(), frame.height(), bent).ok();
             net.is_some_and(|n| put(style, &n).is_ok())
         };
-        let names: Vec<String> = style::builtin().into_iter().filter(possible).map(|style| style.name).collect();
+        let names: Vec<String> = Style::builtin().into_iter().filter(possible).map(|style| style.name).collect();
         let others = if names.is_empty() {
             "no style can at this bend".into()
         } else {
@@ -205,11 +208,10 @@ fn sides(net: &Net) -> Ring {
 /// The style asked for.
 fn style(s: &Settings<'_>) -> Result<Style, Error> {
     if let Some(file) = s.file_if("style")? {
-        return serde_json::from_str(&file.text)
-            .map_err(|e| Error::input(&file.name, format!("is no warp style: {e}")));
+        return Style::from_file(&file.name, &file.text);
     }
     let name = s.texts("style").last().copied().unwrap_or_default();
-    style::builtin().into_iter().find(|style| style.is_called(name)).ok_or_else(|| {
+    Style::builtin().into_iter().find(|style| style.is_called(name)).ok_or_else(|| {
         Error::usage("style", name, format!("is no style; there are {}, and files (TOML or JSON)", NAMES.join(", ")))
     })
 }

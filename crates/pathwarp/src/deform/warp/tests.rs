@@ -1,6 +1,6 @@
 //! The nets against the measured table, written out here once more with plain numbers and circles.
 
-use super::style::{Bent, builtin};
+use super::style::{Bent, Style};
 use super::*;
 use crate::check;
 use crate::outline::{Outline, Seg};
@@ -180,7 +180,7 @@ fn off(net: &Net, n: &N) -> f64 {
 
 #[test]
 fn every_style_is_there_under_every_spelling() {
-    let styles = builtin();
+    let styles = Style::builtin();
     assert_eq!(styles.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), NAMES);
     for (ours, psd) in
         [("arc", "warpArc"), ("shell-lower", "warpShellLower"), ("fisheye", "warpFishEye"), ("twist", "warpTwist")]
@@ -194,7 +194,7 @@ fn every_style_is_there_under_every_spelling() {
 
 #[test]
 fn nets_are_the_tables() {
-    for style in builtin() {
+    for style in Style::builtin() {
         for b in BENDS {
             let net = style.net(W, H, &plain(b)).unwrap();
             let d = off(&net, &table(&style.name, b, W, H));
@@ -208,7 +208,7 @@ fn nets_are_the_tables() {
 /// Sideways it is the same style on the transposed box; a rise ends where it began.
 #[test]
 fn the_vertical_axis_is_transposition() {
-    for style in builtin() {
+    for style in Style::builtin() {
         for b in BENDS {
             let net = style.net(W, H, &Bent { vertical: true, ..plain(b) }).unwrap();
             let across = table(&style.name, b, H, W);
@@ -270,7 +270,7 @@ fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], colu
 
 #[test]
 fn distortions_come_in_order() {
-    for style in builtin() {
+    for style in Style::builtin() {
         for b in BENDS {
             for (h, v) in [(0.3, 0.0), (0.0, -0.4), (0.25, -0.6), (-1.0, 0.5)] {
                 let net = style.net(W, H, &Bent { distortion: [h, v], ..plain(b) }).unwrap();
@@ -288,7 +288,7 @@ fn distortions_come_in_order() {
         }
     }
     // Order matters where both act on bent sides, so that the test can tell.
-    let arch = builtin().into_iter().find(|s| s.name == "arch").unwrap();
+    let arch = Style::builtin().into_iter().find(|s| s.name == "arch").unwrap();
     let one = arch.net(W, H, &Bent { distortion: [0.25, -0.6], ..plain(0.5) }).unwrap();
     let upright = arch.net(H, W, &Bent { distortion: [-0.6, 0.25], vertical: true, ..plain(0.5) }).unwrap();
     let swapped: N = std::array::from_fn(|j| std::array::from_fn(|c| (upright[c][j].y, upright[c][j].x)));
@@ -393,7 +393,7 @@ fn files_of_ones_own_and_their_faults() {
     assert!(Warp.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
 }
 
-/// `--keep verticals`: upright within 0.1° where the style's sides allow it, for the styles that have no upright map of their own.
+/// `keep verticals`: upright within 0.1° where the style's sides allow it, for the styles that have no upright map of their own.
 #[test]
 fn kept_verticals_are_upright() {
     use crate::param::{Args, Frame};

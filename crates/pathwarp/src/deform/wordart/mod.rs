@@ -4,7 +4,9 @@
 //! that it stands on. The curves and their adjust values are those of ECMA-376, Part 1, *presetTextWarpDefinitions* (the preset
 //! text warps of DrawingML, `prstTxWarp`), written anew as data in `presets.json` ([`preset`]).
 
-mod preset;
+mod shape;
+
+pub use shape::TextShape;
 
 use super::bend::Bend;
 use super::built::{Built, Overlay, Role};
@@ -14,7 +16,7 @@ use crate::map::{AffineMap, Along, Class, Guide, Map, TileRow, Tiled, ruled};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Args, Axis, Frame, Kind, Param, Settings};
 use kurbo::{Affine, Rect};
-use preset::{Guides, Preset};
+use shape::{GuideError, Guides};
 use std::sync::Arc;
 
 pub(super) struct WordArt;
@@ -149,9 +151,8 @@ impl Deformation for WordArt {
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let name = s.texts("preset").last().copied().unwrap_or_default();
         let preset = match s.file_if("preset")? {
-            Some(file) => serde_json::from_str(&file.text)
-                .map_err(|e| Error::input(&file.name, format!("is no text shape: {e}")))?,
-            None => preset::all().into_iter().find(|p| p.is_called(name)).ok_or_else(|| {
+            Some(file) => TextShape::from_file(&file.name, &file.text)?,
+            None => TextShape::builtin().into_iter().find(|p| p.is_called(name)).ok_or_else(|| {
                 Error::usage("preset", name, format!("is no text shape; there are {}, and files", NAMES.join(", ")))
             })?,
         };
@@ -160,7 +161,7 @@ impl Deformation for WordArt {
             return Err(GeometryError::FlatFrame { width: rect.width(), height: rect.height() }.into());
         }
         let adjusted = adjusted(s, &preset)?;
-        let wrong = |what: String| Error::usage("preset", name, what);
+        let wrong = |e: GuideError| Error::usage("preset", name, e.to_string());
         let guides = preset.guides(rect.width(), rect.height(), &adjusted).map_err(wrong)?;
         let bands = match &guides {
             Guides::Between(b) => b.len(),
@@ -199,7 +200,9 @@ impl Deformation for WordArt {
             }
         };
         let map = rows.and_then(|rows| Tiled::over(rect, cuts.clone(), rows));
-        let map = map.ok_or_else(|| wrong("has a guide without length in this box: adjust it less far".into()))?;
+        let map = map.ok_or_else(|| {
+            Error::usage("preset", name, "has a guide without length in this box: adjust it less far")
+        })?;
         built.map = match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(crate::anchors::settled(m, s.frame()))),
             Class::Projective(_) | Class::Smooth => map,
@@ -209,7 +212,7 @@ impl Deformation for WordArt {
 }
 
 /// The adjust values: given or default.
-fn adjusted(s: &Settings<'_>, preset: &Preset) -> Result<Vec<f64>, Error> {
+fn adjusted(s: &Settings<'_>, preset: &TextShape) -> Result<Vec<f64>, Error> {
     let mut values: Vec<f64> = preset.adj.iter().map(|a| a.default).collect();
     let texts = if s.given("adj") { s.texts("adj") } else { Vec::new() };
     for (n, text) in texts.into_iter().enumerate() {

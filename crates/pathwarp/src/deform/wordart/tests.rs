@@ -18,7 +18,7 @@ fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
 }
 
 fn default_guides(name: &str) -> Guides {
-    let preset = preset::all().into_iter().find(|p| p.name == name).unwrap();
+    let preset = TextShape::builtin().into_iter().find(|p| p.name == name).unwrap();
     let values: Vec<f64> = preset.adj.iter().map(|a| a.default).collect();
     preset.guides(W, H, &values).unwrap()
 }
@@ -108,7 +108,7 @@ fn the_guides_ends_are_the_formulas() {
     ];
     assert_eq!(
         pairs.iter().map(|p| p.0).collect::<Vec<_>>(),
-        preset::all().iter().map(|p| p.name.clone()).collect::<Vec<_>>()
+        TextShape::builtin().iter().map(|p| p.name.clone()).collect::<Vec<_>>()
     );
     for (name, expected) in pairs {
         let guides: Vec<Vec<Seg>> = match default_guides(name) {
@@ -288,10 +288,10 @@ fn names_and_limits() {
         ("Double Wave Up-Down", "textWave4"),
         ("Square", "plain"),
     ] {
-        let found = |n: &str| preset::all().into_iter().find(|p| p.is_called(n)).map(|p| p.name);
+        let found = |n: &str| TextShape::builtin().into_iter().find(|p| p.is_called(n)).map(|p| p.name);
         assert!(found(a).is_some() && found(a) == found(b), "{a} {b}");
     }
-    assert_eq!(preset::all().iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), NAMES);
+    assert_eq!(TextShape::builtin().iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), NAMES);
     assert!(NAMES.len() == 40 && NAMES.iter().enumerate().all(|(i, n)| !NAMES[..i].contains(n)));
     let fault = |pairs: &[(&str, &str)]| build(pairs).map(|_| ()).unwrap_err().to_string();
     assert!(fault(&[("preset", "bubble")]).contains("cascade-down"));

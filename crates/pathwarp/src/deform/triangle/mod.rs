@@ -1,7 +1,7 @@
 //! Bézier triangles: the artwork in a triangle follows a net of control points.
 //!
 //! F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), with Bᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱu₁ʲu₂ᵏ and u the barycentric coordinates in
-//! the reference triangle ABC (see [`map::triangle`](crate::map::triangle)). Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the
+//! the reference triangle ABC (see [`net`]). Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the
 //! map is affine, with weights projective; at degree 2 six points are free and lines become conics' projections: parabolas, or
 //! conics with weights. Outside the triangle nothing moves; the restriction of the map to a side depends on that side's points
 //! alone, so a side whose points stay put is joined without a gap.
@@ -9,13 +9,15 @@
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
 
-use super::built::{Built, Role};
-use super::entry::{Case, Deformation, Example, Info, Law};
+pub(super) mod net;
+
+use crate::deform::built::{Built, Role};
+use crate::deform::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, GeometryError};
-use crate::map::TriangleNet;
-use crate::map::triangle::indices;
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{BezPath, Point, Rect, Vec2};
+
+use net::{TriangleNet, indices};
 
 pub(super) struct Triangle;
 
@@ -99,7 +101,7 @@ first corner at the top, its second at the bottom left.",
         },
     ]);
 
-const SIX: super::entry::Pairs = &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30")];
+const SIX: crate::deform::entry::Pairs = &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30")];
 
 impl Deformation for Triangle {
     fn info(&self) -> &Info {
@@ -110,7 +112,7 @@ impl Deformation for Triangle {
         let corners = corners(s)?;
         let degree = s.number("degree")? as usize;
         let mut net = TriangleNet::regular(corners, degree).ok_or_else(|| GeometryError::Collinear {
-            path: "--reference".into(),
+            path: "reference".into(),
             which: [1, 2, 3],
             points: corners.to_vec(),
         })?;
@@ -148,7 +150,7 @@ impl Deformation for Triangle {
             for k in torn {
                 built.warn(format!(
                     "the side between the {} corner runs through the artwork's box and has control points moved: what crosses it \
-is torn apart; keep that side's points in place, choose a larger --reference, or give --extend",
+is torn apart; keep that side's points in place, choose a larger `reference`, or give `extend`",
                     names[k]
                 ));
             }
@@ -232,9 +234,9 @@ fn cage(net: &TriangleNet) -> BezPath {
 
 #[cfg(test)]
 mod tests {
+    use super::net::{basis, regular_point};
     use super::*;
     use crate::check;
-    use crate::map::triangle::{basis, regular_point};
     use crate::map::{Class, Map, RationalBezier};
     use crate::outline::Seg;
     use crate::param::Args;

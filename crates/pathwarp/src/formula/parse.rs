@@ -1,58 +1,38 @@
 //! Text to a program: a Pratt parser (V. Pratt, *Top down operator precedence*, POPL 1973) that emits as it reads.
 
+use super::error::{Problem, SyntaxError};
 use super::program::{Binary, Program, Unary};
 
-/// A formula longer than this is not a formula.
-const MOST_BYTES: usize = 10_000;
-/// Brackets, signs and powers within one another.
-const MOST_DEPTH: usize = 100;
+/// Length limit: nobody types a longer formula.
+const MAX_BYTES: usize = 10_000;
+/// Nesting limit for brackets, signs and powers, so that the recursion cannot exhaust the stack.
+const MAX_DEPTH: usize = 100;
 
-/// What is wrong, and the byte at which it was noticed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Fault {
-    pub(super) at: usize,
-    pub(super) what: String,
-}
-
-impl Fault {
-    fn new(at: usize, what: impl Into<String>) -> Self {
-        Self { at, what: what.into() }
-    }
-
-    /// The message with the formula and a caret below the fault.
-    pub(super) fn show(&self, text: &str) -> String {
-        let column = text.get(..self.at).unwrap_or(text).chars().count();
-        // The caret's place must not depend on how wide a tab is drawn.
-        let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        format!("cannot be understood: {}\n  {line}\n  {}^", self.what, " ".repeat(column))
-    }
-}
-
-/// What the names in a formula stand for: values in the program.
-pub(super) struct Names(Vec<(String, u32)>);
+/// The names that a formula may use, each with the index of its value in the program.
+pub(crate) struct Names(Vec<(String, u32)>);
 
 impl Names {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(Vec::new())
     }
 
-    pub(super) fn set(&mut self, name: &str, value: u32) {
+    pub(crate) fn set(&mut self, name: &str, value: u32) {
         self.0.push((name.to_owned(), value));
     }
 
-    pub(super) fn get(&self, name: &str) -> Option<u32> {
+    pub(crate) fn get(&self, name: &str) -> Option<u32> {
         self.0.iter().find(|(n, _)| n == name).map(|(_, v)| *v)
     }
 }
 
-/// Whether `name` can be given to a value.
-pub(super) fn is_name(name: &str) -> bool {
+/// Returns `true` if `name` has the form of a name.
+pub(crate) fn is_name(name: &str) -> bool {
     let mut c = name.chars();
     c.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_') && c.all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
-/// Whether a function is called that.
-pub(super) fn is_function(name: &str) -> bool {
+/// Returns `true` if there is a function called `name`.
+pub(crate) fn is_function(name: &str) -> bool {
     function(name).is_some()
 }
 
@@ -85,20 +65,20 @@ fn function(name: &str) -> Option<Function> {
     })
 }
 
-/// Reads `text` into `program` and returns the value it stands for.
-pub(super) fn parse(text: &str, names: &Names, program: &mut Program) -> Result<u32, Fault> {
-    if text.len() > MOST_BYTES {
-        return Err(Fault::new(0, format!("it is longer than {MOST_BYTES} bytes")));
+/// Appends the formula `text` to `program` and returns the index of its value.
+pub(crate) fn parse(text: &str, names: &Names, program: &mut Program) -> Result<u32, SyntaxError> {
+    if text.len() > MAX_BYTES {
+        return Err(SyntaxError::new(0, Problem::TooLong(MAX_BYTES)));
     }
     let mut p = Parser { text, at: 0, names, program, depth: 0 };
     let value = p.expression(0)?;
     match p.peek() {
         None => Ok(value),
-        Some(')') => Err(Fault::new(p.at, "this bracket was never opened")),
+        Some(')') => Err(SyntaxError::new(p.at, Problem::NeverOpened)),
         Some(c) if c.is_alphanumeric() || c == '_' || c == '(' || c == '.' => {
-            Err(Fault::new(p.at, "an operator is missing here (a product is written with *)"))
+            Err(SyntaxError::new(p.at, Problem::MissingOperator))
         }
-        Some(c) => Err(Fault::new(p.at, format!("`{c}` has no meaning here"))),
+        Some(c) => Err(SyntaxError::new(p.at, Problem::Meaningless(c))),
     }
 }
 
@@ -121,7 +101,7 @@ impl Parser<'_> {
         self.text.get(self.at..).unwrap_or("")
     }
 
-    /// The next character that is no space.
+    /// Skips whitespace and returns the next character.
     fn peek(&mut self) -> Option<char> {
         let skipped = self.rest().len() - self.rest().trim_start().len();
         self.at += skipped;
@@ -138,16 +118,16 @@ impl Parser<'_> {
     }
 
     /// An expression whose operators bind at least as tightly as `least`.
-    fn expression(&mut self, least: u8) -> Result<u32, Fault> {
+    fn expression(&mut self, least: u8) -> Result<u32, SyntaxError> {
         self.depth += 1;
-        if self.depth > MOST_DEPTH {
-            return Err(Fault::new(self.at, format!("it is nested more than {MOST_DEPTH} deep")));
+        if self.depth > MAX_DEPTH {
+            return Err(SyntaxError::new(self.at, Problem::TooDeep(MAX_DEPTH)));
         }
         let mut left = self.operand()?;
         while let Some(c) = self.peek() {
             let power = c == '^' || self.rest().starts_with("**");
             let (binds, right, op) = match c {
-                _ if power => (POWER, POWER, Binary::Pow), // to the right: 2^3^2 = 2^(3^2)
+                _ if power => (POWER, POWER, Binary::Pow), // right-associative: 2^3^2 = 2^(3^2)
                 '+' => (SUM, SUM + 1, Binary::Add),
                 '-' => (SUM, SUM + 1, Binary::Sub),
                 '*' => (PRODUCT, PRODUCT + 1, Binary::Mul),
@@ -166,9 +146,9 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    fn operand(&mut self) -> Result<u32, Fault> {
+    fn operand(&mut self) -> Result<u32, SyntaxError> {
         let at = match self.peek() {
-            None => return Err(Fault::new(self.at, "it ends where a value should stand")),
+            None => return Err(SyntaxError::new(self.at, Problem::EndsEarly)),
             Some(_) => self.at,
         };
         let c = self.peek().unwrap_or(' ');
@@ -190,24 +170,22 @@ impl Parser<'_> {
             }
             '0'..='9' | '.' => self.number(),
             c if c.is_ascii_alphabetic() || c == '_' => self.word(),
-            c => Err(Fault::new(at, format!("a value should stand here, not `{c}`"))),
+            c => Err(SyntaxError::new(at, Problem::NoValue(c))),
         }
     }
 
-    fn close(&mut self, opened: usize) -> Result<(), Fault> {
+    fn close(&mut self, opened: usize) -> Result<(), SyntaxError> {
         if self.eat(")") {
             return Ok(());
         }
         Err(match self.peek() {
-            None => Fault::new(opened, "this bracket is never closed"),
-            Some(',') => {
-                Fault::new(self.at, "this comma has no function to belong to, or one argument too many before it")
-            }
-            Some(_) => Fault::new(self.at, "an operator or a closing bracket is missing here"),
+            None => SyntaxError::new(opened, Problem::NeverClosed),
+            Some(',') => SyntaxError::new(self.at, Problem::StrayComma),
+            Some(_) => SyntaxError::new(self.at, Problem::MissingOperatorOrBracket),
         })
     }
 
-    fn number(&mut self) -> Result<u32, Fault> {
+    fn number(&mut self) -> Result<u32, SyntaxError> {
         let (at, b) = (self.at, self.rest().as_bytes());
         let digits = |mut i: usize| {
             while b.get(i).is_some_and(u8::is_ascii_digit) {
@@ -219,7 +197,7 @@ impl Parser<'_> {
         if b.get(end) == Some(&b'.') {
             end = digits(end + 1);
         }
-        // An exponent only if digits follow; else it is the number e, and an operator is missing.
+        // Without digits after it, `e` is the constant, and an operator is missing.
         if matches!(b.get(end), Some(b'e' | b'E')) {
             let sign = usize::from(matches!(b.get(end + 1), Some(b'+' | b'-')));
             let all = digits(end + 1 + sign);
@@ -227,15 +205,15 @@ impl Parser<'_> {
                 end = all;
             }
         }
-        let value: f64 = self.rest()[..end].parse().map_err(|_| Fault::new(at, "this is no number"))?;
+        let value: f64 = self.rest()[..end].parse().map_err(|_| SyntaxError::new(at, Problem::NotANumber))?;
         if !value.is_finite() {
-            return Err(Fault::new(at, "this number is too large"));
+            return Err(SyntaxError::new(at, Problem::TooLarge));
         }
         self.at += end;
         self.emit(at, |p| p.constant(value))
     }
 
-    fn word(&mut self) -> Result<u32, Fault> {
+    fn word(&mut self) -> Result<u32, SyntaxError> {
         let at = self.at;
         let len = self.rest().chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').count();
         let word = self.rest()[..len].to_owned();
@@ -245,12 +223,12 @@ impl Parser<'_> {
         }
         let Some(f) = function(&word) else {
             let known: Vec<&str> = self.names.0.iter().map(|(n, _)| n.as_str()).collect();
-            let what = format!("there is no `{word}`; names are {}; functions are {FUNCTIONS}", known.join(" "));
-            return Err(Fault::new(at, what));
+            let problem = Problem::Unknown { word, names: known.join(" "), functions: FUNCTIONS };
+            return Err(SyntaxError::new(at, problem));
         };
         let opened = self.at;
         if !self.eat("(") {
-            return Err(Fault::new(self.at, format!("`{word}` is a function: its argument goes in brackets")));
+            return Err(SyntaxError::new(self.at, Problem::NoArguments(word)));
         }
         let first = self.expression(0)?;
         match f {
@@ -260,10 +238,7 @@ impl Parser<'_> {
             }
             Function::Two(op) => {
                 if !self.eat(",") {
-                    return Err(Fault::new(
-                        self.at,
-                        format!("`{word}` takes two arguments, with a comma between them"),
-                    ));
+                    return Err(SyntaxError::new(self.at, Problem::OneArgument(word)));
                 }
                 let second = self.expression(0)?;
                 self.close(opened)?;
@@ -272,7 +247,7 @@ impl Parser<'_> {
         }
     }
 
-    fn emit(&mut self, at: usize, f: impl FnOnce(&mut Program) -> Option<u32>) -> Result<u32, Fault> {
-        f(self.program).ok_or_else(|| Fault::new(at, "it has too many operations"))
+    fn emit(&mut self, at: usize, f: impl FnOnce(&mut Program) -> Option<u32>) -> Result<u32, SyntaxError> {
+        f(self.program).ok_or_else(|| SyntaxError::new(at, Problem::TooManyOperations))
     }
 }

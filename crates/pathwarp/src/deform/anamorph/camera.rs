@@ -13,17 +13,17 @@
 //! **From elsewhere.** A pinhole camera at C that looks at the image of the drawing's middle, scaled so that things there are
 //! true to size. Where δ is a polynomial of degree n, so are numerators and denominator of the view.
 
-use super::quotient::{Plane, Quotient, source};
 use super::surface::{Anamorphosis, Radial, Round, Space, Surface, dot, length, minus, picture_axes, swap};
-use super::{AffineMap, Crease, Creases, Formula, Level, Map, NewtonInverse, Real};
+use crate::map::quotient::{Plane, Quotient, source};
+use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, NewtonInverse, Real};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
 /// A pinhole camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Camera {
+pub(crate) struct Camera {
     /// Where it is.
-    pub at: Space,
+    pub(crate) at: Space,
     forward: Space,
     axes: [Space; 2],
     reach: f64,
@@ -33,7 +33,7 @@ pub struct Camera {
 impl Camera {
     /// At `at`, looking towards `target`, which appears at `centre`, true to size. `None` if the two places coincide.
     #[must_use]
-    pub fn new(at: Space, target: Space, centre: Point) -> Option<Self> {
+    pub(crate) fn new(at: Space, target: Space, centre: Point) -> Option<Self> {
         let along = minus(target, at);
         let reach = length(along);
         let forward = along.map(|v| v / reach);
@@ -42,7 +42,7 @@ impl Camera {
 
     /// How far in front of the camera a point is.
     #[must_use]
-    pub fn depth_of(&self, q: Space) -> f64 {
+    pub(crate) fn depth_of(&self, q: Space) -> f64 {
         self.depth(q)
     }
 
@@ -100,7 +100,7 @@ impl Anamorphosis {
 
     /// The surface rolled out flat, true to size; `None` for surfaces that cannot be.
     #[must_use]
-    pub fn unrolled(&self) -> Option<Arc<dyn Map>> {
+    pub(crate) fn unrolled(&self) -> Option<Arc<dyn Map>> {
         match &self.surface {
             Surface::Plane(p) => Some(self.flattened(p.through, p.axes, 1.0, None, p.at)?.simplest()),
             Surface::Round(r) => Some(Arc::new(Unrolled { of: self.clone(), round: *r })),
@@ -110,13 +110,13 @@ impl Anamorphosis {
 
     /// What the eye sees: the drawing itself, computed through space.
     #[must_use]
-    pub fn seen(&self) -> Arc<dyn Map> {
+    pub(crate) fn seen(&self) -> Arc<dyn Map> {
         Arc::new(Seen(self.clone()))
     }
 
     /// What a camera sees. The inverse is looked for over `domain`.
     #[must_use]
-    pub fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
+    pub(crate) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
         match self.flattened(camera.at, camera.axes, camera.reach, Some(camera.forward), camera.centre) {
             Some(q) => q.simplest(),
             None => Arc::new(Viewed { of: self.clone(), camera: *camera, domain }),

@@ -10,14 +10,14 @@
 //! plane of the drawing that is a map of the plane; at degree 1 of a triangle δ(p) = d·(p − O) + d₀ is linear and the map the
 //! perspective collineation with the matrix [I 0; d d₀] about O, whose axis is the line δ = 1.
 
-use super::patch;
-use super::quotient::{Plane, Quotient, source};
-use super::triangle;
+use crate::deform::triangle::net as triangle;
+use crate::map::patch;
+use crate::map::quotient::{Plane, Quotient, source};
 use kurbo::{Affine, BezPath, Point, Rect, Shape, Vec2};
 
 /// A regular net of control points in the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Reference {
+pub(crate) enum Reference {
     /// Points (i·A + j·B + k·C)/n with i + j + k = n.
     Triangle([Point; 3], usize),
     /// Points (i, j), i from the left, j from the top, degrees along x and y.
@@ -27,7 +27,7 @@ pub enum Reference {
 impl Reference {
     /// The control points' numbers, in the order of [`Dilation`]'s values. A rectangle's third number is 0.
     #[must_use]
-    pub fn nodes(&self) -> Vec<[usize; 3]> {
+    pub(crate) fn nodes(&self) -> Vec<[usize; 3]> {
         match *self {
             Self::Triangle(_, n) => triangle::indices(n),
             Self::Rectangle(_, [m, n]) => (0..=n).flat_map(|j| (0..=m).map(move |i| [i, j, 0])).collect(),
@@ -36,7 +36,7 @@ impl Reference {
 
     /// Whether there is such a control point.
     #[must_use]
-    pub fn has(&self, node: [usize; 3]) -> bool {
+    pub(crate) fn has(&self, node: [usize; 3]) -> bool {
         match *self {
             Self::Triangle(_, n) => node.iter().try_fold(0usize, |s, v| s.checked_add(*v)) == Some(n),
             Self::Rectangle(_, [m, n]) => node[0] <= m && node[1] <= n && node[2] == 0,
@@ -52,7 +52,7 @@ impl Reference {
 
     /// Where a control point lies before it is moved.
     #[must_use]
-    pub fn point(&self, node: [usize; 3]) -> Point {
+    pub(crate) fn point(&self, node: [usize; 3]) -> Point {
         match *self {
             Self::Triangle(corners, _) => triangle::regular_point(corners, node),
             Self::Rectangle(r, [m, n]) => {
@@ -64,7 +64,7 @@ impl Reference {
 
     /// The corners, in order round the edge.
     #[must_use]
-    pub fn corners(&self) -> Vec<Point> {
+    pub(crate) fn corners(&self) -> Vec<Point> {
         match *self {
             Self::Triangle(c, _) => c.to_vec(),
             Self::Rectangle(r, _) => {
@@ -75,7 +75,7 @@ impl Reference {
 
     /// Whether a control point lies on side `side`, from corner `side` to the next.
     #[must_use]
-    pub fn on_side(&self, [i, j, k]: [usize; 3], side: usize) -> bool {
+    pub(crate) fn on_side(&self, [i, j, k]: [usize; 3], side: usize) -> bool {
         match *self {
             Self::Triangle(..) => [k, i, j][side % 3] == 0,
             Self::Rectangle(_, [m, n]) => [j == 0, i == m, j == n, i == 0][side % 4],
@@ -84,7 +84,7 @@ impl Reference {
 
     /// The box about it.
     #[must_use]
-    pub fn bounds(&self) -> Rect {
+    pub(crate) fn bounds(&self) -> Rect {
         match *self {
             Self::Triangle([a, b, c], _) => Rect::from_points(a, b).union_pt(c),
             Self::Rectangle(r, _) => r,
@@ -93,7 +93,7 @@ impl Reference {
 
     /// The values of the basis functions at `p`, in the order of [`Self::nodes`].
     #[must_use]
-    pub fn basis(&self, p: Point) -> Vec<f64> {
+    pub(crate) fn basis(&self, p: Point) -> Vec<f64> {
         match *self {
             Self::Triangle(corners, n) => triangle::basis(corners, n, p),
             Self::Rectangle(r, [m, n]) => {
@@ -142,7 +142,7 @@ fn bernstein(n: usize, t: f64) -> Vec<f64> {
 
 /// δ over a reference: how many times nearer to the eye each control point comes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Dilation {
+pub(crate) struct Dilation {
     reference: Reference,
     values: Vec<f64>,
 }
@@ -150,37 +150,37 @@ pub struct Dilation {
 impl Dilation {
     /// δ = 1: nothing moves.
     #[must_use]
-    pub fn none(reference: Reference) -> Self {
+    pub(crate) fn none(reference: Reference) -> Self {
         Self { reference, values: vec![1.0; reference.nodes().len()] }
     }
 
     /// The net.
     #[must_use]
-    pub fn reference(&self) -> &Reference {
+    pub(crate) fn reference(&self) -> &Reference {
         &self.reference
     }
 
     /// δ of a control point.
     #[must_use]
-    pub fn of(&self, node: [usize; 3]) -> f64 {
+    pub(crate) fn of(&self, node: [usize; 3]) -> f64 {
         self.values[self.reference.index(node)]
     }
 
     /// Moves a control point to 1/`delta` times its distance from the eye.
-    pub fn set(&mut self, node: [usize; 3], delta: f64) {
+    pub(crate) fn set(&mut self, node: [usize; 3], delta: f64) {
         let k = self.reference.index(node);
         self.values[k] = delta;
     }
 
     /// δ at a place.
     #[must_use]
-    pub fn at(&self, p: Point) -> f64 {
+    pub(crate) fn at(&self, p: Point) -> f64 {
         self.reference.basis(p).iter().zip(&self.values).map(|(b, d)| b * d).sum()
     }
 
     /// Moves one control point so that the place `p` goes to 1/`delta` times its distance: δᵢ = δᵢ + (δ − δ(p))/Bᵢ(p); from rest,
     /// 1 + (δ − 1)/Bᵢ. The one that counts most at `p` is taken, and none that `held` names. `None`: no such point counts there.
-    pub fn prescribe(&mut self, p: Point, delta: f64, held: impl Fn([usize; 3]) -> bool) -> Option<[usize; 3]> {
+    pub(crate) fn prescribe(&mut self, p: Point, delta: f64, held: impl Fn([usize; 3]) -> bool) -> Option<[usize; 3]> {
         /// Below this a control point would have to move further than its numbers can say.
         const LEAST: f64 = 1e-6;
         let all = self.reference.nodes().into_iter().zip(self.reference.basis(p));
@@ -192,14 +192,14 @@ impl Dilation {
 
     /// Whether no control point of a side moves.
     #[must_use]
-    pub fn side_is_fixed(&self, side: usize) -> bool {
+    pub(crate) fn side_is_fixed(&self, side: usize) -> bool {
         let on = self.reference.nodes().into_iter().filter(|node| self.reference.on_side(*node, side));
         on.into_iter().all(|node| (self.of(node) - 1.0).abs() <= 1e-12)
     }
 
     /// Whether all δ are positive: then there is no pole inside the reference.
     #[must_use]
-    pub fn is_positive(&self) -> bool {
+    pub(crate) fn is_positive(&self) -> bool {
         self.values.iter().all(|d| *d > 0.0)
     }
 
@@ -216,7 +216,7 @@ impl Dilation {
 
     /// The map of the plane for an eye in it. `bounded`: it is used inside the reference only.
     #[must_use]
-    pub fn about(&self, eye: Point, bounded: bool) -> Quotient {
+    pub(crate) fn about(&self, eye: Point, bounded: bool) -> Quotient {
         let (pre, delta) = self.plane();
         let [x, y] = source(pre).map(Plane::linear);
         let less = |p: Plane, o: f64| p.plus(-o, &Plane::linear([1.0, 0.0, 0.0]));
@@ -228,7 +228,7 @@ impl Dilation {
     /// (d, d₀) of the collineation δ(p) = d·(p − O) + d₀, the rows of its matrix [I 0; d d₀] about the eye: for triangles of
     /// degree 1.
     #[must_use]
-    pub fn collineation(&self, eye: Point) -> Option<(Vec2, f64)> {
+    pub(crate) fn collineation(&self, eye: Point) -> Option<(Vec2, f64)> {
         let Reference::Triangle(_, 1) = self.reference else { return None };
         let d0 = self.at(eye);
         let along = |e: Vec2| self.at(eye + e) - d0;
@@ -237,7 +237,7 @@ impl Dilation {
 
     /// The net's lines after `place` has been applied to every control point and its δ.
     #[must_use]
-    pub fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
+    pub(crate) fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
         let at = |node: [usize; 3]| place(self.reference.point(node), self.of(node));
         let mut path = BezPath::new();
         for [i, j, k] in self.reference.nodes() {
@@ -263,7 +263,7 @@ impl Dilation {
 
     /// The reference's outline.
     #[must_use]
-    pub fn outline(&self) -> BezPath {
+    pub(crate) fn outline(&self) -> BezPath {
         match self.reference {
             Reference::Rectangle(r, _) => r.to_path(0.1),
             Reference::Triangle([a, b, c], _) => {

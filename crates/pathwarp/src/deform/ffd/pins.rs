@@ -6,18 +6,18 @@
 //! J. Gain, N. Dodgson, *Preserving topology under free-form deformation*, 2001). The pseudo-inverse comes from the
 //! eigenvectors of the small symmetric matrix R·Rᵀ (C. G. J. Jacobi's rotations).
 
-use super::Lattice;
+use crate::map::Lattice;
 use kurbo::{Point, Vec2};
 
 /// Pins at most: the work goes with the cube of their number.
-pub const MOST_PINS: usize = 256;
+pub(crate) const MOST_PINS: usize = 256;
 
 /// Eigenvalues below this share of the largest are taken for zero: two pins nearly on one spot.
 const RANK: f64 = 1e-12;
 
 /// Moves the control points that are `free` so that the lattice takes the first point of each pin to the second; returns
 /// how far off each pin is then (rounding, unless the pins ask for more than the lattice can do).
-pub fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Point, Point)]) -> Vec<f64> {
+pub(crate) fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Point, Point)]) -> Vec<f64> {
     let n = pins.len();
     let columns = lattice.columns();
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);

@@ -1,39 +1,117 @@
-//! Any formula: x' and y' as the user writes them.
+//! Any formula for x' and y'.
 //!
-//! The text becomes a list of operations ([`parse`], [`program`]), which runs on plain and on dual numbers: the derivatives are
-//! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each, and a branch is the list
-//! with the side known.
-
-pub(super) mod calc;
-mod parse;
-mod program;
+//! The text becomes a list of operations ([`formula`](crate::formula)), which runs on plain and on dual numbers: the derivatives are
+//! exact, as for every formula in this crate. Kinks of abs, min and max are creases: a level set each. A branch is the list with
+//! every side resolved.
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
+use crate::formula::{Binary, Names, Program, SyntaxError, is_function, is_name, parse};
 use crate::map::{Class, Crease, Creases, Dual, Jet, Level, Map};
-use crate::param::{Frame, Kind, Param, Settings};
-use kurbo::{Affine, Point};
-use parse::{Fault, Names};
-use program::{Binary, Program};
+use crate::param::{Kind, Param, Settings};
+use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
-pub(super) struct Expr;
+/// Any formula for x' and y', with exact derivatives.
+///
+/// Formulas use numbers, `+ - * / ^`, brackets, the functions sin cos tan asin acos atan atan2 sqrt exp ln abs min max pow
+/// hypot, and the names x, y (the point), u, v (the same within the box, 0 to 1), w, h, cx, cy (the box), pi, tau, e.
+///
+/// ```
+/// use pathwarp::{deform::Expr, kurbo::{Point, Rect}, map::Map};
+///
+/// let ripple = Expr::new(Rect::new(0.0, 0.0, 100.0, 50.0)).define("a", "w/25").x("x + a*sin(y)").build()?;
+/// assert!((ripple.map.point(Point::new(1.0, 2.0)).x - (1.0 + 4.0 * 2f64.sin())).abs() < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expr {
+    frame: Rect,
+    x: Option<String>,
+    y: Option<String>,
+    /// `NAME=FORMULA`.
+    definitions: Vec<String>,
+}
+
+impl Expr {
+    /// Creates a map over the artwork's box. At least one coordinate needs a formula.
+    #[must_use]
+    pub fn new(frame: Rect) -> Self {
+        Self { frame, x: None, y: None, definitions: Vec::new() }
+    }
+
+    /// Sets the formula for x'. Default: `x`.
+    #[must_use]
+    pub fn x(mut self, formula: &str) -> Self {
+        self.x = Some(formula.to_owned());
+        self
+    }
+
+    /// Sets the formula for y'. Default: `y`.
+    #[must_use]
+    pub fn y(mut self, formula: &str) -> Self {
+        self.y = Some(formula.to_owned());
+        self
+    }
+
+    /// Gives a value a name, for the formulas after it.
+    #[must_use]
+    pub fn define(mut self, name: &str, formula: &str) -> Self {
+        self.definitions.push(format!("{name}={formula}"));
+        self
+    }
+
+    /// Parses the formulas and builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] without any formula, [`Error::Usage`] for a syntax error, with a caret below its place.
+    pub fn build(&self) -> Result<Built, Error> {
+        if self.x.is_none() && self.y.is_none() {
+            return Err(Error::missing("x", "a formula for x, y or both, such as 'x + 4*sin(y/16)'"));
+        }
+        let mut program = Program::default();
+        let mut names = builtin(&mut program, self.frame)
+            .ok_or_else(|| Error::usage("x", "", "has no room for the built-in names"))?;
+        for text in &self.definitions {
+            let Some((name, formula)) = text.split_once('=') else {
+                return Err(Error::usage("let", text, "is not NAME=FORMULA"));
+            };
+            let (name, skipped) = (name.trim(), text.len() - formula.len());
+            if !is_name(name) {
+                let problem = format!("has `{name}` for a name: use letters, digits and _, starting with a letter");
+                return Err(Error::usage("let", text, problem));
+            }
+            if names.get(name).is_some() || is_function(name) {
+                return Err(Error::usage("let", text, format!("redefines `{name}`")));
+            }
+            let value = parse(formula, &names, &mut program)
+                .map_err(|e| Error::usage("let", text, SyntaxError { at: e.at + skipped, ..e }.show(text)))?;
+            names.set(name, value);
+        }
+        let mut read = |param: &str, formula: &Option<String>| -> Result<u32, Error> {
+            let text = formula.as_deref().unwrap_or(param);
+            parse(text, &names, &mut program).map_err(|e| Error::usage(param, text, e.show(text)))
+        };
+        let (x, y) = (read("x", &self.x)?, read("y", &self.y)?);
+        Ok(Built::new(Arc::new(ExprMap { program: Arc::new(program), x, y })))
+    }
+}
 
 static INFO: Info = Info::new("expr", "move every point by a formula for x and y")
     .group("Formulas")
-    .about("Write where x and y go; what is not given stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \
-x y      the place, in user units, y downwards\n  \
+    .about("Formulas for the new x and y; a coordinate without one stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \
+x y      the point, in user units, y downwards\n  \
 u v      the same within the artwork's box, from 0 to 1, from the left and the top\n  \
 w h      the box's width and height\n  \
 cx cy    its middle\n  \
 pi tau e the numbers; angles are in radians\n  \
 sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b) hypot(a,b)\n\n\
---let names a value for those after it. Where abs, min and max have their kinks, curves are split.")
+--let names a value for the formulas after it. Curves are split at the kinks of abs, min and max.")
     .source("forward-mode differentiation of the formula itself; parsing after V. Pratt, Top down operator precedence, POPL 1973")
     .params(&[
-        Param::new("x", Kind::Text("FORMULA"), "Where x goes.").default("x"),
-        Param::new("y", Kind::Text("FORMULA"), "Where y goes.").default("y"),
+        Param::new("x", Kind::Text("FORMULA"), "The new x.").default("x"),
+        Param::new("y", Kind::Text("FORMULA"), "The new y.").default("y"),
         Param::new("let", Kind::Text("NAME=FORMULA"), "A name for a value, used after it; may be given many times.")
             .repeated(),
     ])
@@ -85,51 +163,24 @@ sin cos tan asin acos atan atan2(y,x) sqrt exp ln abs min(a,b) max(a,b) pow(a,b)
         },
     ]);
 
-impl Deformation for Expr {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        if !s.given("x") && !s.given("y") {
-            let hint = "a formula for x, y or both, such as 'x + 4*sin(y/16)'";
-            return Err(Error::Missing { param: "--x".into(), hint: hint.into() });
-        }
-        let mut program = Program::default();
-        let few = "the first few operations always fit";
-        let mut names = builtin(&mut program, s.frame()).ok_or_else(|| Error::usage("x", "", few))?;
-        for text in s.texts("let") {
-            let Some((name, formula)) = text.split_once('=') else {
-                return Err(Error::usage("let", text, "is not NAME=FORMULA"));
-            };
-            let (name, skipped) = (name.trim(), text.len() - formula.len());
-            if !parse::is_name(name) {
-                return Err(Error::usage(
-                    "let",
-                    text,
-                    format!("`{name}` is no name: letters, digits and _ after a letter"),
-                ));
-            }
-            if names.get(name).is_some() || parse::is_function(name) {
-                return Err(Error::usage("let", text, format!("`{name}` is taken already")));
-            }
-            let value = parse::parse(formula, &names, &mut program)
-                .map_err(|f| Error::usage("let", text, Fault { at: f.at + skipped, ..f }.show(text)))?;
-            names.set(name, value);
-        }
-        let mut read = |param: &str| -> Result<u32, Error> {
-            let text = s.texts(param).last().copied().unwrap_or(param);
-            parse::parse(text, &names, &mut program).map_err(|f| Error::usage(param, text, f.show(text)))
-        };
-        let (x, y) = (read("x")?, read("y")?);
-        Ok(Built::new(Arc::new(ExprMap { program: Arc::new(program), x, y })))
+        let formula = |name| s.texts(name).last().filter(|_| s.given(name)).map(|t| (*t).to_owned());
+        let definitions = s.texts("let").into_iter().map(str::to_owned).collect();
+        Expr { frame: s.frame().rect, x: formula("x"), y: formula("y"), definitions }.build()
     }
 }
 
-/// The names that are always there.
-fn builtin(p: &mut Program, frame: &Frame) -> Option<Names> {
+/// Defines the built-in names.
+fn builtin(p: &mut Program, r: Rect) -> Option<Names> {
     let mut names = Names::new();
-    let r = frame.rect;
     let (x, y) = (p.x()?, p.y()?);
     names.set("x", x);
     names.set("y", y);
@@ -153,7 +204,7 @@ fn builtin(p: &mut Program, frame: &Frame) -> Option<Names> {
     Some(names)
 }
 
-/// The map itself: a program, and which of its values are x' and y'.
+/// The map: a program, and the indices of x' and y' among its values.
 #[derive(Debug, Clone)]
 struct ExprMap {
     program: Arc<Program>,
@@ -244,12 +295,12 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = check::entry(&Expr);
+        let faults = check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 
     fn build(pairs: &[(&str, &str)]) -> Result<Arc<dyn Map>, Error> {
-        Expr.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
     }
 
     /// Every function's value and derivatives, through the parser.
@@ -284,19 +335,19 @@ mod tests {
         let fault = |text: &str| build(&[("x", text)]).err().unwrap().to_string();
         for (text, column, part) in [
             ("x + sin(y", 7, "never closed"),
-            ("x + * y", 4, "value should stand"),
+            ("x + * y", 4, "expected a value"),
             ("2x", 1, "operator is missing"),
             ("2 + fud(x)", 4, "no `fud`"),
-            ("x +", 3, "ends where"),
+            ("x +", 3, "missing at the end"),
             ("x)", 1, "never opened"),
             ("sin x", 4, "in brackets"),
             ("hypot(x)", 7, "two arguments"),
             ("sin(x, y)", 5, "comma"),
-            ("ä + 1", 0, "value should stand"),
-            ("x + ü", 4, "value should stand"),
+            ("ä + 1", 0, "expected a value"),
+            ("x + ü", 4, "expected a value"),
             ("x ; y", 2, "no meaning"),
             ("1e999", 0, "too large"),
-            ("", 0, "ends where"),
+            ("", 0, "missing at the end"),
         ] {
             let said = fault(text);
             let lines: Vec<&str> = said.lines().collect();
@@ -305,7 +356,7 @@ mod tests {
             assert_eq!(lines[lines.len() - 2], format!("  {text}"), "{said}");
         }
         let e = build(&[("let", "k = 2 +* 3"), ("x", "k")]).err().unwrap().to_string();
-        assert!(e.starts_with("--let") && e.ends_with("\n         ^"), "{e}");
+        assert!(e.starts_with("let: `k") && e.ends_with("\n         ^"), "{e}");
         for text in ["sin=3", "x=3", "4=3", "k"] {
             assert!(build(&[("let", text), ("x", "y")]).is_err(), "{text}");
         }

@@ -12,12 +12,12 @@
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3, for the polynomial ones.
 
 use super::dilation::Dilation;
-use super::quotient::Plane;
-use super::{Dual, Real};
+use crate::map::Real;
+use crate::map::quotient::Plane;
 use kurbo::{Affine, Point, Rect};
 
 /// A vector or point in space.
-pub type Space = [f64; 3];
+pub(crate) type Space = [f64; 3];
 
 pub(super) fn dot(a: Space, b: Space) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -51,21 +51,21 @@ pub(super) fn picture_axes(forward: Space) -> [Space; 2] {
 
 /// A plane in space with coordinates of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpacePlane {
+pub(crate) struct SpacePlane {
     /// A point of it.
-    pub through: Space,
+    pub(crate) through: Space,
     /// Its unit normal, away from the eye.
-    pub normal: Space,
+    pub(crate) normal: Space,
     /// Unit vectors: rightwards and down the page, as seen from the eye's side.
-    pub axes: [Space; 2],
+    pub(crate) axes: [Space; 2],
     /// Where `through` lands in the plane's own coordinates.
-    pub at: Point,
+    pub(crate) at: Point,
 }
 
 impl SpacePlane {
     /// The plane through a point, `normal` being on the side away from the eye.
     #[must_use]
-    pub fn new(through: Space, normal: Space, at: Point) -> Self {
+    pub(crate) fn new(through: Space, normal: Space, at: Point) -> Self {
         let normal = unit(normal);
         Self { through, normal, axes: picture_axes(normal), at }
     }
@@ -73,33 +73,33 @@ impl SpacePlane {
 
 /// A cylinder or cone with an upright (or level) axis that touches the plane of the drawing along a line or at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Round {
+pub(crate) struct Round {
     /// Where it touches: the axis is `radius` away from there.
-    pub middle: Point,
+    pub(crate) middle: Point,
     /// The radius there.
-    pub radius: f64,
+    pub(crate) radius: f64,
     /// How fast the radius grows downwards (rightwards for a level axis); 0 for a cylinder.
-    pub slope: f64,
+    pub(crate) slope: f64,
     /// Whether the axis runs from left to right.
-    pub level: bool,
+    pub(crate) level: bool,
     /// Whether it is seen from inside.
-    pub inside: bool,
+    pub(crate) inside: bool,
 }
 
 /// A sphere that touches the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sphere {
+pub(crate) struct Sphere {
     /// Where it touches.
-    pub middle: Point,
+    pub(crate) middle: Point,
     /// Its radius.
-    pub radius: f64,
+    pub(crate) radius: f64,
     /// Whether it is seen from inside.
-    pub inside: bool,
+    pub(crate) inside: bool,
 }
 
 /// A surface given by a polynomial δ.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Radial {
+pub(crate) struct Radial {
     pub(super) pre: Affine,
     pub(super) delta: Plane,
     pub(super) domain: Rect,
@@ -107,7 +107,7 @@ pub struct Radial {
 
 /// What the drawing is thrown onto.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Surface {
+pub(crate) enum Surface {
     /// A plane.
     Plane(SpacePlane),
     /// A cylinder or cone.
@@ -120,24 +120,13 @@ pub enum Surface {
 
 /// An eye and a surface: takes points of the drawing to points in space that the eye sees at the same place.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Anamorphosis {
+pub(crate) struct Anamorphosis {
     /// The foot of the perpendicular from the eye to the drawing.
-    pub foot: Point,
+    pub(crate) foot: Point,
     /// How far in front of the drawing the eye is; positive.
-    pub distance: f64,
+    pub(crate) distance: f64,
     /// What the drawing is thrown onto.
-    pub surface: Surface,
-}
-
-/// A point in space with its derivatives along the drawing's x and y.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpaceJet {
-    /// The point.
-    pub p: Space,
-    /// ∂/∂x.
-    pub dx: Space,
-    /// ∂/∂y.
-    pub dy: Space,
+    pub(crate) surface: Surface,
 }
 
 /// aλ² + 2bλ + c = 0 along a ray.
@@ -211,7 +200,7 @@ impl Sphere {
 
     /// The centre.
     #[must_use]
-    pub fn centre(&self) -> Space {
+    pub(crate) fn centre(&self) -> Space {
         [self.middle.x, self.middle.y, if self.inside { -self.radius } else { self.radius }]
     }
 }
@@ -219,14 +208,14 @@ impl Sphere {
 impl Radial {
     /// The surface of a net whose control points are moved along rays.
     #[must_use]
-    pub fn net(dilation: &Dilation) -> Self {
+    pub(crate) fn net(dilation: &Dilation) -> Self {
         let (pre, delta) = dilation.plane();
         Self { pre, delta, domain: dilation.domain() }
     }
 
     /// The sphere that has the eye on its near pole and touches the drawing with its far pole: δ = 1 + |p − foot|²/distance².
     #[must_use]
-    pub fn stereographic(foot: Point, distance: f64, domain: Rect) -> Self {
+    pub(crate) fn stereographic(foot: Point, distance: f64, domain: Rect) -> Self {
         let pre = Affine::scale(1.0 / distance) * Affine::translate(-foot.to_vec2());
         Self { pre, delta: Plane::new(vec![vec![1.0, 0.0, 1.0], vec![], vec![1.0]]), domain }
     }
@@ -240,7 +229,7 @@ impl Radial {
 impl Anamorphosis {
     /// The eye.
     #[must_use]
-    pub fn eye(&self) -> Space {
+    pub(crate) fn eye(&self) -> Space {
         [self.foot.x, self.foot.y, -self.distance]
     }
 
@@ -266,20 +255,13 @@ impl Anamorphosis {
 
     /// The point of the surface that the eye sees at the drawing's point `p`.
     #[must_use]
-    pub fn point(&self, p: Point) -> Space {
+    pub(crate) fn point(&self, p: Point) -> Space {
         self.at(p.x, p.y)
-    }
-
-    /// The same with its derivatives.
-    #[must_use]
-    pub fn jet(&self, p: Point) -> SpaceJet {
-        let q = self.at(Dual { v: p.x, x: 1.0, y: 0.0 }, Dual { v: p.y, x: 0.0, y: 1.0 });
-        SpaceJet { p: q.map(|d| d.v), dx: q.map(|d| d.x), dy: q.map(|d| d.y) }
     }
 
     /// Positive where the ray through `p` meets the surface.
     #[must_use]
-    pub fn defined(&self, p: Point) -> f64 {
+    pub(crate) fn defined(&self, p: Point) -> f64 {
         match &self.surface {
             Surface::Round(r) => {
                 let d = r.ray(self.foot, self.distance, p.x, p.y).defined();

@@ -1,16 +1,16 @@
-//! A formula as a list of operations, each on values before it: evaluated for several points at a time, so that reading the
-//! list costs little.
+//! A formula as a list of operations on earlier values. Several points are evaluated at a time, so that decoding the list
+//! costs little.
 //!
-//! Equal operations are kept once, constants are folded.
+//! Equal operations are stored once, constants are folded.
 
 use crate::map::Real;
 use std::array::from_fn;
 
-/// More than this would make every point a day's work.
-const MOST_OPS: usize = 2000;
+/// Size limit, so that no formula makes a single point expensive.
+const MAX_OPS: usize = 2000;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Unary {
+pub(crate) enum Unary {
     Neg,
     Sin,
     Cos,
@@ -25,7 +25,7 @@ pub(super) enum Unary {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Binary {
+pub(crate) enum Binary {
     Add,
     Sub,
     Mul,
@@ -37,7 +37,7 @@ pub(super) enum Binary {
     Max,
 }
 
-/// One operation; operands are the numbers of earlier ones.
+/// One operation; operands are indices of earlier values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Op {
     Const(f64),
@@ -47,23 +47,23 @@ enum Op {
     Two(Binary, u32, u32),
     Powi(u32, i32),
     Powf(u32, f64),
-    /// An earlier value as it is: what is left of |a|, min and max where it is known which side they take.
+    /// An earlier value unchanged: |a|, min or max on a branch where the side is known.
     Same(u32),
 }
 
 /// A list of operations.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Program {
+pub(crate) struct Program {
     ops: Vec<Op>,
 }
 
 impl Program {
-    /// The number of the value of `op`; `None` if there are too many.
+    /// Returns the index of the value of `op`; `None` at the size limit.
     fn push(&mut self, op: Op) -> Option<u32> {
         if let Some(i) = self.ops.iter().position(|o| *o == op) {
             return u32::try_from(i).ok();
         }
-        if self.ops.len() >= MOST_OPS {
+        if self.ops.len() >= MAX_OPS {
             return None;
         }
         self.ops.push(op);
@@ -74,27 +74,27 @@ impl Program {
         if let Some(Op::Const(c)) = self.ops.get(i as usize) { Some(*c) } else { None }
     }
 
-    pub(super) fn constant(&mut self, c: f64) -> Option<u32> {
+    pub(crate) fn constant(&mut self, c: f64) -> Option<u32> {
         self.push(Op::Const(c))
     }
 
-    pub(super) fn x(&mut self) -> Option<u32> {
+    pub(crate) fn x(&mut self) -> Option<u32> {
         self.push(Op::X)
     }
 
-    pub(super) fn y(&mut self) -> Option<u32> {
+    pub(crate) fn y(&mut self) -> Option<u32> {
         self.push(Op::Y)
     }
 
-    pub(super) fn unary(&mut self, op: Unary, a: u32) -> Option<u32> {
+    pub(crate) fn unary(&mut self, op: Unary, a: u32) -> Option<u32> {
         match self.value_of(a) {
             Some(v) => self.constant(one(op, v)),
             None => self.push(Op::One(op, a)),
         }
     }
 
-    pub(super) fn binary(&mut self, op: Binary, a: u32, b: u32) -> Option<u32> {
-        /// Whole powers up to here are exact enough by repeated squaring.
+    pub(crate) fn binary(&mut self, op: Binary, a: u32, b: u32) -> Option<u32> {
+        /// Integer powers below this are accurate enough by repeated squaring.
         const WHOLE: f64 = 1e4;
         match (self.value_of(a), self.value_of(b)) {
             (Some(u), Some(v)) if op == Binary::Pow => self.constant(u.powf(v)),
@@ -107,8 +107,8 @@ impl Program {
         }
     }
 
-    /// All values at N points.
-    pub(super) fn run<S: Real, const N: usize>(&self, x: [S; N], y: [S; N]) -> Vec<[S; N]> {
+    /// Evaluates all values at N points.
+    pub(crate) fn run<S: Real, const N: usize>(&self, x: [S; N], y: [S; N]) -> Vec<[S; N]> {
         let mut out: Vec<[S; N]> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
             let at = |i: u32| &out[i as usize];
@@ -116,7 +116,7 @@ impl Program {
                 Op::Const(c) => [S::from(c); N],
                 Op::X => x,
                 Op::Y => y,
-                // The commonest ones with the choice outside the loop.
+                // The most frequent operations, with the dispatch outside the loop.
                 Op::Two(Binary::Add, a, b) => from_fn(|i| at(a)[i] + at(b)[i]),
                 Op::Two(Binary::Sub, a, b) => from_fn(|i| at(a)[i] - at(b)[i]),
                 Op::Two(Binary::Mul, a, b) => from_fn(|i| at(a)[i] * at(b)[i]),
@@ -131,8 +131,8 @@ impl Program {
         out
     }
 
-    /// The places where value `of` and those it needs have kinks: pairs of values that are equal there.
-    pub(super) fn kinks(&self, of: [u32; 2]) -> Vec<Kink> {
+    /// Returns the kinks of the values `of` and of everything they depend on.
+    pub(crate) fn kinks(&self, of: [u32; 2]) -> Vec<Kink> {
         let needed = self.needed(of);
         let ops = self.ops.iter().enumerate().filter(|(i, _)| needed[*i]);
         ops.filter_map(|(_, op)| match *op {
@@ -148,7 +148,7 @@ impl Program {
         for i in of {
             needed[i as usize] = true;
         }
-        // Operands come before their users, so one run downwards reaches everything.
+        // Operands precede their users, so one pass from the end reaches everything.
         for i in (0..self.ops.len()).rev() {
             if needed[i] {
                 self.mark(i, &mut needed);
@@ -168,8 +168,8 @@ impl Program {
         }
     }
 
-    /// The same with every |a|, min and max replaced by the side it takes at (x, y).
-    pub(super) fn branch(&self, x: f64, y: f64) -> Self {
+    /// Replaces every |a|, min and max by the side it takes at (x, y).
+    pub(crate) fn branch(&self, x: f64, y: f64) -> Self {
         let v: Vec<f64> = self.run([x], [y]).into_iter().map(|[v]| v).collect();
         let ops = self.ops.iter().map(|op| match *op {
             Op::One(Unary::Abs, a) if v[a as usize] < 0.0 => Op::One(Unary::Neg, a),
@@ -183,8 +183,8 @@ impl Program {
         Self { ops: ops.collect() }
     }
 
-    /// The coefficients of x, y and 1, if value `i` is written as such a sum.
-    pub(super) fn affine(&self, i: u32) -> Option<[f64; 3]> {
+    /// Returns the coefficients of x, y and 1 if value `i` is an affine expression.
+    pub(crate) fn affine(&self, i: u32) -> Option<[f64; 3]> {
         let mut forms: Vec<Option<[f64; 3]>> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
             let at = |i: u32| forms[i as usize];
@@ -211,13 +211,13 @@ impl Program {
     }
 }
 
-/// Where two values are equal, or one is zero.
+/// The set where two values are equal, or one is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Kink(u32, Option<u32>);
+pub(crate) struct Kink(u32, Option<u32>);
 
 impl Kink {
-    /// Zero at the kink.
-    pub(super) fn level(self, values: &[[f64; 1]]) -> f64 {
+    /// Evaluates a function that is zero at the kink.
+    pub(crate) fn level(self, values: &[[f64; 1]]) -> f64 {
         values[self.0 as usize][0] - self.1.map_or(0.0, |b| values[b as usize][0])
     }
 }

@@ -9,15 +9,14 @@
 //! To evaluate it, the net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓ by running de Casteljau's algorithm on polynomials.
 //! That multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, 3ⁿ in a corner: nothing at the degrees people use.
 
-use super::local::Local;
-use super::quotient::{Plane, Quotient};
-use super::{AffineMap, Map};
+use crate::map::quotient::{Plane, Quotient};
+use crate::map::{AffineMap, Class, Local, Map};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
 /// The control points of a Bézier triangle with their weights.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TriangleNet {
+pub(crate) struct TriangleNet {
     corners: [Point; 3],
     degree: usize,
     /// By [`index`].
@@ -27,34 +26,34 @@ pub struct TriangleNet {
 
 /// The place of control point (i, j, k) in a list: by k + j, then by k.
 #[must_use]
-pub fn index([_, j, k]: [usize; 3]) -> usize {
+pub(crate) fn index([_, j, k]: [usize; 3]) -> usize {
     let row = j + k;
     row * (row + 1) / 2 + k
 }
 
 /// All (i, j, k) with i + j + k = n, in the order of their [`index`].
 #[must_use]
-pub fn indices(n: usize) -> Vec<[usize; 3]> {
+pub(crate) fn indices(n: usize) -> Vec<[usize; 3]> {
     (0..=n).flat_map(|row| (0..=row).map(move |k| [n - row, row - k, k])).collect()
 }
 
 /// (i·A + j·B + k·C)/n.
 #[must_use]
-pub fn regular_point(corners: [Point; 3], [i, j, k]: [usize; 3]) -> Point {
+pub(crate) fn regular_point(corners: [Point; 3], [i, j, k]: [usize; 3]) -> Point {
     let n = (i + j + k).max(1) as f64;
     let [a, b, c] = corners;
     a + (b - a) * (j as f64 / n) + (c - a) * (k as f64 / n)
 }
 
 /// (u₁ − ⅓, u₂ − ⅓) from the place: the coordinates of [`expanded`].
-pub(super) fn coordinates([a, b, c]: [Point; 3]) -> Affine {
+pub(crate) fn coordinates([a, b, c]: [Point; 3]) -> Affine {
     let (u, v) = (b - a, c - a);
     let middle = a + (u + v) / 3.0;
     Affine::new([u.x, u.y, v.x, v.y, middle.x, middle.y]).inverse()
 }
 
 /// The polynomial with these Bernstein coefficients (by [`index`]) in powers of u₁ − ⅓ and u₂ − ⅓.
-pub(super) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
+pub(crate) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
     const THIRD: f64 = 1.0 / 3.0;
     let mut net: Vec<Plane> = coefficients.iter().map(|c| Plane::new(vec![vec![*c]])).collect();
     for level in (0..n).rev() {
@@ -71,7 +70,7 @@ pub(super) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
 
 /// The values of all Bⁿᵢⱼₖ at `p`, by [`index`].
 #[must_use]
-pub fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
+pub(crate) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
     const THIRD: f64 = 1.0 / 3.0;
     let at = coordinates(corners) * p;
     let (u1, u2) = (at.x + THIRD, at.y + THIRD);
@@ -93,7 +92,7 @@ pub fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
 impl TriangleNet {
     /// The net that changes nothing; `None` if the corners lie on one line.
     #[must_use]
-    pub fn regular(corners: [Point; 3], degree: usize) -> Option<Self> {
+    pub(crate) fn regular(corners: [Point; 3], degree: usize) -> Option<Self> {
         let [a, b, c] = corners;
         let area = (b - a).cross(c - a);
         let size = (b - a).hypot2().max((c - a).hypot2());
@@ -108,40 +107,34 @@ impl TriangleNet {
 
     /// The degree.
     #[must_use]
-    pub fn degree(&self) -> usize {
+    pub(crate) fn degree(&self) -> usize {
         self.degree
-    }
-
-    /// The reference triangle.
-    #[must_use]
-    pub fn corners(&self) -> [Point; 3] {
-        self.corners
     }
 
     /// Control point (i, j, k).
     #[must_use]
-    pub fn point(&self, ijk: [usize; 3]) -> Point {
+    pub(crate) fn point(&self, ijk: [usize; 3]) -> Point {
         regular_point(self.corners, ijk) + self.moves[index(ijk)]
     }
 
     /// Puts control point (i, j, k) at `p`.
-    pub fn place(&mut self, ijk: [usize; 3], p: Point) {
+    pub(crate) fn place(&mut self, ijk: [usize; 3], p: Point) {
         self.moves[index(ijk)] = p - regular_point(self.corners, ijk);
     }
 
     /// Moves control point (i, j, k) by `v`.
-    pub fn shift(&mut self, ijk: [usize; 3], v: Vec2) {
+    pub(crate) fn shift(&mut self, ijk: [usize; 3], v: Vec2) {
         self.moves[index(ijk)] += v;
     }
 
     /// Gives control point (i, j, k) a weight.
-    pub fn set_weight(&mut self, ijk: [usize; 3], w: f64) {
+    pub(crate) fn set_weight(&mut self, ijk: [usize; 3], w: f64) {
         self.weights[index(ijk)] = w;
     }
 
     /// Whether the points of side 0 (AB), 1 (BC) or 2 (CA) all stay where they are.
     #[must_use]
-    pub fn side_is_fixed(&self, side: usize) -> bool {
+    pub(crate) fn side_is_fixed(&self, side: usize) -> bool {
         let size = self.corners.iter().fold(0.0, |m, p| f64::max(m, p.x.abs() + p.y.abs()));
         let on: Vec<usize> =
             indices(self.degree).into_iter().filter(|ijk| ijk[(side + 2) % 3] == 0).map(index).collect();
@@ -150,7 +143,7 @@ impl TriangleNet {
 
     /// The map: the identity outside the triangle or, `extended`, the polynomials running on there.
     #[must_use]
-    pub fn map(&self, extended: bool) -> Arc<dyn Map> {
+    pub(crate) fn map(&self, extended: bool) -> Arc<dyn Map> {
         let pre = coordinates(self.corners);
         let [a, b, c] = self.corners;
         let bounds = Rect::from_points(a, b).union_pt(c);
@@ -173,7 +166,7 @@ impl TriangleNet {
         }
         let sound = self.weights.iter().all(|w| *w > 0.0);
         let whole: Arc<dyn Map> = if sound { Arc::new(whole.without_poles()) } else { Arc::new(whole) };
-        if whole.class() == super::Class::Affine(Affine::IDENTITY) {
+        if whole.class() == Class::Affine(Affine::IDENTITY) {
             return Arc::new(AffineMap::IDENTITY);
         }
         Arc::new(Local::new(&self.corners, whole))

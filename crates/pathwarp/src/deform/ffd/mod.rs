@@ -7,16 +7,19 @@
 //! SIGGRAPH 1992: see [`map::pull`](crate::map::pull).
 //!
 //! A region that is the artwork's own box has no outside: the pieces run on there, so that strokes and what else reaches over
-//! the outlines' box follow smoothly. Any other region ends in a border, beyond which nothing moves, unless `--extend` is given.
+//! the outlines' box follow smoothly. Any other region ends in a border, beyond which nothing moves, unless `extend` is given.
 
-use super::built::{Built, Explanation, Overlay, Role, SavedFile};
-use super::entry::{Case, Deformation, Example, Info, Law};
+use crate::deform::built::{Built, Explanation, Overlay, Role, SavedFile};
+use crate::deform::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::lattice_file::{self, MOST_CELLS, MOST_DEGREE};
-use crate::map::{self, AffineMap, Class, Lattice, LatticeMap, MOST_PINS, Map};
+use crate::map::{AffineMap, Class, Lattice, LatticeMap, Map};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{BezPath, Point, Vec2};
+use pins::{MOST_PINS, pull};
 use std::sync::Arc;
+
+mod pins;
 
 pub(super) struct Ffd;
 
@@ -167,7 +170,7 @@ fn start(s: &Settings<'_>) -> Result<(Lattice, bool), Error> {
     if let Some(file) = s.file_if("lattice")? {
         for name in ["degree", "spline", "cells"] {
             if s.given(name) {
-                return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with --lattice: the file says it"));
+                return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with `lattice`: the file says it"));
             }
         }
         let (lattice, named) = lattice_file::read(&file.name, &file.text, own_region.unwrap_or(frame))?;
@@ -249,7 +252,7 @@ impl Frozen {
     }
 }
 
-/// `--at`, `--move` and `--weight`, in this order.
+/// `at`, `move` and `weight`, in this order.
 fn moves(s: &Settings<'_>, l: &mut Lattice, frozen: &Frozen) -> Result<(), Error> {
     for name in ["at", "move", "weight"] {
         for word in s.texts(name).into_iter().flat_map(str::split_whitespace) {
@@ -268,7 +271,7 @@ fn moves(s: &Settings<'_>, l: &mut Lattice, frozen: &Frozen) -> Result<(), Error
                 )));
             }
             if frozen.holds(i, j) {
-                return Err(wrong("changes a control point that --freeze keeps in place".into()));
+                return Err(wrong("changes a control point that `freeze` keeps in place".into()));
             }
             match name {
                 "at" => l.place(i, j, s.point_in(name, value)?),
@@ -286,7 +289,7 @@ fn moves(s: &Settings<'_>, l: &mut Lattice, frozen: &Frozen) -> Result<(), Error
     Ok(())
 }
 
-/// `--pin`, last.
+/// `pin`, last.
 fn pins(
     s: &Settings<'_>,
     l: &mut Lattice,
@@ -312,11 +315,11 @@ fn pins(
     if pins.is_empty() {
         return Ok(());
     }
-    let off = map::pull(l, |i, j| !frozen.holds(i, j), &pins);
+    let off = pull(l, |i, j| !frozen.holds(i, j), &pins);
     let r = l.region();
     for (word, off) in words.iter().zip(off).filter(|(_, off)| *off > 1e-9 * (r.width() + r.height())) {
         warnings.push(format!(
-            "--pin {word} is missed by {off:.6}: the grid has too few control points that may move; raise --degree or freeze fewer"
+            "`pin {word}` is missed by {off:.6}: the grid has too few control points that may move; raise `degree` or freeze fewer"
         ));
     }
     Ok(())
@@ -331,7 +334,7 @@ fn tears(l: &Lattice) -> Vec<String> {
         (!moved.is_empty()).then(|| {
             format!(
                 "artwork that crosses the region's {name} border tears there: control points {} on it were changed; keep them \
-with --freeze {name}:1, or let the map run on with --extend",
+with `freeze {name}:1`, or let the map run on with `extend`",
                 names(&moved)
             )
         })
