@@ -1,4 +1,4 @@
-//! Envelopes from outside: straightness measured on the SVG that comes out, and shapes of the drawing itself.
+//! Envelopes through the program: straightness measured on the output SVG, and shapes of the drawing as envelopes.
 
 mod support;
 
@@ -11,14 +11,14 @@ fn document(file: &std::path::Path) -> Document {
     Document::read(&fs::read(file).unwrap(), "out", &ReadOptions::default()).unwrap()
 }
 
-/// Points along a named path of a drawing, densely.
+/// Dense samples along a named path of a drawing.
 fn along(doc: &Document, name: &str) -> Vec<Point> {
     const SAMPLES: u32 = 500;
     let outline = doc.path(name).unwrap().outline;
     outline.segs().flat_map(|s| (0..=SAMPLES).map(move |i| s.eval(f64::from(i) / f64::from(SAMPLES)))).collect()
 }
 
-/// Criterion: under `--keep verticals` uprights are upright within 0.1°; under `--keep horizontals` levels are level.
+/// Criterion: `--keep verticals` keeps vertical lines vertical within 0.1°, and `--keep horizontals` horizontal lines horizontal.
 #[test]
 fn kept_lines_are_straight_in_the_file() {
     let dir = tempfile::tempdir().unwrap();
@@ -55,7 +55,7 @@ fn kept_lines_are_straight_in_the_file() {
     }
 }
 
-/// A shape of the drawing is the envelope and stays as it is; the artwork fills it, the right way round.
+/// A shape of the drawing serves as the envelope and stays unchanged; the artwork fills it without being mirrored.
 #[test]
 fn an_object_of_the_drawing_is_the_envelope() {
     let dir = tempfile::tempdir().unwrap();
@@ -89,7 +89,7 @@ fn an_object_of_the_drawing_is_the_envelope() {
             near(filled.x0, 80.0) && near(filled.x1, 220.0) && near(filled.y0, 20.0) && near(filled.y1, 160.0),
             "{shape}: {filled:?}"
         );
-        // The little flag is in the upper left, and not mirrored: its corners turn the same way.
+        // The small flag is in the upper left and not mirrored: its corners keep their orientation.
         let flag = doc.path("flag").unwrap().outline.subpaths[0].anchors();
         let middle = bounds(flag.clone()).center();
         assert!(middle.x < 150.0 && middle.y < 90.0, "{shape}: {flag:?}");

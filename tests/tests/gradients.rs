@@ -1,4 +1,4 @@
-//! `--gradients exact` through the program. Truth is the original's own rendering, read where the inverse map says.
+//! `--gradients exact` through the program, compared with the rendering of the original sampled through the inverse map.
 
 #[path = "../../crates/pathwarp-svg/tests/common/mod.rs"]
 mod common;
@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fs;
 use support::pathwarp_in;
 
-/// Name, drawing, how many gradients become pictures.
+/// Name, drawing, number of gradients that become pictures.
 const GRADIENTS: &[(&str, &str, u64)] = &[
     (
         "linear and radial, in box units and user space",
@@ -39,7 +39,7 @@ const GRADIENTS: &[(&str, &str, u64)] = &[
     ),
 ];
 
-/// Bends a drawing; how far it is from the truth, the file, and the report on it.
+/// Bends a drawing. Returns its distance from the expected picture, the file, and its report.
 fn bent(body: &str, gradients: &str) -> (Gap, String, Value) {
     let dir = tempfile::tempdir().unwrap();
     let svg = drawing(body);
@@ -66,19 +66,19 @@ fn exact_gradients_are_the_bent_rendering() {
         let (fitted, _, fits) = bent(body, "fit");
         println!("{name}: {:.2} / 255 exact, {:.2} / 255 fitted", exact.mean, fitted.mean);
         assert!(exact.mean <= 1.0, "{name}: {exact:?}");
-        // The comparison can fail.
+        // Check that the comparison can fail.
         assert!(fitted.mean > 3.0 * exact.mean, "{name}: {fitted:?} and {exact:?}");
         assert_eq!(pictures(&report), *count, "{name}");
         assert_eq!(svg.matches("<image").count() as u64, *count, "{name}");
         assert_eq!(pictures(&fits), 0);
         let shapes = |r: &Value| r["inputs"][0]["shapes"].as_array().unwrap().clone();
         assert!(shapes(&report).iter().all(|s| s.get("paint_residual").is_none()), "{report}");
-        // The map bends a drawing of a hundred by some units.
+        // The map moves a drawing of 100 units by a few units.
         assert!(shapes(&fits).iter().all(|s| (0.1..10.0).contains(&s["paint_residual"].as_f64().unwrap())), "{fits}");
     }
 }
 
-/// A gradient that nobody sees bending stays a gradient.
+/// A gradient whose bend is invisible stays a gradient.
 #[test]
 fn a_gradient_that_can_follow_stays_one() {
     let body = "<linearGradient id='a'><stop stop-color='#777'/><stop offset='1' stop-color='#787878'/></linearGradient>\

@@ -1,4 +1,4 @@
-//! Lettering under deformations, from outside: baselines on curves, letters that keep their shape, uprights that stay upright.
+//! Lettering under deformations, through the program: baselines on curves, letters that keep their shape, stems that stay vertical.
 
 mod support;
 
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use support::expect_code;
 
-/// A word whose letters have straight feet and upright stems, in the bundled font.
+/// A word whose letters have straight feet and vertical stems, in the bundled font.
 const WORD: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 200'>\
 <text id='word' x='20' y='120' font-size='90' font-family='Noto Sans'>HILTEN</text></svg>";
 const BASELINE: f64 = 120.0;
@@ -18,12 +18,12 @@ fn document(file: &Path) -> Document {
     Document::read(&fs::read(file).unwrap(), "out", &ReadOptions::default()).unwrap()
 }
 
-/// All that is drawn.
+/// The outlines of all shapes as one.
 fn drawn(doc: &Document) -> Outline {
     Outline { subpaths: doc.shapes().iter().flat_map(|s| s.outline.subpaths.clone()).collect() }
 }
 
-/// Runs `pathwarp` on the word; gives the drawing before and after, and what was said.
+/// Runs `pathwarp` on the word. Returns the drawing before and after, and the messages.
 fn run(svg: &str, args: &[&str]) -> (Outline, Outline, String) {
     let dir = tempfile::tempdir().unwrap();
     let (file, out) = (dir.path().join("in.svg"), dir.path().join("out.svg"));
@@ -35,20 +35,20 @@ fn run(svg: &str, args: &[&str]) -> (Outline, Outline, String) {
     (drawn(&document(&file)), drawn(&document(&out)), said)
 }
 
-/// How far `p` is from an outline.
+/// The distance of `p` from an outline.
 fn away(outline: &Outline, p: Point) -> f64 {
     outline.segs().map(|s| s.to_cubic().nearest(p, 1e-9).distance_sq.sqrt()).fold(f64::INFINITY, f64::min)
 }
 
-/// The x of the feet: where lines lie on the baseline.
+/// The x ranges of the feet: lines that lie on the baseline.
 fn feet(source: &Outline) -> Vec<(f64, f64)> {
     let on = |p: Point| (p.y - BASELINE).abs() < 1e-4;
     let lines = source.segs().filter(|s| on(s.start()) && on(s.end()) && s.start().x != s.end().x);
     lines.map(|s| (s.start().x, s.end().x)).collect()
 }
 
-/// Criterion: the baseline lands on the curve within tolerance. On a circle of radius 300 about 200,350 the point at distance s
-/// from the top is 300·(sin(s/300), −cos(s/300)) from the centre, written out here apart from the program.
+/// Criterion: the baseline lands on the curve within the tolerance. On a circle of radius 300 about 200,350 the point at distance s
+/// from the top is 300·(sin(s/300), −cos(s/300)) from the centre, computed here independently of the program.
 #[test]
 fn the_baseline_lands_on_the_curve() {
     const TOLERANCE: f64 = 0.01;
@@ -68,18 +68,18 @@ fn the_baseline_lands_on_the_curve() {
                 let angle = (x - left + 200.0) / 300.0 - std::f64::consts::FRAC_PI_2;
                 let on = Point::new(200.0 + 300.0 * angle.sin(), 350.0 - 300.0 * angle.cos());
                 let off = away(&after, on);
-                // Single precision puts the text's own feet within 1e-5 of its baseline.
+                // Single precision puts the feet of the text within 1e-5 of its baseline.
                 assert!(off < TOLERANCE + 1e-4, "{frame:?}: {x} should be at {on:?}, is {off} away");
             }
         }
     }
-    // The box's middle on the curve is there for the asking.
+    // On request, the middle of the box lands on the curve instead.
     let (before, after, _) = run(WORD, &["bend", "--along", "0,50 400,50", "--frame", "artwork"]);
     let (a, b) = (before.bounding_box().unwrap(), after.bounding_box().unwrap());
     assert!((b.center().y - 50.0).abs() < 1e-3 && (a.height() - b.height()).abs() < 1e-3);
 }
 
-/// In an envelope the baseline becomes the bottom curve, whatever hangs below it.
+/// In an envelope the baseline becomes the bottom curve; descenders extend below it.
 #[test]
 fn in_an_envelope_the_baseline_is_the_bottom() {
     let word = WORD.replace("HILTEN", "Hilpen");
@@ -107,7 +107,7 @@ fn in_an_envelope_the_baseline_is_the_bottom() {
     }
 }
 
-/// Criterion: arched, with `--keep verticals`, the stems are upright within 0.1°.
+/// Criterion: under an arch with `--keep verticals`, stems stay vertical within 0.1°.
 #[test]
 fn stems_stay_upright_under_an_arch() {
     let args = [
@@ -140,12 +140,12 @@ fn stems_stay_upright_under_an_arch() {
     assert!(worst < 0.1, "a stem leans by {worst}°");
 }
 
-/// The letters of a drawing: subpaths that start left of each other, as the word has them one by one.
+/// The letters of a drawing: its subpaths, which in this word are one per letter, from left to right.
 fn nodes(outline: &Outline) -> Vec<Vec<Point>> {
     outline.subpaths.iter().map(pathwarp::Subpath::anchors).collect()
 }
 
-/// Criterion: `--glyphs rotate` keeps every letter congruent: distances between nodes are kept to 1e-9.
+/// Criterion: `--glyphs rotate` keeps every letter congruent: distances between its nodes agree within 1e-9.
 #[test]
 fn turned_letters_keep_their_shape() {
     let curves = ["M0,180 C100,20 300,20 400,180", "M100,150 A100,80 0 1 1 300,150 A100,80 0 1 1 100,150 Z"];
@@ -171,7 +171,7 @@ fn turned_letters_keep_their_shape() {
     }
 }
 
-/// What each way of setting letters keeps: stems upright, bars level, both.
+/// Each way of placing letters keeps stems vertical, bars horizontal, or both.
 #[test]
 fn skewed_stems_stay_upright_and_ribbons_level() {
     let chords = |o: &Outline| -> Vec<Vec2> { o.segs().map(|s| s.end() - s.start()).collect() };
@@ -198,7 +198,7 @@ fn skewed_stems_stay_upright_and_ribbons_level() {
 }
 
 #[test]
-fn what_cannot_be_set_letter_by_letter_is_told() {
+fn letters_that_cannot_be_placed_cause_messages() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("in.svg");
     fs::write(&file, WORD).unwrap();
@@ -223,8 +223,8 @@ fn what_cannot_be_set_letter_by_letter_is_told() {
 }
 
 /// `--spacing even` on a circle of radius 120 about 200,220: lengths are true at half the frame's height h, so that a point whose
-/// x is s right of the middle stands at the angle s / (120 + h), written out here apart from the program. Every letter is as wide
-/// there as it was.
+/// x is s right of the middle lies at the angle s / (120 + h), computed here independently of the program. At that height every
+/// letter keeps its width.
 #[test]
 fn even_spacing_keeps_letter_widths_at_half_their_height() {
     const RADIUS: f64 = 120.0;
@@ -247,12 +247,12 @@ fn even_spacing_keeps_letter_widths_at_half_their_height() {
     }
 }
 
-/// Tight bends name the letter; places too steep for a skew name theirs.
+/// Warnings name the letter that is bent too tightly or placed too steeply for a skew.
 #[test]
 fn warnings_name_the_letters() {
     let tight = "M0,20 L180,20 A25,25 0 0 0 205,-5 L205,-200";
     let (_, _, said) = run(WORD, &["bend", "--along", tight, "--align", "start"]);
-    // The bend is from 180 to 219.3 along the skeleton; the T begins at 144.4, less some kerning, the E at 194.4 and ends at 244.4.
+    // The bend runs from 180 to 219.3 along the skeleton; the T begins at 144.4 less kerning, the E at 194.4 and ends at 244.4.
     assert!(said.contains("the letters `T`, `E` fold over themselves"), "{said}");
     let (_, _, said) = run(WORD, &["bend", "--along", tight, "--align", "start", "--glyphs", "rotate"]);
     assert!(said.contains("run into each other"), "{said}");
@@ -260,7 +260,7 @@ fn warnings_name_the_letters() {
     assert!(said.contains("too steep") && said.contains("`N`"), "{said}");
 }
 
-/// `--stretch fit` spreads the letters over the skeleton, `repeat` sets the word again and again; letters stay as they are.
+/// `--stretch fit` spreads the letters over the skeleton, `repeat` repeats the word; the letters keep their shape.
 #[test]
 fn letters_are_spread_and_repeated() {
     let boxes = |o: &Outline| -> Vec<Rect> {
@@ -272,7 +272,7 @@ fn letters_are_spread_and_repeated() {
     for (a, b) in a.iter().zip(&b) {
         assert!((a.width() - b.width()).abs() < 1e-6 && (a.height() - b.height()).abs() < 1e-6);
     }
-    // All gaps have grown alike, and the first and last advances end where the skeleton does: H and N have bearings of 0.097.
+    // All gaps grow equally, and the first and last advances end at the ends of the skeleton: H and N have bearings of 0.097.
     let gaps = |o: &[Rect]| -> Vec<f64> { o.windows(2).map(|p| p[1].x0 - p[0].x1).collect() };
     let grown: Vec<f64> = gaps(&a).iter().zip(gaps(&b)).map(|(a, b)| b - a).collect();
     assert!(grown.len() == 5 && grown.iter().all(|g| *g > 70.0 && (g - grown[0]).abs() < 1e-4), "{grown:?}");
@@ -284,7 +284,7 @@ fn letters_are_spread_and_repeated() {
     assert!((1180.0..1200.0).contains(&right), "{right}");
 }
 
-/// What is warned of is the ink, not the boxes round it: the p reaches below the centre of a tight hill and the H does not; the
+/// Warnings concern the ink, not the boxes around it: the p reaches below the centre of a tight hill and the H does not; the
 /// empty corners of L and T may overlap.
 #[test]
 fn warnings_are_of_ink() {
@@ -298,15 +298,15 @@ fn warnings_are_of_ink() {
     assert!(said.contains("`HH` run into each other"), "{said}");
     let (_, _, said) = run(&WORD.replace("HILTEN", "LT"), &valley);
     assert!(!said.contains("run into"), "{said}");
-    // All round, the last letter meets the first.
+    // On a closed path the last letter meets the first.
     let ring = "M173,100 A27,27 0 1 1 227,100 A27,27 0 1 1 173,100 Z";
     let (_, _, said) = run(&WORD.replace("HILTEN", "HIHI"), &["bend", "--along", ring, "--glyphs", "rotate"]);
     assert!(said.contains("`IH` run into each other"), "{said}");
 }
 
-/// What `pathwarp text` sets is lettering to `pathwarp bend` and `pathwarp envelope`, as text is: the same frames, the same places
-/// of letters. Text goes through single precision, hence the 1e-3. No pair of the word is kerned: with text kerning moves letters
-/// and leaves their advances, here it is in the advances, by half of which the middles of kerned letters differ.
+/// `pathwarp bend` and `pathwarp envelope` treat the output of `pathwarp text` like text: the same frames, the same placement of
+/// letters. Text is laid out in single precision, hence the 1e-3. No pair of the word is kerned: in text, kerning moves letters and
+/// leaves their advances; here it is part of the advances, so the middles of kerned letters would differ by half of it.
 #[test]
 fn lettering_made_here_is_bent_like_text() {
     let here = support::root();

@@ -1,7 +1,7 @@
-//! Every sample through several deformations: the distance between what is written and the densely sampled true image.
+//! Every sample under several deformations: the distance between the output and the densely sampled exact image.
 //!
-//! The oracle is its own: it reads circles, ellipses and arcs from the samples by their definition, evaluates the map at many
-//! points, and finds nearest points by brute force and bisection. It shares no code with the refitting.
+//! The oracle is independent: it evaluates circles, ellipses and arcs by their definition, samples the map densely, and finds
+//! nearest points by brute force and golden-section search. It shares no code with the refitting.
 
 mod support;
 
@@ -45,8 +45,8 @@ fn at(seg: &Seg, t: f64) -> Point {
 /// A curve as a function of [0, 1].
 type Curve<'a> = Box<dyn Fn(f64) -> Point + 'a>;
 
-/// The distance from `p` to a run of curves; `hint` is the index of the last nearest one, and neighbours are tried first. The
-/// search is local (coarse samples, then golden section), so it can only find too much, never too little.
+/// The distance from `p` to a run of curves; `hint` is the index of the last nearest one, whose neighbours are tried first. The
+/// search is local (coarse samples, then golden section), so it may overestimate the distance but never underestimate it.
 fn nearest(curves: &[Curve<'_>], coarse: &[Vec<Point>], p: Point, hint: &mut usize, good: f64) -> f64 {
     let n = curves.len();
     let mut order: Vec<usize> = (0..n).collect();
@@ -109,8 +109,8 @@ fn read(path: &Path) -> Document {
     Document::read(&fs::read(path).unwrap(), "test", &ReadOptions::default()).unwrap()
 }
 
-/// Runs the program on a sample and checks every shape of it, and the report. Strokes are kept so that every shape of the
-/// input is one of the output.
+/// Runs the program on a sample and checks every shape and the report. Strokes are kept, so that every shape of the input is one
+/// shape of the output.
 fn check(name: &str, deformation: &str, args: &[(&str, &str)], tolerance: Option<&str>) {
     let dir = tempfile::tempdir().unwrap();
     let (out, report) = (dir.path().join("out.svg"), dir.path().join("r.json"));
@@ -134,7 +134,7 @@ fn check(name: &str, deformation: &str, args: &[(&str, &str)], tolerance: Option
     let frame = Frame::new(source.artwork_box(&Selection::default()).unwrap());
     let map = Registry::builtin().get(deformation).unwrap().build_from(&Args::from_pairs(args), &frame).unwrap().map;
     let warped = read(&out);
-    // What is painted: clip paths may be written differently, as long as they clip the same (the pictures tell).
+    // Compare painted shapes only: a clip path may be written in another form that clips the same, which the pictures test.
     let everything = Selection::default();
     let shapes: Vec<_> = source.selected(&everything).collect();
     let images: Vec<_> = warped.selected(&everything).collect();
@@ -188,7 +188,7 @@ fn projective_and_affine() {
     }
 }
 
-/// Circles and ellipses drawn as basic shapes, checked against sine and cosine rather than against the reader's geometry.
+/// Circles and ellipses given as basic shapes, checked against sine and cosine rather than against the reader's geometry.
 #[test]
 fn circles_count_from_the_true_circle() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 24 24'><circle id='c' cx='12' cy='11' r='9'/><path id='a' d='M3 20 a4 2 30 1 1 5 1'/></svg>";
@@ -220,7 +220,7 @@ fn circles_count_from_the_true_circle() {
     }
 }
 
-/// The oracle itself can fail: moved by twice the tolerance, a shape is found to be off.
+/// The oracle can fail: it finds a shape that is moved by twice the tolerance.
 #[test]
 fn the_oracle_sees_a_shift() {
     let doc = read(&sample("monogram.svg"));

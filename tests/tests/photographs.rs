@@ -7,7 +7,7 @@ use pathwarp_svg::usvg_tree;
 use std::fs;
 use support::{pathwarp, pathwarp_in, sample};
 
-/// A drawing as a photograph of it.
+/// Renders a drawing as a photograph.
 fn photograph(svg: &str, width: u32) -> Pixmap {
     let tree = usvg_tree::parse_tree(svg.as_bytes(), "drawing", &pathwarp_svg::ReadOptions::default()).unwrap();
     render(&tree, Size::Width(width)).unwrap()
@@ -21,9 +21,9 @@ const DRAWING: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 
     <path fill='#eee' d='M0,0H200V120H0Z'/><circle cx='70' cy='60' r='45' fill='#b03'/>\
     <path fill='#05a' d='M110,20 L180,30 L150,100 Z'/></svg>";
 
-/// The warped photograph of a drawing is the photograph of the warped drawing.
+/// Warping the photograph of a drawing equals photographing the warped drawing.
 #[test]
-fn photographing_and_warping_may_be_swapped() {
+fn photographing_and_warping_commute() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("in.svg"), DRAWING).unwrap();
     fs::write(dir.path().join("in.png"), png(photograph(DRAWING, 200))).unwrap();
@@ -41,7 +41,7 @@ fn photographing_and_warping_may_be_swapped() {
             assert!(output.status.success(), "{deformation}: {}", String::from_utf8_lossy(&output.stderr));
         }
         let ours = decode_png(&fs::read(dir.path().join("out.png")).unwrap()).unwrap();
-        // The picture shows the warped drawing's own box, in whole pixels.
+        // The picture shows the bounding box of the warped drawing, in whole pixels.
         let svg = fs::read_to_string(dir.path().join("out.svg")).unwrap();
         let document = pathwarp_svg::Document::read(svg.as_bytes(), "out", &Default::default()).unwrap();
         let b = document.artwork_box(&Default::default()).unwrap();
@@ -54,7 +54,7 @@ fn photographing_and_warping_may_be_swapped() {
         println!("{deformation}: mean {:.2}, over 64: {:.4}", difference.mean_abs, difference.share_over(64));
         assert!(difference.mean_abs < 2.0, "{deformation}: {}", difference.mean_abs);
         assert!(difference.share_over(64) < 0.01, "{deformation}: {}", difference.share_over(64));
-        // The comparison can fail: the photograph as it was is far off.
+        // Check that the comparison can fail: the unwarped photograph is far off.
         if (ours.width(), ours.height()) == (200, 120) {
             let still = compare(&ours, &photograph(DRAWING, 200)).unwrap();
             assert!(still.mean_abs > 4.0 * difference.mean_abs, "{deformation}: {}", still.mean_abs);
@@ -92,12 +92,12 @@ fn sizes_formats_and_exit_codes() {
     fs::write(dir.path().join("in.jpg"), b"\xff\xd8\xff\xe0 no more").unwrap();
     assert_eq!(code(&["-o", "out.png"]), 3);
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), before);
-    // An SVG file may still be called anything.
+    // An SVG file may have any other name.
     let svg = sample("logo.svg");
     assert!(pathwarp(&["swirl", svg.to_str().unwrap()]).status.success());
 }
 
-/// A picture in a drawing looks, once bent, as the drawing does that it was taken from.
+/// A bent picture in a drawing looks like the bent drawing that it was rendered from.
 #[test]
 fn a_picture_in_a_drawing_bends_with_it() {
     let dir = tempfile::tempdir().unwrap();
@@ -148,7 +148,7 @@ fn a_picture_in_a_drawing_bends_with_it() {
             assert!(difference.share_over(64) < 0.005, "{name}, {structure}: {}", difference.share_over(64));
         }
         assert!(fs::read_to_string(dir.path().join("bent.svg")).unwrap().contains("data:image/png"));
-        // Kept pixels can only be placed: seen, and said.
+        // Kept pixels can only be placed by an affine map: the difference is visible and reported.
         let (code, said) = run("picture.svg", "kept.svg", &["--images", "keep"]);
         assert!(code == 1 && said.contains("affine fit"), "{name}: {code} {said}");
         let fine = fs::metadata(dir.path().join("bent.svg")).unwrap().len();

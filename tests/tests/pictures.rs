@@ -1,4 +1,4 @@
-//! Every sample under every deformation, drawn, against the stored reference pictures in `tests/reference/`.
+//! Every sample under every deformation, rendered and compared with the reference pictures in `tests/reference/`.
 //!
 //! `PATHWARP_STORE=1 cargo test -p pathwarp-tests --test pictures` stores new ones: look at each before committing it.
 //! Only the bundled font is used, so that the pictures are the same on every machine.
@@ -21,7 +21,7 @@ use support::{artwork, root, sample};
 const WIDTH: u32 = 240;
 /// A pixel differs when a channel is off by more than this: antialiasing on other processors stays far below.
 const VISIBLE: u8 = 24;
-/// The share of pixels that may differ.
+/// Fraction of the pixels that may differ.
 const SHARE: f64 = 5e-4;
 
 /// Values that keep the artwork on its page.
@@ -32,7 +32,7 @@ const DEFORMATIONS: [(&str, &str, Pairs); 5] = [
     ("similitude", "similitude", &[("target", "12%,90% 85%,75%")]),
     ("affine", "affine", &[("rotate", "12"), ("scale-x", "0.7"), ("scale-y", "0.8"), ("skew-x", "-15")]),
 ];
-/// Wide and flat, so that wide artwork stays on its page too.
+/// A wide, flat shape, so that wide artwork stays on its page too.
 const CAGE: &str = "M 0,30 C 30,42 60,18 100,28 C 97,20 103,10 97,2 C 70,-8 35,14 3,0 C 7,10 -3,20 0,30 Z";
 
 fn draw(svg: &[u8]) -> Pixmap {
@@ -71,7 +71,7 @@ fn acceptable(d: &Difference) -> bool {
 }
 
 #[test]
-fn every_sample_looks_as_it_did() {
+fn every_sample_matches_its_reference() {
     let store = std::env::var_os("PATHWARP_STORE").is_some();
     let mut off = Vec::new();
     for name in artwork() {
@@ -93,12 +93,12 @@ fn every_sample_looks_as_it_did() {
     assert!(off.is_empty(), "{}", off.join("\n"));
 }
 
-/// A sheet's cells share its pixels: what one of them may differ by.
+/// Fraction of a sheet's pixels that may differ: the cells share the pixels, so a fault in one of them counts for less.
 const CELL_SHARE: f64 = SHARE / 16.0;
 
 /// Every warp style and every text shape, as `pathwarp gallery` draws them.
 #[test]
-fn every_style_looks_as_it_did() {
+fn every_style_matches_its_reference() {
     let folder = tempfile::tempdir().unwrap();
     let mut off = Vec::new();
     for (label, words) in [
@@ -123,7 +123,7 @@ fn every_style_looks_as_it_did() {
     assert!(off.is_empty(), "{}", off.join("\n"));
 }
 
-/// The companion: the comparison fails where it should, on a picture moved by half a pixel and on one with a shape missing.
+/// The comparison can fail: on a picture moved by half a pixel and on one with a missing shape.
 #[test]
 fn the_comparison_can_fail() {
     for name in ["logo.svg", "badge.svg", "lineart.svg", "grid.svg"] {
@@ -132,7 +132,7 @@ fn the_comparison_can_fail() {
         let start = source.find('>').unwrap();
         let half_pixel = format!("{}><g transform=\"translate(0.7 0)\">{}", &source[..start], &source[start + 1..])
             .replace("</svg>", "</g></svg>");
-        // Nested viewports close with the same tag; only the last one is the root's.
+        // Nested viewports close with the same tag; the last one is the root's.
         let half_pixel = match half_pixel.matches("</g></svg>").count() {
             1 => half_pixel,
             _ => continue,
@@ -147,14 +147,13 @@ fn the_comparison_can_fail() {
     assert!(!acceptable(&compare(&draw(tiles.as_bytes()), &draw(without.as_bytes())).unwrap()));
 }
 
-/// Criterion: a straight shaper on the artwork's own box gives a file that looks the same, with no more segments and the lines
-/// still lines.
+/// Criterion: a straight shaper on the bounding box of the artwork keeps the picture, adds no segments, and keeps lines as lines.
 #[test]
 fn a_straight_shaper_changes_nothing() {
     let same = |source: usize, warped: usize| source == warped;
     straight("0%,0% 100%,0% 100%,100% 0%,100%", 1e-4, 2, same, same);
-    // A hundred-millionth off, so that nothing recognises it: no segment is added. (Pixels say little here: the renderer's own
-    // circles are polynomial too, and dashes along them move with the length of either's error.)
+    // Off by 1e-8, so that the affine case is not recognised: no segment is added. (Pixels say little here: the renderer's circles
+    // are polynomials too, and dashes along them move with the error in length.)
     let no_more = |source: usize, warped: usize| warped <= source;
     let any = |_: usize, _: usize| true;
     straight("0%,0% 100%,0% 100%,100.000001% 0%,100%", 1e-4, 255, any, no_more);
@@ -172,7 +171,7 @@ fn straight(shaper: &str, tolerance: f64, channel: u8, lines: fn(usize, usize) -
         let d = compare(&draw(&bytes), &draw(warped.svg.as_bytes())).unwrap();
         assert!(d.max_channel <= channel, "{name}, {shaper}: off by {}", d.max_channel);
         let after = Document::read(warped.svg.as_bytes(), &name, &read).unwrap();
-        // A cubic holds a quarter of an ellipse.
+        // One cubic represents a quarter of an ellipse.
         let cubics = |s: &Seg| match s {
             Seg::Arc(a) => (a.sweep.abs() / FRAC_PI_2 - 1e-9).ceil() as usize,
             _ => 1,

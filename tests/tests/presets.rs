@@ -1,4 +1,4 @@
-//! Styles, text shapes, meshes and the gallery from outside: files of one's own, Photoshop files, sheets.
+//! Styles, text shapes, meshes and the gallery through the program: user files, Photoshop files, sheets.
 
 #[path = "../../crates/pathwarp-psd/tests/build/mod.rs"]
 #[allow(dead_code, reason = "only some of it is needed here")]
@@ -8,7 +8,7 @@ mod support;
 use std::fs;
 use support::expect_code;
 
-/// A style in TOML is the style; what is wrong with a file is said, with its name.
+/// A style in a TOML file equals the built-in one, and errors name the file.
 #[test]
 fn styles_and_shapes_come_from_toml_files() {
     let dir = tempfile::tempdir().unwrap();
@@ -37,7 +37,7 @@ fn styles_and_shapes_come_from_toml_files() {
         assert!(err.contains(part), "{err}");
         assert!(!dir.path().join("never.svg").exists());
     }
-    // A recipe finds the file from where it lies.
+    // A recipe finds the file relative to its own folder.
     expect_code(
         0,
         &["warp", "samples/logo.svg", "--style", &at("mine.toml"), "-o", &at("a.svg"), "--write-recipe", &at("r.toml")],
@@ -46,7 +46,7 @@ fn styles_and_shapes_come_from_toml_files() {
     assert_eq!(fs::read(at("a.svg")).unwrap(), fs::read(at("b.svg")).unwrap());
 }
 
-/// The warp of a Photoshop layer is the style of that name, or its points.
+/// The warp of a Photoshop layer gives the style of that name, or its points.
 #[test]
 fn photoshop_files_bend_as_their_layers() {
     use build::{block, layer, object, placed, points, smart, tagged, warp};
@@ -76,13 +76,13 @@ fn photoshop_files_bend_as_their_layers() {
         ["--style", "arch", "--bend", "40%", "--axis", "vertical", "--horizontal", "5%", "--vertical=-7%", "-o", "-"];
     let (theirs, _) = expect_code(0, &[&["warp", "samples/logo.svg"][..], &style].concat());
     assert!(ours == theirs && ours.contains("<svg"));
-    // One inner point, a fifth of the height lower, is degree 3 by 3 with one point moved.
+    // One inner point moved down by a fifth of the height equals a lattice of degree 3 by 3 with that point moved.
     let (ours, _) = expect_code(0, &run(&["--layer", "Points"]));
     fs::write(at("a.svg"), ours).unwrap();
     expect_code(0, &["ffd", "samples/logo.svg", "--degree", "3x3", "--move", "2,1:0,20%", "-o", &at("b.svg")]);
     let (json, _) = expect_code(0, &["compare", "--json", &at("a.svg"), &at("b.svg")]);
     let off = serde_json::from_str::<serde_json::Value>(&json).unwrap()["max_distance"].as_f64().unwrap();
-    // Each within the default tolerance, 1e-4 of the diagonal of 605.
+    // Both are within the default tolerance, 1e-4 of the diagonal of 605.
     assert!(off < 0.13, "{off}");
 
     fs::write(at("broken.psd"), b"8BPS\0\x01oh").unwrap();
@@ -90,7 +90,7 @@ fn photoshop_files_bend_as_their_layers() {
     assert!(err.contains("broken.psd") && err.contains("byte"), "{err}");
 }
 
-/// A sheet has a cell for the artwork and one for every style, is the same every time, and is written whole or not at all.
+/// A sheet has a cell for the artwork and one per style, is reproducible, and is written completely or not at all.
 #[test]
 fn the_gallery_shows_every_style() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Recipes, inverses, point queries, and drawings that remember their source.
+//! Recipes, inverses, mapped points, and drawings with an embedded source.
 
 mod support;
 
@@ -46,14 +46,14 @@ fn a_saved_command_line_runs_to_the_same_bytes() {
     ];
     let first = ok(&line);
     assert_eq!(first, ok(&["run", "r.toml"]));
-    // From another folder the recipe still finds its cage.
+    // The recipe finds its cage from another working folder.
     let elsewhere = tempfile::tempdir().unwrap();
     let file = dir.path().join("r.toml").display().to_string();
     let out = pathwarp_in(elsewhere.path(), &["run", &file], ART.as_bytes());
     assert_eq!(first, out.stdout, "{}", text(&out.stderr));
-    // Options given overrule the recipe's.
+    // Options on the command line override the recipe's.
     assert_ne!(first, ok(&["run", "r.toml", "--tolerance", "0.0001"]));
-    // Written to another folder, references are made to last.
+    // A recipe written to another folder has absolute references.
     let moved = elsewhere.path().join("moved.toml").display().to_string();
     let mut line = line;
     line[8] = &moved;
@@ -83,9 +83,9 @@ fn faulty_recipes_are_input_errors_that_name_the_fault() {
     }
 }
 
-/// X and then X --inverse gives the drawing back, within (1 + s) times the tolerance, s the inverse's largest stretch.
+/// X followed by X --inverse restores the drawing within (1 + s) times the tolerance, s being the largest stretch of the inverse.
 #[test]
-fn inverses_give_the_drawing_back() {
+fn inverses_restore_the_drawing() {
     let dir = tempfile::tempdir().unwrap();
     for (args, stretch) in [
         (&["affine", "--rotate", "30", "--scale-x", "0.5", "--about", "10,20"][..], 2.0),
@@ -140,7 +140,7 @@ fn a_recipe_runs_backwards() {
 }
 
 #[test]
-fn an_embedded_source_comes_back_to_the_byte() {
+fn an_embedded_source_is_restored_byte_for_byte() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out.svg").display().to_string();
     for name in artwork() {
@@ -149,7 +149,7 @@ fn an_embedded_source_comes_back_to_the_byte() {
         expect_code(0, &["shaper", &input, "--shaper", CAGE, "--embed-recipe", "-q", "-o", &out]);
         let back = pathwarp_in(dir.path(), &["unwarp", "out.svg"], b"");
         assert_eq!(back.stdout, source, "{name}");
-        // The recipe is one that runs.
+        // The embedded recipe runs.
         let recipe = pathwarp_in(dir.path(), &["unwarp", "--recipe", "out.svg", "-o", "r.toml"], b"");
         assert_eq!(recipe.status.code(), Some(0));
         let again = pathwarp_in(dir.path(), &["run", "r.toml", "-", "--embed-recipe", "-q"], &source);
@@ -170,13 +170,13 @@ fn points_are_mapped_line_by_line() {
     assert_eq!(text(&out.stdout), "315 426 1 2 3 4\n");
     let out = run(&["affine", "--matrix", "1,2,3,4,5,6", "--inverse"], "315 426");
     assert_eq!(text(&out.stdout), "10 100\n");
-    // A chain; and the frame gives percentages their meaning.
+    // A chain, with percentages that refer to the frame.
     let out = run(
         &["affine", "--matrix", "2,0,0,2,0,0", "--frame", "0,0,10,10", "+", "affine", "--matrix", "1,0,0,1,1,0"],
         "3 4",
     );
     assert_eq!(text(&out.stdout), "7 8\n");
-    // Beyond the horizon there is no value.
+    // The map has no value beyond the horizon.
     let out = run(&["projective", "--frame", "0,0,100,100", "--target", "0,100 100,100 75,0 25,0"], "50 50\n50 300\n");
     assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
     assert!(text(&out.stdout).ends_with("nan nan\n"), "{}", text(&out.stdout));
@@ -198,7 +198,7 @@ fn the_schema_names_every_parameter() {
     }
 }
 
-/// A square along a line of three times its width stands three times; along a circle a whole number of times.
+/// A square is repeated three times along a line of three times its width, and a whole number of times along a circle.
 #[test]
 fn artwork_is_repeated_along_a_skeleton() {
     const SQUARE: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><defs><clipPath id='k'><rect width='10' \
@@ -217,7 +217,7 @@ fn artwork_is_repeated_along_a_skeleton() {
     };
     let (report, shapes) = bend("20,50 50,50");
     assert_eq!(report["inputs"][0]["shapes"][0]["copies"], 3, "{report}");
-    // The square and its clip path alike.
+    // The square and its clip path are both repeated.
     assert_eq!(shapes.len(), 2);
     for outline in shapes {
         assert_eq!(outline.subpaths.len(), 3);
@@ -245,16 +245,16 @@ fn artwork_is_repeated_along_a_skeleton() {
     let args = ["bend", "--along", "0,0 50,0", "--stretch", "repeat", "+", "affine", "--move-x", "100%"];
     let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
     assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
-    // By then the artwork is the whole row.
+    // At the second step the artwork is the whole row.
     let doc = pathwarp_svg::Document::read(&out.stdout, "out", &pathwarp_svg::ReadOptions::default()).unwrap();
     let b = doc.shapes()[0].outline.bounding_box().unwrap();
     assert!((b.x0 - 50.0).abs() + (b.x1 - 100.0).abs() < 1e-2, "{b:?}");
 }
 
-/// On the samples: X and then X --inverse gives every path back within (1 + s) times the tolerance, s being the largest stretch
-/// of the inverse along the artwork (the reciprocal of the map's smaller singular value there).
+/// On the samples, X followed by X --inverse restores every path within (1 + s) times the tolerance, s being the largest stretch of
+/// the inverse along the artwork (the reciprocal of the map's smaller singular value).
 #[test]
-fn inverses_give_the_samples_back() {
+fn inverses_restore_the_samples() {
     const TOLERANCE: f64 = 0.01;
     let bent = "M 0,30 C 10,38 20,22 33,30 C 37,20 28,10 33,0 C 20,-6 10,8 0,0 C 4,10 -3,20 0,30 Z";
     let deformations: [(&str, &[(&str, &str)]); 6] = [

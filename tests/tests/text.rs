@@ -1,4 +1,4 @@
-//! `pathwarp text` from outside: what it writes, and that any deformation takes it.
+//! `pathwarp text`: its output, alone and as the input of deformations.
 
 mod support;
 
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use support::{expect_code, pathwarp_in, root, words};
 
-/// Runs a pipeline of commands from the project's root; gives what the last one writes, and every message.
+/// Runs a pipeline of commands from the project's root. Returns the output of the last one and all messages.
 #[track_caller]
 fn pipeline(stages: &[Vec<String>]) -> (Vec<u8>, String) {
     let (mut drawing, mut said) = (Vec::new(), String::new());
@@ -23,7 +23,7 @@ fn pipeline(stages: &[Vec<String>]) -> (Vec<u8>, String) {
     (drawing, said)
 }
 
-/// `a | b | c`, each without the program's name, as the shell would take it apart.
+/// Splits `a | b | c` into commands of words as a shell does, without the program's name.
 fn stages(line: &str) -> Vec<Vec<String>> {
     words(line).split(|w| w == "|").map(<[String]>::to_vec).collect()
 }
@@ -49,7 +49,7 @@ fn bounds(drawing: &[u8]) -> Rect {
     outline(drawing).bounding_box().unwrap()
 }
 
-/// The numbers of an attribute, every time it occurs.
+/// The numbers in every occurrence of an attribute.
 fn numbers(svg: &str, attribute: &str) -> Vec<Vec<f64>> {
     let start = format!(" {attribute}=\"");
     let values = svg.split(&start).skip(1).map(|rest| rest.split('"').next().unwrap());
@@ -63,7 +63,7 @@ fn near(a: &[f64], b: &[f64]) {
 
 /// Noto Sans, 1000 units to the em: ascent 1069, descent 293, capitals 714, small letters 536 high; H 741 and i 258 wide.
 #[test]
-fn baselines_heights_and_letters_are_told_and_true() {
+fn baselines_heights_and_letters_are_recorded_correctly() {
     let drawing = run("text 'Hi\nH' --size 100 --letter-spacing 10");
     let text = String::from_utf8(drawing.clone()).unwrap();
     for (attribute, value) in
@@ -78,11 +78,11 @@ fn baselines_heights_and_letters_are_told_and_true() {
     near(&letters[0], &[0.0, 106.9, 74.1]);
     near(&letters[1], &[84.1, 106.9, 25.8]);
     near(&letters[2], &[0.0, 243.1, 74.1]);
-    // What is told is what is drawn: the H stands on its baseline, as high as capitals are.
+    // The attributes agree with the drawing: the H stands on its baseline and has the cap height.
     let doc = Document::read(&drawing, "out", &ReadOptions::default()).unwrap();
     let h = doc.shapes()[0].outline.bounding_box().unwrap();
     near(&[h.y0, h.y1], &[106.9 - 71.4, 106.9]);
-    // Its stems begin 98 units in and end as far from its advance.
+    // Its stems begin 98 units from the origin and end as far from the advance.
     assert!(h.x0 > 9.0 && h.x0 < 10.5 && (74.1 - h.x1 - h.x0).abs() < 0.5, "{h:?}");
     // The page holds the lines.
     near(&numbers(&text, "viewBox")[0], &[0.0, 0.0, 109.9, 2.0 * 136.2]);
@@ -108,7 +108,7 @@ fn text_is_read_from_arguments_files_and_standard_input() {
 
 #[test]
 fn lengths_have_units() {
-    // 3 of 100 is 3 %; an inch is 96.
+    // 3 units of 100 are 3 %; an inch is 96 units.
     assert_eq!(run("text ab --size 100 --letter-spacing 3%"), run("text ab --size 100 --letter-spacing 3"));
     assert_eq!(run("text ab --size 1in"), run("text ab --size 96"));
     assert_eq!(run("text 'a\nb' --size 50 --line-height 120%"), run("text 'a\nb' --size 50 --line-height 60"));
@@ -128,7 +128,7 @@ fn refs(words: &[String]) -> Vec<&str> {
     words.iter().map(String::as_str).collect()
 }
 
-/// On an arc of radius 300 the feet of letters stand on it, and capitals reach their own height above it.
+/// On an arc of radius 300 the feet of letters touch the arc, and capitals rise above it by the cap height.
 #[test]
 fn text_into_bend() {
     const TOLERANCE: f64 = 0.01;
@@ -142,7 +142,7 @@ fn text_into_bend() {
     assert!((low - 300.0).abs() < TOLERANCE && (high - 371.4).abs() < TOLERANCE, "{low} to {high}");
 }
 
-/// Straight sides are an affine map: the ink fills the rectangle.
+/// An envelope with straight sides is an affine map: the ink fills the rectangle.
 #[test]
 fn text_into_envelope() {
     let drawing = run("text 'Hot Tea' | envelope - --bottom 'M10,150 H410' --top 'M10,50 H410' --fit grow");
@@ -150,10 +150,10 @@ fn text_into_envelope() {
     assert!((b.x0 - 10.0).abs() + (b.x1 - 410.0).abs() + (b.y0 - 50.0).abs() + (b.y1 - 150.0).abs() < 1e-6, "{b:?}");
 }
 
-/// A word set with the bundled font, arched: uprights are upright within 0.1°.
+/// Under an arch the vertical lines of a word in the bundled font stay vertical within 0.1°.
 #[test]
-fn uprights_stay_upright_under_an_arch() {
-    /// The shortest upright, of I's serifs, is 4.68 high, and the arch only lengthens.
+fn vertical_lines_stay_vertical_under_an_arch() {
+    /// The shortest vertical line, in the serifs of I, is 4.68 long, and the arch only lengthens lines.
     const LEAST: f64 = 4.0;
     let upright =
         |p: Point, q: Point| (q.y - p.y).abs() > LEAST && ((q.x - p.x) / (q.y - p.y)).atan().to_degrees().abs() < 0.1;
@@ -163,15 +163,15 @@ fn uprights_stay_upright_under_an_arch() {
         "{word} | envelope - --bottom 'M20,180 H516' --top 'M20,110 Q268,-80 516,110' --keep verticals --fit grow"
     ));
     let before = count(&run(word));
-    // H has six, I two and its serifs' four, L three, T four, E six, N four.
+    // H has six, I two and four in its serifs, L three, T four, E six, N four.
     assert_eq!(before, 29);
     assert_eq!(count(&arched), before);
-    // Between sides that lean they do not: the test can fail.
+    // Between slanted sides they do not, so the test can fail.
     let leaning = run(&format!("{word} | envelope - --bottom 'M20,180 H516' --top 'M90,60 H446' --fit grow"));
     assert!(count(&leaning) < before / 2);
 }
 
-/// A warp without bend changes nothing; with bend it does, and the words are still named.
+/// A warp without bend changes nothing; with bend it does, and the words keep their names.
 #[test]
 fn text_into_warp() {
     let word = "text Regatta --size 80";
@@ -191,7 +191,7 @@ fn characters_no_font_has_are_named() {
     let out = dir.path().join("out.svg").display().to_string();
     let (_, said) = expect_code(1, &["text", "a日本b", "-o", &out]);
     assert!(said.contains("日 (U+65E5)") && said.contains("本 (U+672C)") && said.contains("--font"), "{said}");
-    // They are drawn all the same, as the font draws what is missing.
+    // They are drawn with the font's glyph for missing characters.
     assert_eq!(fs::read_to_string(&out).unwrap().matches("<path").count(), 4);
 }
 
@@ -202,7 +202,7 @@ fn faults_are_named() {
         (2, &["text"][..], "WORDS"),
         (2, &["text", ""], "empty"),
         (2, &["text", "a", "--font", "No Such Family Anywhere"], "`No Such Family Anywhere`"),
-        // One letter is wrong; the bundled family is always there.
+        // One letter is misspelt; the bundled family is always available.
         (2, &["text", "a", "--font", "Notto Snas"], "there are Noto Sans"),
         (3, &["text", "a", "--font", "missing.ttf"], "missing.ttf"),
         (3, &["text", "a", "--font", "samples/logo.svg"], "no font"),
@@ -227,14 +227,14 @@ fn faults_are_named() {
     assert!(String::from_utf8_lossy(&out.stderr).contains("UTF-8"));
 }
 
-/// Weights and axes reach the letters.
+/// Weights and axis positions change the letters.
 #[test]
 fn weights_and_axes_are_set() {
     let font = "--font crates/pathwarp-text/tests/fonts/variable.ttf";
     let at = |options: &str| svg(&format!("text HT {font} {options}"));
     assert_eq!(at("--weight semibold"), at("--variation wght=600"));
     assert_eq!(at("--weight regular"), at(""));
-    // Advances of H and T at those places, in thousandths of the em, as HarfBuzz gives them.
+    // The advances of H and T at those positions, in thousandths of the em, from HarfBuzz.
     for (options, h, t) in [
         ("", 741.0, 556.0),
         ("--weight 600", 756.0, 569.0),
@@ -266,7 +266,7 @@ fn examples_in_help_run() {
     let (help, _) = expect_code(0, &["help", "text"]);
     let examples: Vec<&str> = help.lines().filter_map(|l| l.strip_prefix("  pathwarp text ")).collect();
     assert!(examples.len() >= 4, "{help}");
-    // Those that name a font need it installed.
+    // Skip the examples that name a font: it may not be installed.
     for example in examples.iter().filter(|e| !e.contains("--font")) {
         let mut stages = stages(&format!("text {}", example.replace("| pathwarp", "|")));
         let last = stages.last_mut().unwrap();

@@ -1,4 +1,4 @@
-//! Neighbours that share an edge share it after the warp, to the last digit: also when pieces are merged.
+//! Shapes that share an edge share it after the warp, to the last digit, even if pieces are merged.
 
 mod support;
 
@@ -15,7 +15,7 @@ use support::sample;
 
 const CAGE: &str = "M 10,90 C 60,130 60,60 95,85 C 75,60 115,40 90,15 C 60,-25 40,45 5,10 C 25,40 -10,60 10,90 Z";
 
-/// The cubics of an outline, run from their lexicographically smaller end.
+/// The cubics of an outline, each from its lexicographically smaller end.
 fn edges(o: &Outline) -> Vec<[(u64, u64); 4]> {
     let canonical = |c: CubicBez| {
         let forwards = (c.p0.x, c.p0.y) <= (c.p3.x, c.p3.y);
@@ -25,7 +25,7 @@ fn edges(o: &Outline) -> Vec<[(u64, u64); 4]> {
     o.segs().filter(|s| !matches!(s, Seg::Line(_))).map(|s| canonical(s.to_cubic())).collect()
 }
 
-/// The map of the cage over `frame`.
+/// The shaper's map over `frame`.
 fn shaper(frame: Rect) -> Arc<dyn Map> {
     let entry = Registry::builtin().get("shaper").unwrap().clone();
     entry.build_from(&Args::from_pairs(&[("shaper", CAGE)]), &Frame::new(frame)).unwrap().map
@@ -54,8 +54,8 @@ fn stained_glass_has_no_gaps() {
     }
 }
 
-/// Here merging would join the shared edge with what follows it on one side only. The companion shows that it does where
-/// nothing is shared.
+/// Merging would join the shared edge with the following segment on one side only. Without a shared edge it does, which shows that
+/// the test can fail.
 #[test]
 fn a_shared_edge_is_not_merged_with_what_follows_it() {
     const WITH_REST: &str = "<path d='M0,50 C10,30 20,40 30,50 C40,60 50,70 60,50 L60,90 0,90 Z'/>";

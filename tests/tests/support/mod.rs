@@ -1,5 +1,5 @@
-//! Running the program, and finding the project's files.
-#![allow(dead_code, reason = "every test file uses its own part of this")]
+//! Runs the program, and finds the project's files.
+#![allow(dead_code, reason = "every test file uses another part of this")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -30,7 +30,7 @@ pub fn artwork() -> Vec<String> {
     all
 }
 
-/// The program of package `package`, built once. Test binaries lie in `target/PROFILE/deps`.
+/// Builds the program `name` of a package and returns its path. Test binaries are in `target/PROFILE/deps`.
 pub fn program(package: &str, name: &str) -> PathBuf {
     let profile = std::env::current_exe().unwrap().parent().unwrap().parent().unwrap().to_owned();
     let mut build = Command::new(env!("CARGO"));
@@ -48,12 +48,12 @@ fn pathwarp_program() -> &'static Path {
     PROGRAM.get_or_init(|| program("pathwarp-cli", "pathwarp"))
 }
 
-/// `pathwarp` with these arguments, run from the project's root.
+/// Runs `pathwarp` from the project's root.
 pub fn pathwarp<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> Output {
     Command::new(pathwarp_program()).args(args).current_dir(root()).stdin(Stdio::null()).output().unwrap()
 }
 
-/// The same in another folder, with something on standard input.
+/// Runs `pathwarp` in a folder, with standard input.
 pub fn pathwarp_in(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
     use std::io::Write;
     let mut child = Command::new(pathwarp_program())
@@ -64,12 +64,12 @@ pub fn pathwarp_in(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // A program that fails early closes its input.
+    // The program may exit early; ignore the broken pipe.
     let _ = child.stdin.take().unwrap().write_all(stdin);
     child.wait_with_output().unwrap()
 }
 
-/// Runs and must end with `code`; gives standard output and standard error.
+/// Runs `pathwarp` and asserts its exit code. Returns standard output and standard error.
 #[track_caller]
 pub fn expect_code<S: AsRef<std::ffi::OsStr> + std::fmt::Debug>(code: i32, args: &[S]) -> (String, String) {
     let out = pathwarp(args);

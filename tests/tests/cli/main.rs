@@ -1,0 +1,11 @@
+//! The program from outside: exit codes, files, streams, messages.
+
+mod chains;
+mod commands;
+mod common;
+mod documentation;
+mod exit_codes;
+mod report;
+mod streams;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,110 @@
+//! The report, warnings and notes.
+
+use crate::common::{CAGE, SQUARE, text};
+use crate::support::{expect_code, pathwarp_in, sample};
+use serde_json::Value;
+use std::fs;
+
+#[test]
+fn artwork_that_extends_past_the_page_causes_one_warning() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |options: &[&str]| {
+        let mut args = vec!["affine", "--move-x", "30", "--move-y", "-8", "--report", "r.json"];
+        args.extend(options);
+        let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+        (text(&out.stderr), report["inputs"][0]["warnings"].as_array().unwrap().clone())
+    };
+    let (said, warnings) = run(&[]);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    for part in ["extends past the page by up to 30 units", "30 %; top, right", "--fit grow", "--fit page"] {
+        assert!(said.contains(part) && warnings[0].as_str().unwrap().contains(part), "{part} not in {said}");
+    }
+    assert_eq!(warnings.len(), 1);
+    let (said, warnings) = run(&["--quiet"]);
+    assert!(said.is_empty() && warnings.len() == 1, "{said} {warnings:?}");
+    for fit in ["grow", "page"] {
+        let (said, warnings) = run(&["--fit", fit]);
+        assert!(said.is_empty() && warnings.is_empty(), "{fit}: {said}");
+    }
+}
+
+#[test]
+fn the_report_has_every_field() {
+    let dir = tempfile::tempdir().unwrap();
+    let (svg, json) = (dir.path().join("o.svg"), dir.path().join("r.json"));
+    let [input, cage] = [sample("monogram.svg"), sample("cages.svg")].map(|p| p.display().to_string());
+    let cage = cage + "#flag";
+    expect_code(
+        0,
+        &["shaper", &input, "--shaper", &cage, "-o", svg.to_str().unwrap(), "--report", json.to_str().unwrap()],
+    );
+    let r: Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
+    assert_eq!(r["tool"], "pathwarp");
+    assert_eq!(r["steps"][0], "shaper");
+    let file = &r["inputs"][0];
+    let tolerance = file["tolerance"].as_f64().unwrap();
+    let shapes = file["shapes"].as_array().unwrap();
+    assert!(!shapes.is_empty());
+    let mut sums = [0, 0];
+    for s in shapes {
+        assert!(s["max_error"].as_f64().unwrap() <= tolerance && s["certified"].is_boolean() && s["folds"] == 0);
+        sums[0] += s["segments_in"].as_u64().unwrap();
+        sums[1] += s["segments_out"].as_u64().unwrap();
+    }
+    assert_eq!(r["totals"]["shapes"].as_u64().unwrap() as usize, shapes.len());
+    assert_eq!([&r["totals"]["segments_in"], &r["totals"]["segments_out"]].map(|v| v.as_u64().unwrap()), sums);
+    assert!(r["totals"]["seconds"].as_f64().unwrap() > 0.0);
+    assert_eq!(file["output"], svg.display().to_string());
+}
+
+#[test]
+fn a_missed_tolerance_is_reported_with_its_place() {
+    // The drawing is about three thousand wavelengths wide.
+    let dir = tempfile::tempdir().unwrap();
+    let run = |options: &[&str]| {
+        let mut args = vec!["expr", "--x", "x", "--y", "y + 5*sin(200*x)", "--report", "r.json"];
+        args.extend(options);
+        let out = pathwarp_in(dir.path(), &args, SQUARE.as_bytes());
+        let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+        (out, report["inputs"][0].clone())
+    };
+    for options in [&["--tolerance", "0.001"][..], &["--tolerance", "0.001", "--certify", "--merge", "off"]] {
+        let (out, r) = run(options);
+        assert_eq!(out.status.code(), Some(1));
+        assert!(text(&out.stderr).contains("misses the tolerance near"), "{}", text(&out.stderr));
+        let s = &r["shapes"][0];
+        assert!(s["max_error"].as_f64().unwrap() > 0.001 && s["assurance"] == "checked" && s["certified"] == false);
+        let places = s["over_budget"].as_array().unwrap();
+        assert!(!places.is_empty());
+        // Only the horizontal sides miss it; the vertical ones stay straight.
+        assert!(places.iter().all(|p| p[1] == 0.0 || p[1] == 100.0), "{places:?}");
+    }
+}
+
+#[test]
+fn folds_are_warned_of_and_counted() {
+    let dir = tempfile::tempdir().unwrap();
+    // The top side of this shaper doubles back.
+    let twisted = "M0,100 L100,100 L100,0 C-150,0 250,0 0,0 Z";
+    let out = pathwarp_in(dir.path(), &["shaper", "--shaper", twisted, "--report", "r.json"], SQUARE.as_bytes());
+    assert_eq!(out.status.code(), Some(0));
+    let messages = text(&out.stderr);
+    assert!(messages.contains("s folds over near"), "{messages}");
+    let r: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+    assert!(r["totals"]["folds"].as_u64().unwrap() > 0);
+    assert!(r["inputs"][0]["warnings"][0].as_str().unwrap().contains("s folds over"));
+    // A mirroring map does not fold.
+    let mirrored = pathwarp_in(dir.path(), &["shaper", "--shaper", CAGE, "--reverse-shaper"], SQUARE.as_bytes());
+    assert!(mirrored.stderr.is_empty(), "{}", text(&mirrored.stderr));
+}
+
+#[test]
+fn explain_prints_the_corners() {
+    let (_, said) =
+        expect_code(0, &["shaper", "samples/grid.svg", "--shaper", "samples/cages.svg#arch", "--explain", "-o", "-"]);
+    for part in ["bottom side of", "corners of", "base:", "target: none"] {
+        assert!(said.contains(part), "{part} not in {said}");
+    }
+}
