@@ -1,6 +1,6 @@
-//! A preview of two drawings with overlays: `cargo run --example preview -- BEFORE.svg AFTER.svg OUT.png [KIND=PATH…]`.
+//! Draws a preview of two drawings with overlays: `cargo run --example preview -- BEFORE.svg AFTER.svg OUT.png [KIND=PATH…]`.
 //!
-//! `KIND` is `cage`, `base`, `target`, `anchors` or `grid`; the path is SVG path data. Targets lie on the right panel.
+//! `KIND` is `cage`, `base`, `target`, `anchors` or `grid`; the path is SVG path data. Targets are drawn on the right panel.
 
 use kurbo::{Affine, BezPath, Rect};
 use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview, encode_png};
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "target" => OverlayKind::Target,
             "anchors" => OverlayKind::Anchors,
             "grid" => OverlayKind::GridLines,
-            other => return Err(format!("no such overlay: {other}").into()),
+            other => return Err(format!("unknown overlay: {other}").into()),
         };
         let overlay = Overlay::new(kind, BezPath::from_svg(path)?);
         if kind == OverlayKind::Target {
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-// The samples have a viewBox as large as their width and height; elsewhere the two differ.
+// The viewBox of the samples equals their width and height, so the page is in user units.
 fn panel(tree: &usvg::Tree) -> Panel<'_> {
     let page = Rect::new(0.0, 0.0, f64::from(tree.size().width()), f64::from(tree.size().height()));
     Panel::new(tree, Affine::IDENTITY, page)

@@ -1,11 +1,11 @@
-//! How long a 4000 × 4000 bitmap takes through birational maps of degree 1×3, and the same maps' inverses written to files,
-//! for a peer that samples by them:
+//! Times warping a 4000 × 4000 bitmap by birational maps of degree 1×3. Can also write the inverse maps to files, for other programs
+//! to sample by:
 //!
 //! `cargo run --release -p pathwarp-raster --example warp_speed [FOLDER]`
 //!
-//! With FOLDER, every map leaves `NAME.f32` there: for each pixel of the result, rows from top to bottom, the source's x and y
-//! (pixel middles at whole numbers) as little-endian 32-bit numbers; and `source.rgba`.
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a measurement for the terminal")]
+//! With FOLDER, writes `source.rgba` and a file `NAME.f32` per map: for each pixel of the result, rows from top to bottom, x and y in
+//! the source (pixel centres at integers) as little-endian 32-bit floats.
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a benchmark that prints to the terminal")]
 
 use kurbo::{Affine, Point, Rect};
 use pathwarp::deform::Registry;
@@ -19,7 +19,7 @@ use std::time::Instant;
 const SIDE: u32 = 4000;
 const RUNS: usize = 7;
 
-/// Names, rows' points, and the part of the plane that the result's 4000 × 4000 pixels show.
+/// Names, points of both rows, and the part of the plane that the result shows.
 const MAPS: [(&str, &str, &str, Rect); 3] = [
     (
         "grows",
@@ -83,6 +83,7 @@ fn main() {
     }
 }
 
+/// Writes the source place of every pixel.
 fn write_places(file: &Path, inverse: &dyn Map, shown: Affine) {
     let mut out = BufWriter::new(std::fs::File::create(file).unwrap());
     for (j, i) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (j, i))) {

@@ -1,6 +1,6 @@
-//! Every sample is what the samples' README promises, and can be seen.
+//! Checks that every sample is as the README of the samples says, and visible.
 
-#![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise, also in its helpers")]
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use kurbo::{BezPath, PathSeg, Shape};
 use pathwarp_raster::{Color, RenderOptions, Size, compare};
@@ -10,7 +10,7 @@ fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../samples")
 }
 
-/// Names and texts of all samples.
+/// Names and contents of all samples.
 fn samples() -> Vec<(String, String)> {
     let files = fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path());
     let drawings = files.filter(|file| file.extension().is_some_and(|ext| ext == "svg"));
@@ -27,7 +27,7 @@ fn options() -> usvg::Options<'static> {
 }
 
 #[test]
-fn all_have_a_title_a_size_and_ids_of_their_own() {
+fn all_have_a_title_a_size_and_unique_ids() {
     for (name, text) in samples() {
         let document = usvg::roxmltree::Document::parse(&text).unwrap();
         let root = document.root_element();
@@ -46,7 +46,7 @@ fn all_have_a_title_a_size_and_ids_of_their_own() {
 }
 
 #[test]
-fn all_can_be_seen() {
+fn all_are_visible() {
     let options = options();
     let samples = samples();
     assert!(samples.len() >= 13, "{}", samples.len());
@@ -61,14 +61,14 @@ fn all_can_be_seen() {
 }
 
 #[test]
-fn the_readme_names_all() {
+fn the_readme_lists_all() {
     let readme = fs::read_to_string(folder().join("README.md")).unwrap();
     for (name, _) in samples() {
         assert!(readme.contains(&format!("[{name}]({name})")), "{name} is missing in the README");
     }
 }
 
-/// Neighbours in the stained glass share every edge that is not on the frame: the same numbers, in opposite directions.
+/// Adjacent tiles share every edge that is not on the frame, with the same numbers in opposite directions.
 #[test]
 fn tiles_share_their_edges() {
     let text = fs::read_to_string(folder().join("tiles.svg")).unwrap();
@@ -79,7 +79,7 @@ fn tiles_share_their_edges() {
         let bounds = edge.bounding_box();
         (bounds.width() == 0.0 || bounds.height() == 0.0) && matches!(edge, PathSeg::Line(_))
     };
-    // The reader makes cubics of arcs, whose last digits depend on the direction.
+    // Parsing converts arcs to cubics, whose last digits depend on the direction.
     let same = |a: &PathSeg, b: &PathSeg| {
         let (a, b) = (a.to_cubic(), b.to_cubic());
         [(a.p0, b.p0), (a.p1, b.p1), (a.p2, b.p2), (a.p3, b.p3)].into_iter().all(|(a, b)| a.distance(b) < 0.01)

@@ -83,7 +83,7 @@ const IDENTITY_CHECKS: [IdentityCheck; 5] = [
     },
 ];
 
-/// How files are checked.
+/// Options of the checks.
 #[derive(Clone)]
 pub(super) struct CheckOptions {
     pub(super) read: ReadOptions,
