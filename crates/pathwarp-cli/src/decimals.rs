@@ -1,10 +1,6 @@
 //! Numbers in messages and tables: fixed decimals without trailing zeros.
 
-/// Formats `v` with at most `decimals` decimals, without trailing zeros.
-pub(crate) fn trimmed(v: f64, decimals: usize) -> String {
-    let text = format!("{v:.decimals$}");
-    if decimals == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
-}
+use pathwarp::decimal::trimmed;
 
 /// Formats a positive number with three significant figures.
 pub(crate) fn three_figures(v: f64) -> String {
@@ -18,10 +14,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_go_only_behind_the_point() {
-        assert_eq!(trimmed(100.0, 0), "100");
-        assert_eq!(trimmed(1.250_000_4, 6), "1.25");
-        assert_eq!(trimmed(-3.0, 2), "-3");
+    fn three_figures_of_any_size() {
         assert_eq!(three_figures(0.012_345), "0.0123");
         assert_eq!(three_figures(1200.0), "1200");
     }

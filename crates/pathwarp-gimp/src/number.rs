@@ -1,5 +1,7 @@
 //! Formats coordinates.
 
+use pathwarp::decimal::trimmed;
+
 /// The shortest text that parses to the same number, in single precision if the number has no more, as in GIMP's files, or
 /// else in double precision.
 pub(crate) fn shortest(v: f64) -> String {
@@ -10,9 +12,7 @@ pub(crate) fn shortest(v: f64) -> String {
 
 /// Rounds to `decimals` and removes trailing zeros.
 pub(crate) fn rounded(v: f64, decimals: u8) -> String {
-    let text = format!("{v:.0$}", usize::from(decimals));
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    trimmed(v, usize::from(decimals))
 }
 
 #[cfg(test)]

@@ -25,8 +25,7 @@ impl Formula for Bulge {
 }
 
 fn main() -> Result<(), Error> {
-    let path = Outline::from_svg("M-80 0A80 80 0 0 1 80 0A80 80 0 0 1 -80 0Z M-60 -60L60 60")
-        .map_err(|e| Error::input("path data", e))?;
+    let path = Outline::from_svg("M-80 0A80 80 0 0 1 80 0A80 80 0 0 1 -80 0Z M-60 -60L60 60")?;
     for certify in [false, true] {
         let r = warp_path(&path, &Bulge, &Options::new(0.01).with_certify(certify))?.report;
         println!("{:?}: {} segments, error at most {:.6}", r.assurance, r.segments_out, r.max_error);

@@ -18,8 +18,7 @@ impl Formula for Flag {
 }
 
 fn main() -> Result<(), Error> {
-    let path = Outline::from_svg("M10 10H190V110H10Z M100 30A30 30 0 0 1 100 90A30 30 0 0 1 100 30Z")
-        .map_err(|e| Error::input("path data", e))?;
+    let path = Outline::from_svg("M10 10H190V110H10Z M100 30A30 30 0 0 1 100 90A30 30 0 0 1 100 30Z")?;
     for tolerance in [1.0, 0.1, 0.01] {
         let warped = warp_path(&path, &Flag, &Options::new(tolerance))?;
         let r = &warped.report;

@@ -7,6 +7,7 @@
 
 pub(crate) mod anchors;
 pub mod check;
+pub mod decimal;
 pub mod deform;
 pub mod distance;
 mod error;

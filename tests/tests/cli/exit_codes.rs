@@ -21,7 +21,7 @@ fn wrong_usage_is_2_and_names_the_fault() {
         (&["shaper", "--shaper", CAGE, "+", "affine", "--out", "b.svg"], "multiple times"),
         (&["shaper", "--shaper", CAGE, "+", "affine", "--into", "b.xcf"], "cannot be used with"),
         (&["shaper", "--shaper", CAGE, "+", "affine", "in.svg"], "in.svg"),
-        (&["affine", "--matrix", "1,0,0,1,0"], "6 are wanted"),
+        (&["affine", "--matrix", "1,0,0,1,0"], "5 numbers instead of 6"),
         (&["affine", "--rotate", "30 parsecs"], "parsecs"),
     ] {
         let dir = tempfile::tempdir().unwrap();

@@ -1,12 +1,12 @@
 //! `pathwarp paths FILE`: lists the paths of a file.
 
 use super::file_args;
-use crate::decimals::trimmed;
 use crate::failure::Failure;
 use crate::input::{self, GimpFile};
 use crate::status::Status;
 use crate::{output, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command};
+use pathwarp::decimal::trimmed;
 use serde::Serialize;
 use std::fmt::Write as _;
 

@@ -1,5 +1,6 @@
 //! Numbers and path data as text: rounded once, in the shortest form.
 
+use pathwarp::decimal::push_trimmed;
 use pathwarp::kurbo::{Affine, BezPath, PathEl, Point};
 use pathwarp::outline::EllipticArc;
 use pathwarp::{Outline, Seg};
@@ -15,7 +16,7 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
     const WHOLE: f64 = 9e15;
     let scaled = (v * POWERS[decimals]).round();
     if scaled.abs() >= WHOLE || !scaled.is_finite() {
-        return push_exactly(out, v, decimals);
+        return push_trimmed(out, v, decimals);
     }
     let mut n = scaled.abs() as u64;
     if n == 0 {
@@ -50,20 +51,6 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
 const POWERS: [f64; MOST_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
 
-fn push_exactly(out: &mut String, v: f64, decimals: usize) {
-    let start = out.len();
-    // Writing to a String cannot fail.
-    let _ = write!(out, "{v:.decimals$}");
-    if out[start..].contains('.') {
-        let kept = out.trim_end_matches('0').trim_end_matches('.').len();
-        out.truncate(kept);
-    }
-    if &out[start..] == "-0" {
-        out.truncate(start);
-        out.push('0');
-    }
-}
-
 /// Formats `v` with nine significant digits: for lengths, offsets and matrices.
 pub(crate) fn short(v: f64) -> String {
     significant(v, 9)
@@ -88,7 +75,7 @@ fn push_significant(out: &mut String, v: f64, digits: i32) {
     match u8::try_from((digits - size).max(0)) {
         Ok(d) if d <= MOST_DECIMALS => push(out, v, d),
         // Thirty decimals resolve everything that can occur in a drawing.
-        _ => push_exactly(out, v, (digits - size).clamp(0, 30) as usize),
+        _ => push_trimmed(out, v, (digits - size).clamp(0, 30) as usize),
     }
 }
 

@@ -1,44 +1,46 @@
-//! Elliptical arcs in the form that affine maps keep: a centre and two conjugate semi-axes.
+//! Elliptical arcs in the form that affine maps preserve: a center and two conjugate semi-axes.
 //!
-//! P(θ) = c + cos θ · a + sin θ · b. With a ⟂ b these are the ellipse's own axes; any affine map takes (c, a, b) to its images
-//! and leaves θ alone, so nested SVG transforms cost no accuracy.
+//! > P(θ) = c + cos θ · a + sin θ · b
+//!
+//! If a ⟂ b, these are the principal axes of the ellipse. An affine map takes c, a and b to their images and leaves θ unchanged,
+//! so nested SVG transforms cost no accuracy.
 
 use kurbo::{Affine, CubicBez, Point, Rect, Vec2};
 use std::f64::consts::{PI, TAU};
 
-/// An arc of an ellipse, run over `t` in [0, 1] at constant angular speed.
+/// An arc of an ellipse, parametrised over `t` in [0, 1] at constant angular speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EllipticArc {
-    /// First point, kept beside the ellipse so that neighbours meet to the last bit.
+    /// The first point, stored besides the ellipse so that neighbours meet to the last bit.
     pub p0: Point,
-    /// Last point.
+    /// The last point.
     pub p1: Point,
-    /// Centre of the ellipse.
+    /// The center of the ellipse.
     pub center: Point,
-    /// First conjugate semi-axis.
+    /// The first conjugate semi-axis.
     pub a: Vec2,
-    /// Second conjugate semi-axis.
+    /// The second conjugate semi-axis.
     pub b: Vec2,
-    /// Angle of the first point, radians.
+    /// The angle of the first point, in radians.
     pub start: f64,
-    /// Angle swept, radians; positive from `a` to `b`.
+    /// The angle swept, in radians, positive from `a` to `b`.
     pub sweep: f64,
 }
 
 impl EllipticArc {
-    /// The arc of an ellipse from angle `start` through `sweep` (radians).
+    /// The arc of an ellipse from the angle `start` over the angle `sweep`, in radians.
     #[must_use]
     pub fn new(center: Point, a: Vec2, b: Vec2, start: f64, sweep: f64) -> Self {
         let (start, sweep) = (on_grid(start), on_grid(sweep));
         let at = |th: f64| center + a * th.cos() + b * th.sin();
         let p0 = at(start);
-        // A whole turn closes exactly.
+        // A full turn closes exactly.
         let p1 = if (sweep.abs() - TAU).abs() < 1e-14 { p0 } else { at(start + sweep) };
         Self { p0, p1, center, a, b, start, sweep }
     }
 
-    /// The arc of SVG's `A` command, by the conversion in the SVG 2 specification, §B.2.4 and §B.2.5. `None` where the command
-    /// draws a straight line (a zero radius) or nothing (coincident ends).
+    /// The arc of SVG's `A` command, converted as in the SVG 2 specification, §B.2.4 and §B.2.5. `None` if the command draws a
+    /// straight line (a zero radius) or nothing (coincident ends).
     #[must_use]
     pub fn from_svg(
         p0: Point,
@@ -48,7 +50,8 @@ impl EllipticArc {
         sweep: bool,
         p1: Point,
     ) -> Option<Self> {
-        // Worked out from the smaller end, so that the arc drawn from either end is the same to the last bit.
+        // Always computed from the lexicographically smaller end, so that the arc drawn from either end is the same to the last
+        // bit.
         if (p0.x, p0.y) > (p1.x, p1.y) {
             return Self::from_svg(p1, radii, x_rotation_degrees, large, !sweep, p0).map(|a| a.reversed());
         }
@@ -57,16 +60,16 @@ impl EllipticArc {
             return None;
         }
         let (sin, cos) = x_rotation_degrees.to_radians().sin_cos();
-        // (B.5.1) half the chord, in the ellipse's own axes
+        // (B.5.1) half the chord, in the axes of the ellipse
         let h = (p0 - p1) / 2.0;
         let (x1, y1) = (cos * h.x + sin * h.y, cos * h.y - sin * h.x);
-        // (B.5.8) radii too small to reach are scaled up
+        // (B.5.8) radii that are too small to reach both ends are scaled up
         let lambda = (x1 / rx).powi(2) + (y1 / ry).powi(2);
         if lambda > 1.0 {
             rx *= lambda.sqrt();
             ry *= lambda.sqrt();
         }
-        // (B.5.2) the centre, written with the normalised chord so that tiny or huge radii do not overflow
+        // (B.5.2) the center, in terms of the normalised chord so that tiny or huge radii do not overflow
         let (u, v) = (x1 / rx, y1 / ry);
         let d = u * u + v * v;
         let k = ((1.0 - d).max(0.0) / d).sqrt() * if large == sweep { -1.0 } else { 1.0 };
@@ -80,7 +83,7 @@ impl EllipticArc {
         if !sweep {
             delta -= TAU;
         }
-        // Half a turn sits on rem_euclid's seam only through rounding; a zero sweep cannot be meant (the ends differ).
+        // The ends differ, so a sweep near 0 or a full turn is a rounding error: of a half turn if the radii were scaled up.
         if delta.abs() < 1e-12 || (delta.abs() - TAU).abs() < 1e-12 {
             delta = if lambda >= 1.0 { PI.copysign(delta) } else { return None };
         }
@@ -117,7 +120,7 @@ impl EllipticArc {
         (self.b * c - self.a * s) * self.sweep
     }
 
-    /// The same arc run backwards.
+    /// The same arc in the opposite direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self { p0: self.p1, p1: self.p0, start: self.start + self.sweep, sweep: -self.sweep, ..*self }
@@ -140,11 +143,11 @@ impl EllipticArc {
         }
     }
 
-    /// The smallest box with sides along the axes that holds the arc.
+    /// The bounding box.
     #[must_use]
     pub fn bounding_box(&self) -> Rect {
         let mut r = Rect::from_points(self.p0, self.p1);
-        // Extreme in x where −a.x sin θ + b.x cos θ = 0, and half a turn on; likewise in y.
+        // x is extreme where −a.x sin θ + b.x cos θ = 0, at two angles half a turn apart; likewise y.
         for extreme in [self.b.x.atan2(self.a.x), self.b.y.atan2(self.a.y)] {
             for th in [extreme, extreme + PI] {
                 let ahead = if self.sweep >= 0.0 { th - self.start } else { self.start - th }.rem_euclid(TAU);
@@ -168,44 +171,45 @@ impl EllipticArc {
         }
     }
 
-    /// One cubic with the arc's ends and end tangents, handles (4/3)·tan(Δ/4): for sweeps up to a quarter turn or so.
+    /// The cubic with the end points and end tangents of the arc and handles of (4/3)·tan(Δ/4): good for sweeps up to about a
+    /// quarter turn.
     #[must_use]
     pub fn to_cubic(&self) -> CubicBez {
-        // Past a half turn the tangent's pole is near; such arcs are cut by `to_cubics`.
+        // Clamped because the tangent has a pole at two half turns. `to_cubics` cuts such arcs.
         let k = 4.0 / 3.0 * (self.sweep.clamp(-PI, PI) / 4.0).tan() / self.sweep;
         let (d0, d1) = (self.deriv(0.0), self.deriv(1.0));
         CubicBez::new(self.p0, self.p0 + d0 * k, self.p1 - d1 * k, self.p1)
     }
 
-    /// The longer semi-axis of the ellipse: the larger singular value of the matrix (a b).
+    /// The major semi-axis of the ellipse: the larger singular value of the matrix (a b).
     #[must_use]
     pub fn major(&self) -> f64 {
         let (aa, bb, ab) = (self.a.hypot2(), self.b.hypot2(), self.a.dot(self.b));
         (0.5 * (aa + bb) + (0.5 * (aa - bb)).hypot(ab)).sqrt()
     }
 
-    /// How far `n` cubics for equal parts of the arc stray from it at most: for the sweep φ of one, a cubic misses a unit circle
-    /// by (2/27)·sin⁶(φ/4)/cos²(φ/4) (Goldapp, *Approximation of circular arcs by cubic polynomials*, 1991), and an affine
-    /// image of the circle by at most the major semi-axis times that.
+    /// The largest distance between the arc and `n` cubics for equal parts of it. A cubic for the sweep φ deviates from the unit
+    /// circle by (2/27)·sin⁶(φ/4)/cos²(φ/4) (Goldapp, *Approximation of circular arcs by cubic polynomials*, 1991), and from an
+    /// affine image of the circle by at most the major semi-axis times that.
     #[must_use]
     pub fn cubics_error(&self, n: usize) -> f64 {
         let (s, c) = (self.sweep / n as f64 / 4.0).sin_cos();
         2.0 / 27.0 * s.powi(6) / (c * c) * self.major()
     }
 
-    /// How many cubics stay within `tolerance` of the arc: at least one per quarter turn.
+    /// The number of cubics needed to stay within `tolerance` of the arc: at least one per quarter turn.
     #[must_use]
     pub fn cubics_needed(&self, tolerance: f64) -> usize {
-        /// Enough for 1e-16 of the radius.
-        const MOST: usize = 1000;
-        let mut n = ((self.sweep.abs() / (PI / 2.0) - 1e-9).ceil().max(1.0) as usize).min(MOST);
-        while n < MOST && self.cubics_error(n) > tolerance {
+        /// Enough for an error of 1e-16 of the radius.
+        const MAX_CUBICS: usize = 1000;
+        let mut n = ((self.sweep.abs() / (PI / 2.0) - 1e-9).ceil().max(1.0) as usize).min(MAX_CUBICS);
+        while n < MAX_CUBICS && self.cubics_error(n) > tolerance {
             n += 1;
         }
         n
     }
 
-    /// Cubics that stay within `tolerance` of the arc.
+    /// Cubics within `tolerance` of the arc.
     pub fn to_cubics(&self, tolerance: f64) -> impl Iterator<Item = CubicBez> + '_ {
         let n = self.cubics_needed(tolerance);
         (0..n).map(move |i| self.subsegment(i as f64 / n as f64, (i + 1) as f64 / n as f64).to_cubic())
@@ -229,8 +233,8 @@ impl EllipticArc {
     }
 }
 
-/// Angles are kept to multiples of 2⁻⁴⁸ (3.6e-15, a few roundings of a turn): their sums are then exact, and an arc reversed
-/// twice is the same to the last bit.
+/// Rounds an angle to a multiple of 2⁻⁴⁸ (3.6e-15, a few units in the last place of a full turn). Sums of such angles are exact, so
+/// that an arc reversed twice is the same to the last bit.
 fn on_grid(angle: f64) -> f64 {
     const PER_RADIAN: f64 = (1u64 << 48) as f64;
     (angle * PER_RADIAN).round() / PER_RADIAN

@@ -1,19 +1,48 @@
-//! SVG path data to an [`Outline`]: svgtypes reads the commands, this makes them absolute.
+//! SVG path data to an outline: svgtypes reads the commands, and this module makes them absolute.
 
 use super::{Builder, Outline};
+use crate::error::Error;
 use kurbo::{Point, Vec2};
 use svgtypes::{PathParser, PathSegment};
 
-/// The path, or what is wrong with the data and the part before the fault.
-pub(super) fn parse(data: &str) -> Result<Outline, (String, Outline)> {
+/// SVG path data that cannot be read. The message names the position of the error.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error(transparent)]
+pub struct PathDataError(svgtypes::Error);
+
+/// Path data without a name, as in a program: [`Error::Input`] with `path data` for its place.
+impl From<PathDataError> for Error {
+    fn from(e: PathDataError) -> Self {
+        Self::input("path data", e.to_string())
+    }
+}
+
+impl Outline {
+    /// Reads SVG path data (the `d` attribute), with arcs kept as arcs.
+    ///
+    /// # Errors
+    /// The data is malformed. SVG renderers draw such paths up to the error; use [`Outline::from_svg_lossy`] for that.
+    pub fn from_svg(data: &str) -> Result<Self, PathDataError> {
+        parse(data).map_err(|(e, _)| e)
+    }
+
+    /// Reads SVG path data up to the first error, as SVG renderers do.
+    #[must_use]
+    pub fn from_svg_lossy(data: &str) -> Self {
+        parse(data).unwrap_or_else(|(_, sound)| sound)
+    }
+}
+
+/// The path, or the error and the part before it.
+fn parse(data: &str) -> Result<Outline, (PathDataError, Outline)> {
     let mut b = Builder::default();
-    // The handle that the smooth commands mirror.
+    // The handles that smooth commands reflect.
     let mut cubic: Option<Point> = None;
     let mut quad: Option<Point> = None;
     for seg in PathParser::from(data) {
         let seg = match seg {
             Ok(seg) => seg,
-            Err(e) => return Err((e.to_string(), b.finish())),
+            Err(e) => return Err((PathDataError(e), b.finish())),
         };
         let at = b.at();
         let point = |abs: bool, x: f64, y: f64| if abs { Point::new(x, y) } else { Point::new(at.x + x, at.y + y) };
@@ -55,10 +84,10 @@ pub(super) fn parse(data: &str) -> Result<Outline, (String, Outline)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Seg;
     use super::*;
+    use crate::outline::Seg;
 
-    /// Independent truth: svgtypes' own simplifier, which makes everything absolute (and arcs into curves).
+    /// An independent reference: the simplifier of svgtypes, which makes everything absolute and converts arcs to curves.
     #[test]
     fn agrees_with_the_simplified_form() {
         let d =
@@ -90,5 +119,12 @@ mod tests {
         let segs: Vec<_> = o.segs().collect();
         assert!(matches!(segs[1], Seg::Cubic(c) if c.p1 == Point::new(1.0, -1.0)));
         assert!(matches!(segs[2], Seg::Quad(q) if q.p1 == Point::new(2.0, 0.0)));
+    }
+
+    #[test]
+    fn errors_name_the_position_and_lossy_reading_keeps_the_valid_part() {
+        let e = Outline::from_svg("M0 0 L10 10 L5 x").unwrap_err().to_string();
+        assert!(e.contains("position 16"), "{e}");
+        assert_eq!(Outline::from_svg_lossy("M0 0 L10 10 L5 x").segs().count(), 1);
     }
 }

@@ -1,29 +1,29 @@
-//! Values as typed.
+//! Values of parameters as text, with the paths and files that they refer to.
 
-use super::{Kind, Param, unit};
+use super::{Kind, Param, value};
 use crate::error::Error;
 use crate::outline::Outline;
 use std::collections::BTreeMap;
 
-/// A path that a user named.
+/// A path referred to by a value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedPath {
     /// The reference as typed, for messages.
     pub name: String,
-    /// The geometry, root user units.
+    /// The geometry in root user units.
     pub outline: Outline,
 }
 
-/// A file that a user named.
+/// A file named by a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedText {
     /// The file as typed, for messages.
     pub name: String,
-    /// What it holds.
+    /// The text of the file.
     pub text: String,
 }
 
-/// What was typed for each parameter, and the paths that path references turned out to be.
+/// The values given for each parameter, with the geometry of path references and the text of files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Args {
     typed: BTreeMap<String, Vec<String>>,
@@ -32,18 +32,18 @@ pub struct Args {
 }
 
 impl Args {
-    /// Nothing given.
+    /// No values.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a value; a flag's value is `true`.
+    /// Adds a value. The value of a flag is `true`.
     pub fn push(&mut self, name: &str, value: impl Into<String>) {
         self.typed.entry(name.to_owned()).or_default().push(value.into());
     }
 
-    /// From pairs of name and value.
+    /// Values from pairs of name and value.
     #[must_use]
     pub fn from_pairs(pairs: &[(&str, &str)]) -> Self {
         let mut a = Self::new();
@@ -53,22 +53,22 @@ impl Args {
         a
     }
 
-    /// The values typed for `name`.
+    /// The values given for `name`.
     #[must_use]
     pub fn get(&self, name: &str) -> &[String] {
         self.typed.get(name).map_or(&[], Vec::as_slice)
     }
 
-    /// Everything typed, by name.
+    /// All values, by name.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &[String])> {
         self.typed.iter().map(|(n, v)| (n.as_str(), v.as_slice()))
     }
 
-    /// Looks up every path reference that is not written out in place (`M …`, `x,y …`) with `look_up`, so that building a
-    /// deformation needs no files.
+    /// Looks up every path reference that is not inline (`M …`, `x,y …`) with `look_up`, so that building a deformation needs no
+    /// files.
     ///
     /// # Errors
-    /// Whatever `look_up` says.
+    /// The errors of `look_up`.
     pub fn resolve_paths(
         &mut self,
         params: &[Param],
@@ -88,7 +88,7 @@ impl Args {
     /// Reads every file that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names, with `read`.
     ///
     /// # Errors
-    /// Whatever `read` says.
+    /// The errors of `read`.
     pub fn resolve_files(
         &mut self,
         params: &[Param],
@@ -115,13 +115,13 @@ impl Args {
     }
 }
 
-/// Whether a path reference holds the path itself: path data or points, rather than a name.
+/// Returns `true` if a path reference is the path itself, as path data or points, and not a name.
 #[must_use]
 pub fn is_inline(text: &str) -> bool {
-    is_path_data(text) || unit::looks_like_points(text)
+    is_path_data(text) || value::looks_like_points(text)
 }
 
-/// Whether `text` is SVG path data: it starts with a move command and coordinates follow.
+/// Returns `true` if `text` looks like SVG path data: a move command followed by coordinates.
 pub(super) fn is_path_data(text: &str) -> bool {
     let rest = text.trim_start().strip_prefix(['M', 'm']);
     rest.is_some_and(|r| r.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)))

@@ -1,23 +1,23 @@
-//! Letters in the artwork: what a deformation needs to know of lettering to place it letter by letter.
+//! Letters of the artwork, for deformations that place lettering letter by letter.
 
 use crate::outline::Outline;
 use kurbo::Point;
 
-/// A letter: a glyph, or several that belong together. Root user units; its baseline is level.
+/// A letter: a glyph, or several that belong together, on a horizontal baseline. Root user units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Letter {
-    /// What it is called in messages: its characters.
+    /// The characters, to name the letter in messages.
     pub name: String,
-    /// Where it begins on its baseline.
+    /// The origin on the baseline.
     pub origin: Point,
-    /// How far the next letter begins to the right of it.
+    /// The advance: the distance to the origin of the next letter, to the right.
     pub advance: f64,
-    /// What it looks like.
+    /// The shape.
     pub outline: Outline,
 }
 
 impl Letter {
-    /// The middle of its advance, on the baseline.
+    /// The middle of the advance, on the baseline.
     #[must_use]
     pub fn middle(&self) -> Point {
         Point::new(self.origin.x + 0.5 * self.advance, self.origin.y)

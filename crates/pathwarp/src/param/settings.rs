@@ -1,11 +1,12 @@
-//! Typed, range-checked access to what was typed.
+//! Typed and range-checked access to the values of parameters.
 
-use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args, unit};
+use super::value::{self, ValueError};
+use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args};
 use crate::error::Error;
 use crate::outline::Outline;
 use kurbo::{Point, Rect};
 
-/// A deformation's parameters with their values: what [`build`](crate::deform::Deformation::build) reads.
+/// The parameters of a deformation with their values, from which it is built.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a> {
     params: &'a [Param],
@@ -14,7 +15,7 @@ pub struct Settings<'a> {
 }
 
 impl<'a> Settings<'a> {
-    /// Checks that `args` has only known names, flags without values, and every needed one.
+    /// Checks that `args` has only declared names, repeats only what may be repeated, and lacks nothing that is needed.
     ///
     /// # Errors
     /// [`Error::Usage`] or [`Error::Missing`], naming the parameter.
@@ -25,7 +26,7 @@ impl<'a> Settings<'a> {
                 return Err(Error::usage(
                     name,
                     values.join(" "),
-                    format!("is not known here; known are {}", known.join(", ")),
+                    format!("is not a parameter of this deformation, which has {}", known.join(", ")),
                 ));
             };
             if values.len() > 1 && !p.repeat {
@@ -40,51 +41,51 @@ impl<'a> Settings<'a> {
         Ok(Self { params, args, frame })
     }
 
-    /// The box that gives `%` a meaning.
+    /// The box to which percentages refer.
     #[must_use]
     pub fn frame(&self) -> &'a Frame {
         self.frame
     }
 
-    /// Whether the user gave `name` (a default does not count).
+    /// Returns `true` if a value was given for `name`. A default does not count.
     #[must_use]
     pub fn given(&self, name: &str) -> bool {
         !self.args.get(name).is_empty()
     }
 
-    /// Whether a flag is set.
+    /// Returns `true` if a flag is set.
     ///
     /// # Errors
-    /// The value is something else than true or false.
+    /// The value is neither true nor false.
     pub fn flag(&self, name: &str) -> Result<bool, Error> {
         match self.text(name).map(|(t, _)| t) {
             None | Some("false") => Ok(false),
             Some("true") => Ok(true),
-            Some(other) => Err(Error::usage(name, other, "is a switch: true or false")),
+            Some(other) => Err(Error::usage(name, other, "is not true or false")),
         }
     }
 
-    /// A number, whole number, length (user units) or angle (degrees), by the parameter's kind.
+    /// A number, integer, length (in user units) or angle (in degrees), according to the parameter's kind.
     ///
     /// # Errors
-    /// Not of its kind, out of range, or neither given nor defaulted.
+    /// The value is not of its kind or out of range, or there is neither a value nor a default.
     pub fn number(&self, name: &str) -> Result<f64, Error> {
         self.number_if(name)?.ok_or_else(|| self.missing(name))
     }
 
-    /// The same for a parameter that may stay away.
+    /// As [`Settings::number`], for an optional parameter.
     ///
     /// # Errors
-    /// Not of its kind, or out of range.
+    /// The value is not of its kind, or out of range.
     pub fn number_if(&self, name: &str) -> Result<Option<f64>, Error> {
         let Some((text, param)) = self.text(name) else { return Ok(None) };
         let value = match param.kind {
-            Kind::Count => unit::count(text),
-            Kind::Length(axis) => unit::length(text, axis, self.frame),
-            Kind::Angle => unit::angle(text),
-            _ => unit::number(text),
+            Kind::Count => value::count(text),
+            Kind::Length(axis) => value::length(text, axis, self.frame),
+            Kind::Angle => value::angle(text),
+            _ => value::number(text),
         };
-        let value = value.map_err(|e| Error::usage(name, text, e))?;
+        let value = value.map_err(|e| usage(name, text, &e))?;
         let (least, most) = param.range;
         if value < least || value > most {
             return Err(Error::usage(name, text, format!("is out of range: {least} to {most}")));
@@ -95,26 +96,26 @@ impl<'a> Settings<'a> {
     /// A fixed number of numbers.
     ///
     /// # Errors
-    /// Not numbers, or not as many as wanted.
+    /// The value is not a list of that many numbers.
     pub fn numbers_if(&self, name: &str) -> Result<Option<Vec<f64>>, Error> {
         let Some((text, param)) = self.text(name) else { return Ok(None) };
-        let wanted = if let Kind::Numbers(n) = param.kind { n } else { 1 };
-        unit::numbers(text, wanted).map(Some).map_err(|e| Error::usage(name, text, e))
+        let expected = if let Kind::Numbers(n) = param.kind { n } else { 1 };
+        value::numbers(text, expected).map(Some).map_err(|e| usage(name, text, &e))
     }
 
-    /// A place.
+    /// A point.
     ///
     /// # Errors
-    /// Not `x,y`, or neither given nor defaulted.
+    /// The value is not `x,y`, or there is neither a value nor a default.
     pub fn point(&self, name: &str) -> Result<Point, Error> {
         let (text, _) = self.text(name).ok_or_else(|| self.missing(name))?;
-        unit::point(text, self.frame).map_err(|e| Error::usage(name, text, e))
+        value::point(text, self.frame).map_err(|e| usage(name, text, &e))
     }
 
-    /// The word chosen.
+    /// The chosen word.
     ///
     /// # Errors
-    /// Not one of the words, or neither given nor defaulted.
+    /// The value is not one of the words, or there is neither a value nor a default.
     pub fn choice(&self, name: &str) -> Result<&'static str, Error> {
         let (text, param) = self.text(name).ok_or_else(|| self.missing(name))?;
         let words = if let Kind::Choice(words) = param.kind { words } else { &[] };
@@ -125,7 +126,7 @@ impl<'a> Settings<'a> {
             .ok_or_else(|| Error::usage(name, text, format!("is not one of {}", words.join(", "))))
     }
 
-    /// The values of a text parameter, in the order they were typed; the default if none was.
+    /// The values of a text parameter in the order given, or the default.
     #[must_use]
     pub fn texts(&self, name: &str) -> Vec<&'a str> {
         let typed = self.args.get(name);
@@ -135,38 +136,38 @@ impl<'a> Settings<'a> {
         typed.iter().map(String::as_str).collect()
     }
 
-    /// A length within a text parameter, in user units: for deformations that read their own notation.
+    /// A length within a text parameter, in user units, for deformations that parse their own notation.
     ///
     /// # Errors
-    /// Not a length; the message names the parameter.
+    /// `text` is not a length. The message names the parameter.
     pub fn length_in(&self, name: &str, text: &str, axis: Axis) -> Result<f64, Error> {
-        unit::length(text, axis, self.frame).map_err(|e| Error::usage(name, text, e))
+        value::length(text, axis, self.frame).map_err(|e| usage(name, text, &e))
     }
 
     /// An angle within a text parameter, in degrees.
     ///
     /// # Errors
-    /// Not an angle; the message names the parameter.
+    /// `text` is not an angle. The message names the parameter.
     pub fn angle_in(&self, name: &str, text: &str) -> Result<f64, Error> {
-        unit::angle(text).map_err(|e| Error::usage(name, text, e))
+        value::angle(text).map_err(|e| usage(name, text, &e))
     }
 
     /// A plain number or a percentage within a text parameter.
     ///
     /// # Errors
-    /// Not a number; the message names the parameter.
+    /// `text` is not a number. The message names the parameter.
     pub fn number_in(&self, name: &str, text: &str) -> Result<f64, Error> {
-        unit::number(text).map_err(|e| Error::usage(name, text, e))
+        value::number(text).map_err(|e| usage(name, text, &e))
     }
 
-    /// A control point's number and what follows: `I,J:REST` or `I,J,K:REST`.
+    /// The indices of a control point and the text after them: `I,J:REST` or `I,J,K:REST`.
     ///
     /// # Errors
-    /// Not of that form, or not `N` whole numbers; the message names the parameter.
+    /// `text` is not of that form with `N` integers. The message names the parameter.
     pub fn node_in<'t, const N: usize>(&self, name: &str, text: &'t str) -> Result<([usize; N], &'t str), Error> {
         let wrong = || {
             let node = ["I", "J", "K"][..N.min(3)].join(",");
-            Error::usage(name, text, format!("does not begin with a control point's number and a colon, {node}:"))
+            Error::usage(name, text, format!("does not begin with the indices of a control point and a colon, {node}:"))
         };
         let (node, rest) = text.split_once(':').ok_or_else(wrong)?;
         let numbers: Option<Vec<usize>> = node.split(',').map(|n| n.trim().parse().ok()).collect();
@@ -174,55 +175,54 @@ impl<'a> Settings<'a> {
         Ok((node, rest.trim()))
     }
 
-    /// A place within a text parameter, percentages from the frame's left and top.
+    /// A point within a text parameter. Percentages count from the left and top of the frame.
     ///
     /// # Errors
-    /// Not a place; the message names the parameter.
+    /// `text` is not a point. The message names the parameter.
     pub fn point_in(&self, name: &str, text: &str) -> Result<Point, Error> {
-        unit::point(text, self.frame).map_err(|e| Error::usage(name, text, e))
+        value::point(text, self.frame).map_err(|e| usage(name, text, &e))
     }
 
-    /// Plain points `x,y x,y …` within a text parameter, percentages from the frame's left and top.
+    /// Points `x,y x,y …` within a text parameter. Percentages count from the left and top of the frame.
     ///
     /// # Errors
-    /// Not points; the message names the parameter.
+    /// `text` is not a list of points. The message names the parameter.
     pub fn points_in(&self, name: &str, text: &str) -> Result<Vec<Point>, Error> {
-        unit::points(text, self.frame).map_err(|e| Error::usage(name, text, e))
+        value::points(text, self.frame).map_err(|e| usage(name, text, &e))
     }
 
-    /// The box that a text parameter gives: `artwork` (the frame) or `x,y,w,h`, percentages of the frame; `None` if it is the
+    /// The box given by a text parameter: `artwork` (the frame), or `x,y,w,h` with percentages of the frame. `None` if it is the
     /// frame or not given.
     ///
     /// # Errors
-    /// Not a box, or one without area; the message names the parameter.
+    /// The value is not a box, or has no area. The message names the parameter.
     pub fn rect_if(&self, name: &str) -> Result<Option<Rect>, Error> {
         let Some((text, _)) = self.text(name).filter(|(t, _)| *t != "artwork") else { return Ok(None) };
-        unit::rect(text, self.frame).map(Some).map_err(|e| Error::usage(name, text, e))
+        value::rect(text, self.frame).map(Some).map_err(|e| usage(name, text, &e))
     }
 
-    /// The file that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names, already read; `None` if a name was given
-    /// instead.
+    /// The file named by a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`], already read. `None` if none was named.
     ///
     /// # Errors
-    /// It was named but not read: [`Args::resolve_files`] was not called.
+    /// The file was not read, because [`Args::resolve_files`] was not called.
     pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
         let Some((file, _)) = self.text(name).filter(|(t, p)| p.reads_file(t)) else { return Ok(None) };
         let unread = || Error::input(file, "cannot be read here");
         self.args.file(file).map(Some).ok_or_else(unread)
     }
 
-    /// The path referred to, if given.
+    /// The path of an optional path parameter.
     ///
     /// # Errors
-    /// The reference's text is not a path.
+    /// The value is not a path.
     pub fn path_if(&self, name: &str) -> Result<Option<NamedPath>, Error> {
         Ok(self.paths(name)?.pop())
     }
 
-    /// All paths referred to by a parameter that may be given several times.
+    /// All paths of a path parameter that may be repeated.
     ///
     /// # Errors
-    /// A reference's text is not a path.
+    /// A value is not a path.
     pub fn paths(&self, name: &str) -> Result<Vec<NamedPath>, Error> {
         let typed = self.args.get(name);
         let default = self.param(name).and_then(|p| p.default).map(str::to_owned);
@@ -235,9 +235,9 @@ impl<'a> Settings<'a> {
             return Ok(NamedPath { name: format!("{name} {}", p.name), outline: p.outline.clone() });
         }
         let outline = if args::is_path_data(text) {
-            Outline::from_svg(text).map_err(|e| Error::usage(name, text, format!("is not sound path data: {e}")))?
+            Outline::from_svg(text).map_err(|e| Error::usage(name, text, format!("is not valid path data: {e}")))?
         } else {
-            let points = unit::points(text, self.frame)
+            let points = value::points(text, self.frame)
                 .map_err(|e| Error::usage(name, text, format!("is neither path data nor points: it {e}")))?;
             Outline::from_points(&points, false)
         };
@@ -251,7 +251,7 @@ impl<'a> Settings<'a> {
         self.params.iter().find(|p| p.name == name)
     }
 
-    /// The text typed, or the default.
+    /// The last value given, or the default.
     fn text(&self, name: &str) -> Option<(&'a str, &'a Param)> {
         let param = self.param(name)?;
         let typed = self.args.get(name).last().map(String::as_str);
@@ -262,4 +262,9 @@ impl<'a> Settings<'a> {
         let hint = self.param(name).map_or("no such parameter", |p| p.help);
         Error::missing(name, hint)
     }
+}
+
+/// The error for a value that does not parse.
+fn usage(name: &str, text: &str, error: &ValueError) -> Error {
+    Error::usage(name, text, error.to_string())
 }
