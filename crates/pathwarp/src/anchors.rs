@@ -205,11 +205,15 @@ pub(crate) fn arranged(a: Anchors) -> Anchors {
     }
 }
 
-/// The anchors of parameter `name`, arranged unless `NAME-as-drawn` is set; `None` if not given.
-pub(crate) fn from_settings(s: &Settings<'_>, name: &str, as_drawn: &str) -> Result<Option<Anchors>, Error> {
-    let Some(path) = s.path_if(name)? else { return Ok(None) };
-    let a = two_or_four(&path)?;
-    Ok(Some(if s.flag(as_drawn)? { a } else { arranged(a) }))
+/// The anchors of a path, arranged by the rule or as drawn.
+pub(crate) fn of_path(path: &NamedPath, as_drawn: bool) -> Result<Anchors, Error> {
+    let a = two_or_four(path)?;
+    Ok(if as_drawn { a } else { arranged(a) })
+}
+
+/// The anchors of parameter `name`, arranged unless the flag `as_drawn` is set; `None` if not given.
+fn from_settings(s: &Settings<'_>, name: &str, as_drawn: &str) -> Result<Option<Anchors>, Error> {
+    s.path_if(name)?.map(|path| of_path(&path, s.flag(as_drawn)?)).transpose()
 }
 
 /// The frame's corners as anchors: what Base is by default.

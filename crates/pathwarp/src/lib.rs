@@ -13,7 +13,6 @@ pub mod distance;
 mod error;
 pub mod fold;
 pub(crate) mod formula;
-pub(crate) mod lattice_file;
 pub mod map;
 pub mod outline;
 pub mod param;

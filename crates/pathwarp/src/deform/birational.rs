@@ -2,29 +2,135 @@
 //!
 //! Two rows of n + 1 freely placed points face each other; P(s,t) = (1−s)·P₀(t) + s·P₁(t), with weights that make the map one
 //! to one and its inverse rational (T. W. Sederberg, J. Zheng, *Birational 2D free-form deformation of degree 1×n*, CAGD
-//! 2016, equations 11-13 and 26): see [`Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
+//! 2016, equations 11-13 and 26): see [`map::Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
 //! CAGD 2015.
 
-use super::built::{Built, Explanation, Overlay, Role};
+use super::built::{Built, Explanation, Role};
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::{Error, GeometryError};
-use crate::lattice_file::{MOST_CELLS, MOST_DEGREE};
-use crate::map::{AffineMap, Birational, Class, Map, Rows};
+use super::ffd::{MAX_CELLS, MAX_DEGREE};
+use crate::error::{Error, GeometryError, within};
+use crate::map::{self, AffineMap, Class, Map, Rows};
 use crate::outline::Seg;
 use crate::param::{Kind, Param, Settings};
-use kurbo::{BezPath, Point};
+use kurbo::{BezPath, Point, Rect};
 use std::sync::Arc;
 
-pub(super) struct BirationalDeformation;
+/// Free-form deformation of degree 1×n between two rows of points, with a closed-form inverse.
+///
+/// P(s,t) = (1−s)·P₀(t) + s·P₁(t), the weights of the rows P₀, P₁ being those that make the inverse rational. Lines across the
+/// rows stay straight.
+///
+/// ```
+/// use pathwarp::{deform::Birational, kurbo::{Point, Rect}, map::Map};
+///
+/// let (top, bottom) = ([(0.0, 0.0), (50.0, -40.0), (100.0, 0.0)], [(0.0, 100.0), (50.0, 100.0), (100.0, 100.0)]);
+/// let arch = Birational::top_bottom(Rect::new(0.0, 0.0, 100.0, 100.0), top, bottom).build()?;
+/// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, -20.0)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Birational {
+    region: Rect,
+    rows: Rows,
+    first: Vec<Point>,
+    second: Vec<Point>,
+    spline: Option<usize>,
+    allow_poles: bool,
+}
 
-static INFO: Info = Info::new("birational", "bend artwork between two rows of points, uprights (or levels) kept straight")
+impl Birational {
+    /// Lays the box `region` between a top and a bottom row, both left to right, of equally many points (2 to 11). Verticals
+    /// stay straight.
+    pub fn top_bottom(
+        region: Rect,
+        top: impl IntoIterator<Item = impl Into<Point>>,
+        bottom: impl IntoIterator<Item = impl Into<Point>>,
+    ) -> Self {
+        let (first, second) = (top.into_iter().map(Into::into).collect(), bottom.into_iter().map(Into::into).collect());
+        Self { region, rows: Rows::TopBottom, first, second, spline: None, allow_poles: false }
+    }
+
+    /// Lays the box `region` between a left and a right row, both top to bottom, of equally many points (2 to 11).
+    /// Horizontals stay straight.
+    pub fn left_right(
+        region: Rect,
+        left: impl IntoIterator<Item = impl Into<Point>>,
+        right: impl IntoIterator<Item = impl Into<Point>>,
+    ) -> Self {
+        Self { rows: Rows::LeftRight, ..Self::top_bottom(region, left, right) }
+    }
+
+    /// Takes the rows for B-splines of this degree, 1 to 10, with at least one point more than that and at most 64.
+    #[must_use]
+    pub fn spline(self, degree: usize) -> Self {
+        Self { spline: Some(degree), ..self }
+    }
+
+    /// Accepts points outside the lines that join the rows' ends: the map is infinite somewhere then.
+    #[must_use]
+    pub fn allow_poles(self, allow_poles: bool) -> Self {
+        Self { allow_poles, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`] for rows of different or illegal length, facing ends that coincide, and points on the wrong side of
+    /// the lines that join the rows' ends; [`Error::Usage`] for a region without area or a degree out of range.
+    pub fn build(&self) -> Result<Built, Error> {
+        let Self { region, rows, first, second, spline, allow_poles } = self;
+        let names = match rows {
+            Rows::TopBottom => ["top", "bottom"],
+            Rows::LeftRight => ["left", "right"],
+        };
+        self.check_counts(names[1])?;
+        if !(region.width() > 0.0 && region.height() > 0.0) {
+            return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
+        }
+        let map = map::Birational::new(*region, *rows, [first, second], *spline, *allow_poles, names)?;
+        let mut notes = Vec::new();
+        for (k, [a, b]) in map.weights().enumerate() {
+            notes.push(format!("weights of piece {}: {a:.6?} and {b:.6?}", k + 1));
+        }
+        let map: Arc<dyn Map> = match map.class() {
+            Class::Affine(m) => Arc::new(AffineMap(m)),
+            _ => Arc::new(map),
+        };
+        let mut built = Built::new(map).explained(Explanation { notes, ..Explanation::default() });
+        built.overlay(Role::Base, kurbo::Shape::to_path(region, 0.0));
+        built.overlay(Role::Cage, net(first, second));
+        Ok(built)
+    }
+
+    /// Refuses rows of different or illegal length; `name` is the second row's.
+    fn check_counts(&self, name: &str) -> Result<(), Error> {
+        let Self { first, second, spline, .. } = self;
+        if let Some(degree) = *spline {
+            within("spline", degree as f64, 1.0, MAX_DEGREE as f64)?;
+        }
+        let (least, most) = spline.map_or((2, MAX_DEGREE + 1), |d| (d + 1, d + MAX_CELLS));
+        let expected = if first.len() != second.len() {
+            "as many as the facing row"
+        } else if second.len() < least {
+            if spline.is_some() { "at least one more than the degree" } else { "at least 2" }
+        } else if second.len() > most {
+            if spline.is_some() { "at most 64 more than the degree" } else { "at most 11; take `spline 3` for more" }
+        } else {
+            return Ok(());
+        };
+        let (found, anchors) = (second.len(), second.iter().copied().take(8).collect());
+        Err(GeometryError::AnchorCount { path: name.into(), found, anchors, expected }.into())
+    }
+}
+
+static INFO: Info = Info::new("birational", "bend artwork between two rows of points, verticals (or horizontals) kept straight")
     .group("Envelopes")
-    .about("Draw where the top and the bottom of the artwork are to run, as two rows of equally many points from left to right: \
+    .about("Draw the new top and bottom of the artwork as two rows of equally many points from left to right: \
 verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \
-then horizontals stay straight. The rows are curves that begin and end in their first and last points and are drawn towards the \
+then horizontals stay straight. The rows are curves that begin and end in their first and last points and are pulled towards the \
 others, as with any Bézier curve.\n\nAs long as the rows do not cross, the result does not fold over, and undoing it is exact and fast: no search is needed.\n\n\
-Each row's inner points must lie between the lines that join the rows' ends; --allow-poles does without that where the artwork \
-keeps off the places where the map is infinite. With --spline, rows of many points become B-splines and bend locally.")
+Each row's inner points must lie between the lines that join the rows' ends; --allow-poles lifts that restriction, for artwork that \
+keeps clear of the points where the map is infinite. With --spline, rows of many points become B-splines and bend locally.")
     .source("T. W. Sederberg, J. Zheng, Birational 2D free-form deformation of degree 1xn, Computer Aided Geometric Design 2016")
     .params(&[
         Param::path(
@@ -39,7 +145,7 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
             Kind::Count,
             "Take the rows for B-splines of this degree; they need at least one point more than that.",
         )
-        .within(1.0, MOST_DEGREE as f64),
+        .within(1.0, MAX_DEGREE as f64),
         Param::new(
             "region",
             Kind::Text("artwork|X,Y,W,H"),
@@ -54,7 +160,7 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
     .demo(&[("top", "0,10 30,-25 70,30 100,5"), ("bottom", "5,90 35,110 60,70 95,100")])
     .examples(&[
         Example {
-            what: "A word on a wave, its uprights kept straight",
+            what: "A word on a wave, its verticals kept straight",
             command: "birational samples/lettering.svg --top '0%,20% 30%,-60% 60%,90% 100%,0%' --bottom '0%,100% 35%,60% 60%,170% 100%,100%' -o out.svg",
         },
         Example {
@@ -102,83 +208,50 @@ keeps off the places where the map is infinite. With --spline, rows of many poin
 
 const BENT: super::entry::Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,100 60,70 95,110")];
 
-impl Deformation for BirationalDeformation {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
         let [top, bottom, left, right] = ["top", "bottom", "left", "right"].map(|n| row(s, n));
-        let (rows, names, first, second) = match (top?, bottom?, left?, right?) {
-            (Some(a), Some(b), None, None) => (Rows::TopBottom, ["top", "bottom"], a, b),
-            (None, None, Some(a), Some(b)) => (Rows::LeftRight, ["left", "right"], a, b),
+        let (rows, first, second) = match (top?, bottom?, left?, right?) {
+            (Some(a), Some(b), None, None) => (Rows::TopBottom, a, b),
+            (None, None, Some(a), Some(b)) => (Rows::LeftRight, a, b),
             (None, None, None, None) => {
-                return Err(Error::Missing {
-                    param: "top and bottom".into(),
-                    hint: "two rows of equally many points, left to right (or `left` and `right`, top to bottom)"
-                        .into(),
-                });
+                let hint =
+                    "with `bottom`, a row of equally many points, left to right (or `left` and `right`, top to bottom)";
+                return Err(Error::missing("top", hint));
             }
-            (None, Some(_), None, None) => return Err(lone("top", "bottom")),
-            (Some(_), None, None, None) => return Err(lone("bottom", "top")),
-            (None, None, None, Some(_)) => return Err(lone("left", "right")),
-            (None, None, Some(_), None) => return Err(lone("right", "left")),
+            (None, Some(_), None, None) => return Err(facing("top", "bottom")),
+            (Some(_), None, None, None) => return Err(facing("bottom", "top")),
+            (None, None, None, Some(_)) => return Err(facing("left", "right")),
+            (None, None, Some(_), None) => return Err(facing("right", "left")),
             _ => {
                 let name = if s.given("left") { "left" } else { "right" };
                 return Err(Error::usage(name, s.texts(name).join(" "), "cannot go with `top` and `bottom`"));
             }
         };
-        let counts = |expected| GeometryError::AnchorCount {
-            path: names[1].into(),
-            found: second.len(),
-            anchors: second.iter().copied().take(8).collect(),
-            expected,
+        let birational = Birational {
+            region: s.rect_if("region")?.unwrap_or(s.frame().rect),
+            rows,
+            first,
+            second,
+            spline: s.number_if("spline")?.map(|d| d as usize),
+            allow_poles: s.flag("allow-poles")?,
         };
-        if first.len() != second.len() {
-            return Err(counts("as many as the facing row").into());
-        }
-        let spline = s.number_if("spline")?.map(|d| d as usize);
-        let (least, most) = spline.map_or((2, MOST_DEGREE + 1), |d| (d + 1, d + MOST_CELLS));
-        if second.len() < least {
-            return Err(
-                counts(if spline.is_some() { "at least one more than the degree" } else { "at least 2" }).into()
-            );
-        }
-        if second.len() > most {
-            return Err(counts(if spline.is_some() {
-                "at most 64 more than the degree"
-            } else {
-                "at most 11; take `spline 3` for more"
-            })
-            .into());
-        }
-        let region = s.rect_if("region")?.unwrap_or(s.frame().rect);
-        if !(region.width() > 0.0 && region.height() > 0.0) {
-            return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
-        }
-        let allow_poles = s.flag("allow-poles")?;
-        let map = Birational::new(region, rows, [&first, &second], spline, allow_poles, names)?;
-        let mut notes = Vec::new();
-        for (k, [a, b]) in map.weights().enumerate() {
-            notes.push(format!("weights of piece {}: {a:.6?} and {b:.6?}", k + 1));
-        }
-        let overlays = vec![
-            Overlay { role: Role::Base, path: kurbo::Shape::to_path(&region, 0.0) },
-            Overlay { role: Role::Cage, path: net(&first, &second) },
-        ];
-        let map: Arc<dyn Map> = match map.class() {
-            Class::Affine(m) => Arc::new(AffineMap(m)),
-            _ => Arc::new(map),
-        };
-        Ok(Built::new(map).explained(Explanation { notes, overlays, ..Explanation::default() }))
+        birational.build()
     }
 }
 
-fn lone(missing: &str, given: &str) -> Error {
-    Error::Missing { param: missing.into(), hint: format!("the row that faces {given}, with as many points") }
+fn facing(missing: &str, given: &str) -> Error {
+    Error::missing(missing, format!("the row that faces `{given}`, with as many points"))
 }
 
-/// A row's points: the anchors of a path, or the control points of a single curve.
+/// Reads a row: the anchors of a path, or the control points of a single curve.
 fn row(s: &Settings<'_>, name: &str) -> Result<Option<Vec<Point>>, Error> {
     let Some(path) = s.path_if(name)? else { return Ok(None) };
     let points = match path.outline.subpaths.as_slice() {
@@ -192,7 +265,7 @@ fn row(s: &Settings<'_>, name: &str) -> Result<Option<Vec<Point>>, Error> {
     Ok(Some(points))
 }
 
-/// Both rows, and the lines between facing points.
+/// Draws both rows, and the lines between facing points.
 fn net(a: &[Point], b: &[Point]) -> BezPath {
     let mut p = BezPath::new();
     for row in [a, b] {

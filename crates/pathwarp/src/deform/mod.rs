@@ -29,19 +29,24 @@ mod wave;
 mod wordart;
 
 pub use affine::Affine;
+pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
+pub use birational::Birational;
 pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile};
 pub use bulge::Bulge;
 pub use entry::{Case, Deformation, Example, Gallery, Info, Law, Pairs};
 pub use expr::Expr;
+pub use ffd::Ffd;
 pub use lens::{Lens, LensModel};
 pub use mls::{Mls, Stiffness};
 pub use mobius::Mobius;
 pub use polar::Polar;
 pub use projective::Projective;
 pub use registry::Registry;
+pub use shaper::Shaper;
 pub use similitude::Similitude;
 pub use swirl::{Falloff, Swirl};
+pub use triangle::Triangle;
 pub use warp::Style;
 pub use wave::Wave;
 pub use wordart::TextShape;
@@ -51,17 +56,17 @@ use std::sync::Arc;
 /// The deformations of this crate, in the order `pathwarp list` shows them.
 pub(crate) fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
-        Arc::new(shaper::Shaper),
+        Arc::new(shaper::Entry),
         Arc::new(envelope::Envelope),
         Arc::new(warp::Warp),
         Arc::new(wordart::WordArt),
         Arc::new(bilinear::Entry),
-        Arc::new(birational::BirationalDeformation),
-        Arc::new(bend::Bend),
+        Arc::new(birational::Entry),
+        Arc::new(bend::Entry),
         Arc::new(polar::Entry),
-        Arc::new(ffd::Ffd),
+        Arc::new(ffd::Entry),
         Arc::new(mesh::Mesh),
-        Arc::new(triangle::Triangle),
+        Arc::new(triangle::Entry),
         Arc::new(mls::Entry),
         Arc::new(projective::Entry),
         Arc::new(anamorph::Anamorph),

@@ -9,7 +9,7 @@
 use crate::map::{RationalBezier, Real, bernstein::Scaled};
 use kurbo::{Point, Vec2};
 
-/// One step's affine map at u: p + u₀·(q − p) + Σ uₖ·hₖ.
+/// Returns one step's affine map at u: p + u₀·(q − p) + Σ uₖ·hₖ.
 fn step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: &[S]) -> [S; D] {
     std::array::from_fn(|i| {
         let along = p[i] + u[0] * (q[i] - p[i]);
@@ -17,7 +17,7 @@ fn step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: 
     })
 }
 
-/// The point at parameters `u` for a control polygon and handles: `handles(level, i)`, levels counted from 1.
+/// Returns the point at parameters `u` for a control polygon and handles: `handles(level, i)`, levels counted from 1.
 fn eval<'a, S: Real, const D: usize>(
     row: &mut [[S; D]],
     handles: impl Fn(usize, usize) -> &'a [[f64; D]],
@@ -36,18 +36,18 @@ fn eval<'a, S: Real, const D: usize>(
 pub(super) struct Ribbon {
     /// The control points, two to four.
     points: Vec<Point>,
-    /// The handles, level by level: n of the first, n−1 of the second ... Levels may be left away at the end.
+    /// The handles, level by level: n of the first, n−1 of the second ... The last levels may be omitted.
     levels: Vec<Vec<[f64; 2]>>,
 }
 
-/// Control points at most.
-const MOST: usize = 4;
+/// Limit on control points.
+const MAX_POINTS: usize = 4;
 
 impl Ribbon {
-    /// `None` unless there are two to four points, and n+1−j handles on level j.
+    /// Creates a piece; `None` unless there are two to four points, and n+1−j handles on level j.
     pub(super) fn new(points: Vec<Point>, levels: &[Vec<Vec2>]) -> Option<Self> {
         let n = points.len().checked_sub(1)?;
-        let fits = (2..=MOST).contains(&points.len()) && levels.len() <= n;
+        let fits = (2..=MAX_POINTS).contains(&points.len()) && levels.len() <= n;
         if !fits || levels.iter().enumerate().any(|(j, l)| l.len() != n - j) {
             return None;
         }
@@ -59,13 +59,13 @@ impl Ribbon {
         self.points.len() - 1
     }
 
-    /// F(u, v).
+    /// Returns F(u, v).
     pub(super) fn at<S: Real>(&self, u: S, v: S) -> [S; 2] {
-        let mut row = [[S::from(0.0); 2]; MOST];
+        let mut row = [[S::from(0.0); 2]; MAX_POINTS];
         for (r, p) in row.iter_mut().zip(&self.points) {
             *r = [S::from(p.x), S::from(p.y)];
         }
-        // A level without handles costs nothing.
+        // Levels without handles are free.
         let handles = |level: usize, i: usize| match self.levels.get(level - 1) {
             Some(l) => std::slice::from_ref(&l[i]),
             None => &[],
@@ -73,13 +73,13 @@ impl Ribbon {
         eval(&mut row[..self.points.len()], handles, &[u, v])
     }
 
-    /// S(u) at an end: 0 or 1.
+    /// Returns S(u) at an end: 0 or 1.
     pub(super) fn side_at_end(&self, end: usize) -> Vec2 {
         let pick = |l: &Vec<[f64; 2]>| if end == 0 { l.first().copied() } else { l.last().copied() };
         self.levels.iter().filter_map(pick).fold(Vec2::ZERO, |a, [x, y]| a + Vec2::new(x, y))
     }
 
-    /// The exact image of a curve in (u, v): of degree n times the curve's.
+    /// Returns the exact image of a curve in (u, v), of n times its degree.
     pub(super) fn image(&self, curve: &RationalBezier) -> RationalBezier {
         let n = self.degree();
         let coordinate = |k: usize| Scaled::new(curve.points.iter().map(|p| p[k]));
@@ -89,7 +89,7 @@ impl Ribbon {
             r.add_scaled(-1.0, &u);
             r
         };
-        // Homogeneous Bernstein terms: C(k, i)·uⁱ(w−u)^(k−i), times v for handles, times w to fill up the degree.
+        // Homogeneous Bernstein terms: C(k, i)·uⁱ(w−u)^(k−i), times v for handles, times powers of w to raise the degree.
         let (up, rp, wp) = (u.powers(n), rest.powers(n), w.powers(n));
         let term = |k: usize, i: usize| up[i].times(&rp[k - i]);
         let (mut x, mut y) = (Scaled::zero(n * curve.degree()), Scaled::zero(n * curve.degree()));
@@ -128,7 +128,7 @@ mod tests {
         static COUNT: Cell<[usize; 3]> = const { Cell::new([0; 3]) };
     }
 
-    /// A number that counts what is done with it.
+    /// A number that counts the operations on it.
     #[derive(Clone, Copy)]
     struct Counted(f64);
 

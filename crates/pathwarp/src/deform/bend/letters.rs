@@ -1,35 +1,50 @@
-//! Letters set along the skeleton one by one: each by an affine map of its own, so that only control points move.
+//! Letters set along the skeleton one by one, each by an affine map, so that only control points move.
 //!
-//! With C the place on the skeleton, T its unit tangent and N its unit normal where a letter's anchor (the middle of its advance
-//! on the baseline) comes to lie, a letter goes by (x, y) ↦ C + X·(x − anchor) + Y·(y − baseline):
+//! A letter's anchor (the middle of its advance on the baseline) comes to the point C of the skeleton, with unit tangent T and unit
+//! normal N. The letter is mapped by (x, y) ↦ C + X·(x − anchor) + Y·(y − baseline):
 //!
-//! | setting | X | Y | what holds |
+//! | setting | X | Y | property |
 //! |---|---|---|---|
 //! | rotate | T | −N | letters turn and keep their shape |
-//! | skew | T | down | uprights stay upright, the foot follows the path |
-//! | ribbon | right | −N | levels stay level, uprights stand on the path |
+//! | skew | T | down | verticals stay vertical, the foot follows the path |
+//! | ribbon | right | −N | horizontals stay horizontal, verticals stand on the path |
 //! | stair | right | down | letters only move; the anchor is where the advance begins |
 //!
 //! These are the type-on-a-path effects Rainbow, Skew, 3D Ribbon and Stair Step of Adobe Illustrator's manual.
 
-use super::map::{BendMap, Place};
+use super::listed::listed;
+use super::map::{BendMap, ToStrip};
 use super::piece::normal;
 use crate::error::show;
 use crate::outline::{Outline, Seg};
 use crate::param::Letter;
 use kurbo::{Affine, Line, PathEl, Point, Rect, Shape as _, Vec2};
 
-/// How a letter stands on the skeleton.
+/// The way a letter is set on a skeleton, instead of being bent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Setting {
+#[non_exhaustive]
+pub enum LetterSetting {
+    /// Turned; it keeps its shape.
     Rotate,
+    /// Sheared: verticals stay vertical, the foot follows the path.
     Skew,
+    /// Sheared: horizontals stay horizontal, verticals stand on the path.
     Ribbon,
+    /// Only moved.
     Stair,
 }
 
-impl Setting {
-    /// The one of this name; `None` if letters bend.
+impl LetterSetting {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Rotate => "rotate",
+            Self::Skew => "skew",
+            Self::Ribbon => "ribbon",
+            Self::Stair => "stair",
+        }
+    }
+
+    /// Returns the setting of this name; `None` if letters bend.
     pub(super) fn named(name: &str) -> Option<Self> {
         match name {
             "rotate" => Some(Self::Rotate),
@@ -50,12 +65,12 @@ impl Setting {
         }
     }
 
-    /// Where a letter goes whose anchor comes to distance `s`.
+    /// Returns the map of a letter whose anchor comes to distance `s`.
     fn place(self, map: &BendMap, letter: &Letter, s: f64) -> Affine {
         let (c, t) = map.stand(s);
         let (x, y) = self.axes(t);
-        let (x, y) = (x * map.place.up, y * map.place.up);
-        let at = c.to_vec2() - x * self.anchor(letter) - y * map.place.base;
+        let (x, y) = (x * map.to_strip.up, y * map.to_strip.up);
+        let at = c.to_vec2() - x * self.anchor(letter) - y * map.to_strip.base;
         Affine::new([x.x, x.y, y.x, y.y, at.x, at.y])
     }
 
@@ -63,12 +78,13 @@ impl Setting {
         if self == Self::Stair { letter.origin.x } else { letter.middle().x }
     }
 
-    /// The distances on the skeleton of letters that are spread over it: of every line, the gaps grow alike, those between words
-    /// twice, until it reaches from end to end of its share. All round a closed skeleton there is one more gap between words.
+    /// Returns the distances along the skeleton of letters spread over it. The gaps of every line grow by the same amount, those
+    /// between words by twice as much, until the line reaches from end to end of its share. A closed skeleton has one more gap
+    /// between words.
     fn spread(self, map: &BendMap, letters: &[Letter]) -> Vec<f64> {
-        /// A gap wider than this share of its line's mean advance is one between words.
+        /// A gap wider than this share of its line's mean advance separates words.
         const BETWEEN_WORDS: f64 = 0.2;
-        let Place { up, .. } = map.place;
+        let ToStrip { up, .. } = map.to_strip;
         let mut out = vec![0.0; letters.len()];
         for line in lines(letters) {
             let end = |i: usize| letters[i].origin.x + letters[i].advance;
@@ -79,9 +95,9 @@ impl Setting {
             let weight = |gap: f64| if gap > wide { 2.0 } else { 1.0 };
             let round = if map.closed { weight(f64::INFINITY) } else { 0.0 };
             let weights = gaps.iter().map(|g| weight(*g)).sum::<f64>() + round;
-            let (from, to) = (map.place.s(letters[first].origin.x), map.place.s(end(last)));
+            let (from, to) = (map.to_strip.s(letters[first].origin.x), map.to_strip.s(end(last)));
             let spare = to - from - up * (end(last) - letters[first].origin.x);
-            // A letter alone stands in the middle.
+            // A single letter stands in the middle.
             let (more, mut at) = if weights > 0.0 { (spare / weights, from) } else { (0.0, from + 0.5 * spare) };
             at += 0.5 * round * more;
             for (k, i) in line.into_iter().enumerate() {
@@ -94,14 +110,14 @@ impl Setting {
     }
 }
 
-/// Artwork without copies is where it is.
-fn or_here(copies: &[Affine]) -> &[Affine] {
+/// Artwork without copies stays in place.
+fn or_identity(copies: &[Affine]) -> &[Affine] {
     if copies.is_empty() { &[Affine::IDENTITY] } else { copies }
 }
 
-/// The letters of every line from left to right, by their numbers.
+/// Returns the indices of the letters of every line, from left to right.
 fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
-    /// Baselines nearer than this share of an advance are one.
+    /// Baselines closer than this share of an advance are the same.
     const ONE_LINE: f64 = 1e-3;
     let mut out: Vec<Vec<usize>> = Vec::new();
     for (i, l) in letters.iter().enumerate() {
@@ -117,10 +133,10 @@ fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
     out
 }
 
-/// For every letter its place in each of the copies. `spread`: over all the skeleton, with gaps that grow alike.
+/// Returns the map of every letter in each of the copies. `spread` distributes the letters over the whole skeleton.
 pub(super) fn places(
     map: &BendMap,
-    setting: Setting,
+    setting: LetterSetting,
     letters: &[Letter],
     copies: &[Affine],
     spread: bool,
@@ -128,19 +144,19 @@ pub(super) fn places(
     let at = if spread {
         setting.spread(map, letters)
     } else {
-        letters.iter().map(|l| map.place.s(setting.anchor(l))).collect()
+        letters.iter().map(|l| map.to_strip.s(setting.anchor(l))).collect()
     };
     let all = |(l, s): (&Letter, f64)| {
-        let further = or_here(copies).iter().map(|c| map.place.k * c.translation().x);
+        let further = or_identity(copies).iter().map(|c| map.to_strip.k * c.translation().x);
         further.map(|by| setting.place(map, l, s + by)).collect()
     };
     letters.iter().zip(at).map(all).collect()
 }
 
-/// What is to be said about letters that were placed.
+/// Warns of letters that are squeezed or mirrored, and of letters that collide.
 pub(super) fn warnings(letters: &[Letter], places: &[Vec<Affine>]) -> Vec<String> {
     let mut out = Vec::new();
-    /// A letter that is left with less of its width than this cannot be read.
+    /// A letter that keeps less than this share of its width is illegible.
     const THIN: f64 = 0.1;
     let share = |m: &Affine| {
         let [a, b, c, d, ..] = m.as_coeffs();
@@ -151,7 +167,7 @@ pub(super) fn warnings(letters: &[Letter], places: &[Vec<Affine>]) -> Vec<String
     if !lost.is_empty() {
         out.push(format!(
             "bend: the skeleton is too steep or runs backwards at the letters {}: they are squeezed flat or mirrored; `glyphs rotate` \
-and stair keep every letter readable",
+and `glyphs stair` keep every letter legible",
             listed(&lost)
         ));
     }
@@ -164,7 +180,7 @@ and stair keep every letter readable",
     };
     for line in lines(letters) {
         line.windows(2).for_each(|p| look(p[0], p[1], 0));
-        // The end of every copy and the beginning of the next, or of the same one all round.
+        // The end of every copy and the start of the next, or of the same one around a closed skeleton.
         if let (Some(&first), Some(&last)) = (line.first(), line.last())
             && (line.len() > 1 || places[first].len() > 1)
         {
@@ -174,7 +190,7 @@ and stair keep every letter readable",
     if let Some((_, at)) = crowded.first() {
         let names: Vec<&str> = crowded.iter().map(|(n, _)| n.as_str()).collect();
         out.push(format!(
-            "bend: the letters {} run into each other, first near {}: the skeleton is too short for them or bends too tightly; a \
+            "bend: the letters {} collide, first near {}: the skeleton is too short for them or bends too tightly; a \
 smaller `width`, `spacing even` or a gentler bend avoids that",
             listed(&names),
             show(*at)
@@ -183,21 +199,14 @@ smaller `width`, `spacing even` or a gentler bend avoids that",
     out
 }
 
-/// As many names as a line holds.
-pub(super) fn listed(names: &[&str]) -> String {
-    const SHOWN: usize = 8;
-    let shown = names.iter().take(SHOWN).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
-    if names.len() > SHOWN { format!("{shown} and {} more", names.len() - SHOWN) } else { shown }
-}
-
-/// Points on the outlines of letters in all their copies, letter by letter.
+/// Samples the outlines of letters in all their copies, letter by letter.
 pub(super) fn points<'a>(
     letters: &'a [Letter],
     copies: &'a [Affine],
 ) -> impl Iterator<Item = (Point, Option<&'a Letter>)> {
     /// Points a segment.
     const SAMPLES: u32 = 8;
-    let copies = or_here(copies);
+    let copies = or_identity(copies);
     let each = letters.iter().flat_map(move |l| copies.iter().map(move |c| (l, *c)));
     each.flat_map(|(l, c)| {
         let on = |s: &'a Seg| (0..SAMPLES).map(move |i| s.eval(f64::from(i) / f64::from(SAMPLES)));
@@ -205,7 +214,7 @@ pub(super) fn points<'a>(
     })
 }
 
-/// Where two letters that are apart in the source cross each other in one of their `places`.
+/// Returns a point where two letters that are apart in the source cross in one of their `places`.
 fn collision<'a>(a: &Letter, b: &Letter, places: impl Iterator<Item = (&'a Affine, &'a Affine)>) -> Option<Point> {
     let (left, right) = (Chords::of(&a.outline)?, Chords::of(&b.outline)?);
     let mut places = places.peekable();
@@ -214,7 +223,7 @@ fn collision<'a>(a: &Letter, b: &Letter, places: impl Iterator<Item = (&'a Affin
     left.crossing(Affine::IDENTITY, &right, Affine::IDENTITY).is_none().then_some(at)
 }
 
-/// An outline as straight lines.
+/// An outline as chords.
 struct Chords {
     lines: Vec<Line>,
     rect: Rect,
@@ -222,7 +231,7 @@ struct Chords {
 
 impl Chords {
     fn of(outline: &Outline) -> Option<Self> {
-        /// Fineness as a share of the letter's size: letters nearer than this touch.
+        /// Tolerance as a share of the letter's size: letters closer than this touch.
         const FINE: f64 = 1e-3;
         let rect = outline.bounding_box()?;
         let fine = (FINE * rect.width().max(rect.height())).max(f64::MIN_POSITIVE);
@@ -243,13 +252,13 @@ impl Chords {
         Some(Self { lines, rect })
     }
 
-    /// The lines that `m` takes into `rect`.
+    /// Returns the images of the chords that overlap `rect`.
     fn within(&self, m: Affine, rect: Rect) -> Vec<Line> {
         let there = self.lines.iter().map(|l| m * *l);
         there.filter(|l| l.bounding_box().overlaps(rect)).collect()
     }
 
-    /// Where the two cross.
+    /// Returns a point where the two cross.
     fn crossing(&self, m: Affine, other: &Self, n: Affine) -> Option<Point> {
         let (a, b) = (m.transform_rect_bbox(self.rect), n.transform_rect_bbox(other.rect));
         if !a.overlaps(b) {

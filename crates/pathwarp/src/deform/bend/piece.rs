@@ -6,43 +6,43 @@ use crate::map::arclength::ArcLength;
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 
-/// What stands on a piece of skeleton.
+/// The strip along a piece of skeleton.
 #[derive(Debug, Clone)]
-pub(super) enum Shape {
+pub(super) enum Strip {
     /// F = p + s·t + d·n.
     Straight { p: Point, t: Vec2, n: Vec2 },
-    /// F = C(u(s)) + d·S with S the unit normal, plus at the ends what brings it to the mitre of a corner. s is the length of
-    /// the offset curve at height `even`.
+    /// F = C(u(s)) + d·S with S the unit normal, blended into the mitre of a corner at the ends. s is the length of the offset
+    /// curve at height `even`.
     Normals { seg: Seg, table: ArcLength, mitres: [Vec2; 2], even: f64 },
     /// The paper's polynomial F(u, v), v = d / unit; u by arc length if there is a table, else s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
 }
 
-/// A piece: where on the skeleton, and what stands on it.
+/// A piece of the skeleton and its strip.
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
-    /// It holds from this distance on; −∞ for the first of an open skeleton.
+pub(super) struct SkeletonPiece {
+    /// The distance from which it applies; −∞ for the first of an open skeleton.
     pub(super) from: f64,
-    /// The distance at which its own begins.
+    /// The distance of its start.
     pub(super) anchor: f64,
     /// Its length.
     pub(super) length: f64,
-    pub(super) shape: Shape,
+    pub(super) strip: Strip,
 }
 
-impl Piece {
-    /// F, ∂F/∂s and ∂F/∂d at distance `s` from the piece's begin and height `d`.
+impl SkeletonPiece {
+    /// Returns F, ∂F/∂s and ∂F/∂d at distance `s` from the piece's start and height `d`.
     pub(super) fn jet(&self, s: f64, d: f64) -> (Point, Vec2, Vec2) {
-        match &self.shape {
-            Shape::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
-            Shape::Normals { seg, table, mitres: [a, b], even } => {
+        match &self.strip {
+            Strip::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
+            Strip::Normals { seg, table, mitres: [a, b], even } => {
                 let Moving { p, t, bend } = moving(seg, table.parameter(s));
                 let share = s / self.length;
                 let side = normal(t) + *a * (1.0 - share) + *b * share;
                 let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + (*b - *a) * (d / self.length);
                 (p + side * d, along, side)
             }
-            Shape::Ribbon { ribbon, unit, table } => {
+            Strip::Ribbon { ribbon, unit, table } => {
                 let u = table.as_ref().map_or(s / self.length, |t| t.parameter(s));
                 let [x, y] = ribbon.at(Dual { v: u, x: 1.0, y: 0.0 }, Dual { v: d / unit, x: 0.0, y: 1.0 });
                 let slope = match table {
@@ -58,23 +58,23 @@ impl Piece {
     }
 }
 
-/// The way up on the screen for somebody who goes along `t`.
+/// Returns the normal that points up on the screen for a tangent to the right.
 pub(super) fn normal(t: Vec2) -> Vec2 {
     Vec2::new(t.y, -t.x)
 }
 
-/// A point moving along a piece: where, which way, and how it turns. With N the [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
+/// The moving frame of a piece. With N the [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
 pub(super) struct Moving {
     pub(super) p: Point,
     /// Unit tangent.
     pub(super) t: Vec2,
-    /// Curvature, positive where the curve turns clockwise on the screen: away from the side the normal shows to.
+    /// Curvature, positive where the curve turns clockwise on the screen: away from the normal.
     pub(super) bend: f64,
 }
 
-/// The moving frame at a parameter.
+/// Returns the moving frame at a parameter.
 pub(super) fn moving(seg: &Seg, u: f64) -> Moving {
-    /// Slower than this share of the piece's size is standing still: the direction is taken a little further in.
+    /// A speed below this share of the piece's size counts as zero: the direction is taken a little further in.
     const STILL: f64 = 1e-9;
     const ASIDE: f64 = 1e-5;
     let b = seg.bounding_box();
@@ -88,7 +88,7 @@ pub(super) fn moving(seg: &Seg, u: f64) -> Moving {
     Moving { p, t: v / speed, bend: v.cross(a) / speed.powi(3) }
 }
 
-/// The second derivative.
+/// Returns the second derivative.
 fn second(seg: &Seg, u: f64) -> Vec2 {
     match seg {
         Seg::Line(_) => Vec2::ZERO,

@@ -1,7 +1,7 @@
-//! The skeleton: a path's pieces in a row, measured, turned the way it was meant, and joined.
+//! The skeleton: a path's pieces in a row, measured, oriented, and joined.
 
 use super::casteljau::Ribbon;
-use super::piece::{Moving, Piece, Shape, moving, normal};
+use super::piece::{Moving, SkeletonPiece, Strip, moving, normal};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::map::arclength::ArcLength;
@@ -11,7 +11,7 @@ use kurbo::{Point, Vec2};
 
 /// Below this angle (radians) a joint is smooth.
 const SMOOTH: f64 = 1e-6;
-/// Below this one nobody sees the corner.
+/// Below this angle a corner is invisible.
 const UNSEEN: f64 = 5e-3;
 /// 1 + cos of the turn beyond which a mitre would be longer than eight times the height.
 const SHARPEST: f64 = 1.0 / 32.0;
@@ -21,28 +21,28 @@ pub(super) struct Skeleton {
     segs: Vec<(Seg, ArcLength)>,
     pub(super) closed: bool,
     pub(super) length: f64,
-    /// The height at which lengths are counted.
+    /// The height at which lengths are measured.
     even: f64,
     name: String,
 }
 
-/// A joint between two pieces that do not go on straight.
+/// A joint at which the tangent jumps.
 pub(super) struct Corner {
     pub(super) at: Point,
     /// Radians.
     pub(super) turn: f64,
 }
 
-/// The pieces with their sides, and what is to be said about their joints.
+/// The pieces with their sides, and notes on their joints.
 pub(super) struct Joined {
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<SkeletonPiece>,
     pub(super) corners: Vec<Corner>,
     pub(super) notes: Vec<String>,
 }
 
 impl Skeleton {
-    /// Takes the only connected run of `path`. Unless `as_drawn`, an open one is run left to right, a closed one clockwise (up
-    /// is then outside). `reverse` turns it round after that.
+    /// Takes the only connected run of `path`. Unless `as_drawn`, an open one is oriented left to right, a closed one clockwise
+    /// (up is then outside). `reverse` turns it around after that.
     pub(super) fn new(path: &NamedPath, as_drawn: bool, reverse: bool) -> Result<Self, Error> {
         let mut sub = anchors::only_subpath(path, "a single connected run of them")?;
         let backwards = if sub.closed { turns_left(&sub) } else { sub.end().x < sub.start.x };
@@ -63,11 +63,11 @@ impl Skeleton {
         self.segs.iter().any(|(s, _)| matches!(s, Seg::Arc(_)))
     }
 
-    /// The same with lengths counted at height `d`: along the offset curve, whose speed is (1 + κd) times the skeleton's.
+    /// Measures lengths at height `d`: along the offset curve, whose speed is (1 + κd) times the skeleton's.
     pub(super) fn at_height(self, d: f64) -> Result<Self, Error> {
-        /// Places on a piece where the offset is looked at.
+        /// Samples of a piece.
         const SAMPLES: u32 = 256;
-        /// Slower than this share of the skeleton's speed, the offset is at its cusps.
+        /// Below this share of the skeleton's speed, the offset is close to a cusp.
         const SLOWEST: f64 = 1e-3;
         let rate = move |s: &Seg, u: f64| 1.0 + moving(s, u).bend * d;
         for (seg, _) in &self.segs {
@@ -75,7 +75,7 @@ impl Skeleton {
             if let Some(u) = all.find(|u| rate(seg, *u).is_nan() || rate(seg, *u) < SLOWEST) {
                 let problem = format!(
                     "needs a gentler bend: near {} the centre of curvature is no further from the skeleton than half the \
-artwork's height; a smaller `width` avoids that too",
+artwork's height; a smaller `width` helps too",
                     show(seg.eval(u))
                 );
                 return Err(Error::usage("spacing", "even", problem));
@@ -90,10 +90,10 @@ artwork's height; a smaller `width` avoids that too",
         Ok(Self { segs, length, even: d, ..self })
     }
 
-    /// The scale at which artwork of `width`, measured where it is `height` high at scale 1, is as long as the skeleton's offset
-    /// there: k·width = length + k·height·(total turn), for the offset's length is linear in the height.
+    /// Returns the scale k at which artwork of `width` is as long as the skeleton's offset at height k·`height`:
+    /// k·width = length + k·height·(total turn), because the offset's length is linear in the height.
     pub(super) fn even_scale(&self, width: f64, height: f64) -> Result<f64, Error> {
-        /// Places on a piece between which its tangent turns by less than half a circle.
+        /// Samples of a piece, between which its tangent turns by less than half a circle.
         const SAMPLES: u32 = 256;
         let turn = |s: &Seg| {
             let tangent = |i: u32| moving(s, f64::from(i) / f64::from(SAMPLES)).t;
@@ -108,7 +108,7 @@ artwork's height; a smaller `width` avoids that too",
         Err(Error::usage("spacing", "even", problem))
     }
 
-    /// Arcs as cubics within `tolerance`, lines as quadratics if `raise`: what the paper's handles can stand on.
+    /// Converts arcs to cubics within `tolerance`, and lines to quadratics if `raise`, for the paper's handles.
     pub(super) fn polynomial(mut self, tolerance: f64, raise: bool) -> Self {
         let segs = std::mem::take(&mut self.segs);
         for (seg, table) in segs {
@@ -127,9 +127,9 @@ artwork's height; a smaller `width` avoids that too",
         self
     }
 
-    /// The distance of the highest point on the screen.
+    /// Returns the distance of the highest point on the screen.
     pub(super) fn top(&self) -> f64 {
-        /// Samples a piece: this decides where artwork stands, not how it is bent.
+        /// Samples of a piece. They decide the position of the artwork, not its shape.
         const SAMPLES: u32 = 256;
         let (mut best, mut start) = ((f64::INFINITY, 0.0), 0.0);
         for (seg, table) in &self.segs {
@@ -145,13 +145,13 @@ artwork's height; a smaller `width` avoids that too",
         best.1
     }
 
-    /// Joints: the pieces before and after each.
+    /// Returns the pieces before and after each joint.
     fn joints(&self) -> impl Iterator<Item = (usize, usize)> {
         let n = self.segs.len();
         (0..if self.closed { n } else { n - 1 }).map(move |i| (i, (i + 1) % n))
     }
 
-    /// Unit normals at every piece's ends, brought to the mitre at corners; and the corners.
+    /// Returns the unit normals at every piece's ends, mitred at corners, and the corners.
     fn sides(&self) -> Result<(Vec<[Vec2; 2]>, Vec<Corner>), Error> {
         let ends: Vec<[Moving; 2]> = self.segs.iter().map(|(s, _)| [moving(s, 0.0), moving(s, 1.0)]).collect();
         let mut sides: Vec<[Vec2; 2]> = ends.iter().map(|[a, b]| [normal(a.t), normal(b.t)]).collect();
@@ -164,7 +164,8 @@ artwork's height; a smaller `width` avoids that too",
             }
             let at = ends[j][0].p;
             if 1.0 + n.dot(m) < SHARPEST {
-                let problem = format!("turns back on itself at {}: artwork cannot follow; round that corner", show(at));
+                let problem =
+                    format!("turns back on itself at {}, where artwork cannot follow; round that corner", show(at));
                 return Err(Error::usage("along", self.name.clone(), problem));
             }
             if turn.abs() > UNSEEN {
@@ -176,25 +177,26 @@ artwork's height; a smaller `width` avoids that too",
         Ok((sides, corners))
     }
 
-    /// Sides are unit normals.
+    /// Joins pieces whose sides are unit normals.
     pub(super) fn with_normals(self) -> Result<Joined, Error> {
         let (sides, corners) = self.sides()?;
-        let shapes = self.segs.iter().zip(sides).map(|((seg, table), [a, b])| {
+        let strips = self.segs.iter().zip(sides).map(|((seg, table), [a, b])| {
             let (first, last) = (moving(seg, 0.0), moving(seg, 1.0));
             let mitres = [a - normal(first.t), b - normal(last.t)];
-            let shape = match seg {
+            let strip = match seg {
                 Seg::Line(_) if mitres == [Vec2::ZERO; 2] => {
-                    Shape::Straight { p: first.p, t: first.t, n: normal(first.t) }
+                    Strip::Straight { p: first.p, t: first.t, n: normal(first.t) }
                 }
-                _ => Shape::Normals { seg: *seg, table: table.clone(), mitres, even: self.even },
+                _ => Strip::Normals { seg: *seg, table: table.clone(), mitres, even: self.even },
             };
-            (shape, table.length())
+            (strip, table.length())
         });
-        let pieces = self.in_a_row(shapes.collect());
+        let pieces = self.in_a_row(strips.collect());
         Ok(Joined { pieces, corners, notes: Vec::new() })
     }
 
-    /// Sides are the paper's handles: `given` for every piece, or the unit normals of the control polygon's legs times `unit`.
+    /// Joins pieces whose sides are the paper's handles: `given` for every piece, or the unit normals of the control polygon's legs
+    /// times `unit`.
     pub(super) fn with_handles(
         self,
         given: Option<&[Vec<Vec<Vec2>>]>,
@@ -242,14 +244,14 @@ artwork's height; a smaller `width` avoids that too",
                 return Err(Error::input("handles", problem));
             }
         }
-        let shapes = self.segs.iter().zip(ribbons).map(|((_, table), ribbon)| {
+        let strips = self.segs.iter().zip(ribbons).map(|((_, table), ribbon)| {
             let length = table.length();
-            (Shape::Ribbon { ribbon, unit, table: by_arc_length.then(|| table.clone()) }, length)
+            (Strip::Ribbon { ribbon, unit, table: by_arc_length.then(|| table.clone()) }, length)
         });
-        let shapes: Vec<_> = shapes.collect();
+        let strips: Vec<_> = strips.collect();
         let joints: Vec<_> = self.joints().collect();
-        let pieces = self.in_a_row(shapes);
-        // The open ends' straight continuations are pieces too.
+        let pieces = self.in_a_row(strips);
+        // The straight continuations of open ends are pieces too.
         let first = usize::from(!self.closed);
         for (i, j) in joints {
             notes.push(continuity(&pieces[first + i], &pieces[first + j], unit));
@@ -257,39 +259,39 @@ artwork's height; a smaller `width` avoids that too",
         Ok(Joined { pieces, corners, notes })
     }
 
-    /// Pieces one after another; an open skeleton goes on straight at both ends.
-    fn in_a_row(&self, shapes: Vec<(Shape, f64)>) -> Vec<Piece> {
-        let mut pieces = Vec::with_capacity(shapes.len() + 2);
+    /// Lines up the pieces; an open skeleton continues straight at both ends.
+    fn in_a_row(&self, strips: Vec<(Strip, f64)>) -> Vec<SkeletonPiece> {
+        let mut pieces = Vec::with_capacity(strips.len() + 2);
         let mut at = 0.0;
-        for (shape, length) in shapes {
-            pieces.push(Piece { from: at, anchor: at, length, shape });
+        for (strip, length) in strips {
+            pieces.push(SkeletonPiece { from: at, anchor: at, length, strip });
             at += length;
         }
         let Some((first, last)) = pieces.first().zip(pieces.last()) else { return pieces };
         if self.closed {
             return pieces;
         }
-        let straight = |piece: &Piece, s: f64, t: Vec2| {
+        let straight = |piece: &SkeletonPiece, s: f64, t: Vec2| {
             let (p, _, n) = piece.jet(s, 0.0);
-            Shape::Straight { p, t, n }
+            Strip::Straight { p, t, n }
         };
         let (t0, t1) = (moving(&self.segs[0].0, 0.0).t, moving(&self.segs[self.segs.len() - 1].0, 1.0).t);
         let (before, after) = (straight(first, 0.0, t0), straight(last, last.length, t1));
-        if !matches!(last.shape, Shape::Straight { .. }) {
-            pieces.push(Piece { from: at, anchor: at, length: 1.0, shape: after });
+        if !matches!(last.strip, Strip::Straight { .. }) {
+            pieces.push(SkeletonPiece { from: at, anchor: at, length: 1.0, strip: after });
         }
-        if matches!(pieces[0].shape, Shape::Straight { .. }) {
+        if matches!(pieces[0].strip, Strip::Straight { .. }) {
             pieces[0].from = f64::NEG_INFINITY;
         } else {
-            pieces.insert(0, Piece { from: f64::NEG_INFINITY, anchor: 0.0, length: 1.0, shape: before });
+            pieces.insert(0, SkeletonPiece { from: f64::NEG_INFINITY, anchor: 0.0, length: 1.0, strip: before });
         }
         pieces
     }
 }
 
-/// Whether a closed run goes counter-clockwise on the screen: twice its area, y down, is negative.
+/// Returns `true` if a closed run goes counter-clockwise on the screen: its area, y down, is negative.
 fn turns_left(sub: &Subpath) -> bool {
-    /// Chords a piece.
+    /// Chords of a piece.
     const CHORDS: u32 = 32;
     let chord = |s: &Seg, i: u32| {
         let at = |i: u32| s.eval(f64::from(i) / f64::from(CHORDS)) - sub.start;
@@ -309,8 +311,8 @@ fn control_points(seg: &Seg) -> Vec<Point> {
     }
 }
 
-/// Unit normals of the control polygon's legs, the outer ones as given (they may be mitred); a leg without length has its
-/// neighbour's.
+/// Returns the unit normals of the control polygon's legs. The outer ones are given, because they may be mitred; a leg without
+/// length takes its neighbours' mean.
 fn legs(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
     let n = points.len() - 1;
     let size: f64 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
@@ -328,16 +330,16 @@ fn legs(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
     out
 }
 
-/// What the joint of two pieces is like: the paper's conditions (4) and (5), in distances instead of parameters.
-fn continuity(a: &Piece, b: &Piece, unit: f64) -> String {
+/// Describes the joint of two pieces by the paper's conditions (4) and (5), in distances instead of parameters.
+fn continuity(a: &SkeletonPiece, b: &SkeletonPiece, unit: f64) -> String {
     let ((p, a0, _), (_, a1, _)) = (a.jet(a.length, 0.0), a.jet(a.length, unit));
     let ((_, b0, _), (_, b1, _)) = (b.jet(0.0, 0.0), b.jet(0.0, unit));
     let same = |a: Vec2, b: Vec2| (a - b).hypot() <= 1e-6 * (a.hypot() + b.hypot());
     let along = |a: Vec2, b: Vec2| a.cross(b).abs() <= SMOOTH * a.hypot() * b.hypot() && a.dot(b) > 0.0;
     let what = if same(a0, b0) && same(a1, b1) {
-        "C¹: everything goes on smoothly"
+        "C¹: smooth"
     } else if along(a0, b0) && along(a1, b1) {
-        "G¹: directions go on, but lengths are stretched differently on both sides"
+        "G¹: directions are continuous, but lengths are stretched differently on both sides"
     } else if along(a0, b0) {
         "G¹ on the skeleton only: beside it, lines along the skeleton have a kink (handles condition)"
     } else {

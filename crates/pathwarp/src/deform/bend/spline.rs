@@ -11,18 +11,17 @@ use crate::outline::{Outline, Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{CubicBez, Line, Point, QuadBez, Vec2};
 
-/// The spline of this degree, 1 to 3, over the anchors of `path`.
+/// Returns the spline of this degree, 1 to 3, over the anchors of `path`.
 pub(super) fn through(path: &NamedPath, degree: usize) -> Result<NamedPath, Error> {
     let sub = anchors::only_subpath(path, "a single connected run of them")?;
     let points = sub.anchors();
     let fewest = if sub.closed { 3 } else { degree + 1 };
     if points.len() < fewest {
-        let problem = format!("needs {fewest} anchors or more on this skeleton, which has {}", points.len());
+        let problem = format!("needs at least {fewest} anchors; the skeleton has {}", points.len());
         return Err(Error::usage("spline", degree.to_string(), problem));
     }
     let mut pieces: Vec<Vec<Point>> = if sub.closed {
-        // The middle cell of a clamped spline that is long enough has uniform knots only. The first piece begins near the
-        // first anchor.
+        // The middle cell of a long clamped spline has only uniform knots. The first piece begins near the first anchor.
         let uniform = &bspline::extraction(degree, 2 * degree - 1)[degree - 1];
         let n = points.len();
         let first = n - (degree - 1) / 2;
@@ -31,7 +30,7 @@ pub(super) fn through(path: &NamedPath, degree: usize) -> Result<NamedPath, Erro
         let cells = bspline::extraction(degree, points.len() - degree);
         cells.iter().enumerate().map(|(i, rows)| bezier(rows, &|l| points[i + l])).collect()
     };
-    // Joints are one point, not two that rounding sets apart.
+    // Rounding must not separate the ends at a joint.
     for i in 1..pieces.len() {
         pieces[i][0] = pieces[i - 1][degree];
     }
@@ -49,7 +48,7 @@ pub(super) fn through(path: &NamedPath, degree: usize) -> Result<NamedPath, Erro
     Ok(NamedPath { name: path.name.clone(), outline: Outline { subpaths: vec![spline] } })
 }
 
-/// Bézier points: a cell's matrix times its control points.
+/// Returns Bézier points: a cell's matrix times its control points.
 fn bezier(rows: &[Vec<f64>], control: &dyn Fn(usize) -> Point) -> Vec<Point> {
     let sum = |row: &Vec<f64>| row.iter().enumerate().fold(Vec2::ZERO, |s, (l, c)| s + control(l).to_vec2() * *c);
     rows.iter().map(|row| sum(row).to_point()).collect()
@@ -91,10 +90,10 @@ mod tests {
     }
 
     #[test]
-    fn too_few_points_are_told() {
+    fn too_few_points_are_an_error() {
         for (d, degree) in [("M0,0 L5,5 Z", 2), ("M0,0 L9,0", 2)] {
             assert!(spline(d, degree).is_err(), "{d}");
         }
-        assert!(spline("M0,0 L1,1 5,0", 3).err().unwrap().to_string().contains("4 anchors"));
+        assert!(spline("M0,0 L1,1 5,0", 3).err().unwrap().to_string().contains("at least 4 anchors"));
     }
 }

@@ -1,5 +1,9 @@
+//! Bends against the paper, exact shapes and the letters' settings.
+
+use super::entry::INFO;
 use super::*;
 use crate::check;
+use crate::deform::Deformation;
 use crate::map::{Creases, Level, Map as _, RationalBezier};
 use crate::outline::{Outline, Seg};
 use crate::param::Args;
@@ -7,19 +11,19 @@ use kurbo::Point;
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Bend);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Bend.build_from(&Args::from_pairs(pairs), &check::frame())
+    Entry.build_from(&Args::from_pairs(pairs), &check::frame())
 }
 
 fn with_handles(pairs: &[(&str, &str)], json: &str) -> Result<Built, Error> {
     let mut args = Args::from_pairs(pairs);
     args.push("handles", "h.json");
     args.resolve_files(INFO.params, |_| Ok(json.to_owned()))?;
-    Bend.build_from(&args, &check::frame())
+    Entry.build_from(&args, &check::frame())
 }
 
 /// Derivatives against differences and branches against the map, on every kind of skeleton, away from the joints.
@@ -237,7 +241,7 @@ fn letters_stand_on_a_circle() {
     let frame = || check::frame().on_baseline(90.0).with_letters([letter(20.0), letter(65.0)].into());
     let set = |how: &str| {
         let args = [("along", "M-100,0 A100,100 0 0 1 100,0"), ("glyphs", how)];
-        Bend.build_from(&Args::from_pairs(&args), &frame()).unwrap().placement.letters
+        Entry.build_from(&Args::from_pairs(&args), &frame()).unwrap().placement.letters
     };
     for (k, middle) in [(0, 25.0), (1, 70.0)] {
         let (sin, cos) = ((middle - 50.0) / 100.0_f64).sin_cos();

@@ -1,4 +1,4 @@
-//! Directly manipulated free-form deformation: points of the artwork are put where they should go, and the lattice follows.
+//! Directly manipulated free-form deformation: points of the artwork are moved, and the lattice follows.
 //!
 //! The image of a point is Σ Rₖ Pₖ with influences Rₖ that do not depend on the control points' places. Pins p → q ask for
 //! Σₖ Rₖ(p) dₖ = q − F(p), one row of a linear system R·D = Δ per pin; the answer is the one of least squares and smallest
@@ -9,14 +9,14 @@
 use crate::map::Lattice;
 use kurbo::{Point, Vec2};
 
-/// Pins at most: the work goes with the cube of their number.
-pub(crate) const MOST_PINS: usize = 256;
+/// Limit on pins: the work grows with the cube of their number.
+pub(crate) const MAX_PINS: usize = 256;
 
-/// Eigenvalues below this share of the largest are taken for zero: two pins nearly on one spot.
+/// Eigenvalues below this share of the largest count as zero: two pins almost at one point.
 const RANK: f64 = 1e-12;
 
-/// Moves the control points that are `free` so that the lattice takes the first point of each pin to the second; returns
-/// how far off each pin is then (rounding, unless the pins ask for more than the lattice can do).
+/// Moves the control points that are `free` so that the lattice takes the first point of each pin to the second. Returns the
+/// distance by which each pin is missed: rounding, unless the pins ask for more than the lattice can do.
 pub(crate) fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Point, Point)]) -> Vec<f64> {
     let n = pins.len();
     let columns = lattice.columns();

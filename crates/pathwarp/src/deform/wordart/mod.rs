@@ -8,13 +8,13 @@ mod shape;
 
 pub use shape::TextShape;
 
-use super::bend::Bend;
+use super::bend::{Bend, Stretch};
 use super::built::{Built, Overlay, Role};
 use super::entry::{Case, Deformation, Example, Gallery, Info, Law};
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Along, Class, Guide, Map, TileRow, Tiled, ruled};
 use crate::outline::{Outline, Seg, Subpath};
-use crate::param::{Args, Axis, Frame, Kind, Param, Settings};
+use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Rect};
 use shape::{GuideError, Guides};
 use std::sync::Arc;
@@ -268,12 +268,9 @@ fn cuts(s: &Settings<'_>, rect: Rect, bands: usize) -> Result<Vec<f64>, Error> {
     ))
 }
 
-/// The band of artwork in `frame` standing on `path`, scaled to its length.
+/// Stands the band of artwork in `frame` on `path`, scaled to its length.
 fn standing(path: &[Seg], frame: Rect) -> Result<Built, Error> {
-    let mut args =
-        Args::from_pairs(&[("along", "guide"), ("stretch", "scale"), ("baseline", "0"), ("as-drawn", "true")]);
-    args.resolve_paths(Bend.info().params, |_| Ok(outline(path)))?;
-    Bend.build_from(&args, &Frame::new(frame))
+    Bend::new(frame, &outline(path)).stretch(Stretch::Scale).baseline(frame.y1).as_drawn(true).build()
 }
 
 fn outline(segs: &[Seg]) -> Outline {

@@ -1,4 +1,4 @@
-//! Lattices as files.
+//! Lattices as JSON.
 //!
 //! ```json
 //! {
@@ -13,7 +13,7 @@
 //! ```
 //!
 //! `points` are rows from the top, each from left to right: x, y and, unless it is 1, the weight, in user units. A row has
-//! degree + cells points; `cells` above 1 mean uniform clamped B-splines, and may stay away otherwise. `region` is x, y, width
+//! degree + cells points; `cells` above 1 mean uniform clamped B-splines, and may be omitted otherwise. `region` is x, y, width
 //! and height of the box the lattice works on; without it the box is the artwork's.
 
 use crate::error::Error;
@@ -22,9 +22,9 @@ use kurbo::{Point, Rect};
 use serde::Deserialize;
 
 /// The highest degree.
-pub(crate) const MOST_DEGREE: usize = 10;
+pub(in crate::deform) const MAX_DEGREE: usize = 10;
 /// The most Bézier pieces along an axis.
-pub(crate) const MOST_CELLS: usize = 64;
+pub(in crate::deform) const MAX_CELLS: usize = 64;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -40,23 +40,23 @@ fn one() -> [usize; 2] {
     [1, 1]
 }
 
-/// The lattice that a file holds, and whether it names its region (`frame` stands in for it otherwise).
-pub(crate) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool), Error> {
+/// Reads a lattice. The flag is `true` if the file names its region; otherwise the region is `frame`.
+pub(in crate::deform) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool), Error> {
     let file: File = serde_json::from_str(text)
-        .map_err(|e| Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is no lattice: {e}")))?;
+        .map_err(|e| Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is not a lattice: {e}")))?;
     let wrong = |what: String| Error::input(name, what);
-    if file.degree.iter().any(|d| !(1..=MOST_DEGREE).contains(d)) {
-        return Err(wrong(format!("its degrees are {:?}; each must be 1 to {MOST_DEGREE}", file.degree)));
+    if file.degree.iter().any(|d| !(1..=MAX_DEGREE).contains(d)) {
+        return Err(wrong(format!("its degrees are {:?}; each must be 1 to {MAX_DEGREE}", file.degree)));
     }
-    if file.cells.iter().any(|c| !(1..=MOST_CELLS).contains(c)) {
-        return Err(wrong(format!("its cells are {:?}; each number must be 1 to {MOST_CELLS}", file.cells)));
+    if file.cells.iter().any(|c| !(1..=MAX_CELLS).contains(c)) {
+        return Err(wrong(format!("its cells are {:?}; each number must be 1 to {MAX_CELLS}", file.cells)));
     }
     let region = match file.region {
         None => frame,
         Some([x, y, w, h]) if w > 0.0 && h > 0.0 && [x, y, w, h].iter().all(|v| v.abs() < 1e100) => {
             Rect::new(x, y, x + w, y + h)
         }
-        Some(r) => return Err(wrong(format!("its region {r:?} is no box x, y, width, height"))),
+        Some(r) => return Err(wrong(format!("its region {r:?} is not a box x, y, width, height"))),
     };
     let mut lattice = Lattice::regular(region, file.degree, file.cells);
     if file.points.len() != lattice.rows() {
@@ -88,8 +88,8 @@ pub(crate) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool
     Ok((lattice, file.region.is_some()))
 }
 
-/// A lattice as text.
-pub(crate) fn write(lattice: &Lattice) -> String {
+/// Writes a lattice.
+pub(in crate::deform) fn write(lattice: &Lattice) -> String {
     let r = lattice.region();
     let numbers = |v: &[f64]| format!("[{}]", v.iter().map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(", "));
     let row = |j: usize| {
@@ -130,7 +130,7 @@ mod tests {
         assert!(fault("{\"degree\": [1,1], \"points\": [[[0,0],[1,0]]]}").contains("1 rows of points"));
         assert!(fault("{\"degree\": [1,1], \"points\": [[[0,0],[1,0]],[[0,1]]]}").contains("row 1 has 1 points"));
         assert!(fault("{\"degree\": [1,1], \"points\": [[[0,0],[1,0]],[[0,1],[1]]]}").contains("point 1 of row 1"));
-        assert!(fault("{\"degree\": [1,1], \"region\": [0,0,0,1], \"points\": []}").contains("no box"));
+        assert!(fault("{\"degree\": [1,1], \"region\": [0,0,0,1], \"points\": []}").contains("not a box"));
         let ok = read(
             "l.json",
             "{\"degree\":[1,1],\"points\":[[[0,0],[1,0]],[[0,1],[1,1]]]}",
