@@ -4,17 +4,6 @@
 //! inside the root `<svg>`) and returns the file with ids, classes, styles, titles, groups and formatting as they were: usvg
 //! resolves the drawing, and the source text is patched in place.
 //!
-//! # Structure
-//!
-//! Four rooms, each of which may use those before it: `source` (the text and its elements), `scene` (the drawing as it is
-//! painted), `bend` (its image under the map), `write` (the result as text).
-//!
-//! # Features
-//!
-//! - `parallel` (default): bend shapes on all processors.
-//! - `usvg`: the module [`usvg_tree`](https://docs.rs/pathwarp-svg), which exposes types of usvg. Exempt from semantic
-//!   versioning.
-//!
 //! ```
 //! use pathwarp::map::{Formula, Real};
 //! use pathwarp::refit;
@@ -31,6 +20,16 @@
 //! assert!(warped.svg.contains("<path id='a' d=\"M"));
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
+//!
+//! # Structure
+//!
+//! Four rooms, each of which may use those before it: `source` (the text and its elements), `scene` (the drawing as it is
+//! painted), `bend` (its image under the map), `write` (the result as text).
+//!
+//! # Features
+//!
+//! - `parallel` (default): bend shapes on all processors.
+//! - `usvg`: adds the module `usvg_tree`, which exposes types of usvg and is exempt from semantic versioning.
 
 mod bend;
 mod document;

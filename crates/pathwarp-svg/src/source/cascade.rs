@@ -1,7 +1,7 @@
 //! Values of a property by the cascade of CSS: attribute, style sheet, style attribute.
 //!
 //! It serves properties that usvg does not resolve (`vector-effect`), so it follows CSS: importance, then specificity, then
-//! order. `unfold` has a cascade of its own, which must predict usvg and therefore follows usvg's rules.
+//! order. The cascade in `unfold` must predict usvg and therefore follows usvg's rules.
 
 use super::style::declared;
 use super::tags::ElementId;

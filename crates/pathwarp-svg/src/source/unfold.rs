@@ -2,9 +2,9 @@
 //! show other elements, which may show further ones in turn, so a few lines can expand to more elements than any program can
 //! draw. usvg walks them all, so they are counted first.
 //!
-//! The cascade here follows usvg's rules, not CSS's: an `!important` declaration is never overridden, not even by a later
-//! important one, and selectors have no specificity. The count must bound what usvg is going to do. `cascade` resolves
-//! properties that usvg does not know, and follows CSS.
+//! The cascade here follows usvg's rules, not CSS's, as the count must bound what usvg is going to do: an `!important`
+//! declaration is never overridden, not even by an important one of higher precedence. `cascade` resolves properties that usvg
+//! does not know, and follows CSS.
 
 use super::tags::is_shape;
 use pathwarp::Error;
