@@ -203,7 +203,7 @@ fn faults_are_named() {
         (2, &["text", ""], "empty"),
         (2, &["text", "a", "--font", "No Such Family Anywhere"], "`No Such Family Anywhere`"),
         // One letter is misspelt; the bundled family is always available.
-        (2, &["text", "a", "--font", "Notto Snas"], "there are Noto Sans"),
+        (2, &["text", "a", "--font", "Notto Snas"], "similar families: Noto Sans"),
         (3, &["text", "a", "--font", "missing.ttf"], "missing.ttf"),
         (3, &["text", "a", "--font", "samples/logo.svg"], "no font"),
         (3, &["text", "a", "--font", "crates/pathwarp-text/tests/fonts/cff.otf#3"], "counted from 0"),

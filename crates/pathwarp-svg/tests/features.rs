@@ -174,7 +174,7 @@ const FEATURES: &[(&str, &str)] = &[
 fn identity_looks_the_same() {
     for (name, body) in FEATURES {
         let w = check(name, &drawing(body), Affine::IDENTITY, &warp_options());
-        assert!(!w.warnings.iter().any(|w| w.contains("written anew")), "{name}: {:?}", w.warnings);
+        assert!(!w.warnings.iter().any(|w| w.contains("flattened")), "{name}: {:?}", w.warnings);
     }
 }
 
@@ -186,7 +186,7 @@ fn oblique_looks_like_the_renderers_transform() {
 }
 
 #[test]
-fn written_anew_it_looks_the_same() {
+fn flattened_it_looks_the_same() {
     let options = warp_options().with_structure(Structure::Flatten);
     for (name, body) in FEATURES {
         check(name, &drawing(body), Affine::IDENTITY, &options);

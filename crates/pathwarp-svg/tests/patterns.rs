@@ -81,7 +81,7 @@ fn under_a_curved_map_tiles_bend() {
 }
 
 #[test]
-fn written_anew_they_bend_as_well() {
+fn flattened_patterns_bend_as_well() {
     let options = instantiate().with_structure(Structure::Flatten);
     for (name, body) in &PATTERNS[5..] {
         let (w, bent) = curved(&drawing(body), &options);

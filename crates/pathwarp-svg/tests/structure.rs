@@ -85,11 +85,11 @@ fn guides_stay_and_are_no_artwork() {
 }
 
 #[test]
-fn what_cannot_be_patched_is_written_anew_or_refused() {
+fn what_cannot_be_patched_is_flattened_or_refused() {
     let svg = "<!DOCTYPE svg [<!ENTITY r \"<rect id='x' width='30' height='20'/>\">]><svg xmlns='http://www.w3.org/2000/svg' \
                viewBox='0 0 100 100'><title>E</title>&r;</svg>";
     let w = warp(svg, oblique());
-    assert!(w.warnings.iter().any(|w| w.contains("written anew")), "{:?}", w.warnings);
+    assert!(w.warnings.iter().any(|w| w.contains("flattened")), "{:?}", w.warnings);
     assert!(w.svg.contains("viewBox=\"0 0 100 100\"") && w.svg.contains("<title>E</title>"), "{}", w.svg);
     let keep = warp_options().with_structure(Structure::Keep);
     assert!(read(svg).warp(&Bend, &keep).is_err());
@@ -124,7 +124,7 @@ fn an_animation_of_the_geometry_is_named() {
 }
 
 #[test]
-fn filters_written_anew_saturate_beyond_one() {
+fn flattened_filters_saturate_beyond_one() {
     let svg = drawing("<rect width='90' height='90' fill='seagreen' filter='saturate(2)'/>");
     let flat = warp_options().with_structure(Structure::Flatten);
     let out = read(&svg).warp(&AffineMap(Affine::IDENTITY), &flat).unwrap().svg;

@@ -112,15 +112,15 @@ fn what_is_no_plain_file_is_not_read() {
         assert!(w.svg.contains("<image id='i'"), "{link}: {}", w.svg);
         let [left] = &w.skipped[..] else { panic!("{link}: {:?}", w.skipped) };
         assert!(left.id == "i" && left.why.contains(link.trim_end_matches(',')), "{left:?}");
-        // It is not reported if it is not selected, and a file written anew omits it.
+        // It is not reported if it is not selected, and flattened output omits it.
         let other = Selection { exclude: vec!["#i".into()], ..Selection::default() };
         let options = warp_options().with_selection(other);
         assert!(
             Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &options).unwrap().skipped.is_empty()
         );
         let options = warp_options().with_structure(Structure::Flatten);
-        let anew = Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &options).unwrap();
-        assert!(!anew.svg.contains("<image") && anew.skipped.iter().any(|s| s.why.contains("left out")));
+        let flat = Document::read(svg.as_bytes(), "t.svg", with).unwrap().warp(&Bend, &options).unwrap();
+        assert!(!flat.svg.contains("<image") && flat.skipped.iter().any(|s| s.why.contains("left out")));
     }
 }
 

@@ -39,12 +39,12 @@ pub enum TextMode {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Structure {
-    /// Patch the file in place. If that is impossible, write it anew with a warning.
+    /// Patch the file in place. If that is impossible, flatten it with a warning.
     #[default]
     Auto,
     /// Patch the file in place, or fail.
     Keep,
-    /// Write the file anew: groups and paths with resolved properties.
+    /// Write a new file of groups and paths with resolved properties.
     Flatten,
 }
 

@@ -48,7 +48,7 @@ pub struct ShapeReport {
     pub pictures: usize,
 }
 
-/// An element that was not warped. It is unchanged, or left out of a file written anew if it cannot be included.
+/// An element that was not warped. It is unchanged, or left out of flattened output if it cannot be included.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Skipped {
     /// Id in the source, or else name and position.

@@ -1,4 +1,4 @@
-//! Writes a warped document: patched in place, or anew.
+//! Writes a warped document: patched in place, or flattened.
 
 use super::input::WriteInput;
 use super::{flat, keep, page};
@@ -31,7 +31,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
         }
         (patched, _) => {
             if let Some(Err(why)) = patched {
-                out.warnings.push(format!("the file is written anew, as its structure cannot be kept: {why}"));
+                out.warnings.push(format!("the file is flattened, as its structure cannot be kept: {why}"));
             }
             out.skipped.extend(unread.map(|s| Skipped { why: s.why + "; it is left out", ..s }));
             flat::write(input, &mut out.skipped, &mut notes)

@@ -1,4 +1,4 @@
-//! Writes the whole file anew, with everything resolved.
+//! Flattened output: a new file with everything resolved.
 
 use super::fragment::Writer;
 use super::input::WriteInput;
@@ -13,7 +13,7 @@ pub(super) fn write(input: &WriteInput<'_>, skipped: &mut Vec<Skipped>, notes: &
     let source = input.source;
     let mut w = Writer::new(*input, false, skipped, notes);
     if source.animated {
-        w.notes.add("animations are dropped, as the file is written anew", "");
+        w.notes.add("animations are dropped, as the file is flattened", "");
     }
     let mut out =
         String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"");

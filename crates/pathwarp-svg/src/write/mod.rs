@@ -1,4 +1,4 @@
-//! The result as text: the source patched in place, or a file written anew.
+//! The result as text: the source patched in place, or flattened to a new file.
 
 mod bitmaps;
 mod defs;

@@ -53,7 +53,7 @@ pub(super) fn masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
     let mut patched = BTreeSet::new();
     for (i, m) in k.input.scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
         let def = k.definition(&m.id, "mask");
-        // A mask in box units hides a box without area completely. The result's box may have an area, so write the mask anew.
+        // A mask in box units hides a box without area completely. The result's box may have an area, so write a new mask.
         let in_box_units = def.is_none_or(|d| k.source.attr(d, "maskUnits").is_none_or(|u| u != "userSpaceOnUse"));
         if in_box_units && m.root.children.is_empty() {
             let id = k.writer.mask_id(i);
@@ -102,7 +102,7 @@ fn redirect(
 ) -> Result<(), Unpatchable> {
     for r in referrers {
         match (r.owner, r.element) {
-            // Written anew, with the right reference.
+            // Replaced as a whole, with the right reference.
             (Some(_), _) => {}
             (None, Some(e)) if k.tag(e) == "use" => {}
             (None, Some(e)) => k.edits.set_property(e, property, format!("url(#{id})")),
