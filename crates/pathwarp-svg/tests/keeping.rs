@@ -7,7 +7,8 @@ mod common;
 use base64::Engine as _;
 use common::{Bend, drawing, oblique, options, read, warp, warp_options};
 use pathwarp_svg::{
-    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpOptions, WarpedDocument, compressed,
+    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpOptions,
+    WarpedDocument, compressed,
 };
 use std::sync::Arc;
 
