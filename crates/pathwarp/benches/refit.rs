@@ -1,9 +1,9 @@
-//! `cargo bench -p pathwarp --bench refit`: pieces and time against kurbo's `fit_to_bezpath` and `fit_to_bezpath_opt`, which get
-//! exact derivatives, in the same run on the same segments.
+//! `cargo bench -p pathwarp --bench refit`: pieces and time compared with kurbo's `fit_to_bezpath` and `fit_to_bezpath_opt`, with
+//! exact derivatives, on the same segments in the same run.
 //!
-//! Data: `corpus/icons.txt`, written by `cargo xtask corpus`; without it a few paths of the project's own. Every number is per
-//! source segment; times are medians over interleaved rounds, so that a slow spell of the machine hits all alike.
-//! `EVERY=n` measures each n-th path (default 8; 1 is all of them), `OPT=0` leaves `fit_to_bezpath_opt` out.
+//! Data: `corpus/icons.txt`, written by `cargo xtask corpus`, or else a few built-in paths. All figures are per source segment.
+//! Times are medians over interleaved rounds, so that a slow spell of the machine affects all alike.
+//! `EVERY=n` measures every n-th path (default 8; 1 measures all), `OPT=0` skips `fit_to_bezpath_opt`.
 
 #![allow(clippy::print_stdout, missing_docs)]
 
@@ -18,7 +18,7 @@ use std::ops::Range;
 use std::time::Instant;
 use support::{BOX, Bicubic, Rational};
 
-/// A segment's image, as kurbo wants it: points and exact derivatives.
+/// A segment's image with exact derivatives, for kurbo.
 struct Image<'a> {
     seg: &'a Seg,
     map: &'a dyn Map,
@@ -43,7 +43,7 @@ impl ParamCurveFit for Image<'_> {
     }
 }
 
-/// Nanoseconds `f` takes for each of `n`.
+/// Runs `f`. Returns the nanoseconds it takes divided by `n`, and its result.
 fn timed(n: usize, mut f: impl FnMut() -> usize) -> (f64, usize) {
     let start = Instant::now();
     let out = black_box(f());
@@ -70,86 +70,101 @@ fn determinants(map: &dyn Map) -> (f64, f64) {
     range
 }
 
+/// Heading of the table.
+const HEADING: [&str; 15] = [
+    "map, tolerance",
+    "ours",
+    "cert",
+    "merged",
+    "kurbo",
+    "opt",
+    "ns ours",
+    "cert",
+    "kurbo",
+    "opt",
+    "k/ours",
+    "k/cert",
+    "opt/o",
+    "n/k",
+    "n/opt",
+];
+
 fn main() {
     let (all, fetched) = support::corpus();
     let outlines: Vec<Outline> = all.into_iter().step_by(if fetched { env("EVERY", 8) } else { 1 }).collect();
     let segs: Vec<Seg> = outlines.iter().flat_map(Outline::segs).copied().collect();
-    let n = segs.len();
-    let source = if fetched { "icons" } else { "own samples (run `cargo xtask corpus` for the icons)" };
-    println!("{n} segments of {} {source}", outlines.len());
+    let source = if fetched { "icons" } else { "built-in samples (run `cargo xtask corpus` for the icons)" };
+    println!("{} segments of {} {source}", segs.len(), outlines.len());
     let maps: [(&str, Box<dyn Map>); 3] = [
         ("mild", Box::new(Bicubic::mild())),
         ("strong", Box::new(Bicubic::strong())),
         ("rational", Box::new(Rational::new())),
     ];
-    println!(
-        "{:<16} {:>7} {:>7} {:>7} {:>7} {:>7} | {:>7} {:>7} {:>9} {:>9} {:>7} {:>7} {:>6} | {:>6} {:>6}",
-        "map, tolerance",
-        "ours",
-        "cert",
-        "merged",
-        "kurbo",
-        "opt",
-        "ns ours",
-        "cert",
-        "kurbo",
-        "opt",
-        "k/ours",
-        "k/cert",
-        "opt/o",
-        "n/k",
-        "n/opt"
-    );
-    let with_opt = env("OPT", 1) == 1;
+    let [name, counts @ .., c0, c1, c2, c3, r0, r1, r2, n0, n1] = HEADING;
+    print!("{name:<16}");
+    counts.iter().for_each(|c| print!(" {c:>7}"));
+    println!(" | {c0:>7} {c1:>7} {c2:>9} {c3:>9} {r0:>7} {r1:>7} {r2:>6} | {n0:>6} {n1:>6}");
     for (name, map) in &maps {
         let map: &dyn Map = map.as_ref();
         let (lo, hi) = determinants(map);
         println!("-- {name}: det J {lo:.3}..{hi:.3}");
         for tolerance in [1.0, 0.1, 0.01, 0.001] {
-            let ours = |o: &Options| {
-                outlines.iter().map(|p| warp_path(p, map, o).map_or(0, |w| w.report.segments_out)).sum::<usize>()
-            };
-            let plain = Options::new(tolerance);
-            let certify = plain.clone().with_certify(true);
-            let merge = plain.clone().with_merge(true);
-            let theirs = |f: &dyn Fn(&Image<'_>) -> kurbo::BezPath| {
-                segs.iter().map(|seg| f(&Image { seg, map }).elements().len() - 1).sum::<usize>()
-            };
-            let kurbo = |i: &Image<'_>| fit_to_bezpath(i, tolerance);
-            let opt = |i: &Image<'_>| fit_to_bezpath_opt(i, tolerance);
-            let mut times: [Vec<f64>; 3] = Default::default();
-            let mut counts = [0; 5];
-            for _ in 0..7 {
-                // Ours is short: several passes make a measurement as long as kurbo's.
-                let (a, k0) = timed(5 * n, || (0..5).fold(0, |_, _| ours(&plain)));
-                let (b, k1) = timed(2 * n, || (0..2).fold(0, |_, _| ours(&certify)));
-                let (c, k2) = timed(n, || theirs(&kurbo));
-                for (t, v) in times.iter_mut().zip([a, b, c]) {
-                    t.push(v);
-                }
-                (counts[0], counts[1], counts[3]) = (k0, k1, k2);
-            }
-            counts[2] = ours(&merge);
-            let mut opt_ns = f64::NAN;
-            if with_opt {
-                (opt_ns, counts[4]) = timed(n, || theirs(&opt));
-            }
-            let [a, b, c] = times.map(median);
-            let per = |k: usize| k as f64 / n as f64;
-            println!(
-                "{:<16} {:>7.4} {:>7.4} {:>7.4} {:>7.4} {:>7.4} | {a:>7.0} {b:>7.0} {c:>9.0} {opt_ns:>9.0} {:>7.1} {:>7.1} {:>6.0} | {:>6.3} {:>6.3}",
-                format!("{name} {tolerance}"),
-                per(counts[0]),
-                per(counts[1]),
-                per(counts[2]),
-                per(counts[3]),
-                per(counts[4]),
-                c / a,
-                c / b,
-                opt_ns / a,
-                counts[0] as f64 / counts[3] as f64,
-                counts[0] as f64 / counts[4] as f64,
-            );
+            BenchRow::measure(&outlines, &segs, map, tolerance).print(&format!("{name} {tolerance}"));
         }
+    }
+}
+
+/// Figures per source segment: ours, certified, merged, kurbo's, and kurbo's optimum.
+struct BenchRow {
+    pieces: [f64; 5],
+    /// Nanoseconds; merging is not timed.
+    ns: [f64; 5],
+}
+
+impl BenchRow {
+    fn measure(outlines: &[Outline], segs: &[Seg], map: &dyn Map, tolerance: f64) -> Self {
+        let n = segs.len();
+        let ours = |o: &Options| {
+            outlines.iter().map(|p| warp_path(p, map, o).map_or(0, |w| w.report.segments_out)).sum::<usize>()
+        };
+        let plain = Options::new(tolerance);
+        let certify = plain.clone().with_certify(true);
+        let theirs = |f: &dyn Fn(&Image<'_>) -> kurbo::BezPath| {
+            segs.iter().map(|seg| f(&Image { seg, map }).elements().len() - 1).sum::<usize>()
+        };
+        let mut times: [Vec<f64>; 3] = Default::default();
+        let mut counts = [0; 5];
+        for _ in 0..7 {
+            // Several passes of ours take about as long as one of kurbo's.
+            let (a, k0) = timed(5 * n, || (0..5).fold(0, |_, _| ours(&plain)));
+            let (b, k1) = timed(2 * n, || (0..2).fold(0, |_, _| ours(&certify)));
+            let (c, k3) = timed(n, || theirs(&|i| fit_to_bezpath(i, tolerance)));
+            for (t, v) in times.iter_mut().zip([a, b, c]) {
+                t.push(v);
+            }
+            (counts[0], counts[1], counts[3]) = (k0, k1, k3);
+        }
+        counts[2] = ours(&plain.clone().with_merge(true));
+        let mut opt = f64::NAN;
+        if env("OPT", 1) == 1 {
+            (opt, counts[4]) = timed(n, || theirs(&|i| fit_to_bezpath_opt(i, tolerance)));
+        }
+        let [a, b, c] = times.map(median);
+        Self { pieces: counts.map(|k| k as f64 / n as f64), ns: [a, b, f64::NAN, c, opt] }
+    }
+
+    fn print(&self, name: &str) {
+        let [a, b, _, c, opt] = self.ns;
+        let [ours, .., kurbo, best] = self.pieces;
+        print!("{name:<16}");
+        self.pieces.iter().for_each(|p| print!(" {p:>7.4}"));
+        println!(
+            " | {a:>7.0} {b:>7.0} {c:>9.0} {opt:>9.0} {:>7.1} {:>7.1} {:>6.0} | {:>6.3} {:>6.3}",
+            c / a,
+            c / b,
+            opt / a,
+            ours / kurbo,
+            ours / best,
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! A proof of the error instead of a measurement: the map says that it is made of polynomials, and of what degree.
+//! Proves the error bound instead of measuring the error: the map declares that it is polynomial, and of which degree.
 //!
 //! `cargo run --example certified`
 

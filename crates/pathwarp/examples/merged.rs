@@ -1,4 +1,4 @@
-//! Fewer nodes than were drawn: pieces merged across smooth joints.
+//! Fewer nodes than drawn: merges pieces across smooth joints.
 //!
 //! `cargo run --example merged`
 
@@ -20,7 +20,7 @@ impl Formula for Twist {
 }
 
 fn main() -> Result<(), Error> {
-    // An ellipse that some program wrote as forty arcs.
+    // An ellipse written as forty arcs.
     let step = TAU / 40.0;
     let arc = |i: i32| {
         EllipticArc::new((0.0, 0.0).into(), (200.0, 0.0).into(), (0.0, 90.0).into(), f64::from(i) * step, step)

@@ -1,4 +1,4 @@
-//! Bends a path with a map of one's own, and says what it took.
+//! Bends a path with a custom map and prints statistics.
 //!
 //! `cargo run --example refit`
 
@@ -8,7 +8,7 @@ use pathwarp::map::{Formula, Real};
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Error, Outline};
 
-/// A flag in the wind. The formula runs on numbers and on dual numbers, so the derivatives come for free.
+/// A flag in the wind. The formula is evaluated with dual numbers, so its derivatives come for free.
 struct Flag;
 
 impl Formula for Flag {

@@ -1,5 +1,4 @@
-//! What the benchmark and the tests of the refit share: three maps, the icon paths, and an oracle that knows nothing of the
-//! engine.
+//! Shared by the benchmark and the tests of the refit: three maps, the icon paths, and an oracle independent of the engine.
 
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
@@ -8,10 +7,10 @@ use pathwarp::map::batch::Lane;
 use pathwarp::map::{Jet, Map, RationalDegree};
 use pathwarp::{Outline, Seg};
 
-/// The box the icons and the maps live in.
+/// Side of the box of the icons and the maps.
 pub const BOX: f64 = 1000.0;
 
-/// A bicubic map of the box, power basis: c[i][j] goes with uⁱvʲ, u = x/1000, v = y/1000.
+/// A bicubic map of the box in the power basis: c[i][j] is the coefficient of uⁱvʲ, u = x/1000, v = y/1000.
 #[derive(Debug, Clone)]
 pub struct Bicubic {
     pub x: [[f64; 4]; 4],
@@ -31,12 +30,12 @@ fn tensor_power(net: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
 }
 
 impl Bicubic {
-    /// From a net of control points: `net[i][j]` belongs to (i/3, j/3) of the box.
+    /// From a control net: `net[i][j]` is the control point at (i/3, j/3) of the box.
     pub fn from_net(net: &[[Point; 4]; 4]) -> Self {
         Self { x: tensor_power(&net.map(|r| r.map(|p| p.x))), y: tensor_power(&net.map(|r| r.map(|p| p.y))) }
     }
 
-    /// The net of the identity, each control point moved by `f(i, j)` (in box units).
+    /// The identity with each control point moved by `f(i, j)`.
     pub fn moved(f: impl Fn(usize, usize) -> (f64, f64)) -> Self {
         let net = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
@@ -47,7 +46,7 @@ impl Bicubic {
         Self::from_net(&net)
     }
 
-    /// Control points moved by at most 5 %.
+    /// Control points moved by at most 5 % of the box.
     pub fn mild() -> Self {
         const D: [[(f64, f64); 4]; 4] = [
             [(25.0, 25.0), (40.0, -50.0), (-20.0, -35.0), (-5.0, 50.0)],
@@ -123,10 +122,10 @@ impl Map for Bicubic {
     }
 }
 
-/// A rational map of degree 1 in x and 3 in y (what an envelope between two cubics with weights is).
+/// A rational map of degree 1 in x and 3 in y, like an envelope between two cubics with weights.
 #[derive(Clone)]
 pub struct Rational {
-    /// Power basis of x·w, y·w and w: `c[k][i][j]` goes with uⁱvʲ.
+    /// x·w, y·w and w in the power basis: `c[k][i][j]` is the coefficient of uⁱvʲ.
     pub c: [[[f64; 4]; 2]; 3],
 }
 
@@ -202,7 +201,7 @@ impl Map for Rational {
     }
 }
 
-/// The icon paths: those fetched by `cargo xtask corpus` if there are any, else a few of the project's own.
+/// The icon paths fetched by `cargo xtask corpus` and `true`, or else a few built-in paths and `false`.
 pub fn corpus() -> (Vec<Outline>, bool) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../corpus/icons.txt");
     match std::fs::read_to_string(file) {
@@ -211,7 +210,7 @@ pub fn corpus() -> (Vec<Outline>, bool) {
     }
 }
 
-/// Stand-ins where the icons were not fetched.
+/// Substitutes for the icons.
 const OWN: &[&str] = &[
     "M500 80C732 80 920 268 920 500S732 920 500 920 80 732 80 500 268 80 500 80ZM500 250C362 250 250 362 250 500S362 750 500 750 750 638 750 500 638 250 500 250Z",
     "M120 880V120H380C560 120 640 200 640 340 640 450 590 520 500 550L720 880H580L390 570H250V880ZM250 460H370C460 460 510 420 510 345S460 230 370 230H250Z",
@@ -220,7 +219,7 @@ const OWN: &[&str] = &[
     "M500 100Q900 100 900 500T500 900 100 500 500 100Z",
 ];
 
-/// The cubics and lines of a path, as cubics.
+/// The segments of a path as cubics.
 pub fn cubics(path: &BezPath) -> Vec<CubicBez> {
     path.segments()
         .map(|s| match s {
@@ -230,8 +229,8 @@ pub fn cubics(path: &BezPath) -> Vec<CubicBez> {
         .collect()
 }
 
-/// The symmetric distance between the image of `seg` and the cubics: `samples` points a direction, feet by Newton steps from
-/// the nearest sample. Distances below `enough` are not made more exact.
+/// The Hausdorff distance between the image of `seg` and the cubics: `samples` points in each direction, foot points by Newton
+/// steps from the nearest sample. Distances below `enough` are not refined.
 pub fn distance(seg: &Seg, map: &dyn Map, out: &[CubicBez], samples: usize, enough: f64) -> f64 {
     let image = |t: f64| map.point(seg.eval(t));
     let image_d = |t: f64| map.jet(seg.eval(t)).push(seg.deriv(t));
@@ -280,9 +279,9 @@ pub fn distance(seg: &Seg, map: &dyn Map, out: &[CubicBez], samples: usize, enou
     a.max(b)
 }
 
-/// As [`distance`], for the image of a run of segments.
+/// As [`distance`], for the image of several segments in a row.
 pub fn distance_of_run(segs: &[Seg], map: &dyn Map, out: &[CubicBez], per: usize, enough: f64) -> f64 {
-    // Segments of no length would be many samples in one place.
+    // Segments of no length would put many samples in one place.
     let segs: Vec<Seg> = segs.iter().filter(|s| extent(&s.to_cubic()) > 1e-9).copied().collect();
     let out: Vec<CubicBez> = out.iter().filter(|c| extent(c) > 1e-9).copied().collect();
     let image = |t: f64| {
@@ -312,7 +311,7 @@ fn extent(c: &CubicBez) -> f64 {
     [c.p1, c.p2, c.p3].iter().map(|p| p.distance(c.p0)).fold(0.0, f64::max)
 }
 
-/// The smallest value between `lo` and `hi`, by golden sections: slow, but cusps do not confuse it.
+/// The minimum between `lo` and `hi` by golden sections: slow, but reliable at cusps.
 fn golden(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     const G: f64 = 0.381_966_011_250_105;
     let (mut a, mut b) = (lo + G * (hi - lo), hi - G * (hi - lo));
@@ -335,7 +334,7 @@ fn one_sided(from: &[Point], to: &[Point], enough: f64, refine: impl Fn(usize, P
     let mut at = 0;
     let mut worst = 0.0f64;
     for p in from {
-        // Downhill from the last nearest sample; a full search where that is not good enough.
+        // Downhill from the last nearest sample; a full search if that is not good enough.
         let d = |k: usize| to[k].distance_squared(*p);
         loop {
             let here = d(at);
@@ -352,8 +351,8 @@ fn one_sided(from: &[Point], to: &[Point], enough: f64, refine: impl Fn(usize, P
             e = e.min(refine(at, *p));
         }
         if e > enough && e > worst {
-            // The chords between samples that are nearest: the samples themselves may be far apart, and branches of a hairpin
-            // nearer to each other than samples are.
+            // The nearest chords between samples: samples may be far apart, and the branches of a hairpin closer to each other
+            // than samples are.
             let chord = |k: usize| {
                 let (a, v) = (to[k], to[k + 1] - to[k]);
                 let s = ((*p - a).dot(v) / (v.hypot2() + 1e-300)).clamp(0.0, 1.0);
@@ -372,7 +371,7 @@ fn one_sided(from: &[Point], to: &[Point], enough: f64, refine: impl Fn(usize, P
     worst
 }
 
-/// Sharpest turn, in degrees, between consecutive cubics that are not corners of the source.
+/// The largest angle between consecutive cubics, degrees.
 pub fn largest_turn(out: &[CubicBez]) -> f64 {
     out.windows(2).map(|w| turn(arriving(&w[0]), leaving(&w[1]))).fold(0.0, f64::max)
 }
