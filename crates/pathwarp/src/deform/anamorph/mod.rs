@@ -23,6 +23,7 @@ mod camera;
 mod dilation;
 mod net;
 mod onto;
+mod scene;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -31,11 +32,10 @@ use super::built::{Built, InSpace, Role, SpaceFile};
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{AffineMap, Chain, Local, Map};
-use crate::outline::Outline;
-use crate::param::{Axis, Frame, Kind, Param, Settings};
-use crate::refit;
+use crate::param::{Axis, Kind, Param, Settings};
 use camera::Camera;
-use kurbo::{Affine, BezPath, Point, Rect, Shape};
+use kurbo::{Affine, Point, Shape};
+use scene::Scene;
 use std::sync::Arc;
 use surface::{Anamorphosis, Radial, Surface};
 
@@ -196,16 +196,6 @@ const PUSHED: super::entry::Pairs = &[("eye", "0,0"), ("reference", "0,0 100,0 0
 const LOCAL: super::entry::Pairs =
     &[("eye", "50,200"), ("reference", "0,100 100,100 50,0"), ("point", "50,40:1.25"), ("local", "true")];
 
-/// The artwork at the size at which it seems to stand, and the eye.
-struct Scene {
-    /// The artwork's box.
-    frame: Rect,
-    /// From the drawing as it came.
-    scale: Affine,
-    /// The eye, or its foot in the drawing.
-    eye: Point,
-}
-
 impl Deformation for Anamorph {
     fn info(&self) -> &Info {
         &INFO
@@ -248,7 +238,7 @@ fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
     if s.flag("local")? {
         return Err(Error::usage("local", "", "works for an eye in the drawing only, without `distance`"));
     }
-    let scene = Scene::new(s, distance)?;
+    let scene = scene(s, distance)?;
     let foot = scene.eye;
     let surface = match s.texts("onto").pop() {
         Some(text) => {
@@ -302,56 +292,30 @@ fn in_front(s: &Settings<'_>, distance: f64) -> Result<Built, Error> {
     Ok(built)
 }
 
-impl Scene {
-    /// The scene at its real size.
-    fn new(s: &Settings<'_>, distance: f64) -> Result<Self, Error> {
-        let drawn = s.frame().rect;
-        let height = s.number_if("eye-height")?;
-        if height.is_some() && s.given("eye") {
-            return Err(Error::usage("eye-height", "", "and `eye` both say where the eye is; give one"));
+/// The scene at its real size.
+fn scene(s: &Settings<'_>, distance: f64) -> Result<Scene, Error> {
+    let drawn = s.frame().rect;
+    let height = s.number_if("eye-height")?;
+    if height.is_some() && s.given("eye") {
+        return Err(Error::usage("eye-height", "", "and `eye` both say where the eye is; give one"));
+    }
+    let wanted = s.number_if("picture-width")?;
+    let k = match (wanted, s.number_if("length")?) {
+        (Some(_), Some(_)) => {
+            return Err(Error::usage("length", "", "and `picture-width` both say how large the artwork is; give one"));
         }
-        let wanted = s.number_if("picture-width")?;
-        let k = match (wanted, s.number_if("length")?) {
-            (Some(_), Some(_)) => {
-                return Err(Error::usage(
-                    "length",
-                    "",
-                    "and `picture-width` both say how large the artwork is; give one",
-                ));
-            }
-            (Some(w), None) => w / drawn.width(),
-            (None, Some(length)) => onto::scale_for(s, length, height, distance)?,
-            (None, None) => 1.0,
-        };
-        if !k.is_finite() || k <= 0.0 {
-            return Err(Error::usage("picture-width", "", "cannot be given to artwork that has no size"));
-        }
-        let anchor = Point::new(drawn.center().x, drawn.y1);
-        let scale = if k == 1.0 { Affine::IDENTITY } else { Affine::scale_about(k, anchor) };
-        let eye = match height {
-            Some(h) => Point::new(anchor.x, anchor.y - h),
-            None => scale * s.point("eye")?,
-        };
-        Ok(Self { frame: scale.transform_rect_bbox(drawn), scale, eye })
+        (Some(w), None) => w / drawn.width(),
+        (None, Some(length)) => onto::scale_for(s, length, height, distance)?,
+        (None, None) => 1.0,
+    };
+    if !k.is_finite() || k <= 0.0 {
+        return Err(Error::usage("picture-width", "", "cannot be given to artwork that has no size"));
     }
-
-    /// The image of the artwork's box, for the preview.
-    fn outline(&self, map: &dyn Map) -> Option<BezPath> {
-        let r = self.frame;
-        let tolerance = 1e-3 * (r.width() + r.height());
-        let outline = Outline::from_points(&Frame::new(r).corners(), true);
-        refit::warp_path(&outline, map, &refit::Options::new(tolerance)).ok().map(|w| w.path)
-    }
-
-    /// A line for `explain`: how large artwork and result are.
-    fn size(&self, map: &dyn Map) -> String {
-        const METRE: f64 = 96.0 / 0.0254;
-        let r = self.frame;
-        let grid = (0..=8).flat_map(|i| (0..=8).map(move |j| (f64::from(i) / 8.0, f64::from(j) / 8.0)));
-        let at = |(u, v): (f64, f64)| map.point(Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()));
-        let all = grid.map(at).filter(|p| p.is_finite()).map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b));
-        let all = all.unwrap_or(r);
-        let say = |r: Rect| format!("{:.4} m × {:.4} m", r.width() / METRE, r.height() / METRE);
-        format!("the artwork seems to be {}; the result is {}", say(r), say(all))
-    }
+    let anchor = Point::new(drawn.center().x, drawn.y1);
+    let scale = if k == 1.0 { Affine::IDENTITY } else { Affine::scale_about(k, anchor) };
+    let eye = match height {
+        Some(h) => Point::new(anchor.x, anchor.y - h),
+        None => scale * s.point("eye")?,
+    };
+    Ok(Scene { frame: scale.transform_rect_bbox(drawn), scale, eye })
 }

@@ -1,7 +1,7 @@
 //! The control points and where they are pushed.
 
-use super::Scene;
 use super::dilation::{Dilation, Reference};
+use super::scene::Scene;
 use super::surface::SpacePlane;
 use crate::deform::built::Built;
 use crate::error::{Error, GeometryError};

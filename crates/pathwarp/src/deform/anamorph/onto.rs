@@ -1,7 +1,7 @@
 //! What the artwork is thrown onto, as the user writes it.
 
-use super::Scene;
 use super::camera::Camera;
+use super::scene::Scene;
 use super::surface::{Anamorphosis, Radial, Round, Space, SpacePlane, Sphere, Surface};
 use crate::error::Error;
 use crate::param::{Axis, Settings};
