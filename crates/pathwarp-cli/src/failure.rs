@@ -1,7 +1,7 @@
 //! Failures: the errors that end a run, each with its exit code.
 
-use crate::{advice, flags, terminal};
-use pathwarp::GeometryError;
+use crate::advice::{self, Flags};
+use crate::terminal;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -14,10 +14,17 @@ pub(crate) enum Failure {
     Usage(String),
     /// A file cannot be read, parsed or written.
     Input(String),
-    /// The same for a file other than the artwork (a cage, a style, a mesh); the message names that file.
-    SideFile(String),
     /// The geometry does not allow it.
     Geometry(String),
+    /// An error of the libraries; flags and advice are added when it is shown.
+    Library {
+        error: Box<pathwarp::Error>,
+        /// The input that it concerns; `None` if the message names a file already.
+        input: Option<String>,
+        /// The error occurred in a recipe: an [`Error::Input`](pathwarp::Error::Input) concerns a side file (a cage, a style, a
+        /// mesh), which the message names.
+        of_recipe: bool,
+    },
 }
 
 impl Failure {
@@ -40,37 +47,55 @@ impl Failure {
         match self {
             Self::Clap(e) => u8::try_from(e.exit_code()).unwrap_or(2),
             Self::Usage(_) => 2,
-            Self::Input(_) | Self::SideFile(_) => 3,
+            Self::Input(_) => 3,
             Self::Geometry(_) => 4,
+            Self::Library { error, .. } => match **error {
+                pathwarp::Error::Input { .. } => 3,
+                pathwarp::Error::Geometry(_) => 4,
+                _ => 2,
+            },
         }
     }
 
-    /// Prints the message.
-    pub(crate) fn show(&self) {
+    /// Prints the message, with parameters as `flags`.
+    pub(crate) fn show(&self, flags: &Flags) {
         match self {
             // clap picks the stream: help goes to standard output. Ignore a closed pipe.
             Self::Clap(e) => drop(e.print()),
-            Self::Usage(m) | Self::Input(m) | Self::SideFile(m) | Self::Geometry(m) => terminal::error(m),
+            Self::Usage(m) | Self::Input(m) | Self::Geometry(m) => terminal::error(m),
+            Self::Library { error, input, .. } => {
+                let message = advice::error(error, flags);
+                terminal::error(&input.as_ref().map_or_else(|| message.clone(), |i| prefixed(i, &message)));
+            }
         }
     }
 
-    /// An error from a recipe. Its input errors name the side file they occurred in, so the artwork's name is not added to them.
-    pub(crate) fn of_recipe(e: pathwarp::Error) -> Self {
-        match Self::from(e) {
-            Self::Input(m) => Self::SideFile(m),
-            other => other,
-        }
+    /// An error from looking up references or building a recipe.
+    pub(crate) fn of_recipe(error: pathwarp::Error) -> Self {
+        Self::Library { error: Box::new(error), input: None, of_recipe: true }
     }
 
-    /// The same failure with the name of the input in front, unless the message starts with it already.
-    pub(crate) fn about(self, input: &str) -> Self {
-        let with = |m: String| if m.starts_with(input) { m } else { format!("{input}: {m}") };
+    /// The same failure with the name of the input in front, unless it is wrong usage or concerns another file.
+    pub(crate) fn about(self, name: &str) -> Self {
         match self {
-            Self::Input(m) => Self::Input(with(m)),
-            Self::Geometry(m) => Self::Geometry(with(m)),
+            Self::Input(m) => Self::Input(prefixed(name, &m)),
+            Self::Geometry(m) => Self::Geometry(prefixed(name, &m)),
+            Self::Library { error, of_recipe, .. } => {
+                let concerns_input = match *error {
+                    pathwarp::Error::Input { .. } => !of_recipe,
+                    pathwarp::Error::Geometry(_) => true,
+                    _ => false,
+                };
+                Self::Library { error, input: concerns_input.then(|| name.to_owned()), of_recipe }
+            }
             other => other,
         }
     }
+}
+
+/// Puts the name of a file before a message that does not begin with it.
+fn prefixed(name: &str, message: &str) -> String {
+    if message.starts_with(name) { message.to_owned() } else { format!("{name}: {message}") }
 }
 
 impl From<clap::Error> for Failure {
@@ -80,16 +105,8 @@ impl From<clap::Error> for Failure {
 }
 
 impl From<pathwarp::Error> for Failure {
-    fn from(e: pathwarp::Error) -> Self {
-        let m = advice::error(&e);
-        match e {
-            pathwarp::Error::Input { .. } => Self::Input(m),
-            pathwarp::Error::Geometry(GeometryError::FlatFrame { .. }) => {
-                Self::Geometry(format!("{m} (--frame X,Y,W,H, or --base where there is one)"))
-            }
-            pathwarp::Error::Geometry(_) => Self::Geometry(flags::led(&m)),
-            _ => Self::Usage(format!("--{m}")),
-        }
+    fn from(error: pathwarp::Error) -> Self {
+        Self::Library { error: Box::new(error), input: None, of_recipe: false }
     }
 }
 

@@ -17,7 +17,6 @@ mod bitmap;
 mod commands;
 mod decimals;
 mod failure;
-mod flags;
 mod input;
 mod options;
 mod output;
@@ -52,12 +51,11 @@ pub fn command(registry: &Registry) -> clap::Command {
 /// Runs the program on `args`, the first of which is the program's name.
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
-    flags::know(registry);
     match commands::dispatch(registry, &args.into_iter().collect::<Vec<_>>()) {
         Ok(Status::Complete) => ExitCode::SUCCESS,
         Ok(Status::Partial) => ExitCode::from(1),
         Err(failure) => {
-            failure.show();
+            failure.show(&advice::Flags::of(registry));
             ExitCode::from(failure.code())
         }
     }

@@ -1,6 +1,5 @@
 //! Messages on standard error; coloured only on a terminal.
 
-use crate::flags::dashed;
 use anstyle::{AnsiColor, Style};
 
 const ERROR: Style = AnsiColor::Red.on_default().bold();
@@ -8,7 +7,7 @@ const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const NOTE: Style = AnsiColor::Cyan.on_default().bold();
 
 fn print(style: Style, label: &str, message: &str) {
-    anstream::eprintln!("{style}{label}{style:#}: {}", dashed(message));
+    anstream::eprintln!("{style}{label}{style:#}: {message}");
 }
 
 pub(crate) fn error(message: &str) {

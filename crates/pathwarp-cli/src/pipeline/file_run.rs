@@ -1,12 +1,13 @@
 //! The run of one input: open, look up references, choose the frame, build, warp, report.
 
+use crate::advice::Flags;
 use crate::failure::Failure;
 use crate::input::{Input, WarpRequest, WarpedResult};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::report::FileReport;
 use crate::{recipe_file, references};
-use pathwarp::deform::Registry;
+use pathwarp::deform::{Explanation, Registry};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use std::path::Path;
 
@@ -16,6 +17,7 @@ pub(super) struct Batch<'a> {
     pub(super) recipe: &'a Recipe,
     pub(super) options: &'a CommonOptions,
     pub(super) given: &'a Given,
+    pub(super) flags: Flags,
 }
 
 /// One input, warped. Nothing is written yet.
@@ -32,7 +34,7 @@ pub(super) struct FileRun {
 impl Batch<'_> {
     /// Warps one input; without a target the result goes to standard output.
     pub(super) fn run(&self, input: &Path, target: Option<&Path>) -> Result<FileRun, Failure> {
-        let Batch { registry, options, .. } = *self;
+        let Batch { registry, options, .. } = self;
         let mut input = Input::open(input, options, target)?;
         let artwork = input.artwork();
         let mut recipe = self.recipe.clone();
@@ -69,7 +71,7 @@ impl Batch<'_> {
             tolerance,
             shapes: warped.shapes,
             skipped: warped.skipped,
-            warnings: built.steps.iter().flat_map(|s| s.explanation.warnings.clone()).chain(warped.warnings).collect(),
+            warnings: self.in_flags(&built, |e| &e.warnings).chain(warped.warnings).collect(),
         };
         let partial = warped.partial || report.is_partial();
         Ok(FileRun { report, files, stdout, notes: self.notes(&built, baseline), partial })
@@ -86,8 +88,17 @@ impl Batch<'_> {
                 "frame: the artwork is lettering; its baseline, at {y:.6}, lies on the curve (--frame baseline-ascent)"
             ));
         }
-        notes.extend(built.steps.iter().flat_map(|s| s.explanation.notes.clone()));
+        notes.extend(self.in_flags(built, |e| &e.notes));
         notes
+    }
+
+    /// Messages of all steps, with parameters as flags.
+    fn in_flags(
+        &self,
+        built: &BuiltRecipe,
+        messages: impl Fn(&Explanation) -> &Vec<String>,
+    ) -> impl Iterator<Item = String> {
+        built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| self.flags.in_text(m))
     }
 }
 

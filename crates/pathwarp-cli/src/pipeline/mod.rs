@@ -6,6 +6,7 @@ mod messages;
 mod progress;
 mod targets;
 
+use crate::advice::Flags;
 use crate::failure::Failure;
 use crate::input::display;
 use crate::options::{CommonOptions, Given};
@@ -27,7 +28,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given) -> Result
     let options = given.read()?;
     let inputs = if options.inputs.is_empty() { vec![PathBuf::from("-")] } else { options.inputs.clone() };
     let targets = targets::targets(&options, &inputs)?;
-    let batch = Batch { registry, recipe, options: &options, given };
+    let batch = Batch { registry, recipe, options: &options, given, flags: Flags::of(registry) };
     let runs = run_files(&batch, &inputs, &targets)?;
 
     let mut status = Status::Complete;

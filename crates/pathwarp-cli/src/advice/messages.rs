@@ -1,14 +1,30 @@
-//! Advice in flags: adds the options that help to the errors and warnings of the libraries, which know no command line.
+//! Advice in flags, for every kind of error and warning of the libraries, which know no command line.
 
+use super::flags::Flags;
 use crate::decimals::three_figures;
 use pathwarp::{Error, GeometryError};
 use pathwarp_svg::{LetteringFrameError, Overhang};
 
-/// The message of an error with advice.
-pub(crate) fn error(e: &Error) -> String {
+/// The message of an error of the libraries: parameters as flags, with the options that help.
+pub(crate) fn error(e: &Error, flags: &Flags) -> String {
     match e {
-        Error::Geometry(GeometryError::Infinity { .. }) => format!("{e} (--on-error skip)"),
-        _ => e.to_string(),
+        // The value is quoted as the user typed it, so only the problem is searched for parameters.
+        Error::Usage { param, value, problem } => {
+            Error::usage(&format!("--{param}"), value, flags.in_text(problem)).to_string()
+        }
+        Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
+        Error::Input { place, problem } => Error::input(place, flags.in_text(problem)).to_string(),
+        Error::Geometry(g) => geometry(g, flags),
+        _ => flags.in_text(&e.to_string()),
+    }
+}
+
+fn geometry(e: &GeometryError, flags: &Flags) -> String {
+    let message = flags.in_text(&flags.in_front(&e.to_string()));
+    match e {
+        GeometryError::Infinity { .. } => format!("{message} (--on-error skip)"),
+        GeometryError::FlatFrame { .. } => format!("{message} (--frame X,Y,W,H, or --base where there is one)"),
+        _ => message,
     }
 }
 
@@ -42,28 +58,4 @@ pub(crate) fn lettering_frame(error: &LetteringFrameError) -> String {
         _ => "use --frame artwork",
     };
     format!("cannot make a frame: {error}; {advice}")
-}
-
-/// Says that there is no `what` called `name`, and which of the known names is most like it.
-pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
-    /// Names less alike than this have nothing to do with each other.
-    const LIKELY: f64 = 0.8;
-    let likeness = known.map(|k| (strsim::jaro_winkler(name, k), k)).filter(|(l, _)| *l >= LIKELY);
-    match likeness.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((_, likely)) => format!("there is no {what} `{name}`; did you mean `{likely}`?"),
-        None => format!("there is no {what} `{name}`"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn likely_names_are_suggested_and_others_are_not() {
-        let known = ["tolerance", "strokes", "select"];
-        let said = |name: &str| unknown("option", name, known.into_iter());
-        assert!(said("tolerence").ends_with("did you mean `tolerance`?"), "{}", said("tolerence"));
-        assert_eq!(said("xyz"), "there is no option `xyz`");
-    }
 }

@@ -1,0 +1,64 @@
+//! Parameters in messages as flags: the libraries write `bottom`, the command line `--bottom`.
+
+use pathwarp::deform::Registry;
+use std::collections::BTreeSet;
+
+/// The parameters that messages may name.
+pub(crate) struct Flags(BTreeSet<&'static str>);
+
+impl Flags {
+    /// The parameters of all deformations.
+    pub(crate) fn of(registry: &Registry) -> Self {
+        Self(registry.entries().iter().flat_map(|e| e.info().params).map(|p| p.name).collect())
+    }
+
+    /// Puts dashes before a message that begins with a parameter: `base: …`, `base file.svg has …`.
+    pub(super) fn in_front(&self, message: &str) -> String {
+        let name = message.split([' ', ':']).next().unwrap_or_default();
+        if self.0.contains(name) { format!("--{message}") } else { message.to_owned() }
+    }
+
+    /// Replaces `` `name` `` and `` `name value` `` by `--name` and `--name value` where `name` is a parameter.
+    pub(crate) fn in_text(&self, message: &str) -> String {
+        let is_param = |span: &str| {
+            let mut words = span.split(' ');
+            let known = words.next().is_some_and(|w| w.len() > 1 && self.0.contains(w));
+            known && words.count() < 2 && !span.ends_with(' ')
+        };
+        let parts: Vec<&str> = message.split('`').collect();
+        let mut out = String::with_capacity(message.len() + 2);
+        for (i, part) in parts.iter().enumerate() {
+            // Every second part is quoted, except behind a last unpaired quote.
+            let quoted = i % 2 == 1;
+            let closed = i + 1 < parts.len();
+            if quoted && closed && is_param(part) {
+                out.push_str("--");
+                out.push_str(part);
+                continue;
+            }
+            if quoted {
+                out.push('`');
+            }
+            out.push_str(part);
+            if quoted && closed {
+                out.push('`');
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_become_flags() {
+        let flags = Flags::of(&Registry::builtin());
+        assert_eq!(flags.in_text("use `by length`; see `stretch`"), "use --by length; see --stretch");
+        assert_eq!(flags.in_front("base: anchors 1 and 2 coincide"), "--base: anchors 1 and 2 coincide");
+        assert_eq!(flags.in_front("#based has 3 anchors"), "#based has 3 anchors");
+        let unknown = "there is no `wobble`, `along the way` or `by";
+        assert_eq!(flags.in_text(unknown), unknown);
+    }
+}
