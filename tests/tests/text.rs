@@ -205,7 +205,7 @@ fn faults_are_named() {
         // One letter is misspelt; the bundled family is always available.
         (2, &["text", "a", "--font", "Notto Snas"], "similar families: Noto Sans"),
         (3, &["text", "a", "--font", "missing.ttf"], "missing.ttf"),
-        (3, &["text", "a", "--font", "samples/logo.svg"], "no font"),
+        (3, &["text", "a", "--font", "samples/logo.svg"], "not a readable font"),
         (3, &["text", "a", "--font", "crates/pathwarp-text/tests/fonts/cff.otf#3"], "counted from 0"),
         (2, &["text", "a", "--font", variable, "--variation", "slnt=5"], "wght (100 to 900)"),
         (2, &["text", "a", "--font", variable, "--variation", "wght=1000"], "100 to 900"),

@@ -59,7 +59,7 @@ impl<'a> ByteSource<'a> {
         self.end.saturating_sub(self.at)
     }
 
-    /// Fills `buffer`, or fails with `what` as the thing that is cut short.
+    /// Fills `buffer`; an error at the end of the data names `what`.
     pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
         if self.left() < buffer.len() as u64 {
             let needed = format!("{what} needs {} more bytes", buffer.len());

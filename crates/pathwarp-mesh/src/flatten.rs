@@ -1,7 +1,7 @@
 //! Flattens outlines to polygons whose images in space are within the tolerance of the true curves.
 
 use crate::error::Error;
-use crate::shape::{NamedShape, Point3, Surface};
+use crate::shape::{NamedShape, Point3, SurfaceFn};
 use pathwarp::Seg;
 use pathwarp::kurbo::Point;
 
@@ -17,7 +17,7 @@ pub(crate) struct Polygon {
 }
 
 /// Flattens all subpaths of a shape.
-pub(crate) fn polygons(shape: &NamedShape<'_>, space: &Surface<'_>, tolerance: f64) -> Result<Vec<Polygon>, Error> {
+pub(crate) fn polygons(shape: &NamedShape<'_>, space: &SurfaceFn<'_>, tolerance: f64) -> Result<Vec<Polygon>, Error> {
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: shape.name.to_owned(), at: p });
     let mut total = 0;
     let mut out = Vec::new();

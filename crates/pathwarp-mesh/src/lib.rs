@@ -27,7 +27,7 @@ mod shape;
 mod tessellate;
 
 pub use error::Error;
-pub use shape::{NamedShape, Point3, Surface};
+pub use shape::{NamedShape, Point3, SurfaceFn};
 
 use obj::ObjWriter;
 
@@ -35,7 +35,7 @@ use obj::ObjWriter;
 ///
 /// # Errors
 /// A point has no image on the surface, or a shape needs too many triangles.
-pub fn filled(shapes: &[NamedShape<'_>], space: &Surface<'_>, tolerance: f64) -> Result<String, Error> {
+pub fn filled(shapes: &[NamedShape<'_>], space: &SurfaceFn<'_>, tolerance: f64) -> Result<String, Error> {
     let mut out = ObjWriter::new();
     for s in shapes {
         let polygons = flatten::polygons(s, space, tolerance)?;
@@ -50,7 +50,7 @@ pub fn filled(shapes: &[NamedShape<'_>], space: &Surface<'_>, tolerance: f64) ->
 ///
 /// # Errors
 /// A point has no image on the surface, or a shape needs too many triangles.
-pub fn outlines(shapes: &[NamedShape<'_>], space: &Surface<'_>, tolerance: f64) -> Result<String, Error> {
+pub fn outlines(shapes: &[NamedShape<'_>], space: &SurfaceFn<'_>, tolerance: f64) -> Result<String, Error> {
     let mut out = ObjWriter::new();
     for s in shapes {
         let mut lines = Vec::new();

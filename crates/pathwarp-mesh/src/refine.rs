@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::flatten::chord_distance;
-use crate::shape::{Point3, Surface};
+use crate::shape::{Point3, SurfaceFn};
 use crate::tessellate::FlatMesh;
 use pathwarp::kurbo::Point;
 use std::collections::{HashMap, HashSet};
@@ -29,7 +29,7 @@ fn edge(a: u32, b: u32) -> Edge {
 pub(crate) fn to_surface(
     name: &str,
     flat: FlatMesh,
-    space: &Surface<'_>,
+    space: &SurfaceFn<'_>,
     tolerance: f64,
 ) -> Result<TriangleMesh, Error> {
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: name.to_owned(), at: p });

@@ -7,7 +7,7 @@ use pathwarp::kurbo::Point;
 pub type Point3 = [f64; 3];
 
 /// Maps points of the drawing to a surface in space; `None` for points without an image.
-pub type Surface<'a> = dyn Fn(Point) -> Option<Point3> + 'a;
+pub type SurfaceFn<'a> = dyn Fn(Point) -> Option<Point3> + 'a;
 
 /// A named shape of the artwork.
 #[derive(Debug, Clone, Copy)]

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// All warps of a file in the order of its layers, from bottom to top.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LayerWarps {
     /// A warp for each smart object and text layer; its style is `warpNone` if the layer is not warped.
     pub warps: Vec<LayerWarp>,
@@ -11,6 +12,7 @@ pub struct LayerWarps {
 
 /// The warp of a layer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LayerWarp {
     /// Name of the layer.
     pub layer: String,
@@ -31,6 +33,7 @@ pub struct LayerWarp {
 
 /// Control points of bicubic patches.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct WarpMesh {
     /// x, y, width and height of the warped box, in the units of the points.
     pub region: [f64; 4],

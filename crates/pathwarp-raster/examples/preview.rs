@@ -3,7 +3,7 @@
 //! `KIND` is `cage`, `base`, `target`, `anchors` or `grid`; the path is SVG path data. Targets are drawn on the right panel.
 
 use kurbo::{Affine, BezPath, Rect};
-use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview, encode_png};
+use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay, encode_png};
 use std::{error::Error, fs};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "grid" => OverlayKind::GridLines,
             other => return Err(format!("unknown overlay: {other}").into()),
         };
-        let overlay = Overlay::new(kind, BezPath::from_svg(path)?);
+        let overlay = PreviewOverlay::new(kind, BezPath::from_svg(path)?);
         if kind == OverlayKind::Target {
             right = right.with(overlay);
         } else {

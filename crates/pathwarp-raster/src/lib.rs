@@ -44,7 +44,7 @@ pub use error::Error;
 pub use limit::MAX_PIXELS;
 pub use picture::{Picture, PictureFormat};
 pub use png::{decode_png, encode_png};
-pub use preview::{Overlay, OverlayKind, Panel, Preview};
+pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};
 pub use render::{RenderOptions, Size, render};
 pub use tiny_skia::{Color, Pixmap};
 pub use warp_image::{Extent, ImageWarp, Shade, extent, shade, shown, warp_image};

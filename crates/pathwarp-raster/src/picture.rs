@@ -20,6 +20,7 @@ pub struct Picture {
 
 /// A file format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum PictureFormat {
     /// PNG with transparency.
     #[default]

@@ -11,6 +11,7 @@ const ROUNDING_SLACK: f64 = 1e-3;
 
 /// The size of a picture. It always keeps the aspect ratio of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum Size {
     /// One pixel per CSS pixel of the drawing's `width` and `height`.
     #[default]

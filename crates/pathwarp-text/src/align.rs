@@ -1,11 +1,11 @@
 //! Aligns lines and widens spaces.
 
-use crate::lettering::{Cluster, TextLine};
+use crate::lettering::{Cluster, LetteringLine};
 use crate::style::Align;
 use kurbo::Affine;
 
 /// Aligns lines within the width of the longest.
-pub(crate) fn align(lines: &mut [TextLine], align: Align, rtl: bool) {
+pub(crate) fn align(lines: &mut [LetteringLine], align: Align, rtl: bool) {
     let width = lines.iter().map(|l| l.end.x).fold(0.0, f64::max);
     for line in lines {
         let room = width - line.end.x;
@@ -31,7 +31,7 @@ pub(crate) fn align(lines: &mut [TextLine], align: Align, rtl: bool) {
 }
 
 /// Distributes `room` among the spaces of a line; returns `false` if there are none.
-fn widen(line: &mut TextLine, room: f64) -> bool {
+fn widen(line: &mut LetteringLine, room: f64) -> bool {
     let spaces = line.clusters.iter().filter(|c| is_space(&c.text)).count();
     if spaces == 0 {
         return false;

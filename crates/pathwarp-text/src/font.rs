@@ -2,7 +2,7 @@
 
 use crate::error::{Error, guarded};
 use crate::glyph::Outlines;
-use crate::metrics::{FontAxis, Metrics};
+use crate::metrics::{FontAxis, FontMetrics};
 use crate::setting::Variation;
 use harfrust::{ShaperData, ShaperInstance};
 use kurbo::Shape as _;
@@ -21,7 +21,7 @@ pub struct Font<'a> {
     pub(crate) outlines: Outlines<'a>,
     charmap: Charmap<'a>,
     units_per_em: f64,
-    metrics: Metrics,
+    metrics: FontMetrics,
 }
 
 impl fmt::Debug for Font<'_> {
@@ -62,7 +62,7 @@ impl<'a> Font<'a> {
             outlines: Outlines::new(&font)?,
             charmap: Charmap::new(&font),
             units_per_em,
-            metrics: Metrics::default(),
+            metrics: FontMetrics::default(),
             font,
         };
         out.measure();
@@ -125,7 +125,7 @@ impl<'a> Font<'a> {
 
     /// Returns the heights of the font at an em of `size`.
     #[must_use]
-    pub fn metrics(&self, size: f64) -> Metrics {
+    pub fn metrics(&self, size: f64) -> FontMetrics {
         self.metrics.scaled(size / self.units_per_em)
     }
 
@@ -146,7 +146,7 @@ impl<'a> Font<'a> {
         let or_zero = |v: f32| if v.is_finite() { f64::from(v) } else { 0.0 };
         let ascent = or_zero(m.ascent);
         let cap_height = positive(m.cap_height).or_else(|| self.top_of('H')).unwrap_or(ascent);
-        self.metrics = Metrics {
+        self.metrics = FontMetrics {
             ascent,
             descent: -or_zero(m.descent),
             line_gap: or_zero(m.leading).max(0.0),

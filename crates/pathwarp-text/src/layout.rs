@@ -4,7 +4,7 @@ use crate::align::{align, is_space};
 use crate::error::{Error, guarded};
 use crate::font::Font;
 use crate::itemize::{self, Run};
-use crate::lettering::{Lettering, TextLine};
+use crate::lettering::{LetteringLine, OutlinedText};
 use crate::painter::{GlyphPainter, MOST_ELEMENTS, SpacedCluster};
 use crate::setting::Feature;
 use crate::shape::{self, MOST_GLYPHS, RunShaper};
@@ -32,7 +32,7 @@ const MOST_CHARACTERS: usize = 20_000;
 ///
 /// # Errors
 /// The style is out of range, the text is empty or too long, or the font is damaged.
-pub fn layout(text: &str, fonts: &[Font<'_>], style: &TextStyle) -> Result<Lettering, Error> {
+pub fn layout(text: &str, fonts: &[Font<'_>], style: &TextStyle) -> Result<OutlinedText, Error> {
     let Some(font) = fonts.first() else { return Err(Error::NoFont) };
     let (script, language) = check(style)?;
     let lines = lines(text);
@@ -47,7 +47,7 @@ pub fn layout(text: &str, fonts: &[Font<'_>], style: &TextStyle) -> Result<Lette
     };
     let mut shaper = RunShaper { fonts, size: style.size, features: features(style), language, budget: MOST_GLYPHS };
     let mut painter = GlyphPainter { fonts, size: style.size, drawn: HashMap::new(), budget: MOST_ELEMENTS };
-    let set_lines = || -> Result<Vec<TextLine>, Error> {
+    let set_lines = || -> Result<Vec<LetteringLine>, Error> {
         let metrics = font.metrics(style.size);
         let step = style.line_height.unwrap_or(metrics.ascent + metrics.descent + metrics.line_gap);
         let mut out = Vec::with_capacity(lines.len());
@@ -61,7 +61,8 @@ pub fn layout(text: &str, fonts: &[Font<'_>], style: &TextStyle) -> Result<Lette
     };
     let lines = guarded(set_lines)?;
     let missing: BTreeSet<char> = lines.iter().flat_map(|l| missing(l, fonts)).collect();
-    let out = Lettering { text, metrics: font.metrics(style.size), rtl, lines, missing: missing.into_iter().collect() };
+    let out =
+        OutlinedText { text, metrics: font.metrics(style.size), rtl, lines, missing: missing.into_iter().collect() };
     if out.page().area() > 0.0 { Ok(out) } else { Err(Error::Empty) }
 }
 
@@ -124,7 +125,7 @@ fn clusters(
 }
 
 /// Returns the characters of a line that no font has.
-fn missing(line: &TextLine, fonts: &[Font<'_>]) -> Vec<char> {
+fn missing(line: &LetteringLine, fonts: &[Font<'_>]) -> Vec<char> {
     let mut out = Vec::new();
     for c in line.clusters.iter().filter(|c| c.glyphs.iter().any(|g| g.id == 0)) {
         let before = out.len();

@@ -1,11 +1,12 @@
 //! Text as outlines: lines of clusters of glyphs.
 
-use crate::metrics::Metrics;
+use crate::metrics::FontMetrics;
 use kurbo::{BezPath, Point, Rect};
 
 /// A glyph and its place in its cluster, in user units, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Glyph {
+#[non_exhaustive]
+pub struct PlacedGlyph {
     /// Index of its font.
     pub font: usize,
     /// Its number in the font; 0 is the glyph for missing characters.
@@ -20,6 +21,7 @@ pub struct Glyph {
 
 /// Characters that form a unit (a letter with its marks, a ligature), with their outline.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Cluster {
     /// Its characters.
     pub text: String,
@@ -30,12 +32,13 @@ pub struct Cluster {
     /// Outline in place; empty for a space. Fill it by the nonzero rule, since glyphs may overlap.
     pub outline: BezPath,
     /// The glyphs of the outline.
-    pub glyphs: Vec<Glyph>,
+    pub glyphs: Vec<PlacedGlyph>,
 }
 
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TextLine {
+#[non_exhaustive]
+pub struct LetteringLine {
     /// Its characters.
     pub text: String,
     /// Left end of the baseline: the start of the first advance.
@@ -48,20 +51,21 @@ pub struct TextLine {
 
 /// Text as outlines. The longest line starts at x = 0, and the ascent of the first line is at y = 0; y points down.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Lettering {
+#[non_exhaustive]
+pub struct OutlinedText {
     /// The text with newlines between lines; control characters are replaced by spaces.
     pub text: String,
     /// Heights of the first font.
-    pub metrics: Metrics,
+    pub metrics: FontMetrics,
     /// `true` if the base direction is right to left.
     pub rtl: bool,
     /// The lines from top to bottom.
-    pub lines: Vec<TextLine>,
+    pub lines: Vec<LetteringLine>,
     /// Characters that no font has, without duplicates.
     pub missing: Vec<char>,
 }
 
-impl Lettering {
+impl OutlinedText {
     /// Returns the bounding box of all outlines; `None` if all are empty.
     #[must_use]
     pub fn ink(&self) -> Option<Rect> {
@@ -72,7 +76,7 @@ impl Lettering {
     /// Returns the bounding box of all lines: the baselines horizontally, from the first ascent to the last descent vertically.
     #[must_use]
     pub fn line_box(&self) -> Rect {
-        let of = |l: &TextLine| {
+        let of = |l: &LetteringLine| {
             Rect::new(l.start.x, l.start.y - self.metrics.ascent, l.end.x, l.end.y + self.metrics.descent).abs()
         };
         self.lines.iter().map(of).reduce(|a, b| a.union(b)).unwrap_or_default()

@@ -2,7 +2,8 @@
 
 /// Heights of a font, measured from the baseline and all positive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Metrics {
+#[non_exhaustive]
+pub struct FontMetrics {
     /// Distance from the baseline up to the top of the line box.
     pub ascent: f64,
     /// Distance from the baseline down to the bottom of the line box.
@@ -15,7 +16,7 @@ pub struct Metrics {
     pub x_height: f64,
 }
 
-impl Metrics {
+impl FontMetrics {
     pub(crate) fn scaled(self, by: f64) -> Self {
         Self {
             ascent: self.ascent * by,
@@ -29,6 +30,7 @@ impl Metrics {
 
 /// An axis of a variable font.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FontAxis {
     /// Four characters such as `wght`.
     pub tag: String,

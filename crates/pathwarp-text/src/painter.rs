@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::font::Font;
-use crate::lettering::{Cluster, Glyph, TextLine};
+use crate::lettering::{Cluster, LetteringLine, PlacedGlyph};
 use crate::shape::ShapedCluster;
 use kurbo::{Affine, BezPath, Point};
 use skrifa::GlyphId;
@@ -30,7 +30,7 @@ pub(crate) struct GlyphPainter<'s, 'f> {
 
 impl GlyphPainter<'_, '_> {
     /// Draws a line with its baseline at `y`.
-    pub(crate) fn line(&mut self, text: &str, spaced: Vec<SpacedCluster>, y: f64) -> Result<TextLine, Error> {
+    pub(crate) fn line(&mut self, text: &str, spaced: Vec<SpacedCluster>, y: f64) -> Result<LetteringLine, Error> {
         let mut x = 0.0;
         let mut clusters = Vec::with_capacity(spaced.len());
         for SpacedCluster { cluster, gap } in spaced {
@@ -48,11 +48,11 @@ impl GlyphPainter<'_, '_> {
                 glyphs: cluster.glyphs,
             });
         }
-        Ok(TextLine { text: text.to_owned(), start: Point::new(0.0, y), end: Point::new(x, y), clusters })
+        Ok(LetteringLine { text: text.to_owned(), start: Point::new(0.0, y), end: Point::new(x, y), clusters })
     }
 
     /// Appends a glyph to an outline.
-    fn draw(&mut self, g: &Glyph, origin: Point, out: &mut BezPath) -> Result<(), Error> {
+    fn draw(&mut self, g: &PlacedGlyph, origin: Point, out: &mut BezPath) -> Result<(), Error> {
         let Some(font) = self.fonts.get(g.font) else { return Ok(()) };
         let key = (g.font, g.id);
         let glyph = match self.drawn.entry(key) {

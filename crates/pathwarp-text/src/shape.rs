@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::font::Font;
 use crate::itemize::{Run, for_shaper};
-use crate::lettering::Glyph;
+use crate::lettering::PlacedGlyph;
 use crate::setting::Feature;
 use harfrust::{BufferFlags, Direction, Language, ShapeOptions, UnicodeBuffer};
 use std::collections::{BTreeSet, HashMap};
@@ -18,7 +18,7 @@ pub(crate) struct ShapedCluster {
     /// Bytes in the line.
     pub(crate) range: Range<usize>,
     pub(crate) advance: f64,
-    pub(crate) glyphs: Vec<Glyph>,
+    pub(crate) glyphs: Vec<PlacedGlyph>,
     /// `true` if no font has all of its characters.
     pub(crate) missing: bool,
 }
@@ -111,7 +111,7 @@ impl RunShaper<'_, '_> {
                 out.push(ShapedCluster { range: start..end, advance: 0.0, glyphs: Vec::new(), missing: false });
             }
             let Some(cluster) = out.last_mut() else { continue };
-            let glyph = Glyph {
+            let glyph = PlacedGlyph {
                 font: index,
                 id: info.glyph_id,
                 dx: cluster.advance + f64::from(place.x_offset) * scale,

@@ -6,6 +6,7 @@ use unicode_script::Script;
 
 /// The base direction of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Direction {
     /// The direction of the first character that has one, else left to right.
     #[default]
@@ -18,6 +19,7 @@ pub enum Direction {
 
 /// Alignment of lines within the width of the longest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Align {
     /// At the start: left, or right for right-to-left text.
     #[default]
@@ -34,6 +36,7 @@ pub enum Align {
 
 /// Use of optional ligatures (`liga`, `clig`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Ligatures {
     /// On without letter spacing, which a ligature cannot follow.
     #[default]

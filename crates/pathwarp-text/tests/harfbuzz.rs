@@ -131,7 +131,7 @@ fn glyphs_and_positions_match_harfbuzz() {
         let bytes = case.font_bytes();
         let set = layout(&case.text("text"), &[case.font(&bytes)], &case.style()).unwrap();
         let [line] = &set.lines[..] else { panic!("{}", case.name) };
-        let ours: Vec<(f64, &pathwarp_text::Glyph)> =
+        let ours: Vec<(f64, &pathwarp_text::PlacedGlyph)> =
             line.clusters.iter().flat_map(|c| c.glyphs.iter().map(move |g| (c.origin.x, g))).collect();
         let theirs = case.glyphs();
         let ids = |all: &[[f64; 5]]| all.iter().map(|g| g[0] as u32).collect::<Vec<_>>();

@@ -6,7 +6,8 @@ mod common;
 use common::{bundled, file};
 use kurbo::{BezPath, Point, Shape};
 use pathwarp_text::{
-    Align, Direction, Error, Font, Lettering, Ligatures, TextLine, TextStyle, Variation, features, layout, variations,
+    Align, Direction, Error, Font, LetteringLine, Ligatures, OutlinedText, TextStyle, Variation, features, layout,
+    variations,
 };
 use proptest::prelude::*;
 
@@ -23,11 +24,11 @@ fn em() -> TextStyle {
 }
 
 #[track_caller]
-fn set(text: &str, style: &TextStyle) -> Lettering {
+fn set(text: &str, style: &TextStyle) -> OutlinedText {
     layout(text, &[Font::new(&bundled(), 0).unwrap()], style).unwrap()
 }
 
-fn width(line: &TextLine) -> f64 {
+fn width(line: &LetteringLine) -> f64 {
     line.end.x - line.start.x
 }
 

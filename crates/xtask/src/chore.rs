@@ -4,14 +4,14 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use std::path::{Path, PathBuf};
 
 /// An error message for the person at the terminal.
-pub(crate) type Failure = String;
+pub(crate) type ChoreError = String;
 
 /// One subcommand of `cargo xtask`.
 pub(crate) struct Chore {
     /// Declares its name and options.
     pub(crate) command: fn() -> Command,
     /// Runs it and returns a summary to print.
-    pub(crate) run: fn(&ArgMatches) -> Result<String, Failure>,
+    pub(crate) run: fn(&ArgMatches) -> Result<String, ChoreError>,
 }
 
 /// The root folder of this workspace.
@@ -40,6 +40,6 @@ pub(crate) fn paths(arguments: &ArgMatches, name: &str) -> Vec<PathBuf> {
 }
 
 /// Returns a function that turns an error of a path into a message naming the path.
-pub(crate) fn at<E: std::fmt::Display>(path: &Path) -> impl Fn(E) -> Failure {
+pub(crate) fn at<E: std::fmt::Display>(path: &Path) -> impl Fn(E) -> ChoreError {
     move |error| format!("{}: {error}", path.display())
 }

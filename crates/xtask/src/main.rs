@@ -12,7 +12,7 @@ use chore::Chore;
 use clap::Command;
 use std::process::ExitCode;
 
-/// Every chore; each declares its own options in its own file.
+/// Every chore, declared with its options in a separate file.
 const CHORES: [Chore; 5] = [new_deformation::CHORE, corpus::CHORE, refit_report::CHORE, outputs::CHORE, docs::CHORE];
 
 fn main() -> ExitCode {

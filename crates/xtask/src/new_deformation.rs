@@ -1,6 +1,6 @@
 //! `cargo xtask new-deformation NAME`: writes a working deformation as a starting point.
 
-use crate::chore::{Chore, Failure, at, path_option, workspace};
+use crate::chore::{Chore, ChoreError, at, path_option, workspace};
 use clap::{Arg, ArgMatches, Command};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,13 +18,13 @@ fn command() -> Command {
         .arg(path_option("root", "DIR").help("The workspace to write to [default: this one]"))
 }
 
-fn run(arguments: &ArgMatches) -> Result<String, Failure> {
+fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = arguments.get_one::<PathBuf>("root").cloned().unwrap_or_else(workspace);
     create(&root, arguments.get_one::<String>("NAME").map_or("", String::as_str))
 }
 
 /// Writes the file and the two lines of the registry, and returns a summary.
-fn create(root: &Path, name: &str) -> Result<String, Failure> {
+fn create(root: &Path, name: &str) -> Result<String, ChoreError> {
     let kebab = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
     if !name.split('-').all(kebab) || name.starts_with(|c: char| c.is_ascii_digit()) {
         return Err(format!("`{name}` is not in kebab-case, such as swirl or square-wave"));
@@ -54,7 +54,7 @@ fn create(root: &Path, name: &str) -> Result<String, Failure> {
 }
 
 /// Returns the text of `deform/mod.rs` with a line for the module and one for the entry.
-fn register(list: &str, module: &str, ty: &str) -> Result<String, Failure> {
+fn register(list: &str, module: &str, ty: &str) -> Result<String, ChoreError> {
     let unknown = "deform/mod.rs has an unexpected layout: add the `mod` line and the entry by hand";
     let mut mods: Vec<&str> = list.lines().filter(|l| l.starts_with("mod ")).collect();
     let (first, last) = (*mods.first().ok_or(unknown)?, *mods.last().ok_or(unknown)?);

@@ -1,6 +1,6 @@
 //! `cargo xtask refit-report`: draws the pieces, nodes, handles and error of a refitted path.
 
-use crate::chore::{Chore, Failure, at, path_option};
+use crate::chore::{Chore, ChoreError, at, path_option};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{ParamCurve, ParamCurveArclen as _, ParamCurveDeriv, PathSeg, Point, Rect, Vec2};
@@ -43,7 +43,7 @@ fn command() -> Command {
         .arg(path_option("out", "FILE.svg").default_value("docs/images/refit.svg").help("The drawing to write"))
 }
 
-fn run(arguments: &ArgMatches) -> Result<String, Failure> {
+fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     match (
         arguments.get_one::<String>("path"),
         arguments.get_one::<f64>("tolerance"),
@@ -55,7 +55,7 @@ fn run(arguments: &ArgMatches) -> Result<String, Failure> {
 }
 
 /// Refits the path, writes the drawing to `out`, and returns a summary.
-fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, Failure> {
+fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, ChoreError> {
     let source = Outline::from_svg(path).map_err(|e| e.to_string())?;
     let frame = Frame::new(source.bounding_box().ok_or("the path is empty")?);
     let registry = Registry::builtin();

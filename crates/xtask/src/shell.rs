@@ -1,13 +1,13 @@
 //! Runs the command lines that pages show, with pipes but without a shell.
 
-use crate::chore::{Failure, at};
+use crate::chore::{ChoreError, at};
 use clap::ArgMatches;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// The program named by `--program`, or else one built in release mode.
-pub(crate) fn program(root: &Path, arguments: &ArgMatches) -> Result<PathBuf, Failure> {
+pub(crate) fn program(root: &Path, arguments: &ArgMatches) -> Result<PathBuf, ChoreError> {
     if let Some(program) = arguments.get_one::<PathBuf>("program") {
         return program.canonicalize().map_err(at(program));
     }
@@ -48,7 +48,7 @@ pub(crate) fn stages(line: &str) -> Vec<Vec<String>> {
 }
 
 /// Runs the program on `input` and returns its standard output. Any message on standard error is a failure.
-pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, Failure> {
+pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, ChoreError> {
     let mut command = Command::new(program);
     command.args(args).current_dir(root).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().map_err(at(program))?;
@@ -64,7 +64,7 @@ pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -
 }
 
 /// Renders the preview of a command, given without its leading `pathwarp`, to a PNG file.
-pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) -> Result<(), Failure> {
+pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) -> Result<(), ChoreError> {
     let mut stages = stages(&format!("pathwarp {command}"));
     let Some(mut last) = stages.pop() else { return Ok(()) };
     let mut drawing = Vec::new();

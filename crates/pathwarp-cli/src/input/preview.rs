@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use pathwarp::deform::Role;
 use pathwarp::kurbo::{Rect, Shape};
 use pathwarp::recipe::BuiltRecipe;
-use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview, encode_png};
+use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay, encode_png};
 use pathwarp_svg::{Document, ReadOptions, Selection, usvg_tree};
 
 /// Draws the PNG. Bases are drawn over the source; targets and cages over the result.
@@ -31,7 +31,7 @@ pub(super) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &Rea
                 Role::Target if i == last => (&mut right, OverlayKind::Target),
                 _ => continue,
             };
-            *panel = panel.clone().with(Overlay::new(kind, o.path.clone()));
+            *panel = panel.clone().with(PreviewOverlay::new(kind, o.path.clone()));
         }
     }
     Ok(encode_png(&Preview::new(left, right).view(view).render()?)?)

@@ -19,7 +19,7 @@ const MOST_POINTERS: u64 = 1 << 22;
 
 /// The type of structure that a pointer points to.
 #[derive(Clone, Copy)]
-enum Target {
+enum PointerTarget {
     Layer,
     Channel,
     Hierarchy,
@@ -27,7 +27,7 @@ enum Target {
 }
 
 /// A traversal of the pointers.
-struct Walk<'i, 'a> {
+struct PointerWalk<'i, 'a> {
     input: &'i mut ByteSource<'a>,
     wide: bool,
     found: Pointers,
@@ -36,7 +36,7 @@ struct Walk<'i, 'a> {
     /// Lowest valid target.
     first: u64,
     /// Structures still to be visited.
-    pending: Vec<(u64, Target)>,
+    pending: Vec<(u64, PointerTarget)>,
     visited: HashSet<u64>,
 }
 
@@ -44,7 +44,7 @@ struct Walk<'i, 'a> {
 pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
     input.seek(xcf.properties_end, "the property list")?;
     let input_end = input.end;
-    let mut walk = Walk {
+    let mut walk = PointerWalk {
         wide: xcf.wide(),
         input,
         found: Pointers::new(),
@@ -53,34 +53,34 @@ pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Err
         pending: Vec::new(),
         visited: HashSet::new(),
     };
-    walk.table(Some(Target::Layer))?;
-    walk.table(Some(Target::Channel))?;
+    walk.table(Some(PointerTarget::Layer))?;
+    walk.table(Some(PointerTarget::Channel))?;
     while let Some((at, target)) = walk.pending.pop() {
         if !walk.visited.insert(at) {
             continue;
         }
         walk.input.seek(at, "a pointer")?;
         match target {
-            Target::Layer => {
+            PointerTarget::Layer => {
                 walk.input.skip(12, "a layer")?;
                 walk.name_and_properties()?;
-                walk.pointer(Some(Target::Hierarchy))?;
-                walk.pointer(Some(Target::Channel))?;
+                walk.pointer(Some(PointerTarget::Hierarchy))?;
+                walk.pointer(Some(PointerTarget::Channel))?;
             }
-            Target::Channel => {
+            PointerTarget::Channel => {
                 walk.input.skip(8, "a channel")?;
                 walk.name_and_properties()?;
-                walk.pointer(Some(Target::Hierarchy))?;
+                walk.pointer(Some(PointerTarget::Hierarchy))?;
             }
-            Target::Hierarchy => {
+            PointerTarget::Hierarchy => {
                 walk.input.skip(12, "a hierarchy")?;
                 // GIMP reads only the first level. With 64-bit pointers the others are empty, and GIMP ends their table with a
                 // word of 32 bits.
-                if walk.pointer(Some(Target::Level))? {
-                    walk.table((!walk.wide).then_some(Target::Level))?;
+                if walk.pointer(Some(PointerTarget::Level))? {
+                    walk.table((!walk.wide).then_some(PointerTarget::Level))?;
                 }
             }
-            Target::Level => {
+            PointerTarget::Level => {
                 walk.input.skip(8, "a level")?;
                 walk.table(None)?;
             }
@@ -89,14 +89,14 @@ pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Err
     Ok(walk.found)
 }
 
-impl Walk<'_, '_> {
-    fn table(&mut self, to: Option<Target>) -> Result<(), Error> {
+impl PointerWalk<'_, '_> {
+    fn table(&mut self, to: Option<PointerTarget>) -> Result<(), Error> {
         while self.pointer(to)? {}
         Ok(())
     }
 
     /// Records a pointer; returns `false` if it is the zero that ends a table.
-    fn pointer(&mut self, to: Option<Target>) -> Result<bool, Error> {
+    fn pointer(&mut self, to: Option<PointerTarget>) -> Result<bool, Error> {
         let at = self.input.at();
         let what = "a table of pointers";
         let target = if self.wide { self.input.u64(what)? } else { u64::from(self.input.u32(what)?) };

@@ -7,7 +7,7 @@ mod brush;
 mod overlay;
 mod skia;
 
-pub use overlay::{Overlay, OverlayKind};
+pub use overlay::{OverlayKind, PreviewOverlay};
 
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
@@ -34,7 +34,7 @@ pub struct Panel<'a> {
     tree: &'a usvg::Tree,
     user_to_px: Affine,
     page: Rect,
-    overlays: Vec<Overlay>,
+    overlays: Vec<PreviewOverlay>,
 }
 
 impl<'a> Panel<'a> {
@@ -49,14 +49,14 @@ impl<'a> Panel<'a> {
 
     /// Adds an overlay on top of the artwork and of earlier overlays.
     #[must_use]
-    pub fn with(mut self, overlay: Overlay) -> Self {
+    pub fn with(mut self, overlay: PreviewOverlay) -> Self {
         self.overlays.push(overlay);
         self
     }
 
     /// Bounding box of the page and all overlays, in root user units.
     fn bounds(&self) -> Rect {
-        self.overlays.iter().filter_map(Overlay::bounds).fold(self.page.abs(), |a, b| a.union(b))
+        self.overlays.iter().filter_map(PreviewOverlay::bounds).fold(self.page.abs(), |a, b| a.union(b))
     }
 }
 
@@ -64,14 +64,14 @@ impl<'a> Panel<'a> {
 ///
 /// ```
 /// use kurbo::{Affine, BezPath, Rect};
-/// use pathwarp_raster::{Overlay, OverlayKind, Panel, Preview};
+/// use pathwarp_raster::{PreviewOverlay, OverlayKind, Panel, Preview};
 ///
 /// let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20"><path d="M5 5h30v10H5z"/></svg>"#;
 /// let tree = usvg::Tree::from_str(svg, &usvg::Options::default())?;
 /// let page = Rect::new(0.0, 0.0, 40.0, 20.0);
 /// let base = BezPath::from_svg("M5 15H35")?;
 ///
-/// let before = Panel::new(&tree, Affine::IDENTITY, page).with(Overlay::new(OverlayKind::Base, base));
+/// let before = Panel::new(&tree, Affine::IDENTITY, page).with(PreviewOverlay::new(OverlayKind::Base, base));
 /// let after = Panel::new(&tree, Affine::IDENTITY, page);
 /// let picture = Preview::new(before, after).panel_size(300).render()?;
 /// assert!(picture.width() > picture.height());
@@ -229,7 +229,7 @@ mod tests {
         let tree = tree();
         let panel = || Panel::new(&tree, Affine::scale(2.0), PAGE);
         let cage = BezPath::from_svg("M0 0H200V50H0Z").unwrap();
-        let before = panel().with(Overlay::new(OverlayKind::Cage, cage));
+        let before = panel().with(PreviewOverlay::new(OverlayKind::Cage, cage));
         let picture = Preview::new(before, panel()).render().unwrap();
         assert_eq!((picture.width(), picture.height()), (1204, 180));
         // The cage's right side is 20 px from the left panel's edge.

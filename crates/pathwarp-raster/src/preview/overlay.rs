@@ -29,7 +29,7 @@ pub enum OverlayKind {
 
 /// A path on top of the artwork of a panel.
 #[derive(Debug, Clone)]
-pub struct Overlay {
+pub struct PreviewOverlay {
     kind: OverlayKind,
     path: BezPath,
 }
@@ -47,7 +47,7 @@ impl OverlayKind {
     }
 }
 
-impl Overlay {
+impl PreviewOverlay {
     /// Creates an overlay of a path in root user units.
     pub fn new(kind: OverlayKind, path: BezPath) -> Self {
         Self { kind, path }
@@ -105,13 +105,13 @@ mod tests {
 
     fn drawn(kind: OverlayKind, d: &str) -> Pixmap {
         let mut picture = Pixmap::new(60, 60).unwrap();
-        Overlay::new(kind, path(d)).draw(Affine::IDENTITY, 1.0, &mut picture);
+        PreviewOverlay::new(kind, path(d)).draw(Affine::IDENTITY, 1.0, &mut picture);
         picture
     }
 
     #[test]
     fn bounds_include_curves_and_single_points() {
-        let bounds = |d| Overlay::new(OverlayKind::Anchors, path(d)).bounds();
+        let bounds = |d| PreviewOverlay::new(OverlayKind::Anchors, path(d)).bounds();
         assert_eq!(bounds("M3 4"), Some(Rect::new(3.0, 4.0, 3.0, 4.0)));
         assert_eq!(bounds("M0 0Q10 20 20 0"), Some(Rect::new(0.0, 0.0, 20.0, 10.0)));
         assert_eq!(bounds(""), None);

@@ -12,7 +12,7 @@ const SAMPLES: usize = 5;
 
 /// The bytes of a bitmap.
 #[derive(Clone, Copy)]
-pub(super) struct Bitmap<'a> {
+pub(super) struct BitmapBytes<'a> {
     pub(super) data: &'a [u8],
     pub(super) width: usize,
     pub(super) height: usize,
@@ -39,7 +39,7 @@ pub(super) struct SourceBlock {
 impl SourceBlock {
     /// Reads the pixels that a tile needs: its places and `margin` pixels around them. Returns `false` if there are none or too many.
     #[inline(always)]
-    pub(super) fn read(&mut self, source: Bitmap<'_>, trace: &Trace, margin: f64, layout: ChannelOrder) -> bool {
+    pub(super) fn read(&mut self, source: BitmapBytes<'_>, trace: &Trace, margin: f64, layout: ChannelOrder) -> bool {
         let share = |k: usize| k as f64 / (SAMPLES - 1) as f64;
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for k in 0..SAMPLES * SAMPLES {

@@ -9,6 +9,7 @@ const CELLS: usize = 192;
 
 /// The extent of a warped picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Extent {
     /// Bounding box of the image.
     pub bounds: Rect,

@@ -1,7 +1,7 @@
 //! Warps a bitmap tile by tile.
 
 use super::area::{PixelArea, SMALLEST, TILE};
-use super::block::{BYTES, Bitmap, SourceBlock};
+use super::block::{BYTES, BitmapBytes, SourceBlock};
 use super::color::bytes;
 use super::image_warp::{ImageWarp, in_pixels};
 use super::pyramid::Pyramid;
@@ -28,7 +28,7 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
         warp,
         to_source: warp.placed.inverse(),
         pyramid: Pyramid::new(warp.source),
-        bitmap: Bitmap {
+        bitmap: BitmapBytes {
             data: warp.source.data(),
             width: warp.source.width() as usize,
             height: warp.source.height() as usize,
@@ -72,7 +72,7 @@ struct ImagePainter<'a> {
     warp: &'a ImageWarp<'a>,
     to_source: Affine,
     pyramid: Pyramid<'a>,
-    bitmap: Bitmap<'a>,
+    bitmap: BitmapBytes<'a>,
     basis: ChebyshevBasis,
     arch: pulp::Arch,
 }

@@ -9,7 +9,7 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 const HALVING: [f32; 4] = [0.433_593_75, 0.113_281_25, -0.035_156_25, -0.011_718_75];
 
 /// A picture of the pyramid.
-pub(super) struct Level<'a> {
+pub(super) struct PyramidLevel<'a> {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) pixels: std::borrow::Cow<'a, [PremultipliedColorU8]>,
@@ -17,8 +17,8 @@ pub(super) struct Level<'a> {
 
 /// The pictures. Those after the first are computed on first use.
 pub(super) struct Pyramid<'a> {
-    source: Level<'a>,
-    halves: Vec<OnceLock<Level<'static>>>,
+    source: PyramidLevel<'a>,
+    halves: Vec<OnceLock<PyramidLevel<'static>>>,
 }
 
 impl<'a> Pyramid<'a> {
@@ -26,7 +26,7 @@ impl<'a> Pyramid<'a> {
         let (width, height) = (source.width() as usize, source.height() as usize);
         let levels = width.max(height).ilog2() as usize;
         Self {
-            source: Level { width, height, pixels: source.pixels().into() },
+            source: PyramidLevel { width, height, pixels: source.pixels().into() },
             halves: (0..levels).map(|_| OnceLock::new()).collect(),
         }
     }
@@ -38,7 +38,7 @@ impl<'a> Pyramid<'a> {
 
     /// Returns the picture halved `level` times.
     #[inline]
-    pub(super) fn level(&self, level: usize) -> &Level<'a> {
+    pub(super) fn level(&self, level: usize) -> &PyramidLevel<'a> {
         match level.checked_sub(1).and_then(|above| Some((above, self.halves.get(above)?))) {
             None => &self.source,
             Some((above, lock)) => lock.get_or_init(|| self.level(above).half()),
@@ -46,14 +46,14 @@ impl<'a> Pyramid<'a> {
     }
 }
 
-impl Level<'_> {
+impl PyramidLevel<'_> {
     #[inline]
     pub(super) fn at(&self, x: usize, y: usize) -> Channels {
         channels(self.pixels[y * self.width + x])
     }
 
     /// Halves width and height, summing columns for one row at a time.
-    fn half(&self) -> Level<'static> {
+    fn half(&self) -> PyramidLevel<'static> {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut pixels = Vec::with_capacity(width * height);
         let mut sums = vec![[0.0; 4]; self.width];
@@ -76,6 +76,6 @@ impl Level<'_> {
                 pixels.push(color(sum));
             }
         }
-        Level { width, height, pixels: pixels.into() }
+        PyramidLevel { width, height, pixels: pixels.into() }
     }
 }

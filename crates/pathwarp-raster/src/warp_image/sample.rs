@@ -1,7 +1,7 @@
 //! Computes one pixel of the result as the average over its footprint in the source.
 
 use super::color::{Channels, add, channels, color};
-use super::pyramid::{Level, Pyramid};
+use super::pyramid::{Pyramid, PyramidLevel};
 use pathwarp::map::Jet;
 use tiny_skia::PremultipliedColorU8;
 
@@ -63,7 +63,7 @@ fn weights(t: f32) -> [f32; 4] {
 
 /// Interpolates the source; the colours of its outermost pixels extend beyond its edge.
 #[inline]
-fn interpolated(source: &Level<'_>, x: f64, y: f64) -> Channels {
+fn interpolated(source: &PyramidLevel<'_>, x: f64, y: f64) -> Channels {
     let (x, y) = (x - 0.5, y - 0.5);
     let (left, top) = (x.floor(), y.floor());
     let (wx, wy) = (weights((x - left) as f32), weights((y - top) as f32));

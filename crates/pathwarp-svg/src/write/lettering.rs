@@ -3,7 +3,7 @@
 use crate::source::number::{path_data, push};
 use crate::source::xml::escape;
 use pathwarp::Error;
-use pathwarp_text::Lettering;
+use pathwarp_text::OutlinedText;
 use std::fmt::Write as _;
 use std::str::FromStr as _;
 
@@ -40,7 +40,7 @@ const DIGITS: i32 = 10;
 ///
 /// # Errors
 /// Returns [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
-pub fn write_lettering(lettering: &Lettering, options: &LetteringOptions) -> Result<String, Error> {
+pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> Result<String, Error> {
     let fill = match &options.fill {
         Some(fill) if svgtypes::Color::from_str(fill).is_ok() || fill == "none" || fill == "currentColor" => {
             format!(" fill=\"{}\"", escape(fill))

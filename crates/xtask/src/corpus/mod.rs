@@ -3,7 +3,7 @@
 mod drawings;
 mod icons;
 
-use crate::chore::{Chore, Failure, count_option, path_option, paths};
+use crate::chore::{Chore, ChoreError, count_option, path_option, paths};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use drawings::CorpusRun;
 
@@ -38,7 +38,7 @@ fn command() -> Command {
         .arg(Arg::new("times").long("times").action(ArgAction::SetTrue).help("Time reading and writing only"))
 }
 
-fn run(arguments: &ArgMatches) -> Result<String, Failure> {
+fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     if !arguments.contains_id("svg") {
         return icons::fetch_all().map_err(|e| e.to_string());
     }

@@ -1,6 +1,6 @@
-//! The pages of `docs/deformations`: one for every deformation, from its own table, illustrated by its first example.
+//! The pages of `docs/deformations`: one per deformation, generated from its table and illustrated by its first example.
 
-use crate::chore::{Failure, at};
+use crate::chore::{ChoreError, at};
 use crate::shell;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::Kind;
@@ -12,7 +12,7 @@ use std::path::Path;
 const PAGES: &str = "docs/deformations";
 
 /// Writes all pages and returns how many there are.
-pub(super) fn write(root: &Path) -> Result<usize, Failure> {
+pub(super) fn write(root: &Path) -> Result<usize, ChoreError> {
     let folder = root.join(PAGES);
     fs::create_dir_all(&folder).map_err(at(&folder))?;
     let pages = pages();
@@ -24,7 +24,7 @@ pub(super) fn write(root: &Path) -> Result<usize, Failure> {
 }
 
 /// Draws the picture of every page.
-pub(super) fn draw(root: &Path, program: &Path) -> Result<(), Failure> {
+pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
     let folder = root.join(PAGES);
     for e in Registry::builtin().entries() {
         let Some(example) = e.info().examples.first() else { continue };

@@ -1,6 +1,6 @@
 //! Pictures of the guides: pages written by hand, each picture drawn by the command below it.
 
-use crate::chore::{Failure, at};
+use crate::chore::{ChoreError, at};
 use crate::shell::{pipe, stages};
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ const GUIDES: [&str; 1] = ["docs/lettering.md"];
 const WIDTH: &str = "800";
 
 /// Draws the pictures of all guides.
-pub(super) fn draw(root: &Path, program: &Path) -> Result<(), Failure> {
+pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
     for guide in GUIDES {
         let page = root.join(guide);
         let page = fs::read_to_string(&page).map_err(at(&page))?;

@@ -6,7 +6,7 @@ mod guides;
 mod lettering;
 mod page;
 
-use crate::chore::{Chore, Failure, program_option, workspace};
+use crate::chore::{Chore, ChoreError, program_option, workspace};
 use crate::shell;
 use clap::{ArgMatches, Command};
 use page::CookbookPage;
@@ -32,7 +32,7 @@ fn command() -> Command {
         .arg(program_option())
 }
 
-fn run(arguments: &ArgMatches) -> Result<String, Failure> {
+fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = &workspace();
     let pages = deformations::write(root)?;
     let program = &shell::program(root, arguments)?;
@@ -49,7 +49,7 @@ fn run(arguments: &ArgMatches) -> Result<String, Failure> {
     ))
 }
 
-fn write_cookbook(page: &CookbookPage, root: &Path, program: &Path) -> Result<(), Failure> {
+fn write_cookbook(page: &CookbookPage, root: &Path, program: &Path) -> Result<(), ChoreError> {
     page.write(root)?;
     for entry in page.entries {
         shell::preview(root, program, entry.command, &page.picture(root, entry))?;

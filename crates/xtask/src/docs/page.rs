@@ -1,6 +1,6 @@
 //! A page of commands: an introduction, then one entry per command with its picture.
 
-use crate::chore::{Failure, at};
+use crate::chore::{ChoreError, at};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ impl CookbookPage {
     }
 
     /// Writes the page and creates the folder of its pictures.
-    pub(super) fn write(&self, root: &Path) -> Result<(), Failure> {
+    pub(super) fn write(&self, root: &Path) -> Result<(), ChoreError> {
         let folder = self.folder(root);
         fs::create_dir_all(&folder).map_err(at(&folder))?;
         let file = root.join(self.file);

@@ -1,6 +1,6 @@
 //! The commands whose output is compared.
 
-use crate::chore::{Failure, at};
+use crate::chore::{ChoreError, at};
 use crate::docs;
 use pathwarp::deform::Registry;
 use std::collections::BTreeSet;
@@ -32,7 +32,7 @@ const MORE: [&str; 7] = [
 ];
 
 /// All command lines, without the leading `pathwarp`; the stages of a pipeline are separated by ` | `.
-pub(super) fn all(program: &Path, drawings: &[PathBuf], count: usize) -> Result<Vec<String>, Failure> {
+pub(super) fn all(program: &Path, drawings: &[PathBuf], count: usize) -> Result<Vec<String>, ChoreError> {
     let mut seen = BTreeSet::new();
     let mut all = Vec::new();
     let mut add = |line: String| {
@@ -64,8 +64,8 @@ pub(super) fn all(program: &Path, drawings: &[PathBuf], count: usize) -> Result<
 }
 
 /// The examples on samples in the help of every subcommand that is not a deformation.
-fn help_examples(program: &Path) -> Result<Vec<String>, Failure> {
-    let help = |args: &[&str]| -> Result<String, Failure> {
+fn help_examples(program: &Path) -> Result<Vec<String>, ChoreError> {
+    let help = |args: &[&str]| -> Result<String, ChoreError> {
         let out = Command::new(program).args(args).output().map_err(at(program))?;
         Ok(String::from_utf8_lossy(&out.stdout).into_owned())
     };
@@ -86,7 +86,7 @@ fn help_examples(program: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// Every SVG file below a folder, sorted by its whole path.
-fn svg_files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn svg_files(folder: &Path) -> Result<Vec<PathBuf>, ChoreError> {
     let mut out = Vec::new();
     for entry in fs::read_dir(folder.canonicalize().map_err(at(folder))?).map_err(at(folder))? {
         let path = entry.map_err(at(folder))?.path();

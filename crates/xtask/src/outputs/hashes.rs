@@ -1,6 +1,6 @@
 //! The hash of a command's output.
 
-use crate::chore::{Failure, at};
+use crate::chore::{ChoreError, at};
 use crate::shell;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The hash of every command's output, in order.
-pub(super) fn of_all(root: &Path, program: &Path, lines: &[String]) -> Result<Vec<String>, Failure> {
+pub(super) fn of_all(root: &Path, program: &Path, lines: &[String]) -> Result<Vec<String>, ChoreError> {
     let next = AtomicUsize::new(0);
     let out = Mutex::new(vec![Ok(String::new()); lines.len()]);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -35,7 +35,7 @@ pub(super) fn of_all(root: &Path, program: &Path, lines: &[String]) -> Result<Ve
 }
 
 /// Runs a command line in an empty folder with the samples and hashes its exit codes, standard output and files.
-fn of_one(root: &Path, program: &Path, line: &str) -> Result<String, Failure> {
+fn of_one(root: &Path, program: &Path, line: &str) -> Result<String, ChoreError> {
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let samples = folder.path().join("samples");
     copy(&root.join("samples"), &samples)?;
@@ -82,7 +82,7 @@ fn of_one(root: &Path, program: &Path, line: &str) -> Result<String, Failure> {
 }
 
 /// Collects the files below a folder, without those in the folder `except`.
-fn collect(folder: &Path, except: &Path, out: &mut Vec<PathBuf>) -> Result<(), Failure> {
+fn collect(folder: &Path, except: &Path, out: &mut Vec<PathBuf>) -> Result<(), ChoreError> {
     for entry in fs::read_dir(folder).map_err(|e| e.to_string())? {
         let path = entry.map_err(|e| e.to_string())?.path();
         if path.is_dir() && path != except {
@@ -95,7 +95,7 @@ fn collect(folder: &Path, except: &Path, out: &mut Vec<PathBuf>) -> Result<(), F
 }
 
 /// Copies the files of a folder, without its subfolders.
-fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+fn copy(from: &Path, to: &Path) -> Result<(), ChoreError> {
     fs::create_dir_all(to).map_err(at(to))?;
     for entry in fs::read_dir(from).map_err(at(from))? {
         let entry = entry.map_err(at(from))?;
@@ -107,7 +107,7 @@ fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
 }
 
 /// A report without messages, times and version.
-fn numbers(report: &[u8]) -> Result<Vec<u8>, Failure> {
+fn numbers(report: &[u8]) -> Result<Vec<u8>, ChoreError> {
     fn strip(value: &mut Value) {
         match value {
             Value::Object(map) => {

@@ -9,7 +9,7 @@
 mod commands;
 mod hashes;
 
-use crate::chore::{Chore, Failure, at, count_option, path_option, paths, program_option, workspace};
+use crate::chore::{Chore, ChoreError, at, count_option, path_option, paths, program_option, workspace};
 use crate::shell;
 use clap::{ArgAction, ArgMatches, Command};
 use std::fmt::Write as _;
@@ -39,7 +39,7 @@ fn command() -> Command {
         .arg(program_option())
 }
 
-fn run(arguments: &ArgMatches) -> Result<String, Failure> {
+fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = &workspace();
     let program = &shell::program(root, arguments)?;
     let number = |name: &str| arguments.get_one(name).copied().unwrap_or(1);
@@ -51,7 +51,7 @@ fn run(arguments: &ArgMatches) -> Result<String, Failure> {
 }
 
 /// Writes the hash and the text of every command to `file`.
-fn store(root: &Path, program: &Path, file: &Path, drawings: &[PathBuf], count: usize) -> Result<String, Failure> {
+fn store(root: &Path, program: &Path, file: &Path, drawings: &[PathBuf], count: usize) -> Result<String, ChoreError> {
     let lines = commands::all(program, drawings, count)?;
     let hashes = hashes::of_all(root, program, &lines)?;
     let text: String = hashes.iter().zip(&lines).map(|(h, l)| format!("{h} {l}\n")).collect();
@@ -60,7 +60,7 @@ fn store(root: &Path, program: &Path, file: &Path, drawings: &[PathBuf], count: 
 }
 
 /// Runs every `every`th command of `file` and compares.
-fn check(root: &Path, program: &Path, file: &Path, every: usize) -> Result<String, Failure> {
+fn check(root: &Path, program: &Path, file: &Path, every: usize) -> Result<String, ChoreError> {
     let text = fs::read_to_string(file).map_err(at(file))?;
     let stored: Vec<(&str, &str)> = text.lines().filter_map(|l| l.split_once(' ')).step_by(every.max(1)).collect();
     let lines: Vec<String> = stored.iter().map(|(_, line)| (*line).to_owned()).collect();

@@ -183,7 +183,7 @@ impl FileCase<'_> {
                 }
                 last = Some((share <= SHARE, remark + &remarks(&warped)));
             }
-            // Without arcs, the first comparison stands for both.
+            // Without arcs, the first comparison counts for both.
             self.out.extend(last.clone().map(|(passed, remark)| Finding::new(check, passed, remark)));
         }
     }

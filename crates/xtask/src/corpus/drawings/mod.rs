@@ -22,7 +22,7 @@ mod pictures;
 mod scale;
 mod timing;
 
-use crate::chore::{Failure, at};
+use crate::chore::{ChoreError, at};
 use case::CheckOptions;
 use finding::Finding;
 use pathwarp_svg::{GenericFamilies, ReadOptions};
@@ -55,7 +55,7 @@ pub(super) struct CorpusRun {
 }
 
 /// Measures all folders and returns a report.
-pub(super) fn measure(run: &CorpusRun) -> Result<String, Failure> {
+pub(super) fn measure(run: &CorpusRun) -> Result<String, ChoreError> {
     let mut out = String::new();
     for folder in &run.folders {
         let mut files = Vec::new();
@@ -85,7 +85,7 @@ pub(super) fn measure(run: &CorpusRun) -> Result<String, Failure> {
     Ok(out)
 }
 
-/// Checks all files on threads of its own: a thread of rayon's pool that waited here could not serve the warp.
+/// Checks all files on separate threads. Threads of rayon's pool must not block here, since the warp needs them.
 fn check_all(files: &[PathBuf], options: &CheckOptions) -> Vec<Vec<Finding>> {
     let next = AtomicUsize::new(0);
     let found: Vec<Mutex<Vec<Finding>>> = files.iter().map(|_| Mutex::default()).collect();
