@@ -6,6 +6,7 @@ use crate::check;
 use crate::map::{Class, Dual, Homography, RationalBezier};
 use crate::outline::Seg;
 use crate::param::{Args, Frame};
+use kurbo::Rect;
 use std::f64::consts::PI;
 
 /// The derivatives of a point in space along the drawing's x and y.

@@ -102,7 +102,7 @@ impl Deformation for Entry {
                     let problem = "is taken as given; `bottom` and `reverse-shaper` go with `shaper`";
                     return Err(Error::usage("net", rows[0].name.clone(), problem));
                 }
-                Cage::Net(from_rows(&rows)?, rows[0].name.clone())
+                Cage::Net(Box::new(from_rows(&rows)?), rows[0].name.clone())
             }
             _ => {
                 let hint = "the closed path of four sides to bend the artwork into (or `net` with 16 points)";

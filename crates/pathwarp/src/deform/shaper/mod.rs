@@ -53,7 +53,7 @@ pub struct Shaper {
 enum Cage {
     Path(NamedPath),
     /// All 16 points, and a name for them.
-    Net(Net, String),
+    Net(Box<Net>, String),
 }
 
 impl Shaper {
@@ -67,7 +67,7 @@ impl Shaper {
     /// Creates a shaper from all 16 control points, row by row, the bottom row first, each left to right.
     #[must_use]
     pub fn from_net(net: [[Point; 4]; 4]) -> Self {
-        Self::with(Cage::Net(net, "net".into()))
+        Self::with(Cage::Net(Box::new(net), "net".into()))
     }
 
     fn with(cage: Cage) -> Self {
@@ -132,7 +132,7 @@ impl Shaper {
                 let net = net::from_cage(path, bottom, self.reverse, &mut notes)?;
                 (net, net::sides_path(&net), &path.name)
             }
-            Cage::Net(net, name) => (*net, rows_path(net), name),
+            Cage::Net(net, name) => (**net, rows_path(net), name),
         };
         let corners = [net[0][0], net[0][3], net[3][3], net[3][0]];
         if matches!(self.cage, Cage::Net(..)) {
