@@ -1,0 +1,137 @@
+//! Thresholds of the refit at work: cases that only one of them decides.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "../benches/support/mod.rs"]
+mod support;
+
+use kurbo::{CubicBez, PathEl, Point, Vec2};
+use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
+use pathwarp::refit::{Options, RefittedPath, warp_path};
+use pathwarp::{Outline, Seg, Subpath};
+use std::sync::Arc;
+
+fn warp(d: &str, map: &dyn Map, tolerance: f64) -> RefittedPath {
+    warp_path(&Outline::from_svg(d).unwrap(), map, &Options::new(tolerance)).unwrap()
+}
+
+fn single(seg: Seg) -> Outline {
+    Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] }
+}
+
+fn only_lines(w: &RefittedPath) -> bool {
+    w.path.elements().iter().all(|e| matches!(e, PathEl::MoveTo(_) | PathEl::LineTo(_)))
+}
+
+/// Bends the plane on both sides of x = 500, and lifts the right side by a height.
+struct Step(f64);
+
+/// One side of it.
+struct Side(f64);
+impl Formula for Side {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y + (x / 200.0).sin() * 30.0 + self.0)
+    }
+}
+
+impl Map for Step {
+    fn jet(&self, p: Point) -> Jet {
+        Side(if p.x > 500.0 { self.0 } else { 0.0 }).jet(p)
+    }
+    fn creases(&self, out: &mut Creases) {
+        out.push(Crease::kink(Level::Line { a: 1.0, b: 0.0, c: -500.0 }));
+    }
+    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Side(if inside.x > 500.0 { self.0 } else { 0.0 })))
+    }
+}
+
+#[test]
+fn a_tear_is_bridged_by_a_line_unless_it_is_rounding() {
+    let pieces = |height: f64| warp("M400 300L600 310", &Step(height), 0.1).report.segments_out;
+    let smooth = pieces(0.0);
+    // A hundredth of the tolerance is the limit.
+    assert_eq!(pieces(0.0005), smooth);
+    assert_eq!(pieces(0.002), smooth + 1);
+}
+
+struct Same;
+impl Formula for Same {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x * 0.8 - y * 0.6, x * 0.6 + y * 0.8)
+    }
+}
+
+#[test]
+fn a_handle_of_rounding_length_has_no_direction() {
+    // The handle at (100, 500) points down, by a billionth of a millionth of the segment. The joint is smooth.
+    let outline = "M0 500H100C100 500.00000000001 300 500 500 700";
+    for map in [&Same as &dyn Map, &support::Bicubic::mild()] {
+        let w = warp(outline, map, 0.01);
+        let out = support::cubics(&w.path);
+        assert!(support::largest_turn(&out) < 0.01, "{}", support::largest_turn(&out));
+    }
+}
+
+/// A fold along x = 503.75 at (503.75, 500), where the direction (1, −0.06) is in the kernel of the Jacobian.
+struct Fold;
+impl Formula for Fold {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let u = (x - 500.0) / 500.0;
+        (u * u * 400.0 + y * 0.2, y + u * 30.0)
+    }
+}
+
+#[test]
+fn the_tangent_at_a_cusp_of_the_image_is_its_limit() {
+    let p = Point::new(503.75, 500.0);
+    let seg =
+        Seg::Cubic(CubicBez::new(p, p + Vec2::new(100.0, -6.0), Point::new(700.0, 600.0), Point::new(800.0, 700.0)));
+    let image = |t: f64| Fold.point(seg.eval(t));
+    let limit = image(1e-4) - image(0.0);
+    for tolerance in [1.0, 0.01] {
+        let w = warp_path(&single(seg), &Fold, &Options::new(tolerance)).unwrap();
+        let leaving = support::leaving(&support::cubics(&w.path)[0]);
+        assert!(support::turn(leaving, limit) < 0.1, "{tolerance}: {leaving:?}, {limit:?}");
+    }
+}
+
+#[test]
+fn lines_far_from_the_origin_remain_lines() {
+    assert!(only_lines(&warp("M1000000000 1000000000L1000000100 1000000033", &Same, 0.1)));
+}
+
+/// The identity, with as much rounding as coordinates of two million have.
+struct Rounding;
+impl Formula for Rounding {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x + 2e6 - 2e6, y + 2e6 - 2e6)
+    }
+}
+
+#[test]
+fn rounding_inside_a_map_keeps_lines() {
+    assert!(only_lines(&warp("M10.1 20.3L910.7 333.3L20.2 910.4", &Rounding, 1e-7)));
+}
+
+/// A low wave along a line.
+struct Ripple(f64);
+impl Formula for Ripple {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y + (x / 150.0).sin() * self.0)
+    }
+}
+
+#[test]
+fn handles_of_nearly_straight_pieces_stay_even() {
+    for height in [1e-3, 1e-2, 0.05] {
+        let w = warp("M0 300H200H600H900", &Ripple(height), 0.1);
+        for c in support::cubics(&w.path) {
+            let chord = (c.p3 - c.p0).hypot();
+            for handle in [c.p1 - c.p0, c.p3 - c.p2] {
+                let share = handle.hypot() / chord;
+                assert!((0.2..0.45).contains(&share), "{height}: {share} in {c:?}");
+            }
+        }
+    }
+}
