@@ -1,9 +1,27 @@
-//! Plane deformations of vector paths, given back as clean Bézier curves.
+//! Plane deformations of vector paths, with the result refitted by clean Bézier curves.
 //!
-//! The way of the data: an [`Outline`] (lines, quadratics, cubics and true arcs) and a [`map::Map`] of the plane go into
-//! [`refit::warp_path`]; a [`kurbo::BezPath`] within a stated distance of the true image comes out.
+//! Three types do the work:
 //!
-//! This crate is pure: no I/O, no globals, no printing.
+//! - [`Outline`]: the source geometry, made of lines, quadratics, cubics and true elliptical arcs.
+//! - [`Map`](map::Map): a differentiable map of the plane. The constructors in [`deform`] build one from a cage, a skeleton, a
+//!   lattice, a preset and so on; [`map::Formula`] turns any formula into one; [`map::Chain`] composes them.
+//! - [`refit::warp_path`]: maps an outline and fits a [`kurbo::BezPath`] to the image, within a Hausdorff distance that you choose.
+//!
+//! ```
+//! use pathwarp::{Outline, deform::Swirl, kurbo::Point, refit};
+//!
+//! let swirl = Swirl::new(Point::new(50.0, 50.0), 60.0).build()?;
+//! let square = Outline::from_svg("M20,20 H80 V80 H20 Z")?;
+//! let warped = refit::warp_path(&square, &swirl.map, &refit::Options::new(0.01))?;
+//! assert!(warped.report.max_error <= 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`deform::Registry`] builds deformations by name from text, as the command line and [`recipe`]s do; [`check`] tests the laws that
+//! every deformation must obey; [`fold`] finds places where a map turns the plane over; [`distance`] measures how far two paths are
+//! apart.
+//!
+//! The crate is pure: no I/O, no globals, no printing. All numbers are `f64`; coordinates are user units, y down.
 
 pub(crate) mod anchors;
 pub mod check;
