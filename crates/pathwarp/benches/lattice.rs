@@ -1,6 +1,6 @@
-//! Nanoseconds per point and per jet of the lattice maps, beside de Casteljau's algorithm written out plainly.
+//! Nanoseconds per point and per jet of the lattice maps, compared with de Casteljau's algorithm.
 //!
-//! `cargo bench -p pathwarp --bench lattice`; every figure is the best of 15 runs over 4096 points.
+//! Run with `cargo bench -p pathwarp --bench lattice`. Every figure is the best of 15 runs over 4096 points.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
@@ -35,7 +35,7 @@ fn lattice(m: usize, n: usize, weighted: bool) -> Lattice {
     l
 }
 
-/// De Casteljau, 4×4 points on the stack, without weights: rows first, then the column.
+/// De Casteljau's algorithm for 4×4 points on the stack, without weights: rows first, then the column.
 fn casteljau(net: &[[Point; 4]; 4], p: Point) -> Point {
     let (s, t) = (p.x / 100.0, p.y / 100.0);
     let curve = |mut c: [Point; 4], t: f64| {
@@ -49,7 +49,7 @@ fn casteljau(net: &[[Point; 4]; 4], p: Point) -> Point {
     curve(net.map(|row| curve(row, s)), t)
 }
 
-/// De Casteljau as the definition has it: any degree, homogeneous coordinates, a division at the end.
+/// De Casteljau's algorithm straight from the definition: any degree, homogeneous coordinates, a division at the end.
 fn definition(net: &[Vec<[f64; 3]>], p: Point) -> Point {
     let curve = |mut c: Vec<[f64; 3]>, t: f64| {
         for n in (1..c.len()).rev() {
@@ -64,7 +64,7 @@ fn definition(net: &[Vec<[f64; 3]>], p: Point) -> Point {
     Point::new(x / w, y / w)
 }
 
-/// As [`casteljau`] with the last step left undone, which gives the derivatives, along x and along y.
+/// As [`casteljau`], with derivatives from the last step but one.
 fn casteljau_jet(net: &[[Point; 4]; 4], p: Point) -> Jet {
     let (s, t) = (p.x / 100.0, p.y / 100.0);
     let curve = |mut c: [Point; 4], t: f64| {

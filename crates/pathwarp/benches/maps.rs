@@ -1,6 +1,6 @@
-//! Nanoseconds per point and per jet of every deformation, built from its demo, beside de Casteljau's algorithm.
+//! Nanoseconds per point and per jet of every deformation, built from its demo, compared with de Casteljau's algorithm.
 //!
-//! `cargo bench -p pathwarp --bench maps`; every figure is the best of 25 runs over 4096 points of the frame, in batches.
+//! Run with `cargo bench -p pathwarp --bench maps`. Every figure is the best of 25 runs over 4096 points of the frame, in batches.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
@@ -12,7 +12,7 @@ use pathwarp::param::Args;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// The best of some runs, nanoseconds per item.
+/// The best of several runs, in nanoseconds per item.
 fn best(count: usize, mut f: impl FnMut()) -> f64 {
     const RUNS: usize = 25;
     let mut least = f64::INFINITY;
@@ -24,7 +24,7 @@ fn best(count: usize, mut f: impl FnMut()) -> f64 {
     least * 1e9 / count as f64
 }
 
-/// A 3×3 lattice over the frame as rows of four control points, every one moved.
+/// A 3×3 lattice over the frame as rows of four control points, all of them moved.
 fn net() -> Vec<Vec<Point>> {
     let at = |i: usize, j: usize| {
         let k = (i * 7 + j * 5) as f64;
@@ -33,7 +33,7 @@ fn net() -> Vec<Vec<Point>> {
     (0..4).map(|j| (0..4).map(|i| at(i, j)).collect()).collect()
 }
 
-/// De Casteljau's algorithm of any degree, as the definition has it.
+/// De Casteljau's algorithm of any degree, straight from the definition.
 fn curve(mut c: Vec<Point>, t: f64) -> Point {
     for n in (1..c.len()).rev() {
         for i in 0..n {
@@ -43,13 +43,13 @@ fn curve(mut c: Vec<Point>, t: f64) -> Point {
     c[0]
 }
 
-/// Rows first, then the column.
+/// The point of a net: rows first, then the column.
 fn casteljau(net: &[Vec<Point>], p: Point) -> Point {
     let column = net.iter().map(|row| curve(row.clone(), p.x / 100.0)).collect();
     curve(column, p.y / 100.0)
 }
 
-/// The same with the derivatives: of a row, the row of degree one less made of its differences.
+/// As [`casteljau`], with derivatives from the differences of control points.
 fn casteljau_jet(net: &[Vec<Point>], p: Point) -> Jet {
     let (s, t) = (p.x / 100.0, p.y / 100.0);
     let slopes =
@@ -60,7 +60,7 @@ fn casteljau_jet(net: &[Vec<Point>], p: Point) -> Jet {
     Jet { p: curve(column, t), dx: curve(across, t).to_vec2(), dy }
 }
 
-/// De Casteljau's algorithm written for degree 3×3 alone, nothing allocated.
+/// De Casteljau's algorithm for degree 3×3 only, without allocation.
 fn unrolled(net: &[[Point; 4]; 4], p: Point) -> Point {
     let curve = |mut c: [Point; 4], t: f64| {
         for n in (1..4).rev() {
@@ -73,7 +73,7 @@ fn unrolled(net: &[[Point; 4]; 4], p: Point) -> Point {
     curve(net.map(|row| curve(row, p.x / 100.0)), p.y / 100.0)
 }
 
-/// As [`unrolled`], the derivatives from the last but one step.
+/// As [`unrolled`], with derivatives from the last step but one.
 fn unrolled_jet(net: &[[Point; 4]; 4], p: Point) -> Jet {
     let (s, t) = (p.x / 100.0, p.y / 100.0);
     let curve = |mut c: [Point; 4], t: f64| {

@@ -12,9 +12,8 @@ use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::anchors::{self, Anchors, FourToFour};
 use crate::error::Error;
-use crate::map::{
-    AffineMap, Chain, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real, bernstein::Scaled,
-};
+use crate::map::polynomial::bernstein::Scaled;
+use crate::map::{AffineMap, Chain, Class, Crease, Creases, Formula, Level, Map, RationalBezier, Real};
 use crate::param::{Param, Settings};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;

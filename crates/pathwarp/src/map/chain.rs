@@ -6,6 +6,16 @@ use kurbo::{Affine, Point};
 use std::sync::Arc;
 
 /// A composition of maps, the first applied first. Neighbouring affine and projective steps fold into one.
+///
+/// ```
+/// use std::sync::Arc;
+/// use pathwarp::kurbo::Affine;
+/// use pathwarp::map::{AffineMap, Chain, Class, Map};
+///
+/// let step = |m| Arc::new(AffineMap(m)) as Arc<dyn Map>;
+/// let chain = Chain::new([step(Affine::scale(2.0)), step(Affine::translate((1.0, 0.0)))]);
+/// assert_eq!(chain.class(), Class::Affine(Affine::new([2.0, 0.0, 0.0, 2.0, 1.0, 0.0])));
+/// ```
 #[derive(Clone, Default)]
 pub struct Chain {
     steps: Vec<Arc<dyn Map>>,

@@ -31,7 +31,10 @@ const MIN_DAMPING: f64 = 1e-4;
 /// Starting points tried for one point.
 const MAX_TRIES: usize = 16;
 
-/// The inverse of a smooth map over a box. Points without a certified preimage map to NaN.
+/// The inverse of a smooth map over a box, by damped Newton iteration.
+///
+/// Every answer is certified by Kantorovich's condition; points without a certified preimage in the box map to NaN. If the map
+/// folds and a point has several preimages, those in the *core* of the box take precedence.
 pub struct NewtonInverse {
     map: Arc<dyn Map>,
     domain: Rect,

@@ -14,7 +14,7 @@
 //! true to size. Where δ is a polynomial of degree n, so are numerators and denominator of the view.
 
 use super::surface::{Anamorphosis, Radial, Round, Space, Surface, dot, length, minus, picture_axes, swap};
-use crate::map::quotient::{Plane, Quotient, source};
+use crate::map::polynomial::{Plane, Quotient, source_coordinates};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, NewtonInverse, Real};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
@@ -82,7 +82,7 @@ impl Anamorphosis {
         origin: Point,
     ) -> Option<Quotient> {
         let (pre, delta, domain) = self.polynomial()?;
-        let [x, y] = source(pre);
+        let [x, y] = source_coordinates(pre);
         // n·(q − from)·δ = n·(O − from)·δ + n·d.
         let along = |n: Space| {
             let d = Plane::linear(std::array::from_fn(|i| {

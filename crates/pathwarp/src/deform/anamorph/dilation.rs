@@ -11,8 +11,8 @@
 //! perspective collineation with the matrix [I 0; d d₀] about O, whose axis is the line δ = 1.
 
 use crate::deform::triangle::net as triangle;
-use crate::map::patch;
-use crate::map::quotient::{Plane, Quotient, source};
+use crate::map::nets::powers;
+use crate::map::polynomial::{Plane, Quotient, source_coordinates};
 use kurbo::{Affine, BezPath, Point, Rect, Shape, Vec2};
 
 /// A regular net of control points in the plane of the drawing.
@@ -119,7 +119,7 @@ impl Reference {
         match *self {
             Self::Triangle(_, n) => triangle::expanded(n, values),
             Self::Rectangle(_, degree) => {
-                let powers = patch::powers(degree, values);
+                let powers = powers(degree, values);
                 Plane::new(powers.chunks(degree[0] + 1).map(<[f64]>::to_vec).collect())
             }
         }
@@ -218,7 +218,7 @@ impl Dilation {
     #[must_use]
     pub(crate) fn about(&self, eye: Point, bounded: bool) -> Quotient {
         let (pre, delta) = self.plane();
-        let [x, y] = source(pre).map(Plane::linear);
+        let [x, y] = source_coordinates(pre).map(Plane::linear);
         let less = |p: Plane, o: f64| p.plus(-o, &Plane::linear([1.0, 0.0, 0.0]));
         let domain = if bounded { self.reference.bounds() } else { self.domain() };
         let q = Quotient::rational(pre, eye, less(x, eye.x), less(y, eye.y), delta, domain);

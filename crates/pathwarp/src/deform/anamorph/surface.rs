@@ -13,7 +13,7 @@
 
 use super::dilation::Dilation;
 use crate::map::Real;
-use crate::map::quotient::Plane;
+use crate::map::polynomial::Plane;
 use kurbo::{Affine, Point, Rect};
 
 /// A vector or point in space.

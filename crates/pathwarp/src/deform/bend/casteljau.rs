@@ -6,7 +6,8 @@
 //! F(u, v) = C(u) + v·S(u), C the Bézier curve of the control points and S the sum over the levels j of the Bézier curves of
 //! degree n−j of their handles.
 
-use crate::map::{RationalBezier, Real, bernstein::Scaled};
+use crate::map::polynomial::bernstein::Scaled;
+use crate::map::{RationalBezier, Real};
 use kurbo::{Point, Vec2};
 
 /// Returns one step's affine map at u: p + u₀·(q − p) + Σ uₖ·hₖ.

@@ -2,7 +2,7 @@
 
 use super::casteljau::Ribbon;
 use crate::map::Dual;
-use crate::map::arclength::ArcLength;
+use crate::map::curves::ArcLength;
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 

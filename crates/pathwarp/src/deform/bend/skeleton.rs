@@ -4,7 +4,7 @@ use super::casteljau::Ribbon;
 use super::piece::{Moving, SkeletonPiece, Strip, moving, normal};
 use crate::anchors;
 use crate::error::{Error, show};
-use crate::map::arclength::ArcLength;
+use crate::map::curves::ArcLength;
 use crate::outline::{Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{Point, Vec2};

@@ -6,7 +6,7 @@
 
 use crate::anchors;
 use crate::error::Error;
-use crate::map::bspline;
+use crate::map::nets::bspline;
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{CubicBez, Line, Point, QuadBez, Vec2};

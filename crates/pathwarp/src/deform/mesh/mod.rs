@@ -1,6 +1,6 @@
 //! Meshes: artwork bent by a quilt of bicubic patches, also by the warps that Photoshop keeps with its layers.
 //!
-//! Each patch is the tensor product Bézier surface of sixteen points (see [`crate::map::net`]); patches share the points of the
+//! Each patch is the tensor product Bézier surface of sixteen points (see [`BicubicNet`](crate::map::BicubicNet)); patches share the points of the
 //! sides where they meet. Along such a joint the map is C¹ if the control points beside it divide evenly: (p₊ − p)/after =
 //! (p − p₋)/before in every row (G. Farin, *Curves and Surfaces for CAGD*, §15.4).
 

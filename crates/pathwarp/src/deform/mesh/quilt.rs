@@ -14,8 +14,7 @@
 //! the quilt is laid onto the artwork's box.
 
 use crate::error::Error;
-use crate::map::net::Net;
-use crate::map::{BicubicNet, Map, TileRow, Tiled};
+use crate::map::{BicubicNet, Map, Net, TileRow, Tiled};
 use crate::param::NamedPath;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use serde::Deserialize;

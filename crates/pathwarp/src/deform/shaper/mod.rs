@@ -2,7 +2,7 @@
 //!
 //! F = h₂ ∘ F₀ ∘ h₁ (Markku Koppinen, *A plane transformation from 16 control points*, equation 8). F₀ is the bicubic map of a
 //! 4×4 net (equation 3); the user draws its outer twelve points as a closed path of four cubic sides, and the inner four follow
-//! by equation 7 ([`complete`](crate::map::net::complete)). h₁ brings the base to the standard position, h₂ the shaper's corners
+//! by equation 7 ([`complete_net`](crate::map::complete_net)). h₁ brings the base to the standard position, h₂ the shaper's corners
 //! to the target: direct similitudes for two anchors, projective maps for four.
 
 mod entry;
@@ -16,8 +16,7 @@ pub(super) use net::rows_path;
 use super::built::{Built, Role};
 use crate::anchors::{self, Anchors};
 use crate::error::{Error, GeometryError, within};
-use crate::map::net::Net;
-use crate::map::{AffineMap, BicubicNet, Chain, Class, Map};
+use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net};
 use crate::outline::Outline;
 use crate::param::{Frame, NamedPath};
 use kurbo::{Point, Rect};

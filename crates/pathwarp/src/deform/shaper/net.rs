@@ -4,7 +4,7 @@
 
 use crate::anchors::{self, Arrangement};
 use crate::error::{Error, GeometryError};
-use crate::map::net::{self, Net};
+use crate::map::{Net, complete_net};
 use crate::outline::Seg;
 use crate::param::NamedPath;
 use kurbo::{BezPath, CubicBez, Point};
@@ -45,7 +45,7 @@ pub(super) fn from_cage(
         arrangement.bottom + 1,
         if arrangement.reversed { "run backwards" } else { "run forwards" }
     ));
-    Ok(net::complete(outer_net(&sides, &arrangement)))
+    Ok(complete_net(outer_net(&sides, &arrangement)))
 }
 
 /// Arranges the outer twelve points; the inner four are still to be completed.

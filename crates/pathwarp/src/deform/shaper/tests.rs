@@ -4,7 +4,7 @@ use super::net::outer_net;
 use super::*;
 use crate::anchors::Arrangement;
 use crate::deform::Deformation;
-use crate::map::net;
+use crate::map::complete_net;
 use crate::outline::Seg;
 use crate::param::Args;
 use kurbo::{CubicBez, ParamCurve};
@@ -57,7 +57,7 @@ fn the_net_given_in_full_equals_the_cage() {
     let by_cage = build(&[("shaper", CAGE)]).unwrap();
     let sides: Vec<CubicBez> = Outline::from_svg(CAGE).unwrap().segs().map(Seg::to_cubic).collect();
     let ring: [CubicBez; 4] = [sides[0], sides[1], sides[2], sides[3]];
-    let net = net::complete(outer_net(&ring, &Arrangement { bottom: 0, reversed: false }));
+    let net = complete_net(outer_net(&ring, &Arrangement { bottom: 0, reversed: false }));
     let points: Vec<String> = net.iter().flatten().map(|p| format!("{},{}", p.x, p.y)).collect();
     let rows: Vec<String> = net
         .iter()

@@ -9,7 +9,7 @@
 //! To evaluate it, the net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓ by running de Casteljau's algorithm on polynomials.
 //! That multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, 3ⁿ in a corner: nothing at the degrees people use.
 
-use crate::map::quotient::{Plane, Quotient};
+use crate::map::polynomial::{Plane, Quotient};
 use crate::map::{AffineMap, Class, Local, Map};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;

@@ -13,7 +13,7 @@
 //! 2/3·half·C/cos²(bπ/4) from them towards the middle: the usual cubic for a circular arc, written so that b = 0 gives the line.
 
 use crate::formula::{Calculator, FormulaError};
-use crate::map::net::{self, Net};
+use crate::map::{Net, complete_net};
 use kurbo::{Point, Vec2};
 use serde::Deserialize;
 use thiserror::Error;
@@ -212,7 +212,7 @@ impl Style {
         let net = self.plain(&rest, w, h, b)?;
         let factor = |amount: f64, i: usize| 1.0 + amount * (2.0 * third(i) - 1.0);
         Ok(match self.family {
-            Family::Boundary => net::complete(distortion(&net)),
+            Family::Boundary => complete_net(distortion(&net)),
             Family::Points => distortion(&net),
             Family::Frame => mapped(&distortion(&rest), |j, c, p| {
                 p + (net[j][c] - rest[j][c]) * (factor(columns, c) * factor(rows, j))

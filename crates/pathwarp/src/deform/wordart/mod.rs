@@ -1,6 +1,6 @@
 //! Text warps: the forty shapes that office programs put words into.
 //!
-//! Each is two guide curves, or several pairs, between which the artwork is spanned ([`map::ruled`](crate::map::ruled)), or guides
+//! Each is two guide curves, or several pairs, between which the artwork is spanned (`map::ruled`), or guides
 //! that it stands on. The curves and their adjust values are those of ECMA-376, Part 1, *presetTextWarpDefinitions* (the preset
 //! text warps of DrawingML, `prstTxWarp`), written anew as data in `presets.json` ([`preset`]).
 

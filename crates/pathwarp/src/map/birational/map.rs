@@ -18,7 +18,27 @@ pub enum Rows {
     TopBottom,
 }
 
-/// A map of degree 1×n with a rational inverse.
+/// A rational map of degree 1×n whose inverse is rational too:
+///
+/// > P(s,t) = (1−s)·P₀(t) + s·P₁(t)
+///
+/// with P₀, P₁ rational Bézier curves of degree n through free control points, the rows. Their weights follow from the points,
+/// such that s and t of a point have closed forms (T. W. Sederberg, J. Zheng, *Birational 2D free-form deformation of degree
+/// 1×n*, CAGD 2016). Lines of constant t stay straight. B-spline rows make one such map for each Bézier piece, with creases
+/// between them.
+///
+/// ```
+/// use pathwarp::kurbo::{Point, Rect};
+/// use pathwarp::map::{Birational, Map, Rows};
+///
+/// let top = [(0.0, 0.0), (50.0, -30.0), (100.0, 0.0)].map(Point::from);
+/// let bottom = [(0.0, 100.0), (50.0, 90.0), (100.0, 100.0)].map(Point::from);
+/// let frame = Rect::new(0.0, 0.0, 100.0, 100.0);
+/// let map = Birational::new(frame, Rows::TopBottom, [&top, &bottom], None, false, ["top", "bottom"])?;
+/// let p = Point::new(30.0, 40.0);
+/// assert!(Map::point(&map.inverted(), map.point(p)).distance(p) < 1e-12);
+/// # Ok::<(), pathwarp::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Birational {
     region: Rect,

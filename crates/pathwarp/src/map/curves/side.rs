@@ -45,7 +45,7 @@ const INWARD: f64 = 1e-5;
 const MIN_SLOPE: f64 = 1e-3;
 /// Pieces shorter than this share of the side are dropped.
 const MIN_LENGTH: f64 = 1e-12;
-/// Newton steps to a parameter; bracketing makes at least one bit of progress in each.
+/// Iterations to find a parameter: as many bisections exhaust double precision.
 const MAX_STEPS: usize = 60;
 
 impl Side {

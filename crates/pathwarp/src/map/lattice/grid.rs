@@ -3,7 +3,7 @@
 use crate::map::nets::{Patch, bspline};
 use kurbo::{Affine, Point, Rect, Vec2};
 
-/// A grid of weighted control points over a region.
+/// A grid of weighted control points over a region: the data of a [`LatticeMap`](super::LatticeMap).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lattice {
     region: Rect,

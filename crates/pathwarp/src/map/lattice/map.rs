@@ -6,7 +6,23 @@ use crate::map::{AffineMap, Class, Crease, CreaseKind, Creases, Jet, Level, Map,
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
-/// The map given by a [`Lattice`].
+/// Free-form deformation by a [`Lattice`] of control points:
+///
+/// > X(s,t) = Σⱼ Σᵢ Nᵢ(s) Nⱼ(t) wᵢⱼ (xᵢⱼ, yᵢⱼ, 1),  s = (x − x₀)/(x₁ − x₀),  t = (y − y₀)/(y₁ − y₀)
+///
+/// with Bernstein polynomials or uniform clamped B-splines N (T. W. Sederberg, S. R. Parry, *Free-form deformation of solid
+/// geometric models*, SIGGRAPH 1986). The border of the region and the lines between Bézier pieces are creases.
+///
+/// ```
+/// use pathwarp::kurbo::{Rect, Vec2};
+/// use pathwarp::map::{Lattice, LatticeMap, Map};
+///
+/// let mut lattice = Lattice::regular(Rect::new(0.0, 0.0, 90.0, 90.0), [3, 3], [1, 1]);
+/// lattice.shift(1, 1, Vec2::new(0.0, 16.0));
+/// let map = LatticeMap::new(&lattice, false);
+/// assert_eq!(map.point((200.0, 10.0).into()), (200.0, 10.0).into()); // outside the region
+/// assert!(map.point((30.0, 30.0).into()).y > 30.0);
+/// ```
 #[derive(Debug, Clone)]
 pub struct LatticeMap {
     region: Rect,

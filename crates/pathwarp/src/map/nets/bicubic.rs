@@ -16,7 +16,7 @@ pub type Net = [[Point; 4]; 4];
 /// Computes the four inner points from the twelve outer ones by equation (7) of the paper, so that the terms u²v², u²v³, u³v² and
 /// u³v³ vanish. The result is the bilinearly blended Coons patch of the four sides.
 #[must_use]
-pub fn complete(mut p: Net) -> Net {
+pub fn complete_net(mut p: Net) -> Net {
     let v = |r: usize, s: usize, p: &Net| p[r][s].to_vec2();
     // Each inner point from its nearest corner, the neighbours of that corner in its row and column, and the far sides. The four
     // formulas are mirror images of one.
@@ -37,7 +37,20 @@ const NOISE: f64 = 1e-13;
 /// units in the last place when multiplied by [`NOISE`].
 const ROUNDING: f64 = 1e-2;
 
-/// A bicubic map of the plane, defined by a [`Net`] of 16 control points.
+/// A bicubic map of the plane, given by 16 control points pᵣₛ:
+///
+/// > F(u,v) = Σᵣ Σₛ B³ₛ(u) B³ᵣ(v) pᵣₛ
+///
+/// with (u,v) an affine function of the source point (Koppinen, *A plane transformation from 16 control points*, equation 3).
+///
+/// ```
+/// use pathwarp::kurbo::{Affine, Point};
+/// use pathwarp::map::{BicubicNet, Map, Net};
+///
+/// let net: Net = std::array::from_fn(|r| std::array::from_fn(|s| Point::new(s as f64, (r + s * s) as f64)));
+/// let map = BicubicNet::new(&net, Affine::scale(0.01));
+/// assert_eq!(map.point((100.0, 0.0).into()), net[0][3]);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct BicubicNet {
     /// (u, v) from the source point.
@@ -194,7 +207,7 @@ mod tests {
     fn completion_is_equation_7() {
         let p = BENT;
         let v = |r: usize, s: usize| p[r][s].to_vec2();
-        let q = complete(p);
+        let q = complete_net(p);
         let near = |a: Point, b: Vec2| (a.to_vec2() * 9.0 - b).hypot() < 1e-12;
         assert!(near(
             q[1][1],
@@ -224,7 +237,7 @@ mod tests {
 
     #[test]
     fn agrees_with_the_definition_and_completed_nets_lose_their_high_terms() {
-        for net in [BENT, complete(BENT)] {
+        for net in [BENT, complete_net(BENT)] {
             let m = BicubicNet::new(&net, Affine::IDENTITY);
             for i in -2..=12 {
                 for j in -2..=12 {
@@ -233,7 +246,7 @@ mod tests {
                 }
             }
         }
-        assert!(BicubicNet::new(&complete(BENT), Affine::IDENTITY).completed);
+        assert!(BicubicNet::new(&complete_net(BENT), Affine::IDENTITY).completed);
         assert!(!BicubicNet::new(&BENT, Affine::IDENTITY).completed);
     }
 
@@ -244,7 +257,7 @@ mod tests {
         let arc =
             Seg::Arc(EllipticArc::new(Point::new(40.0, 50.0), Vec2::new(30.0, 0.0), Vec2::new(3.0, 20.0), 0.4, 1.9));
         for (net, seg, degree) in
-            [(complete(BENT), cubic, 12), (BENT, cubic, 18), (complete(BENT), arc, 8), (BENT, arc, 12)]
+            [(complete_net(BENT), cubic, 12), (BENT, cubic, 18), (complete_net(BENT), arc, 8), (BENT, arc, 12)]
         {
             let m = BicubicNet::new(&net, pre);
             let source = RationalBezier::from_seg(&seg).unwrap();

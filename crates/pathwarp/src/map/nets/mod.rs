@@ -5,6 +5,6 @@ pub(crate) mod bspline;
 mod patch;
 mod power_basis;
 
-pub use bicubic::{BicubicNet, Net, complete};
+pub use bicubic::{BicubicNet, Net, complete_net};
 pub(crate) use patch::Patch;
 pub(crate) use power_basis::powers;

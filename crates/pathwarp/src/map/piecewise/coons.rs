@@ -16,7 +16,26 @@ use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map};
 use kurbo::{Affine, Point, Vec2};
 use std::sync::Arc;
 
-/// The map of a box onto the region between four sides.
+/// The map of a box onto the region between four sides, a Coons patch:
+///
+/// > F(u,v) = (1−v)·B(u) + v·T(u) + (1−u)·L(v) + u·R(v) − Σ corners, blended bilinearly
+///
+/// with B, T the bottom and top sides from left to right, L, R the left and right sides upwards, and (u,v) an affine function of
+/// the source point (S. A. Coons, *Surfaces for Computer-Aided Design of Space Forms*, MIT 1967). The lines through the joints of
+/// the sides are creases.
+///
+/// ```
+/// use pathwarp::kurbo::{Affine, Line, QuadBez};
+/// use pathwarp::Seg;
+/// use pathwarp::map::{Coons, Map, Pace, Side, Sides};
+///
+/// let line = |a, b| Side::new(&[Seg::Line(Line::new(a, b))], Pace::Parameter);
+/// let arch = Side::new(&[Seg::Quad(QuadBez::new((0.0, 8.0), (5.0, 14.0), (10.0, 8.0)))], Pace::Parameter);
+/// let (bottom, right, left) = (line((0.0, 0.0), (10.0, 0.0)), line((10.0, 0.0), (10.0, 8.0)), line((0.0, 0.0), (0.0, 8.0)));
+/// let sides = Sides { bottom: bottom.unwrap(), right: right.unwrap(), top: arch.unwrap(), left: left.unwrap() };
+/// let map = Coons::new(sides, Affine::scale(0.1));
+/// assert_eq!(map.point((5.0, 10.0).into()), (5.0, 11.0).into());
+/// ```
 #[derive(Debug, Clone)]
 pub struct Coons {
     pre: Affine,

@@ -5,4 +5,4 @@ mod plane;
 mod quotient;
 
 pub(crate) use plane::Plane;
-pub(crate) use quotient::{Quotient, source};
+pub(crate) use quotient::{Quotient, source_coordinates};

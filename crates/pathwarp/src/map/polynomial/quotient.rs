@@ -53,7 +53,7 @@ impl Quotient {
         let w = w.tidied(below);
         if w.degree() == 0 {
             let k = 1.0 / w.coefficient(0, 0);
-            let [sx, sy] = source(pre);
+            let [sx, sy] = source_coordinates(pre);
             let shift = |p: &Plane, o: f64, s: [f64; 3]| {
                 p.scaled(k).plus(-1.0, &Plane::linear(s)).plus(o, &Plane::linear([1.0, 0.0, 0.0]))
             };
@@ -111,7 +111,7 @@ impl Quotient {
 }
 
 /// The source coordinates x and y as linear functions of (a, b): constant, coefficients of a and of b.
-pub(crate) fn source(pre: Affine) -> [[f64; 3]; 2] {
+pub(crate) fn source_coordinates(pre: Affine) -> [[f64; 3]; 2] {
     let [a, b, c, d, e, f] = pre.inverse().as_coeffs();
     [[e, a, c], [f, b, d]]
 }

@@ -1,0 +1,199 @@
+//! Three maps of a box: a mild and a strong bicubic, and a rational one.
+
+use kurbo::{Point, Vec2};
+use pathwarp::map::batch::Lane;
+use pathwarp::map::{Jet, Map, RationalDegree};
+
+/// Side length of the box of the icons and the maps.
+pub const BOX: f64 = 1000.0;
+
+/// A bicubic map of the box in the power basis: `c[i][j]` is the coefficient of uⁱvʲ, with u = x/1000, v = y/1000.
+#[derive(Debug, Clone)]
+pub struct Bicubic {
+    pub x: [[f64; 4]; 4],
+    pub y: [[f64; 4]; 4],
+}
+
+/// The change of basis from Bernstein polynomials to powers, for degree 3.
+const POWER: [[f64; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [-3.0, 3.0, 0.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]];
+
+fn tensor_power(net: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            (0..4).map(|k| (0..4).map(|l| POWER[i][k] * POWER[j][l] * net[k][l]).sum::<f64>()).sum()
+        })
+    })
+}
+
+impl Bicubic {
+    /// The map of a net of control points, of which `net[i][j]` belongs to (i/3, j/3) of the box.
+    pub fn from_net(net: &[[Point; 4]; 4]) -> Self {
+        Self { x: tensor_power(&net.map(|r| r.map(|p| p.x))), y: tensor_power(&net.map(|r| r.map(|p| p.y))) }
+    }
+
+    /// The net of the identity with control point (i, j) moved by `f(i, j)` user units.
+    pub fn moved(f: impl Fn(usize, usize) -> (f64, f64)) -> Self {
+        let net = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let (dx, dy) = f(i, j);
+                Point::new(BOX * i as f64 / 3.0 + dx, BOX * j as f64 / 3.0 + dy)
+            })
+        });
+        Self::from_net(&net)
+    }
+
+    /// A mild map: control points moved by at most 5 %.
+    pub fn mild() -> Self {
+        const D: [[(f64, f64); 4]; 4] = [
+            [(25.0, 25.0), (40.0, -50.0), (-20.0, -35.0), (-5.0, 50.0)],
+            [(-20.0, 30.0), (45.0, 40.0), (45.0, 45.0), (-10.0, 50.0)],
+            [(-15.0, 10.0), (50.0, -15.0), (20.0, -20.0), (-50.0, -50.0)],
+            [(45.0, 15.0), (-25.0, 40.0), (-50.0, 0.0), (15.0, -30.0)],
+        ];
+        Self::moved(|i, j| D[i][j])
+    }
+
+    /// A strong bulge with a twist, whose Jacobian determinant just touches zero.
+    pub fn strong() -> Self {
+        Self::moved(|i, j| {
+            let (u, v) = (i as f64 / 3.0 - 0.5, j as f64 / 3.0 - 0.5);
+            let inner = (1..3).contains(&i) && (1..3).contains(&j);
+            let k = if inner { 2.1 } else { -0.1 };
+            let w = if inner { 1.6 } else { 0.0 };
+            (BOX * (k * u - w * v), BOX * (k * v + w * u))
+        })
+    }
+
+    fn tables(&self, u: f64) -> [[f64; 4]; 4] {
+        let f = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
+        let d = |c: &[[f64; 4]; 4], j: usize| (3.0 * c[3][j] * u + 2.0 * c[2][j]) * u + c[1][j];
+        [
+            std::array::from_fn(|j| f(&self.x, j)),
+            std::array::from_fn(|j| f(&self.y, j)),
+            std::array::from_fn(|j| d(&self.x, j)),
+            std::array::from_fn(|j| d(&self.y, j)),
+        ]
+    }
+}
+
+#[inline(always)]
+fn horner(r: &[f64; 4], v: f64) -> f64 {
+    ((r[3] * v + r[2]) * v + r[1]) * v + r[0]
+}
+
+#[inline(always)]
+fn slope(r: &[f64; 4], v: f64) -> f64 {
+    (3.0 * r[3] * v + 2.0 * r[2]) * v + r[1]
+}
+
+impl Map for Bicubic {
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::polynomial(6))
+    }
+
+    #[inline]
+    fn jet(&self, p: Point) -> Jet {
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
+        let [x, y, dx, dy] = self.tables(u);
+        Jet {
+            p: Point::new(horner(&x, v), horner(&y, v)),
+            dx: Vec2::new(horner(&dx, v), horner(&dy, v)) / BOX,
+            dy: Vec2::new(slope(&x, v), slope(&y, v)) / BOX,
+        }
+    }
+
+    #[inline]
+    fn point(&self, p: Point) -> Point {
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
+        let row = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
+        let at = |c: &[[f64; 4]; 4]| ((row(c, 3) * v + row(c, 2)) * v + row(c, 1)) * v + row(c, 0);
+        Point::new(at(&self.x), at(&self.y))
+    }
+
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+}
+
+/// A rational map of degree 1 in x and 3 in y: an envelope between two rational cubics.
+#[derive(Clone)]
+pub struct Rational {
+    /// x·w, y·w and w in the power basis: `c[k][i][j]` is the coefficient of uⁱvʲ.
+    pub c: [[[f64; 4]; 2]; 3],
+}
+
+impl Rational {
+    pub fn new() -> Self {
+        let points = [
+            [(30.0, -20.0), (160.0, 330.0), (-120.0, 640.0), (20.0, 1010.0)],
+            [(980.0, 40.0), (840.0, 300.0), (1130.0, 700.0), (1000.0, 980.0)],
+        ];
+        let weights = [[1.0, 1.6, 0.7, 1.0], [1.1, 0.8, 2.0, 0.9]];
+        let net = |f: &dyn Fn(usize, usize) -> f64| -> [[f64; 4]; 2] {
+            let rows: [[f64; 4]; 2] =
+                std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|l| POWER[j][l] * f(i, l)).sum()));
+            [rows[0], std::array::from_fn(|j| rows[1][j] - rows[0][j])]
+        };
+        Self {
+            c: [
+                net(&|i, j| points[i][j].0 * weights[i][j]),
+                net(&|i, j| points[i][j].1 * weights[i][j]),
+                net(&|i, j| weights[i][j]),
+            ],
+        }
+    }
+}
+
+impl Default for Rational {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Map for Rational {
+    fn rational_degree(&self) -> Option<RationalDegree> {
+        Some(RationalDegree::rational(4))
+    }
+
+    fn denominator(&self, p: Point) -> f64 {
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
+        horner(&self.c[2][0], v) + u * horner(&self.c[2][1], v)
+    }
+
+    #[inline]
+    fn jet(&self, p: Point) -> Jet {
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
+        let f: [(f64, f64, f64); 3] = std::array::from_fn(|k| {
+            let [r, s] = &self.c[k];
+            let e = horner(s, v);
+            (horner(r, v) + u * e, e, slope(r, v) + u * slope(s, v))
+        });
+        let k = 1.0 / f[2].0;
+        let (x, y) = (f[0].0 * k, f[1].0 * k);
+        let d = k / BOX;
+        Jet {
+            p: Point::new(x, y),
+            dx: Vec2::new((f[0].1 - x * f[2].1) * d, (f[1].1 - y * f[2].1) * d),
+            dy: Vec2::new((f[0].2 - x * f[2].2) * d, (f[1].2 - y * f[2].2) * d),
+        }
+    }
+
+    #[inline]
+    fn point(&self, p: Point) -> Point {
+        let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
+        let f = |k: usize| horner(&self.c[k][0], v) + u * horner(&self.c[k][1], v);
+        let w = f(2);
+        Point::new(f(0) / w, f(1) / w)
+    }
+
+    fn lanes(&self, x: &mut Lane, y: &mut Lane) {
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = self.point(Point::new(*x, *y));
+            (*x, *y) = (p.x, p.y);
+        }
+    }
+}
