@@ -123,7 +123,7 @@ impl Birational {
     }
 }
 
-static INFO: Info = Info::new("birational", "bend artwork between two rows of points, verticals (or horizontals) kept straight")
+static INFO: Info = Info::new("birational", "bend artwork between two rows of points; verticals or horizontals stay straight")
     .group("Envelopes")
     .about("Draw the new top and bottom of the artwork as two rows of equally many points from left to right: \
 verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \

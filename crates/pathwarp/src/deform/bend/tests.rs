@@ -85,7 +85,7 @@ fn joints_do_not_tear() {
 }
 
 #[test]
-fn folds_are_told_with_the_radius() {
+fn folds_are_reported_with_the_radius() {
     // A circle of radius 30, up outside: the bottom of the box reaches 50 inwards.
     let ring = "M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z";
     let w = build(&[("along", ring)]).unwrap().explanation.warnings;
@@ -93,7 +93,7 @@ fn folds_are_told_with_the_radius() {
     let w = build(&[("along", ring), ("baseline", "0")]).unwrap().explanation.warnings;
     assert!(w.is_empty(), "{w:?}");
     let w = build(&[("along", "M0,0 L50,0")]).unwrap().explanation.warnings;
-    assert!(w.iter().any(|w| w.contains("straight on")), "{w:?}");
+    assert!(w.iter().any(|w| w.contains("continues straight")), "{w:?}");
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn handles_from_a_file() {
         (r#"{"pieces":[{"levels":[[[0,-9]]]},{"levels":[[[0,-9]]]}]}"#, "need 2, 1 handles"),
         (r#"{"pieces":[]}"#, "for 0 pieces"),
         (r#"{"piece":[]}"#, "unknown field"),
-        ("[", "is no file of handles"),
+        ("[", "is not a file of handles"),
     ] {
         let e = with_handles(&two, json).err().unwrap().to_string();
         assert!(e.contains(part), "{e}");
@@ -197,7 +197,7 @@ fn artwork_is_repeated_as_often_as_there_is_room() {
     }
     let fault =
         |gap: &str| build(&[("along", "0,50 320,50"), ("stretch", "repeat"), ("gap", gap)]).err().unwrap().to_string();
-    assert!(fault("-100").contains("artwork's width") && fault("-99.999").contains("the most"));
+    assert!(fault("-100").contains("would not advance") && fault("-99.999").contains("the limit is"));
 }
 
 /// Counted at half the height, equal steps of x are equal distances there, and the derivatives are right.

@@ -149,7 +149,7 @@ fn warps_written_by_hand() {
 }
 
 #[test]
-fn a_mesh_far_from_the_artwork_is_told() {
+fn a_mesh_far_from_the_artwork_is_reported() {
     let warned = |region: &str, more: &[(&str, &str)]| {
         let b = with("mesh", &json(&points(), region), more).unwrap();
         b.explanation.warnings.iter().any(|w| w.contains("`region artwork`"))

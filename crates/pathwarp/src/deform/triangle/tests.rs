@@ -95,7 +95,7 @@ fn exact_images_have_n_times_the_degree() {
 }
 
 #[test]
-fn a_fixed_side_joins_and_a_torn_one_is_told() {
+fn a_fixed_side_joins_and_a_torn_one_warns() {
     let reference = ("reference", "10,20 90,30 40,90");
     let inner = build(&[reference, ("degree", "3"), ("move", "1,1,1:8,-6")]).unwrap();
     assert!(inner.explanation.warnings.is_empty(), "{:?}", inner.explanation.warnings);
@@ -115,14 +115,14 @@ fn a_fixed_side_joins_and_a_torn_one_is_told() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn every_fault_is_named() {
     for (pairs, part) in [
         (&[("reference", "0,0 1,1")][..], "three"),
         (&[("reference", "0,0 1,1 2,2")], "one line"),
         (&[("move", "1,1,1:3,3")], "add up to 2"),
         (&[("move", "1,1:3,3")], "I,J,K:"),
         (&[("move", "1,1,0:3")], "DX,DY"),
-        (&[("weight", "1,1,0:0")], "positive"),
+        (&[("weight", "1,1,0:0")], "above 0"),
         (&[("move", "99999999999999999999,1,0:0,0")], "I,J,K:"),
         (&[("degree", "11")], "out of range"),
     ] {
