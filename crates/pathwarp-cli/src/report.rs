@@ -20,7 +20,7 @@ pub(crate) struct FileReport {
     pub(crate) output: Option<String>,
     /// User units.
     pub(crate) tolerance: f64,
-    pub(crate) shapes: Vec<ShapeReport>,
+    pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
 }
@@ -34,7 +34,7 @@ impl FileReport {
 
 /// One shape.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct ShapeReport {
+pub(crate) struct ReportedShape {
     pub(crate) id: String,
     /// Number of copies of the shape in the result; omitted if one.
     #[serde(skip_serializing_if = "is_one")]

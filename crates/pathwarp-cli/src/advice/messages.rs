@@ -1,4 +1,4 @@
-//! Advice in flags, for every kind of error and warning of the libraries, which know no command line.
+//! The messages of library errors and warnings, with advice for every kind.
 
 use super::flags::Flags;
 use crate::decimals::three_figures;

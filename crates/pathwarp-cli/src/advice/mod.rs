@@ -1,4 +1,4 @@
-//! Advice: the libraries say what is wrong and where; this adds what to do about it, in flags.
+//! Advice in flags, added to the errors and warnings of the libraries, which know no command line.
 
 mod flags;
 mod messages;

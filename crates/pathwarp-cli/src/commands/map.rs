@@ -96,7 +96,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     Ok(status)
 }
 
-/// Parses points, one `x y` a line. The error starts with the line's number.
+/// Parses points, one `x y` per line. The error starts with the line's number.
 fn parse(text: &str) -> Result<Vec<Point>, String> {
     let mut out = Vec::new();
     for (i, line) in text.lines().enumerate() {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
-use crate::report::{ShapeReport, SkippedShape};
+use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
 use pathwarp::recipe::BuiltRecipe;
@@ -50,7 +50,7 @@ pub(crate) struct WarpRequest<'a> {
 /// The outcome of a warp. Nothing is written yet.
 pub(crate) struct WarpedArtwork {
     pub(crate) result: WarpedResult,
-    pub(crate) shapes: Vec<ShapeReport>,
+    pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
     /// Files besides the result.

@@ -10,7 +10,7 @@ use super::{preview, surface};
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
-use crate::report::{ShapeReport, SkippedShape, assurance_word};
+use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use pathwarp::fold::{self, Orientation};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{Class, Map};
@@ -145,7 +145,7 @@ impl Artwork for GimpArtwork {
 struct WarpedPaths {
     /// The new strokes of every selected path, by its index in the file.
     strokes: Vec<(usize, Vec<Stroke>)>,
-    shapes: Vec<ShapeReport>,
+    shapes: Vec<ReportedShape>,
     skipped: Vec<SkippedShape>,
     warnings: Vec<String>,
 }
@@ -206,8 +206,8 @@ impl GimpArtwork {
     }
 }
 
-fn shape_report(name: &str, copies: usize, warped: &WarpedStrokes, fold: &Fold) -> ShapeReport {
-    ShapeReport {
+fn shape_report(name: &str, copies: usize, warped: &WarpedStrokes, fold: &Fold) -> ReportedShape {
+    ReportedShape {
         id: name.to_owned(),
         copies,
         segments_in: warped.segments_in,

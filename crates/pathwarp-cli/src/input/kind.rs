@@ -1,4 +1,4 @@
-//! [`Input`]: the kinds of artwork, told apart by content.
+//! [`Input`]: the kinds of artwork, recognised by their content.
 
 use super::artwork::Artwork;
 use super::gimp::GimpArtwork;

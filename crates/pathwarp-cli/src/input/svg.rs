@@ -11,7 +11,7 @@ use crate::bitmap::Bender;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
-use crate::report::{ShapeReport, SkippedShape, assurance_word};
+use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use pathwarp::fold::{self, Orientation};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
@@ -102,7 +102,7 @@ impl SvgArtwork {
         built: &BuiltRecipe,
         options: &WarpOptions,
         warped: &WarpedDocument,
-    ) -> (Vec<ShapeReport>, Vec<String>) {
+    ) -> (Vec<ReportedShape>, Vec<String>) {
         // Parts of one text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
@@ -126,8 +126,8 @@ impl SvgArtwork {
     }
 }
 
-fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ShapeReport {
-    ShapeReport {
+fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ReportedShape {
+    ReportedShape {
         id: s.id.clone(),
         copies: s.copies,
         segments_in: s.segments_in,

@@ -54,7 +54,7 @@ impl Given {
     /// Merges the options of two parts of a chain.
     ///
     /// # Errors
-    /// An option that does not repeat stands in both parts, or two options conflict.
+    /// An option that does not repeat is in both parts, or two options conflict.
     pub(crate) fn joined(&self, other: &Self) -> Result<Self, Failure> {
         let has = |option: &CommonOption| self.values.iter().any(|(o, _)| o.name == option.name);
         if let Some((twice, _)) = other.values.iter().find(|(o, _)| !o.repeats() && has(o)) {

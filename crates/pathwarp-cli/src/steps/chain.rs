@@ -9,18 +9,18 @@ use pathwarp::recipe::Step;
 use std::ffi::OsString;
 
 /// A part of a chain.
-pub(crate) struct Part {
+pub(crate) struct ChainPart {
     pub(crate) step: Step,
     /// The common options in this part; they apply to the whole chain.
     pub(crate) options: Given,
 }
 
 /// Parses the parts after each `+`. They take the common options only if `with_options`.
-pub(crate) fn parts(registry: &Registry, words: &[&[OsString]], with_options: bool) -> Result<Vec<Part>, Failure> {
+pub(crate) fn parts(registry: &Registry, words: &[&[OsString]], with_options: bool) -> Result<Vec<ChainPart>, Failure> {
     words.iter().map(|words| part(registry, words, with_options)).collect()
 }
 
-fn part(registry: &Registry, words: &[OsString], with_options: bool) -> Result<Part, Failure> {
+fn part(registry: &Registry, words: &[OsString], with_options: bool) -> Result<ChainPart, Failure> {
     let mut c = Command::new("pathwarp … +")
         .no_binary_name(true)
         .disable_help_flag(true)
@@ -36,5 +36,5 @@ fn part(registry: &Registry, words: &[OsString], with_options: bool) -> Result<P
     let mut m = c.try_get_matches_from(words)?;
     let (name, sub) = m.remove_subcommand().ok_or_else(|| Failure::usage("a deformation must follow `+`"))?;
     let options = if with_options { Given::options(&sub) } else { Given::default() };
-    Ok(Part { step: step(registry, &name, &sub), options })
+    Ok(ChainPart { step: step(registry, &name, &sub), options })
 }
