@@ -135,3 +135,13 @@ fn handles_of_nearly_straight_pieces_stay_even() {
         }
     }
 }
+
+#[test]
+fn merging_keeps_corners_that_the_tolerance_would_hide() {
+    // Two arcs that meet at 2°: their ends are within the tolerance of a smooth curve.
+    let outline = Outline::from_svg("M100 500C200 480 300 470 400 470C500 473.5 600 487 700 510").unwrap();
+    let options = Options::new(1.0).with_merge(true);
+    let w = warp_path(&outline, &support::Bicubic::mild(), &options).unwrap();
+    assert_eq!(w.report.segments_out, 2);
+    assert!(support::largest_turn(&support::cubics(&w.path)) > 1.0);
+}
