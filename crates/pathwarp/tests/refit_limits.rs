@@ -64,7 +64,7 @@ impl Formula for Same {
 
 #[test]
 fn a_handle_of_rounding_length_has_no_direction() {
-    // The handle at (100, 500) points down, by a billionth of a millionth of the segment. The joint is smooth.
+    // The handle at (100, 500) is 1e-11 long and points down, but the curve leaves to the right: the joint is smooth.
     let outline = "M0 500H100C100 500.00000000001 300 500 500 700";
     for map in [&Same as &dyn Map, &support::Bicubic::mild()] {
         let w = warp(outline, map, 0.01);

@@ -23,7 +23,7 @@ struct BestFit {
 }
 
 impl<C: ImageCurve> StretchFitter<'_, C> {
-    /// Fits a cubic where the Hermite cubic does not do.
+    /// Fits a cubic where the Hermite cubic does not fit. Each attempt starts only if the ones before it have failed.
     #[inline(never)]
     pub(super) fn improve(&mut self, request: &mut FitRequest<'_>) -> Result<FitOutcome, Point> {
         if let Some(outcome) = self.exact_hermite(request)? {
