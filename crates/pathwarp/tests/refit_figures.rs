@@ -190,6 +190,8 @@ fn the_sample_stays_within_the_tolerance() {
                 let w = warp_path(&single(seg), map.as_ref(), &Options::new(tolerance)).unwrap();
                 let e = support::distance(&seg, map.as_ref(), &support::cubics(&w.path), 400, 0.9 * tolerance);
                 assert!(e <= 1.0001 * tolerance, "{tolerance}: {} for {seg:?}", e / tolerance);
+                let reported = w.report.max_error;
+                assert!(e <= 1.0001 * reported.max(0.9 * tolerance), "{tolerance}: {e} > {reported} for {seg:?}");
             }
             for outline in runs() {
                 let w = warp_path(&outline, map.as_ref(), &Options::new(tolerance).with_merge(true)).unwrap();

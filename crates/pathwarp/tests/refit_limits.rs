@@ -64,7 +64,7 @@ impl Formula for Same {
 
 #[test]
 fn a_handle_of_rounding_length_has_no_direction() {
-    // The handle at (100, 500) points down, by a billionth of a millionth of the segment. The joint is smooth.
+    // The handle at (100, 500) is 1e-11 long and points down, but the curve leaves to the right: the joint is smooth.
     let outline = "M0 500H100C100 500.00000000001 300 500 500 700";
     for map in [&Same as &dyn Map, &support::Bicubic::mild()] {
         let w = warp(outline, map, 0.01);
@@ -134,4 +134,14 @@ fn handles_of_nearly_straight_pieces_stay_even() {
             }
         }
     }
+}
+
+#[test]
+fn merging_keeps_corners_that_the_tolerance_would_hide() {
+    // Two arcs that meet at 2°: their ends are within the tolerance of a smooth curve.
+    let outline = Outline::from_svg("M100 500C200 480 300 470 400 470C500 473.5 600 487 700 510").unwrap();
+    let options = Options::new(1.0).with_merge(true);
+    let w = warp_path(&outline, &support::Bicubic::mild(), &options).unwrap();
+    assert_eq!(w.report.segments_out, 2);
+    assert!(support::largest_turn(&support::cubics(&w.path)) > 1.0);
 }

@@ -57,7 +57,7 @@ fn without_merging_every_node_of_the_source_stays_a_node() {
     for tolerance in [10.0, 1.0, 0.01] {
         let w = warp_path(&outline, &map, &Options::new(tolerance)).unwrap();
         let out = support::cubics(&w.path);
-        // In their order.
+        // In the order of the path.
         let mut nodes = out.iter().map(|c| c.p3);
         for s in outline.segs() {
             let want = map.point(s.end());

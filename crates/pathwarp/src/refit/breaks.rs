@@ -22,6 +22,9 @@ use super::source::BreakPoint;
 use super::stretch::StretchFitter;
 use kurbo::Point;
 
+/// Stretches still to be covered, the first one on top, with the outcome of a single piece if it is known.
+type Stack = Vec<(BreakPoint, BreakPoint, Option<FitOutcome>)>;
+
 /// A division of a stretch into `n` parts.
 struct Plan {
     n: usize,
@@ -69,8 +72,7 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         out: &mut Vec<FittedPiece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
-        // Stretches still to be covered, the first one on top, with the outcome of a single piece if it is known.
-        let mut stack = vec![(*from, *to, Some(first))];
+        let mut stack: Stack = vec![(*from, *to, Some(first))];
         while let Some((from, to, known)) = stack.pop() {
             let outcome = match known {
                 Some(o) => o,
@@ -96,10 +98,7 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
                 stack.push((from, mid, None));
                 continue;
             }
-            let plan = self.plan(from, to, &outcome)?;
-            for i in (0..plan.n).rev() {
-                stack.push((plan.ends[i], plan.ends[i + 1], plan.outcomes[i]));
-            }
+            self.plan(from, to, &outcome, &mut stack)?;
         }
         Ok(())
     }
@@ -117,10 +116,17 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         out.push(piece);
     }
 
-    /// Divides a stretch that one piece does not fit into parts of equal difficulty. Not all of them need fit.
-    fn plan(&mut self, from: BreakPoint, to: BreakPoint, whole: &FitOutcome) -> Result<Plan, Point> {
+    /// Divides a stretch that one piece does not fit into parts of equal difficulty, and puts them on the stack. Not all of
+    /// them need fit.
+    fn plan(&mut self, from: BreakPoint, to: BreakPoint, whole: &FitOutcome, stack: &mut Stack) -> Result<(), Point> {
         let tol = self.tolerance;
-        let mut plan = self.even_plan(from, to, whole.difficulty(tol))?;
+        // Fewer parts than their difficulty predicts, of equal length to begin with.
+        let n = ((whole.difficulty(tol) * HOPE).ceil() as usize).clamp(2, MAX_PLANNED);
+        let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
+        plan.ends[n] = to;
+        for (i, end) in plan.ends.iter_mut().enumerate().take(n).skip(1) {
+            *end = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64)?;
+        }
         let mut placements = 0;
         loop {
             let n = plan.n;
@@ -157,18 +163,10 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
             }
             self.replace(&mut plan, next, to, &sums)?;
         }
-        Ok(plan)
-    }
-
-    /// Parts of equal length, fewer than their difficulty predicts.
-    fn even_plan(&self, from: BreakPoint, to: BreakPoint, difficulty: f64) -> Result<Plan, Point> {
-        let n = ((difficulty * HOPE).ceil() as usize).clamp(2, MAX_PLANNED);
-        let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
-        plan.ends[n] = to;
-        for (i, end) in plan.ends.iter_mut().enumerate().take(n).skip(1) {
-            *end = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64)?;
+        for i in (0..plan.n).rev() {
+            stack.push((plan.ends[i], plan.ends[i + 1], plan.outcomes[i]));
         }
-        Ok(plan)
+        Ok(())
     }
 
     /// Moves the break points to the quantiles of the difficulty, whose sums are given, for `next` parts.

@@ -23,13 +23,15 @@ struct BestFit {
 }
 
 impl<C: ImageCurve> StretchFitter<'_, C> {
-    /// Fits a cubic where the Hermite cubic does not do.
+    /// Fits a cubic where the Hermite cubic does not fit. Each attempt starts only if the ones before it have failed.
     #[inline(never)]
     pub(super) fn improve(&mut self, request: &mut FitRequest<'_>) -> Result<FitOutcome, Point> {
         if let Some(outcome) = self.exact_hermite(request)? {
             return Ok(outcome);
         }
-        let mut best = self.fit_from_hermite(request)?;
+        let fit = self.fit_from_hermite(request);
+        let error = self.judged(request, &fit)?;
+        let mut best = BestFit { fit, error };
         self.converge(request, &mut best)?;
         self.restart_along_valley(request, &mut best)?;
         self.minimax(request, &mut best)?;
@@ -57,14 +59,14 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
 
     /// Least squares from the Hermite cubic, until the error is clearly below the tolerance.
     #[inline(always)]
-    fn fit_from_hermite(&self, request: &mut FitRequest<'_>) -> Result<BestFit, Point> {
+    fn fit_from_hermite(&self, request: &FitRequest<'_>) -> Fit {
         let frame = &request.frame;
         let [a, b] = frame.home;
         let mut z = FitState { a: larger(a, frame.floor[0]), b: larger(b, frame.floor[1]), s: [0.0; 8] };
         for i in 0..8 {
             z.s[i] = clamp_unit(FITTED[i] * UNIT + request.ds[i]);
         }
-        self.judged(request, z, GOOD_ENOUGH * self.tolerance)
+        fit(frame, request.g, z, [GOOD_ENOUGH * self.tolerance, self.tolerance])
     }
 
     /// Iterates to convergence a fit that stopped early but was rejected when judged.
@@ -73,7 +75,8 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         if best.error > self.tolerance && best.fit.error <= GOOD_ENOUGH * self.tolerance {
             let mut start = best.fit.z;
             request.frame.settle(request.g, start.a, start.b, &mut start.s);
-            *best = self.judged(request, start, 0.0)?;
+            best.fit = fit(&request.frame, request.g, start, [0.0, self.tolerance]);
+            best.error = self.judged(request, &best.fit)?;
         }
         Ok(())
     }
@@ -102,7 +105,7 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
             frame.settle(request.g, a, b, &mut start.s);
             let other = fit(&frame, request.g, start, [GOOD_ENOUGH * tol, tol]);
             if other.reach < RESTART_GAIN * best.error {
-                let error = if other.reach <= tol { self.judge(request, &other)? } else { other.reach };
+                let error = self.judged(request, &other)?;
                 if error < best.error {
                     *best = BestFit { fit: other, error };
                 }
@@ -135,12 +138,10 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         Ok(())
     }
 
-    /// A fit from `start`, judged if it comes within the tolerance.
+    /// The error of a fit: judged if it comes within the tolerance, else predicted.
     #[inline(always)]
-    fn judged(&self, request: &mut FitRequest<'_>, start: FitState, enough: f64) -> Result<BestFit, Point> {
-        let fit = fit(&request.frame, request.g, start, [enough, self.tolerance]);
-        let error = if fit.reach <= self.tolerance { self.judge(request, &fit)? } else { fit.reach };
-        Ok(BestFit { fit, error })
+    fn judged(&self, request: &mut FitRequest<'_>, fit: &Fit) -> Result<f64, Point> {
+        if fit.reach <= self.tolerance { self.judge(request, fit) } else { Ok(fit.reach) }
     }
 
     #[inline(always)]

@@ -96,8 +96,9 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         if !(self.trusts_samples(request) && resolved && steady(feet) && error <= PEAK_ACCEPTED * tol) {
             return Ok(None);
         }
-        let [e0, e1] = [(request.g, fitted), (check, checked)]
-            .map(|(g, m)| request.frame.signed_distances(g, z.a, z.b, &m.s, &m.squares));
+        let frame = &request.frame;
+        let e0 = frame.signed_distances(request.g, z.a, z.b, &fitted.s, &fitted.squares);
+        let e1 = frame.signed_distances(check, z.a, z.b, &checked.s, &checked.squares);
         let errors = interleaved(&e0, &e1, 0.0);
         let peak = larger(highest_peak(&errors), error);
         if peak <= if even && self.degree.is_some() { PEAK_ACCEPTED } else { SMALL_ERROR } * tol {

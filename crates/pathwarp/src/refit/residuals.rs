@@ -14,8 +14,8 @@ pub(super) struct FitState {
     pub(super) s: Lane,
 }
 
-/// One evaluation of a state. Stays in memory and is written by functions of its own: then going lane by lane is the only
-/// order that LLVM finds, and it vectorises.
+/// One evaluation of a state. Kept in memory and written by separate functions, so that LLVM finds only the order lane by lane,
+/// and vectorises it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Residuals {
     /// Weighted normal equations (`JᵀJ` and `Jᵀn`) and the weighted sum of squares, each in four partial sums.

@@ -95,3 +95,58 @@ pub(super) fn turns_little(a: Vec2, b: Vec2) -> bool {
     let d = a.dot(b);
     d > 0.0 && 4.0 * d * d >= a.hypot2() * b.hypot2()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::refit::frame::ChordFrame;
+    use crate::refit::samples::{ALL, between};
+    use crate::refit::source::BreakPoint;
+    use kurbo::Point;
+
+    #[test]
+    fn foot_points_that_leap_are_not_steady() {
+        let even: Evenly = std::array::from_fn(|j| j as f64 * UNIT);
+        // Foot point 6 late by a share of the spacing, so that the step after it is longer.
+        let late = |share: f64| -> Evenly {
+            let mut feet = even;
+            feet[6] -= share * UNIT;
+            feet
+        };
+        assert!(steady(&even) && steady(&late(0.55)));
+        assert!(!steady(&late(0.65)));
+        assert_eq!(ALL, 18);
+    }
+
+    /// The verdict on images at `x(τ)` of a line from 0 to 1, fitted by the line itself with foot points `s(τ)`.
+    fn verdict(x: impl Fn(f64) -> f64, s: impl Fn(f64) -> f64) -> Resolution {
+        let unit = Vec2::new(1.0, 0.0);
+        let end = |t: f64| BreakPoint { t, p: Point::new(t, 0.0), speed: 1.0, into: unit, away: unit };
+        let (from, to) = (end(0.0), end(1.0));
+        let handles = [1.0 / 3.0; 2];
+        let frame = ChordFrame { q: unit, t0: unit, t1: unit, floor: [0.0; 2], size: 1.0, home: handles, pull: 0.0 };
+        let images = |set: &Lane| Lanes { x: set.map(|j| x(j * UNIT)), y: [0.0; 8] };
+        let (g, check) = (images(&FITTED), images(&CHECKED));
+        let request = FitRequest { from: &from, to: &to, frame, g: &g, check: None, ds: [0.0; 8], careful: false };
+        let s0 = FITTED.map(|j| s(j * UNIT));
+        let z = FitState { a: handles[0], b: handles[1], s: s0 };
+        let s1 = between(&s0);
+        request.resolution(&check, &z, &s0, &s1)
+    }
+
+    #[test]
+    fn foot_points_far_from_even_ones_are_not_resolved() {
+        // Ahead of the samples by up to 0.17 and 0.19.
+        let ahead = |by: f64| verdict(|t| t, |t| t + 4.0 * by * t * (1.0 - t));
+        assert!(ahead(0.17).resolved && !ahead(0.19).resolved);
+    }
+
+    #[test]
+    fn uneven_speed_is_seen() {
+        // Speed proportional to a power of τ: over the samples it varies 3.2, 6.5 and 16 times.
+        let slowing = |power: f64| verdict(|t| t.powf(power), |t| t);
+        assert!(slowing(1.5).resolved && slowing(1.5).even);
+        assert!(slowing(1.8).resolved && !slowing(1.8).even);
+        assert!(!slowing(2.2).resolved);
+    }
+}

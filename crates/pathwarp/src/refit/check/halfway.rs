@@ -57,3 +57,37 @@ pub(in crate::refit) fn halfway(
     let doubtful = (1..ALL - 1).filter(|j| in_doubt[*j]).map(|j| 2 * j);
     Ok(Some(gaps.iter().map(|j| 2 * j + 1).chain(doubtful).map(peak).fold(highest, f64::max)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Formula, Real};
+    use crate::outline::Seg;
+    use crate::refit::frame::ChordFrame;
+    use crate::refit::source::SourceCurve;
+    use kurbo::{Line, Vec2};
+
+    /// A line beside the x axis.
+    struct Beside(f64);
+    impl Formula for Beside {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y + self.0)
+        }
+    }
+
+    #[test]
+    fn an_error_halfway_that_its_neighbours_do_not_predict_resolves_nothing() {
+        let seg = Seg::Line(Line::new((0.0, 0.0), (1.0, 0.0)));
+        let unit = Vec2::new(1.0, 0.0);
+        let third = [1.0 / 3.0; 2];
+        let frame = ChordFrame { q: unit, t0: unit, t1: unit, floor: [0.0; 2], size: 1.0, home: third, pull: 0.0 };
+        let c = Candidate { t0: 0.0, t1: 1.0, p0: Point::ZERO, frame, a: third[0], b: third[1] };
+        let feet = std::array::from_fn(|j| j as f64 / 17.0);
+        // One sample above the limit; the error halfway beside it is `beside` of the tolerance.
+        let mut errors = [0.65; ALL];
+        (errors[0], errors[8], errors[ALL - 1]) = (0.0, 0.75, 0.0);
+        let found = |beside: f64| halfway(&SourceCurve::new(&seg, &Beside(beside)), &c, &feet, &errors, 1.0).unwrap();
+        assert!(found(0.7).is_some_and(|e| (0.7..1.0).contains(&e)), "{:?}", found(0.7));
+        assert!(found(0.45).is_some() && found(0.35).is_none());
+    }
+}

@@ -102,7 +102,7 @@ fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
         let last = q[k - 1];
         let mut next =
             if k == 2 { at.map(|t| v(t) * v(t)) } else { std::array::from_fn(|i| (2.0 * at[i] - 1.0) * last[i]) };
-        // Twice, as rounding spoils the first time.
+        // Gram–Schmidt, twice because of rounding.
         for _ in 0..2 {
             for base in &q[2..k] {
                 let f = dot(&next, base);
