@@ -29,15 +29,18 @@ mod wave;
 mod wordart;
 
 pub use affine::Affine;
+pub use anamorph::{Anamorph, Onto};
 pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
 pub use birational::Birational;
 pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile};
 pub use bulge::Bulge;
 pub use entry::{Case, Deformation, Example, Gallery, Info, Law, Pairs};
+pub use envelope::{Envelope, Keep, Spread};
 pub use expr::Expr;
 pub use ffd::Ffd;
 pub use lens::{Lens, LensModel};
+pub use mesh::Mesh;
 pub use mls::{Mls, Stiffness};
 pub use mobius::Mobius;
 pub use polar::Polar;
@@ -47,9 +50,9 @@ pub use shaper::Shaper;
 pub use similitude::Similitude;
 pub use swirl::{Falloff, Swirl};
 pub use triangle::Triangle;
-pub use warp::Style;
+pub use warp::{Style, Warp};
 pub use wave::Wave;
-pub use wordart::TextShape;
+pub use wordart::{TextShape, WordArt};
 
 use std::sync::Arc;
 
@@ -57,19 +60,19 @@ use std::sync::Arc;
 pub(crate) fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Entry),
-        Arc::new(envelope::Envelope),
-        Arc::new(warp::Warp),
-        Arc::new(wordart::WordArt),
+        Arc::new(envelope::Entry),
+        Arc::new(warp::Entry),
+        Arc::new(wordart::Entry),
         Arc::new(bilinear::Entry),
         Arc::new(birational::Entry),
         Arc::new(bend::Entry),
         Arc::new(polar::Entry),
         Arc::new(ffd::Entry),
-        Arc::new(mesh::Mesh),
+        Arc::new(mesh::Entry),
         Arc::new(triangle::Entry),
         Arc::new(mls::Entry),
         Arc::new(projective::Entry),
-        Arc::new(anamorph::Anamorph),
+        Arc::new(anamorph::Entry),
         Arc::new(wave::Entry),
         Arc::new(swirl::Entry),
         Arc::new(bulge::Entry),

@@ -417,7 +417,7 @@ mod tests {
 
     /// A square across the ray opposite the middle, and one that is not, unrolled from a ring about 0,0.
     #[test]
-    fn a_whole_turn_is_cut_where_it_meets_itself_and_the_cut_is_told() {
+    fn a_whole_turn_is_cut_where_it_meets_itself_and_warns() {
         let pairs = [("sweep", "360"), ("inner", "20"), ("outer", "90"), ("center", "0,0"), ("turn", "-10")];
         let step = Step { inverse: true, ..Step::new("polar", Args::from_pairs(&pairs)) };
         let recipe = Recipe { steps: vec![step] };

@@ -1,4 +1,4 @@
-//! What an anamorphosis looks like: unrolled true to size, from the eye, and from elsewhere.
+//! Views of an anamorphosis: unrolled true to size, from the eye, and from elsewhere.
 //!
 //! **Unrolled.** A plane has coordinates of its own. A cylinder or cone is cut along its far line and rolled out. With the
 //! radius R(y) = r + g·(y − y₀), σ = √(1 + g²) and κ = −g/σ, the point at angle θ and height y lies, measured from the middle

@@ -1,12 +1,15 @@
+//! Anamorphoses against geometry in space, the papers' figures, and their faults.
+
 use super::camera::Camera;
 use super::dilation::{Dilation, Reference};
+use super::entry::INFO;
 use super::surface::{Round, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
+use crate::deform::{Deformation, Info};
 use crate::map::{Class, Dual, Homography, RationalBezier};
 use crate::outline::Seg;
-use crate::param::{Args, Frame};
-use kurbo::Rect;
+use crate::param::{Args, Frame, Settings};
 use std::f64::consts::PI;
 
 /// The derivatives of a point in space along the drawing's x and y.
@@ -31,13 +34,13 @@ impl Deformation for With {
         &self.0
     }
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        Anamorph.build(s)
+        Entry.build(s)
     }
 }
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Anamorph);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -79,7 +82,7 @@ fn is_sound_on_every_surface() {
 }
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Anamorph.build_from(&Args::from_pairs(pairs), &check::frame())
+    Entry.build_from(&Args::from_pairs(pairs), &check::frame())
 }
 
 const FOOT: Point = Point::new(40.0, 30.0);
@@ -146,11 +149,11 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
             };
             assert!(off.abs() < 1e-10, "{cast:?} {p:?} {off:e}");
             let (jet, h) = (space_jet(&cast, p), 1e-4);
-            let slope = |d: kurbo::Vec2| {
+            let slope = |d: Vec2| {
                 let (a, b) = (cast.point(p + d), cast.point(p - d));
                 std::array::from_fn(|i| (a[i] - b[i]) / (2.0 * h))
             };
-            let (dx, dy) = (slope(kurbo::Vec2::new(h, 0.0)), slope(kurbo::Vec2::new(0.0, h)));
+            let (dx, dy) = (slope(Vec2::new(h, 0.0)), slope(Vec2::new(0.0, h)));
             assert!(away(jet.dx, dx) < 1e-5 * (1.0 + away(dx, [0.0; 3])), "{cast:?} {p:?} {jet:?} {dx:?}");
             assert!(away(jet.dy, dy) < 1e-5 * (1.0 + away(dy, [0.0; 3])));
         }
@@ -159,7 +162,7 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
 
 /// Laying flat changes no length: the derivatives have the same products in space and in the plane.
 #[test]
-fn what_is_unrolled_is_true_to_size() {
+fn unrolled_surfaces_are_true_to_size() {
     let product = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
     let mut flat = 0;
     for surface in surfaces() {
@@ -278,7 +281,7 @@ const METRE: f64 = 96.0 / 0.0254;
 #[test]
 fn a_road_marking_ten_metres_long() {
     let frame = Frame::new(Rect::new(100.0, 40.0, 400.0, 240.0));
-    let args = |pairs: &[(&str, &str)]| Anamorph.build_from(&Args::from_pairs(pairs), &frame).unwrap().map;
+    let args = |pairs: &[(&str, &str)]| Entry.build_from(&Args::from_pairs(pairs), &frame).unwrap().map;
     let road = [("eye-height", "1.6m"), ("distance", "20m"), ("onto", "plane:floor")];
     let m = args(&[&road[..], &[("length", "10m")]].concat());
     let (near, far) = (m.point((250.0, 240.0).into()), m.point((250.0, 40.0).into()));
@@ -404,7 +407,7 @@ fn three_pushed_corners_span_a_plane() {
 }
 
 #[test]
-fn a_prescribed_place_gets_there_and_torn_sides_are_told() {
+fn a_prescribed_point_gets_there_and_torn_sides_warn() {
     for degree in ["1", "2", "4"] {
         let m = build(&[
             ("eye", "50,300"),
@@ -424,18 +427,18 @@ fn a_prescribed_place_gets_there_and_torn_sides_are_told() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn every_fault_is_named() {
     let cases: &[(Given, &str)] = &[
         (&[("onto", "plane:floor")], "distance is needed"),
         (&[("distance", "100"), ("onto", "plane:floor")], "never comes down"),
         (&[("distance", "100"), ("eye", "50,200"), ("onto", "plane:floor")], "from behind"),
-        (&[("distance", "100"), ("onto", "plane:slope")], "does not know"),
+        (&[("distance", "100"), ("onto", "plane:slope")], "does not have"),
         (&[("distance", "100"), ("onto", "plane:")], "is not one of"),
         (&[("distance", "100"), ("onto", "cylinder:")], "needs radius"),
         (&[("distance", "100"), ("onto", "cylinder:radius=20")], "misses the surface"),
         (&[("distance", "100"), ("onto", "cylinder:radius=-20")], "not positive"),
         (&[("distance", "100"), ("onto", "cone:top=20")], "radii"),
-        (&[("distance", "100"), ("onto", "torus:radius=20")], "no surface"),
+        (&[("distance", "100"), ("onto", "torus:radius=20")], "not a surface"),
         (&[("distance", "100"), ("onto", "sphere:radius=200")], "view is needed"),
         (&[("distance", "100"), ("onto", "sphere:eye"), ("push", "0,0:2")], "has the surface already"),
         (&[("distance", "100"), ("degree", "2"), ("push", "1,1:2")], "view is needed"),
@@ -452,9 +455,9 @@ fn what_is_wrong_is_said() {
         (&[("away", "1,0:-1000")], "through the eye"),
         (&[("reference", "0,0 9,9 99,99")], "one line"),
         (&[("reference", "0,0 9,0")], "no area"),
-        (&[("degree", "0")], "no degree"),
-        (&[("degree", "3x")], "no degree"),
-        (&[("point", "50,50:1.2"), ("local", "true")], "held"),
+        (&[("degree", "0")], "not a degree"),
+        (&[("degree", "3x")], "not a degree"),
+        (&[("point", "50,50:1.2"), ("local", "true")], "fixed"),
         (&[("point", "50,50")], "X,Y:FACTOR"),
     ];
     for (pairs, part) in cases {

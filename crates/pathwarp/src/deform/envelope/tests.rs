@@ -1,16 +1,24 @@
 //! The envelope against formulas written out separately, and against the shaper.
 
+use super::entry::INFO;
+use super::fit::paced;
 use super::*;
+use crate::deform::Deformation;
 use crate::deform::Registry;
+use crate::error::show;
 use crate::map::Creases;
+use crate::map::{AffineMap, Class, Coons, Map};
+use crate::outline::Seg;
 use crate::param::{Args, Frame};
 use crate::refit;
-use kurbo::{ParamCurve, ParamCurveArclen, PathSeg, Rect, Vec2};
+use kurbo::{Affine, ParamCurve, ParamCurveArclen, PathSeg, Rect, Vec2};
+use std::f64::consts::FRAC_1_SQRT_2;
+use std::sync::Arc;
 
 const SQUARE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
 
 fn built(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Envelope.build_from(&Args::from_pairs(pairs), &Frame::new(SQUARE))
+    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(SQUARE))
 }
 
 fn map(pairs: &[(&str, &str)]) -> Arc<dyn Map> {
@@ -200,13 +208,9 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 let mut turned = if reversed { sub.reversed() } else { sub.clone() };
                 turned.segs.rotate_left(start);
                 turned.start = turned.segs[0].start();
-                let path =
-                    crate::param::NamedPath { name: "envelope".into(), outline: Outline { subpaths: vec![turned] } };
-                let args = Args::new();
-                let frame = Frame::new(SQUARE);
-                let s = Settings::new(INFO.params, &args, &frame).unwrap();
-                let ring = corners::ring(&path, &s).unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
-                let sides = paced(&ring, None, "nothing", &mut Vec::new(), &mut Vec::new()).unwrap();
+                let path = NamedPath { name: "envelope".into(), outline: Outline { subpaths: vec![turned] } };
+                let ring = corners::ring(&path, None, None, false).unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
+                let sides = paced(&ring, None, Keep::Nothing, &mut Built::new(Arc::new(AffineMap::IDENTITY))).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
                 // On both sides of the middle, where a heart has its notch.
                 let [l, r] = [40.0, 60.0].map(|x| m.jet(Point::new(x, 50.0)));
@@ -227,7 +231,7 @@ fn corners_by_the_stated_rule() {
     let note = |pairs: &[(&str, &str)]| built(pairs).unwrap().explanation.notes.join("\n");
     // A circle's are on its diagonals, an ellipse's on those of its box.
     let n = note(&[("envelope", "M200,100 A100,50 0 1 1 0,100 A100,50 0 1 1 200,100 Z")]);
-    let (x, y) = (100.0 * R2, 50.0 * R2);
+    let (x, y) = (100.0 * FRAC_1_SQRT_2, 50.0 * FRAC_1_SQRT_2);
     let p = |sx: f64, sy: f64| show(Point::new(100.0 + sx * x, 100.0 + sy * y));
     let wanted = [p(-1.0, 1.0), p(1.0, 1.0), p(1.0, -1.0), p(-1.0, -1.0)].join(" ");
     assert!(n.contains(&wanted) && n.contains("nearest to the corners of its box"), "{n}\n{wanted}");
@@ -372,7 +376,7 @@ fn every_fault_is_named() {
     assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3")]).contains("corners: `1,2,3`"));
     assert!(fault(&[("bottom", "M0,0 C150,20 -50,20 100,0"), ("by", "extent")]).contains("bottom side does not"));
     let many = (0..2100).map(|i| format!("{},{}", i, (i % 7) * (i % 5))).collect::<Vec<_>>().join(" ");
-    assert!(fault(&[("envelope", &many)]).contains("2000 are the most"));
+    assert!(fault(&[("envelope", &many)]).contains("the limit is 2000"));
 }
 
 /// The shared Newton inverse finds its way back, over joints too, at every pace.

@@ -113,7 +113,7 @@ mod tests {
     use kurbo::Vec2;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn a_written_lattice_is_read_back() {
         let mut l = Lattice::regular(Rect::new(-5.5, 2.0, 30.0, 40.0), [3, 2], [2, 1]);
         l.shift(1, 1, Vec2::new(0.1, -7.0));
         l.set_weight(2, 0, 1.5);

@@ -227,9 +227,9 @@ impl Ffd {
             return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
         }
         let size = [lattice.columns(), lattice.rows()];
-        if let Some((k, count)) = self.frozen.iter().enumerate().find(|(k, count)| **count > size[k / 2]) {
+        if let Some(k) = (0..4).find(|k| self.frozen[*k] > size[k / 2]) {
             let problem = format!("freezes too many: 0 to {} there", size[k / 2]);
-            return Err(Error::usage("freeze", format!("{}:{count}", SIDES[k]), problem));
+            return Err(Error::usage("freeze", format!("{}:{}", SIDES[k], self.frozen[k]), problem));
         }
         Ok(lattice)
     }

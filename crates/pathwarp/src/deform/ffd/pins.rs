@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn frozen_points_stay_and_contradictions_are_told() {
+    fn frozen_points_stay_and_contradictions_are_reported() {
         let mut l = lattice();
         let at = Point::new(60.0, 50.0);
         let off = pull(&mut l, |i, _| i > 1, &[(at, Point::new(65.0, 50.0))]);

@@ -2,12 +2,13 @@
 
 use super::*;
 use crate::check;
+use crate::deform::Deformation;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, ParamCurve, Point, Rect};
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Mesh);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -16,8 +17,8 @@ fn with(name: &str, text: &str, more: &[(&str, &str)]) -> Result<Built, Error> {
     for (n, v) in more {
         args.push(n, *v);
     }
-    args.resolve_files(Mesh.info().params, |_| Ok(text.to_owned())).unwrap();
-    Mesh.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
+    args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
+    Entry.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
 }
 
 /// Two columns, two rows, some points off their places.
@@ -64,7 +65,7 @@ fn every_patch_is_its_net() {
     }
 }
 
-/// Both sides of every joint have one derivative after --smooth, also where four patches meet, and kinks are told before.
+/// Both sides of every joint have one derivative after smoothing, also where four patches meet, and kinks are reported before.
 #[test]
 fn joints_are_smoothed() {
     let text = json(&points(), "\"region\": [0,0,120,60], \"x\": [0.25],");
@@ -165,11 +166,11 @@ fn faults_are_named() {
     let fault = |text: &str| with("mesh", text, &[]).map(|_| ()).unwrap_err().to_string();
     assert!(fault(&json(&p[..5], "")).contains("5 rows"));
     assert!(fault(&json(&p, "\"x\": [0.5, 0.7],")).contains("`x`"));
-    assert!(fault(&json(&p, "\"region\": [0,0,0,5],")).contains("no box"));
+    assert!(fault(&json(&p, "\"region\": [0,0,0,5],")).contains("not a box"));
     let mut ragged = p.clone();
     ragged[2].pop();
     assert!(fault(&json(&ragged, "")).contains("row 2"));
     assert!(fault("{\"points\": 3}").contains("file.json:1:"));
-    let none = Mesh.build_from(&Args::new(), &check::frame()).map(|_| ()).unwrap_err().to_string();
+    let none = Entry.build_from(&Args::new(), &check::frame()).map(|_| ()).unwrap_err().to_string();
     assert!(none.contains("net is needed"));
 }

@@ -1,13 +1,15 @@
 //! The guides against the standard's formulas, written out here once more for one box.
 
+use super::entry::NAMES;
 use super::*;
 use crate::check;
+use crate::deform::Deformation;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveArclen, PathSeg, Point, QuadBez};
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&WordArt);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -15,7 +17,7 @@ const W: f64 = 300.0;
 const H: f64 = 120.0;
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    WordArt.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, W, H)))
+    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, W, H)))
 }
 
 fn default_guides(name: &str) -> Guides {
@@ -302,13 +304,13 @@ fn names_and_limits() {
     assert!(fault(&[("preset", "button"), ("split", "50%,40%")]).contains("rising"));
 }
 
-/// A shape from a file: the triangle, told anew; without bands or paths, and with broken guides, it is refused.
+/// A shape from a file: the triangle, rewritten; without bands or paths, and with broken guides, it is refused.
 #[test]
 fn files_of_ones_own() {
     let with = |text: &str| {
         let mut args = Args::from_pairs(&[("preset", "my.json"), ("adj", "30%")]);
-        args.resolve_files(WordArt.info().params, |_| Ok(text.to_owned())).unwrap();
-        WordArt.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
+        args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
+        Entry.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
     };
     let head = r#"{ "name": "roof", "adj": [{ "name": "a", "default": 0, "least": 0, "most": 50000 }], "#;
     let own =
