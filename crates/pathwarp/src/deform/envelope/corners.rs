@@ -1,7 +1,6 @@
 //! A closed path divided into four sides: its corners and its bottom, given or found.
 
-use super::Corners;
-use super::ring::{Ring, SAMPLES, area, mirrored, reversed};
+use super::ring::{Corners, Ring, SAMPLES, area, mirrored, reversed};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::outline::{Seg, Subpath};

@@ -15,6 +15,7 @@ mod tests;
 pub(super) use entry::Entry;
 pub(super) use fit::fit;
 pub use fit::{Keep, Spread};
+use ring::Corners;
 pub(super) use ring::Ring;
 
 use super::built::Built;
@@ -49,15 +50,6 @@ pub struct Envelope {
     bottom_side: Option<usize>,
     reverse: bool,
     keep: Keep,
-}
-
-/// The four corners of a closed path.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Corners {
-    /// Numbers of nodes, from 1.
-    Nodes([usize; 4]),
-    /// The points of the path nearest to these.
-    Points([Point; 4]),
 }
 
 impl Envelope {

@@ -15,6 +15,15 @@ pub(in crate::deform) struct Ring {
     pub(in crate::deform) notes: Vec<String>,
 }
 
+/// The four corners of a closed path.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Corners {
+    /// Numbers of nodes, from 1.
+    Nodes([usize; 4]),
+    /// The points of the path nearest to these.
+    Points([Point; 4]),
+}
+
 impl Ring {
     /// Returns the sides as one closed path, for a preview.
     pub(super) fn path(&self) -> BezPath {
