@@ -194,6 +194,12 @@ impl Error {
     }
 }
 
+/// The error about a JSON file in a build that cannot read it.
+#[cfg(not(feature = "serde"))]
+pub(crate) fn no_json(place: &str) -> Error {
+    Error::input(place, "is JSON, and this build lacks the feature `serde` that reads it")
+}
+
 /// Returns `value` if it is within the range, ends included.
 pub(crate) fn within(param: &str, value: f64, least: f64, most: f64) -> Result<f64, Error> {
     if (least..=most).contains(&value) {

@@ -1,6 +1,13 @@
-//! The deformations: one file each, and this list of them.
+//! Deformations: a typed constructor for each, and the registry that builds them from text.
 //!
-//! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
+//! Every deformation is a type with a constructor, chainable setters and `build`, such as [`Shaper`], [`Bend`] or [`Wave`].
+//! `build` returns a [`Built`]: the [`map`](Built::map), with notes, warnings and guides for the user. Plain numbers are user
+//! units, angles are degrees, clockwise on the screen, and boxes named `frame` are the artwork's.
+//!
+//! The [`Registry`] holds the same deformations as entries ([`Deformation`]) that read their parameters from text, as the command
+//! line and recipes do. Programs add their own with [`Registry::with`].
+//!
+//! To add one to this crate, run `cargo xtask new-deformation NAME`, which writes `NAME.rs` and three lines here.
 
 mod affine;
 mod anamorph;
@@ -24,8 +31,10 @@ mod shaper;
 mod similitude;
 mod swirl;
 mod triangle;
+#[cfg(feature = "serde")]
 mod warp;
 mod wave;
+#[cfg(feature = "serde")]
 mod wordart;
 
 pub use affine::Affine;
@@ -50,8 +59,10 @@ pub use shaper::Shaper;
 pub use similitude::Similitude;
 pub use swirl::{Falloff, Swirl};
 pub use triangle::Triangle;
+#[cfg(feature = "serde")]
 pub use warp::{Style, Warp};
 pub use wave::Wave;
+#[cfg(feature = "serde")]
 pub use wordart::{TextShape, WordArt};
 
 use std::sync::Arc;
@@ -61,7 +72,9 @@ pub(crate) fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Entry),
         Arc::new(envelope::Entry),
+        #[cfg(feature = "serde")]
         Arc::new(warp::Entry),
+        #[cfg(feature = "serde")]
         Arc::new(wordart::Entry),
         Arc::new(bilinear::Entry),
         Arc::new(birational::Entry),

@@ -17,6 +17,8 @@
 
 mod casteljau;
 mod entry;
+#[cfg(feature = "serde")]
+mod file;
 mod letters;
 mod listed;
 mod map;

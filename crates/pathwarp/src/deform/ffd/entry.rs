@@ -1,12 +1,13 @@
 //! The registry's entry: reads an [`Ffd`] from text.
 
-use super::file::{self, MAX_CELLS, MAX_DEGREE};
+use super::save::{self, MAX_CELLS, MAX_DEGREE};
 use super::{Change, Ffd, Grid, SIDES};
 use crate::deform::built::{Built, SavedFile};
 use crate::deform::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
-use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Point, Vec2};
+use crate::map::Lattice;
+use crate::param::{Axis, Kind, NamedText, Param, Settings};
+use kurbo::{Point, Rect, Vec2};
 
 pub(in crate::deform) struct Entry;
 
@@ -107,7 +108,7 @@ impl Deformation for Entry {
         };
         let (mut built, lattice) = ffd.build_with_lattice()?;
         if let Some(name) = s.texts("save-lattice").last() {
-            built.saves.push(SavedFile { name: (*name).to_owned(), text: file::write(&lattice) });
+            built.saves.push(SavedFile { name: (*name).to_owned(), text: save::write(&lattice) });
         }
         Ok(built)
     }
@@ -124,7 +125,7 @@ fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
                 return Err(Error::usage(name, s.texts(name).join(" "), problem));
             }
         }
-        let (lattice, named) = file::read(&file.name, &file.text, own_region.unwrap_or(frame))?;
+        let (lattice, named) = read(file, own_region.unwrap_or(frame))?;
         // An explicit region wins: the grid is laid onto it.
         return Ok(match own_region {
             Some(r) => (Grid::Given(lattice.on(r)), true),
@@ -141,7 +142,17 @@ fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
     Ok((Grid::Regular { region: own_region.unwrap_or(frame), degree, cells }, false))
 }
 
-/// `3x2`, or `3` for both.
+#[cfg(feature = "serde")]
+fn read(file: &NamedText, frame: Rect) -> Result<(Lattice, bool), Error> {
+    super::file::read(&file.name, &file.text, frame)
+}
+
+#[cfg(not(feature = "serde"))]
+fn read(file: &NamedText, _: Rect) -> Result<(Lattice, bool), Error> {
+    Err(crate::error::no_json(&file.name))
+}
+
+/// Reads `3x2`, or `3` for both.
 fn pair(s: &Settings<'_>, name: &str, most: usize) -> Result<Option<[usize; 2]>, Error> {
     let Some(text) = s.texts(name).last().copied() else { return Ok(None) };
     let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=most).contains(n));

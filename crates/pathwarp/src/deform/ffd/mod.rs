@@ -11,11 +11,13 @@
 //! map is extended.
 
 mod entry;
+#[cfg(feature = "serde")]
 mod file;
 mod pins;
+mod save;
 
 pub(super) use entry::Entry;
-pub(super) use file::{MAX_CELLS, MAX_DEGREE};
+pub(super) use save::{MAX_CELLS, MAX_DEGREE};
 
 use super::built::{Built, Role};
 use crate::error::{Error, show, within};

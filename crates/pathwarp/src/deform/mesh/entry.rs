@@ -1,11 +1,12 @@
 //! The registry's entry: reads a [`Mesh`] from text.
 
 use super::quilt::Quilt;
-use super::{Mesh, Source, file, psd};
+use super::{Mesh, Source};
 use crate::deform::built::Built;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
-use crate::param::{Kind, Param, Settings};
+use crate::param::{Kind, NamedText, Param, Settings};
+use kurbo::Rect;
 
 pub(in crate::deform) struct Entry;
 
@@ -86,23 +87,14 @@ impl Deformation for Entry {
             ));
         };
         let region = super::with_area(s.rect_if("region")?.unwrap_or(frame))?;
-        let missing = || Error::missing(source, "its file");
-        let (quilt, layer) = match source {
-            "net" => {
-                let path = s.path_if("net")?.ok_or_else(|| Error::missing("net", "a path"))?;
-                (Quilt::from_path(&path, region)?, None)
-            }
-            "psd" => {
-                let file = s.file_if("psd")?.ok_or_else(missing)?;
-                match psd::read(file, s.texts("layer").last().copied(), region)? {
-                    psd::Found::Style(built) => return Ok(built),
-                    psd::Found::Quilt(quilt, layer) => (quilt, Some(layer)),
-                }
-            }
-            _ => {
-                let file = s.file_if("mesh")?.ok_or_else(missing)?;
-                let quilt = file::read(&file.name, &file.text, region)?;
-                (if s.given("region") { quilt.on(region) } else { quilt }, None)
+        let (quilt, layer) = if source == "net" {
+            let path = s.path_if("net")?.ok_or_else(|| Error::missing("net", "a path"))?;
+            (Quilt::from_path(&path, region)?, None)
+        } else {
+            let file = s.file_if(source)?.ok_or_else(|| Error::missing(source, "its file"))?;
+            match from_file(s, source, file, region)? {
+                Contents::Built(built) => return Ok(built),
+                Contents::Quilt(quilt, layer) => (quilt, layer),
             }
         };
         let mut built = Mesh { source: Source::Quilt(quilt), smooth: s.flag("smooth")?, frame: Some(frame) }.build()?;
@@ -111,4 +103,31 @@ impl Deformation for Entry {
         }
         Ok(built)
     }
+}
+
+/// The contents of a file.
+enum Contents {
+    /// A warp style.
+    Built(Built),
+    /// A quilt, and the name of its layer.
+    Quilt(Quilt, Option<String>),
+}
+
+/// Reads a mesh or a Photoshop file.
+#[cfg(feature = "serde")]
+fn from_file(s: &Settings<'_>, param: &str, file: &NamedText, region: Rect) -> Result<Contents, Error> {
+    use super::{file, psd};
+    if param == "psd" {
+        return Ok(match psd::read(file, s.texts("layer").last().copied(), region)? {
+            psd::Found::Style(built) => Contents::Built(built),
+            psd::Found::Quilt(quilt, layer) => Contents::Quilt(quilt, Some(layer)),
+        });
+    }
+    let quilt = file::read(&file.name, &file.text, region)?;
+    Ok(Contents::Quilt(if s.given("region") { quilt.on(region) } else { quilt }, None))
+}
+
+#[cfg(not(feature = "serde"))]
+fn from_file(_: &Settings<'_>, _: &str, file: &NamedText, _: Rect) -> Result<Contents, Error> {
+    Err(crate::error::no_json(&file.name))
 }

@@ -5,7 +5,9 @@
 //! (p − p₋)/before in every row (G. Farin, *Curves and Surfaces for CAGD*, §15.4).
 
 mod entry;
+#[cfg(feature = "serde")]
 mod file;
+#[cfg(feature = "serde")]
 mod psd;
 mod quilt;
 #[cfg(test)]
