@@ -222,7 +222,7 @@ fn show_all(points: &[Point]) -> String {
     points.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")
 }
 
-/// Rounds to six decimals: enough to find a place, and short.
+/// Rounds to six decimals: enough to find a point, and short.
 fn round6(v: f64) -> f64 {
     let r = (v * 1e6).round() / 1e6;
     if r.is_finite() { r + 0.0 } else { v }

@@ -19,7 +19,7 @@ plane:floor            the ground under the artwork's bottom edge\n  \
 plane:ceiling          above its top edge\n  \
 plane:left plane:right a side wall along its left or right edge\n  \
 plane:ramp=20          ground that rises by an angle away from the eye\n  \
-plane:wall=30          an upright wall, its right side turned away by an angle\n  \
+plane:wall=30          a vertical wall, its right side turned away by an angle\n  \
 cylinder:radius=40mm   a mug, its front touching the artwork's middle\n  \
 cone:top=45mm,bottom=30mm,height=90mm  a cup; height by default the artwork's\n  \
 sphere:radius=60mm     a ball; it cannot be laid flat, so it needs --view\n  \
@@ -148,7 +148,7 @@ a fixed side: the first side of a triangle, the edge of a box if --local.",
         // In the plane: one corner of a triangle twice as far; halfway along its side δ is the mean of 1 and ½.
         Case { args: PUSHED, at: (100.0, 0.0), to: (200.0, 0.0), tolerance: 1e-12 },
         Case { args: PUSHED, at: (50.0, 0.0), to: (50.0 / 0.75, 0.0), tolerance: 1e-12 },
-        // A place prescribed.
+        // A prescribed point.
         Case {
             args: &[("eye", "50,200"), ("reference", "0,100 100,100 50,0"), ("point", "50,40:1.25")],
             at: (50.0, 40.0),

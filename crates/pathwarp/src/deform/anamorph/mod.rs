@@ -288,7 +288,7 @@ impl Anamorph {
         Ok(built)
     }
 
-    /// Returns the map of the surface as it is to be shown.
+    /// Returns the requested view of the surface.
     fn shown(&self, cast: &Anamorphosis, scene: &Scene) -> Result<Arc<dyn Map>, Error> {
         match self.look {
             Look::Eye => Ok(cast.seen()),

@@ -123,7 +123,7 @@ fn grid() -> impl Iterator<Item = Point> {
     (0..=10).flat_map(|i| (0..=10).map(move |j| Point::new(10.0 * f64::from(i), 10.0 * f64::from(j))))
 }
 
-/// On the stated surface, by its own equation, and on the ray; jets are difference quotients.
+/// On the surface, by its equation, and on the ray; jets agree with difference quotients.
 #[test]
 fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
     let away = |a: Space, b: Space| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
@@ -186,7 +186,7 @@ fn unrolled_surfaces_are_true_to_size() {
     assert_eq!(flat, 6);
 }
 
-/// Gaussian elimination of the quadric's ten coefficients from its points: what is left of other points.
+/// Eliminates the quadric's ten coefficients from its points, and returns the residual of other points.
 fn off_quadric(points: &[Space], others: &[Space]) -> f64 {
     let size = points.iter().flatten().fold(0.0, |m, v| f64::max(m, v.abs()));
     let row = |q: &Space| -> Vec<f64> {
@@ -277,7 +277,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
 const METRE: f64 = 96.0 / 0.0254;
 
 /// Similar triangles: an eye 1.6 m high and 20 m away sees the far end of a 10 m marking, 30 m away, at a height of
-/// 1.6·10/30 m above the near end; the far end is 30/20 times as wide as it looks.
+/// 1.6·10/30 m above the near end; the far end is 30/20 times its apparent width.
 #[test]
 fn a_road_marking_ten_metres_long() {
     let frame = Frame::new(Rect::new(100.0, 40.0, 400.0, 240.0));
@@ -287,7 +287,7 @@ fn a_road_marking_ten_metres_long() {
     let (near, far) = (m.point((250.0, 240.0).into()), m.point((250.0, 40.0).into()));
     assert!(near.distance((250.0, 240.0).into()) < 1e-9);
     assert!((near.y - far.y - 10.0 * METRE).abs() < 1e-9 * METRE && (near.x - far.x).abs() < 1e-9);
-    // 200 units stand for 1.6/3 m, so 300 for 0.8 m: 1.2 m at the far end.
+    // 200 units represent 1.6/3 m, so 300 are 0.8 m: 1.2 m at the far end.
     let width = |y: f64| m.point((400.0, y).into()).x - m.point((100.0, y).into()).x;
     assert!((width(240.0) - 0.8 * METRE).abs() < 1e-9 * METRE);
     assert!((width(40.0) - 1.2 * METRE).abs() < 1e-9 * METRE);
@@ -307,7 +307,7 @@ fn a_road_marking_ten_metres_long() {
     assert!((near.y - far.y - 10.0 * METRE).abs() < 1e-9 * METRE);
 }
 
-/// A level line at the eye's height on a cylinder: the ray at φ from the axis' direction ends where the sine rule says.
+/// A horizontal line at the eye's height on a cylinder: the ray at φ from the axis' direction ends according to the sine rule.
 #[test]
 fn labels_are_as_long_as_their_arcs() {
     let m = build(&[("distance", "300"), ("onto", "cylinder:radius=80")]).unwrap().map;
@@ -335,7 +335,7 @@ fn labels_are_as_long_as_their_arcs() {
     assert!(got.distance(want) < 1e-11, "{got:?} {want:?}");
 }
 
-/// Another camera, by its definition; and what is polynomial has exact images.
+/// Another camera, by its definition; polynomial maps have exact images.
 #[test]
 fn views_are_central_projections_and_exact_where_they_can_be() {
     let at = [-100.0, 20.0, -180.0];

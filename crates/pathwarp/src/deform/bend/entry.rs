@@ -46,7 +46,7 @@ omitted). A handle is the image of the artwork's height.")
         Param::length("offset", Axis::X, "Shift along the skeleton, user units or % of the artwork's width.")
             .default("0"),
         Param::length("gap", Axis::X, "The least space between repeated artwork, user units or % of its width.").default("0"),
-        Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: its own baseline.")
+        Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: the lettering's baseline.")
             .default("50%"),
         Param::number("width", "Heights are multiplied by this.").default("100%").within(1e-6, 1e6).slider(0.1, 3.0),
         Param::new(
@@ -59,7 +59,7 @@ omitted). A handle is the image of the artwork's height.")
         Param::new(
             "spline",
             Kind::Count,
-            "Take the skeleton's anchors as control points of a uniform B-spline of this degree; its own curves are ignored.",
+            "Take the skeleton's anchors as control points of a uniform B-spline of this degree; the curves between them are ignored.",
         )
         .within(1.0, 3.0),
         Param::new(

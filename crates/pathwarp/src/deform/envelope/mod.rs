@@ -27,7 +27,7 @@ use kurbo::{Point, Rect};
 /// An envelope: the artwork's box put into a shape with four sides, each a curve of any number of pieces.
 ///
 /// The map is the Coons patch of the sides, F(u, v) = (1−v)·B(u) + v·T(u) + (1−u)·L(v) + u·R(v) less the bilinear map of the
-/// corners, or, if lines are to be [kept](Self::keep), a ruled or projective map.
+/// corners, or a ruled or projective map if lines are [kept](Self::keep).
 ///
 /// ```
 /// use pathwarp::{Outline, deform::Envelope, kurbo::{Point, Rect}, map::Map};

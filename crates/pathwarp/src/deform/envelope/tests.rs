@@ -87,7 +87,7 @@ fn wavy(from: Point, to: Point, n: u32) -> String {
     out
 }
 
-/// The point at a share of a run's length, by kurbo's own integration: an independent truth.
+/// The point at a share of a run's length, by kurbo's integration: an independent reference.
 fn by_length(segs: &[Seg], share: f64) -> Point {
     let as_kurbo = |s: &Seg| match s {
         Seg::Line(l) => PathSeg::Line(*l),
@@ -187,7 +187,7 @@ fn branches_and_creases() {
     }
 }
 
-/// Criterion: text is never mirrored, wherever the path starts and whichever way it runs.
+/// Criterion: text is never mirrored, for any start and direction of the path.
 #[test]
 fn nothing_is_mirrored_and_the_bottom_is_below() {
     let shapes = [
@@ -235,13 +235,13 @@ fn corners_by_the_stated_rule() {
     let p = |sx: f64, sy: f64| show(Point::new(100.0 + sx * x, 100.0 + sy * y));
     let wanted = [p(-1.0, 1.0), p(1.0, 1.0), p(1.0, -1.0), p(-1.0, -1.0)].join(" ");
     assert!(n.contains(&wanted) && n.contains("nearest to the corners of its box"), "{n}\n{wanted}");
-    // A swallow-tailed pennant: five corners, the notch is none of the four.
+    // A swallow-tailed pennant: five corners, of which the notch is not chosen.
     let n = note(&[("envelope", "M0,0 L100,0 L80,50 L100,100 L0,100 Z")]);
     assert!(n.contains("0,100 100,100 100,0 0,0"), "{n}");
     // Four by angle, among smooth joints.
     let n = note(&[("envelope", "M0,0 L50,0 L100,0 L100,50 L100,100 L0,100 Z")]);
     assert!(n.contains("found by angle") && n.contains("0,100 100,100 100,0 0,0"), "{n}");
-    // A square on its tip has its corners where they are, though none is in a quarter of its box.
+    // A square on its tip keeps its corners, although none lies in a quarter of its box.
     let n = note(&[("envelope", "M50,0 L100,50 L50,100 L0,50 Z")]);
     assert!(n.contains("found by angle"), "{n}");
     // A fish's tail is narrow, yet drawn with four corners.
@@ -264,7 +264,7 @@ fn corners_by_the_stated_rule() {
     assert!(m.point(Point::new(10.0, 80.0)).distance(Point::new(90.0, 80.0)) < 1e-12);
 }
 
-/// Criterion: `keep verticals`, measured on the refitted result: upright within 0.1° and straight.
+/// Criterion: `keep verticals`, measured on the refitted result: vertical within 0.1° and straight.
 #[test]
 fn uprights_stay_upright_through_the_refit() {
     const TOLERANCE: f64 = 0.005;
@@ -291,11 +291,11 @@ fn uprights_stay_upright_through_the_refit() {
             }
             let lean = (to.x - from.x).abs().atan2((to.y - from.y).abs()).to_degrees();
             assert!(lean < 0.1, "{x} leans by {lean}°");
-            // And it is where it should be: at the same share of the curves' width, on both.
+            // Its position is at the same share of the curves' width, on both.
             assert!((from.x - 3.6 * x).abs() < 1e-9, "{x} {from:?}");
         }
     }
-    // Where no such map is, the uprights are straight all the same, and the warning says how far they lean.
+    // Without an exact map the verticals are straight all the same, and the warning gives their lean.
     let b = built(&[
         ("bottom", "M0,100 A50,50 0 0 1 100,100"),
         ("top", "M-20,100 A70,70 0 0 1 120,100"),
@@ -322,7 +322,7 @@ fn keep_says_when_nothing_can() {
     );
     let e = fault(&[("envelope", curved), ("keep", "lines")]);
     assert!(e.contains("four straight sides") && e.contains("right side"), "{e}");
-    // What is asked for exists here.
+    // Here the lines can be kept.
     let m = map(&[("envelope", curved), ("keep", "horizontals")]);
     assert!((m.point(Point::new(70.0, 30.0)).y - 30.0).abs() < 1e-10);
     let m = map(&[("envelope", "0,90 100,80 80,10 10,0"), ("keep", "lines")]);

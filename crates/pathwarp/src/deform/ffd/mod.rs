@@ -205,7 +205,8 @@ impl Ffd {
             r.x1,
             r.y1
         ));
-        built.note(format!("outside the region: {}", if self.extended { "the map runs on" } else { "nothing moves" }));
+        built
+            .note(format!("outside the region: {}", if self.extended { "the map continues" } else { "nothing moves" }));
         built.overlay(Role::Base, net(&Lattice::regular(r, lattice.degree(), lattice.cells())));
         built.overlay(Role::Cage, net(&lattice));
         Ok((built, lattice))

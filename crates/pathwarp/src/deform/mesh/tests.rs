@@ -21,7 +21,7 @@ fn with(name: &str, text: &str, more: &[(&str, &str)]) -> Result<Built, Error> {
     Entry.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
 }
 
-/// Two columns, two rows, some points off their places.
+/// Two columns, two rows, some points moved.
 fn points() -> Vec<Vec<(f64, f64)>> {
     (0..7)
         .map(|j| {
@@ -126,17 +126,17 @@ fn photoshops_warps_are_the_styles_and_nets() {
     assert!(fault(with("psd", "{ \"warps\": [] }", &[])).contains("no layer"));
 }
 
-/// As people write them by hand: one warp, with the keys of Photoshop's descriptors, and what is zero left away.
+/// Written by hand: one warp, with the keys of Photoshop's descriptors, without those that are zero.
 #[test]
 fn warps_written_by_hand() {
     let flag = with("psd", "{ \"warpStyle\": \"warpFlag\", \"warpValue\": 50 }", &[]).unwrap();
-    // The flag's own formula on this box: y + 2·b·h·(3u(1-u)² - 3u²(1-u)).
+    // The flag's formula on this box: y + 2·b·h·(3u(1-u)² - 3u²(1-u)).
     for p in [(25.0, 30.0), (60.0, 70.0)].map(Point::from) {
         let u = (p.x - 10.0) / 100.0;
         let rise = 60.0 * 3.0 * u * (1.0 - u) * (1.0 - 2.0 * u);
         assert!(flag.map.point(p).distance(p + kurbo::Vec2::new(0.0, rise)) < 1e-10, "{p:?}");
     }
-    // A mesh on a box of its own is laid onto the artwork.
+    // A mesh on another box is laid onto the artwork.
     let points: Vec<Vec<(f64, f64)>> =
         (0..4).map(|j| (0..4).map(|i| (f64::from(i), f64::from(j) + f64::from(i))).collect()).collect();
     let mesh = format!("{{ \"style\": \"warpCustom\", \"mesh\": {} }}", json(&points, "\"region\": [0,0,3,3],"));

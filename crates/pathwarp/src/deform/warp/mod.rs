@@ -26,8 +26,7 @@ use std::sync::Arc;
 
 /// A warp style over the artwork's box: arc, flag, fisheye, …
 ///
-/// The map is the bicubic Bézier patch of the style's net, or, if lines are to be [kept](Self::keep), the envelope of its
-/// sides.
+/// The map is the bicubic Bézier patch of the style's net, or the envelope of its sides if lines are [kept](Self::keep).
 ///
 /// ```
 /// use pathwarp::{deform::{Style, Warp}, kurbo::{Point, Rect}, map::Map};

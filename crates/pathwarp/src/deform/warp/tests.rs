@@ -225,7 +225,7 @@ fn the_vertical_axis_is_transposition() {
     }
 }
 
-/// Columns, then rows (or the other way round), about the middles of their ends; what is scaled depends on the family.
+/// Columns, then rows (or the reverse), about the middles of their ends; the family decides which points are scaled.
 fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], columns_first: bool) -> N {
     let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
     let columns = |n: &N| {
@@ -277,7 +277,7 @@ fn distortions_come_in_order() {
                 let net = style.net(W, H, &StyleParams { distortion: [h, v], ..plain(b) }).unwrap();
                 let d = off(&net, &distorted(&style.name, b, [W, H], [h, v], true));
                 assert!(d < 1e-9, "{} {b} {h} {v}: {d:e}", style.name);
-                // Sideways the two change places; what is horizontal still comes first.
+                // Sideways the two change roles; horizontal still comes first.
                 let net = style.net(W, H, &StyleParams { bend: b, distortion: [h, v], vertical: true }).unwrap();
                 let across = distorted(&style.name, b, [H, W], [v, h], false);
                 let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
@@ -288,7 +288,7 @@ fn distortions_come_in_order() {
             }
         }
     }
-    // Order matters where both act on bent sides, so that the test can tell.
+    // The order matters where both act on bent sides, so that the test detects it.
     let arch = Style::builtin().into_iter().find(|s| s.name == "arch").unwrap();
     let one = arch.net(W, H, &StyleParams { distortion: [0.25, -0.6], ..plain(0.5) }).unwrap();
     let upright = arch.net(H, W, &StyleParams { distortion: [-0.6, 0.25], vertical: true, ..plain(0.5) }).unwrap();
@@ -390,11 +390,11 @@ fn files_of_ones_own_and_their_faults() {
     };
     assert!(refused(&[("style", "flags")]).contains("arc-lower"));
     assert!(refused(&[("bend", "191%")]).contains("-190% to 190%"));
-    // What is no arc goes on.
+    // Styles without arcs have no limit.
     assert!(Entry.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
 }
 
-/// `keep verticals`: upright within 0.1° where the style's sides allow it, for the styles that have no upright map of their own.
+/// `keep verticals`: vertical within 0.1° where the style's sides allow it, for styles whose own map does not keep them.
 #[test]
 fn kept_verticals_are_upright() {
     use crate::param::Args;
@@ -414,7 +414,7 @@ fn kept_verticals_are_upright() {
                 assert!(lean < 0.1, "{style} {bend} at {x}: {lean}°");
                 assert!((b - a).cross(c - a).abs() < 1e-9 * (c - a).hypot2(), "{style} {bend} at {x}: bent");
             }
-            // The shape is the style's own: corners on corners, and the bottom's points on its bottom.
+            // The shape is the style's: corners on corners, and the bottom's points on its bottom.
             for corner in [(0.0, 0.0), (200.0, 0.0), (0.0, 100.0), (200.0, 100.0)] {
                 assert!(built.map.point(corner.into()).distance(free.point(corner.into())) < 1e-9, "{style} {bend}");
             }
@@ -422,7 +422,7 @@ fn kept_verticals_are_upright() {
     }
     let e = build(&[("style", "inflate"), ("bend", "50%"), ("keep", "verticals")]).err().unwrap().to_string();
     assert!(e.contains("is impossible with this style") && e.contains("arch") && !e.contains("inflate,"), "{e}");
-    // Styles that leave the sides as they are have nothing to keep: they say so, rather than vanish.
+    // Styles that leave the sides straight have nothing to keep; that is an error rather than the identity.
     for style in ["wave", "fisheye", "twist"] {
         for keep in ["verticals", "horizontals", "lines"] {
             let e = build(&[("style", style), ("bend", "50%"), ("keep", keep)]).err().unwrap().to_string();

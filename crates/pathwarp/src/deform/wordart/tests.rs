@@ -37,7 +37,7 @@ fn ends(segs: &[Seg]) -> Ends {
 /// First and last points of every guide, from the formulas of presetTextWarpDefinitions with the default adjust values.
 #[test]
 fn the_guides_ends_are_the_formulas() {
-    // A circle that lacks 1/60000 of a degree, by its own parametrisation; shapes are given as shares of w and h.
+    // A circle lacks 1/60000 of a degree, in the standard's parametrisation; shapes are given as shares of w and h.
     let pairs: &[(&str, &[Ends])] = &[
         ("plain", &[[(0.0, 0.0), (1.0, 0.0)], [(0.0, 1.0), (1.0, 1.0)]]),
         ("stop", &[[(0.0, 0.25), (1.0, 0.25)], [(0.0, 0.75), (1.0, 0.75)]]),
@@ -120,7 +120,7 @@ fn the_guides_ends_are_the_formulas() {
         };
         assert_eq!(guides.len(), expected.len(), "{name}");
         for (guide, want) in guides.iter().zip(*expected) {
-            // Whole turns lack 1/60000 of a degree: the ends are as near as that on the ellipse, 2.9e-7·radius at most.
+            // Whole turns lack 1/60000 of a degree: the ends are that close on the ellipse, 2.9e-7·radius at most.
             let turns = ["ring-inside", "ring-outside", "circle", "circle-pour"].contains(name);
             let near = if turns { 3e-7 * W } else { 1e-9 * W };
             for ((x, y), (u, v)) in ends(guide).into_iter().zip(want) {
@@ -219,7 +219,7 @@ fn the_two_curve_family_reproduces_its_guides() {
                     gone += seg.arclen(1e-12);
                 }
             }
-            // Between the guides lines are straight and even.
+            // Lines between the guides are straight and evenly divided.
             let (a, b, c) =
                 (m.point((0.3 * W, 0.0).into()), m.point((0.3 * W, 0.25 * H).into()), m.point((0.3 * W, H).into()));
             assert!(b.distance(a.lerp(c, 0.25)) < 1e-9, "{name}");
@@ -258,7 +258,7 @@ fn cans_and_rings_are_ellipses() {
     }
 }
 
-/// Angles are directions from the centre, not parameters; sweeps are mirrored about the upright axis.
+/// Angles are directions from the centre, not parameters; sweeps are mirrored about the vertical axis.
 #[test]
 fn arches_begin_where_their_angle_points() {
     for degrees in [10.0_f64, 100.0, 150.0, 200.0, 300.0] {
