@@ -1,7 +1,7 @@
-//! Anchors of user-drawn paths, and the rules by which a drawing's direction on the screen is made sense of.
+//! Anchors of user-drawn paths, and the rules that give them an order.
 //!
-//! A user seldom knows which way a path runs or where a closed one starts. The shaper paper's rule: the side that lies lowest
-//! on the screen is the bottom, and it runs left to right.
+//! Users seldom know the direction of a path or the start of a closed one. The shaper paper's rule: the side that lies lowest on
+//! the screen is the bottom, and it runs left to right.
 
 use crate::deform::{Built, Role};
 use crate::error::{Error, GeometryError};
@@ -11,10 +11,10 @@ use crate::param::{Frame, NamedPath, Settings};
 use kurbo::{Affine, Line, Point, Rect};
 use std::sync::Arc;
 
-/// Anchors closer than this part of their spread coincide; three anchors whose triangle is flatter than this part of their
-/// spread squared lie on a line. Well above rounding, well below what anybody draws.
+/// Anchors closer than this share of their spread coincide; three anchors whose triangle is smaller than this share of their
+/// spread squared lie on a line. Well above rounding, well below intentional distances.
 const NEAR: f64 = 1e-9;
-/// A closing line shorter than this part of the path's box is a drawing program's rounding, not a side.
+/// A closing line shorter than this share of the path's box is a drawing program's rounding, not a side.
 const STRAY: f64 = 1e-5;
 
 /// Two or four anchors, in the order the deformation uses them.
@@ -32,13 +32,13 @@ impl Anchors {
         }
     }
 
-    /// The path through them, for a preview.
+    /// Returns the path through them, for a preview.
     pub(crate) fn outline(&self) -> Outline {
         Outline::from_points(self.points(), matches!(self, Self::Four(_)))
     }
 }
 
-/// The only connected run of a path, a stray closing line dropped.
+/// Returns the only connected run of a path, without a stray closing line.
 pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<Subpath, Error> {
     let count = |anchors: Vec<Point>| GeometryError::AnchorCount {
         path: path.name.clone(),
@@ -61,8 +61,8 @@ pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<S
     Ok(sub)
 }
 
-/// The only run of a path that is closed, drawn back to its start, or a polyline of as many lines as `polyline` accepts: plain
-/// points have no way to say that they close.
+/// Returns the only run of a path that is closed, returns to its start, or is a polyline of as many lines as `polyline` accepts:
+/// plain points cannot be closed explicitly.
 pub(crate) fn closed_subpath(
     path: &NamedPath,
     expected: &'static str,
@@ -76,7 +76,7 @@ pub(crate) fn closed_subpath(
     }
     if !sub.closed && sub.end().distance(sub.start) <= 1e-9 * sub.start.to_vec2().hypot().max(1.0) && sub.segs.len() > 1
     {
-        // Drawn back to its start without being closed: closed in all but name.
+        // A path that returns to its start counts as closed.
         sub.closed = true;
     }
     if !sub.closed {
@@ -85,7 +85,7 @@ pub(crate) fn closed_subpath(
     Ok(sub)
 }
 
-/// The same piece, its last point moved to `end` (by rounding only).
+/// Moves the last point of a piece to `end`, by no more than rounding.
 pub(crate) fn ending_at(seg: &Seg, end: Point) -> Seg {
     match *seg {
         Seg::Line(l) => Seg::Line(Line::new(l.p0, end)),
@@ -104,7 +104,7 @@ pub(crate) fn ending_at(seg: &Seg, end: Point) -> Seg {
     }
 }
 
-/// The two or four anchors of a path, as drawn.
+/// Returns the two or four anchors of a path, as drawn.
 pub(crate) fn two_or_four(path: &NamedPath) -> Result<Anchors, Error> {
     let sub = only_subpath(path, "two or four")?;
     let a = sub.anchors();
@@ -161,28 +161,27 @@ fn spread(a: &[Point]) -> f64 {
     a.iter().flat_map(|p| a.iter().map(move |q| p.distance(*q))).fold(0.0, f64::max)
 }
 
-/// The order in which to take four corners so that the lowest side on the screen comes first, left to right: for each of the
-/// four places its index in `heights` (mean y of the side that starts there).
+/// The order of four corners in which the lowest side on the screen comes first, left to right.
 pub(crate) struct Arrangement {
-    /// Which side (0..4, as drawn) is the bottom.
+    /// The bottom side: 0 to 3, as drawn.
     pub(crate) bottom: usize,
-    /// Whether the path is run against its drawn direction.
+    /// Runs the path against its drawn direction.
     pub(crate) reversed: bool,
 }
 
 impl Arrangement {
-    /// By the paper's rule. `heights[i]` is the mean y of the side from corner i to corner i+1.
+    /// Follows the paper's rule. `heights[i]` is the mean y of the side from corner i to corner i+1.
     pub(crate) fn by_rule(corners: &[Point; 4], heights: &[f64; 4]) -> Self {
         let bottom = (0..4).fold(0, |best, i| if heights[i] > heights[best] { i } else { best });
         Self::from_bottom(corners, bottom)
     }
 
-    /// With side `bottom` as the bottom, left to right.
+    /// Takes side `bottom` for the bottom, left to right.
     pub(crate) fn from_bottom(corners: &[Point; 4], bottom: usize) -> Self {
         Self { bottom, reversed: corners[bottom].x > corners[(bottom + 1) % 4].x }
     }
 
-    /// The corner indices in order: bottom start, bottom end, then on round.
+    /// Returns the corner indices in order: bottom start, bottom end, then on around.
     pub(crate) fn order(&self) -> [usize; 4] {
         let b = self.bottom;
         if self.reversed {
@@ -193,7 +192,7 @@ impl Arrangement {
     }
 }
 
-/// Anchors arranged by the rule: two left to right; of four the lowest side first, left to right.
+/// Arranges anchors by the rule: two left to right; of four the lowest side first, left to right.
 pub(crate) fn arranged(a: Anchors) -> Anchors {
     match a {
         Anchors::Two([p, q]) if p.x > q.x => Anchors::Two([q, p]),
@@ -205,18 +204,18 @@ pub(crate) fn arranged(a: Anchors) -> Anchors {
     }
 }
 
-/// The anchors of a path, arranged by the rule or as drawn.
+/// Returns the anchors of a path, arranged by the rule or as drawn.
 pub(crate) fn of_path(path: &NamedPath, as_drawn: bool) -> Result<Anchors, Error> {
     let a = two_or_four(path)?;
     Ok(if as_drawn { a } else { arranged(a) })
 }
 
-/// The anchors of parameter `name`, arranged unless the flag `as_drawn` is set; `None` if not given.
+/// Reads the anchors of parameter `name`, arranged unless the flag `as_drawn` is set; `None` if not given.
 fn from_settings(s: &Settings<'_>, name: &str, as_drawn: &str) -> Result<Option<Anchors>, Error> {
     s.path_if(name)?.map(|path| of_path(&path, s.flag(as_drawn)?)).transpose()
 }
 
-/// The frame's corners as anchors: what Base is by default.
+/// Returns the frame's corners as anchors, the default base.
 pub(crate) fn frame_corners(frame: &Frame) -> Result<Anchors, Error> {
     let c = frame.corners();
     if general("", &c).is_err() {
@@ -281,8 +280,8 @@ fn four(name: &str, a: &Anchors) -> Result<[Point; 4], Error> {
     }
 }
 
-/// The map to the standard position: two anchors to (0,0), (1,0) by a direct similitude, four to the unit square's corners by
-/// a projective map. The standard position has v growing *upwards* on the screen.
+/// Returns the map to the standard position: two anchors to (0,0), (1,0) by a direct similitude, four to the unit square's corners
+/// by a projective map. In the standard position v grows *upwards* on the screen.
 pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error> {
     match *a {
         Anchors::Two([p, q]) => {
@@ -300,7 +299,7 @@ pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error
     }
 }
 
-/// `m`, or exactly the identity if it moves no corner of the frame by more than rounding: then nothing at all is touched.
+/// Returns `m`, or the exact identity if `m` moves no corner of the frame by more than rounding.
 pub(crate) fn settled(m: Affine, frame: &Frame) -> Affine {
     /// A few dozen operations on numbers of the corners' size.
     const ROUNDING: f64 = 1e-14;
@@ -310,7 +309,7 @@ pub(crate) fn settled(m: Affine, frame: &Frame) -> Affine {
     if moves || frame.rect.area() == 0.0 { m } else { Affine::IDENTITY }
 }
 
-/// The projective map from four points to four points, with the blame on `name`.
+/// Returns the projective map from four points to four points; an error names `name`.
 pub(crate) fn projective(name: &str, from: [Point; 4], to: [Point; 4]) -> Result<Homography, GeometryError> {
     Homography::from_points(from, to).ok_or_else(|| GeometryError::NotConvex {
         path: name.to_owned(),

@@ -1,6 +1,6 @@
-//! Checks any deformation: its table, its derivatives, its exactness, its laws and known values.
+//! Checks of any deformation: its table, derivatives, exact images, laws and known values.
 //!
-//! Authors of plug-ins call [`entry`] in a test of their own:
+//! Authors of plug-ins call [`entry`] in a test:
 //!
 //! ```
 //! let registry = pathwarp::deform::Registry::builtin();
@@ -16,13 +16,13 @@ use crate::refit;
 use kurbo::{CubicBez, Line, ParamCurveNearest, Point, Rect, Shape, Vec2};
 use std::sync::Arc;
 
-/// The frame that checks, demos and cases use.
+/// Returns the frame of checks, demos and cases: 0,0,100,100.
 #[must_use]
 pub fn frame() -> Frame {
     Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0))
 }
 
-/// Everything that is wrong with `entry`; nothing if it is sound.
+/// Returns a message for every fault of `entry`; none if it is sound.
 #[must_use]
 pub fn entry(entry: &dyn Deformation) -> Vec<String> {
     let mut faults = Faults { of: entry.info().name, list: Vec::new() };
@@ -106,7 +106,7 @@ fn table(entry: &dyn Deformation, faults: &mut Faults) {
         }
         if p.default.is_some() {
             let (args, frame) = (Args::new(), frame());
-            // Needed parameters are not given here: only the getters are used.
+            // Only the getters are used, so that required parameters may be missing.
             let s = Settings::new(std::slice::from_ref(p), &args, &frame);
             let got = s.and_then(|s| match p.kind {
                 Kind::Flag => s.flag(p.name).map(|_| ()),
@@ -119,13 +119,13 @@ fn table(entry: &dyn Deformation, faults: &mut Faults) {
                 Kind::Number | Kind::Length(_) | Kind::Angle | Kind::Count => s.number(p.name).map(|_| ()),
             });
             if let Err(e) = got {
-                faults.add(format!("{}: its default is no good: {e}", p.name));
+                faults.add(format!("{}: its default is not valid: {e}", p.name));
             }
         }
     }
 }
 
-/// Points of the frame, off every likely crease, where the map is defined.
+/// Returns points of the frame where the map is defined, away from likely creases.
 fn samples(map: &dyn Map) -> Vec<Point> {
     let mut creases = Creases::default();
     map.creases(&mut creases);
@@ -191,7 +191,7 @@ fn inverse(map: &dyn Map, faults: &mut Faults) {
     }
 }
 
-/// A circle and a line, refitted, against dense samples of the true image.
+/// Compares a refitted circle and line with dense samples of the true image.
 fn refitting(map: &dyn Map, faults: &mut Faults) {
     const TOLERANCE: f64 = 0.01;
     let art = Outline::from_svg("M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z M10,10 L90,85").unwrap_or_default();
@@ -220,7 +220,7 @@ fn refitting(map: &dyn Map, faults: &mut Faults) {
     }
 }
 
-/// How far the image of a point between `p` and `q` is off the line through theirs.
+/// Returns the distance of the image of a point between `p` and `q` from the line through their images.
 fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
     let (a, b, c) = (m.point(p), m.point(p.lerp(q, 0.4)), m.point(q));
     let n = (c - a).hypot();
@@ -273,7 +273,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Faults) {
                 .then(|| format!("{pairs:?} should multiply areas by {factor}; it is off by {off:e}"))
         }),
         Law::KeepsAngles(pairs) => with(pairs).and_then(|m| {
-            // Cauchy and Riemann: ∂F/∂y is ∂F/∂x turned by a quarter.
+            // Cauchy–Riemann equations: ∂F/∂y is ∂F/∂x rotated by 90°.
             let off = worst(&*m, &|p| {
                 let j = m.jet(p);
                 (j.dy - j.dx.turn_90()).hypot() / j.dx.hypot().max(f64::MIN_POSITIVE)
@@ -305,7 +305,7 @@ mod tests {
         }
     }
 
-    /// Artwork without width, height or either, and huge artwork: a map or an error, never a panic.
+    /// Artwork without width or height, and huge artwork: a map or an error, never a panic.
     #[test]
     fn degenerate_frames_are_survived() {
         for (w, h) in [(0.0, 0.0), (100.0, 0.0), (0.0, 100.0), (1e-200, 1e-200), (1e99, 1e99)] {
@@ -387,7 +387,7 @@ mod tests {
             "fewer than two",
             "kebab-case",
             "full stop",
-            "default is no good",
+            "default is not valid",
             "differ at",
             "differences give",
             "exact image",

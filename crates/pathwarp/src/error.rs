@@ -194,6 +194,12 @@ impl Error {
     }
 }
 
+/// The error about a JSON file in a build that cannot read it.
+#[cfg(not(feature = "serde"))]
+pub(crate) fn no_json(place: &str) -> Error {
+    Error::input(place, "is JSON, and this build lacks the feature `serde` that reads it")
+}
+
 /// Returns `value` if it is within the range, ends included.
 pub(crate) fn within(param: &str, value: f64, least: f64, most: f64) -> Result<f64, Error> {
     if (least..=most).contains(&value) {
@@ -216,7 +222,7 @@ fn show_all(points: &[Point]) -> String {
     points.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")
 }
 
-/// Rounds to six decimals: enough to find a place, and short.
+/// Rounds to six decimals: enough to find a point, and short.
 fn round6(v: f64) -> f64 {
     let r = (v * 1e6).round() / 1e6;
     if r.is_finite() { r + 0.0 } else { v }

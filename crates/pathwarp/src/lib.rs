@@ -21,7 +21,15 @@
 //! every deformation must obey; [`fold`] finds places where a map turns the plane over; [`distance`] measures how far two paths are
 //! apart.
 //!
+//! # Features
+//!
+//! - `serde` (default): reads JSON. Without it there are no warp styles and text shapes ([`deform::Warp`], [`deform::WordArt`]),
+//!   which are JSON themselves, and the registry's entries refuse files of lattices, meshes and handles.
+//!
 //! The crate is pure: no I/O, no globals, no printing. All numbers are `f64`; coordinates are user units, y down.
+
+// Without the presets, the parts that only they use have no caller.
+#![cfg_attr(not(feature = "serde"), allow(dead_code, unused_imports))]
 
 pub(crate) mod anchors;
 pub mod check;

@@ -4,7 +4,7 @@ use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
-use crate::param::{Args, Frame};
+use crate::param::{Args, Frame, Letter};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ use std::sync::Arc;
 pub struct Step {
     /// The deformation's name.
     pub deformation: String,
-    /// Its arguments, paths looked up.
+    /// Its arguments, with path references resolved.
     pub args: Args,
-    /// Whether it is the inverse map that is meant.
+    /// Applies the inverse map.
     pub inverse: bool,
 }
 
 impl Step {
-    /// A step forwards.
+    /// Creates a step that is not inverted.
     #[must_use]
     pub fn new(deformation: impl Into<String>, args: Args) -> Self {
         Self { deformation: deformation.into(), args, inverse: false }
@@ -48,87 +48,113 @@ pub struct BuiltRecipe {
 }
 
 impl Recipe {
-    /// Builds every step. Percentages in the first step mean `frame`, in later ones the box of `artwork` as it is by then.
+    /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
+    /// as it is by then.
     ///
     /// # Errors
-    /// An unknown deformation, or whatever building a step says.
+    /// An unknown deformation, a step that only the first can be, or any error from building a step.
     pub fn build<'a>(
         &self,
         registry: &Registry,
-        mut frame: Frame,
+        frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
-        let mut map = Chain::default();
-        let mut steps = Vec::with_capacity(self.steps.len());
-        let mut placement = Placement::default();
-        let mut after = Chain::default();
-        let first = frame.clone();
+        let mut out = BuiltRecipe {
+            map: Chain::default(),
+            steps: Vec::with_capacity(self.steps.len()),
+            placement: Placement::default(),
+            after: Chain::default(),
+        };
+        let letters = Arc::clone(&frame.letters);
+        let mut frame = frame;
         for (i, step) in self.steps.iter().enumerate() {
             let entry = registry.get(&step.deformation).ok_or_else(|| {
                 let known: Vec<_> = registry.entries().iter().map(|e| e.info().name).collect();
-                Error::Input {
-                    place: format!("step {}", i + 1),
-                    problem: format!("there is no deformation `{}`; known are {}", step.deformation, known.join(", ")),
-                }
+                let problem = format!("there is no deformation `{}`; known are {}", step.deformation, known.join(", "));
+                Error::input(format!("step {}", i + 1), problem)
             })?;
             if i > 0 {
-                let image = if placement.letters.is_empty() {
-                    image_box(artwork.clone(), &placement.copies, &map)
-                } else {
-                    let placed = first.letters.iter().zip(&placement.letters).map(|(l, p)| (&l.outline, p.as_slice()));
-                    placed.filter_map(|(o, p)| image_box(std::iter::once(o), p, &after)).reduce(|a, b| a.union(b))
-                };
-                frame = image.map_or(frame, Frame::new);
+                frame = out.image_box(artwork.clone(), &letters).map_or(frame, Frame::new);
             }
             let mut built = entry.build_from(&step.args, &frame)?;
-            let first_only = [
-                ("repeats the artwork", !built.placement.copies.is_empty()),
-                ("places letters", !built.placement.letters.is_empty()),
-            ];
-            for (what, _) in first_only.into_iter().filter(|(_, there)| *there) {
-                let problem = match (i, step.inverse) {
-                    (0, false) => continue,
-                    (_, true) => "has no inverse",
-                    _ => "only the first step can do; put it first, or in a run of its own",
-                };
-                let place = format!("step {}, {}", i + 1, step.deformation);
-                return Err(Error::Input { place, problem: format!("{what}, which {problem}") });
-            }
+            check_placement(&built.placement, i, step)?;
             if i == 0 {
-                placement.clone_from(&built.placement);
+                out.placement.clone_from(&built.placement);
             }
             if step.inverse {
-                if let Some(Seam { end, through }) = built.seam
-                    && let Some(at) = first_across(artwork.clone(), &placement.copies, &map, end, through - end)
-                {
-                    built.warn(format!(
-                        "{}: the edges of what is undone meet on the ray from {} through {}: what crosses it, as at {}, is torn apart; \
-                         turn the map or cut the artwork there",
-                        step.deformation,
-                        show(end),
-                        show(through),
-                        show(at)
-                    ));
+                if let Some(warning) = out.torn_seam(artwork.clone(), &built, &step.deformation) {
+                    built.warn(warning);
                 }
                 built = inverted(built, &frame);
             }
             if i > 0 {
-                after.push(Arc::clone(&built.map));
+                out.after.push(Arc::clone(&built.map));
             }
-            map.push(Arc::clone(&built.map));
-            steps.push(built);
+            out.map.push(Arc::clone(&built.map));
+            out.steps.push(built);
         }
-        Ok(BuiltRecipe { map, steps, placement, after })
+        Ok(out)
+    }
+
+    /// Returns the recipe that undoes this one: the steps' inverses, the last first.
+    #[must_use]
+    pub fn inverted(&self) -> Self {
+        let turned = |s: &Step| Step { inverse: !s.inverse, ..s.clone() };
+        Self { steps: self.steps.iter().rev().map(turned).collect() }
     }
 }
 
-/// The same deformation turned round: by its own inverse, or by Newton's method over the frame.
+/// Refuses copies and placed letters in all but a first step that is not inverted.
+fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), Error> {
+    let effect = match placement {
+        p if !p.copies.is_empty() => "repeats the artwork",
+        p if !p.letters.is_empty() => "places letters",
+        _ => return Ok(()),
+    };
+    let problem = match (i, step.inverse) {
+        (0, false) => return Ok(()),
+        (_, true) => "has no inverse",
+        _ => "only the first step can do; put it first, or in a separate run",
+    };
+    Err(Error::input(format!("step {}, {}", i + 1, step.deformation), format!("{effect}, which {problem}")))
+}
+
+impl BuiltRecipe {
+    /// Returns the bounding box of the artwork's image under the steps so far.
+    fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>, letters: &[Letter]) -> Option<Rect> {
+        if self.placement.letters.is_empty() {
+            return image_box(artwork, &self.placement.copies, &self.map);
+        }
+        let placed = letters.iter().zip(&self.placement.letters).map(|(l, p)| (&l.outline, p.as_slice()));
+        placed.filter_map(|(o, p)| image_box(std::iter::once(o), p, &self.after)).reduce(|a, b| a.union(b))
+    }
+
+    /// Warns if the image under the steps so far crosses the seam of a deformation to be inverted.
+    fn torn_seam<'a>(
+        &self,
+        artwork: impl Iterator<Item = &'a Outline>,
+        built: &Built,
+        deformation: &str,
+    ) -> Option<String> {
+        let Seam { end, through } = built.seam?;
+        let at = first_across(artwork, &self.placement.copies, &self.map, end, through - end)?;
+        Some(format!(
+            "{deformation}: undoing it cuts along the ray from {} through {}: artwork that crosses the cut, as at {}, is torn apart; \
+             turn the map or cut the artwork there",
+            show(end),
+            show(through),
+            show(at)
+        ))
+    }
+}
+
+/// Inverts a deformation: by its closed-form inverse, or by Newton's method over the frame.
 fn inverted(mut built: Built, frame: &Frame) -> Built {
-    /// How far beyond the frame an answer may lie, as a share of its diagonal: strokes and handles reach over it.
+    /// Distance beyond the frame at which a solution is accepted, as a share of its diagonal: strokes and handles extend past it.
     const REACH: f64 = 0.25;
     let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
     let map = built.map.inverse().unwrap_or_else(newton);
-    // What was the source is now the result.
+    // Source and result change places.
     for Overlay { role, .. } in &mut built.explanation.overlays {
         *role = match role {
             Role::Base => Role::Target,
@@ -139,19 +165,10 @@ fn inverted(mut built: Built, frame: &Frame) -> Built {
     Built { map, ..built }
 }
 
-impl Recipe {
-    /// The recipe that undoes this one: the steps' inverses, the last first.
-    #[must_use]
-    pub fn inverted(&self) -> Self {
-        let turned = |s: &Step| Step { inverse: !s.inverse, ..s.clone() };
-        Self { steps: self.steps.iter().rev().map(turned).collect() }
-    }
-}
-
-/// Pieces that a segment is sampled in.
+/// Intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
 
-/// Points along the image of every segment of the artwork: what a percentage or a warning needs, not what a proof needs.
+/// Samples the image of every segment of the artwork: accurate enough for percentages and warnings, not for proofs.
 fn images<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
     copies: &[Affine],
@@ -166,13 +183,13 @@ fn images<'a>(
     })
 }
 
-/// The box of the artwork's image.
+/// Returns the bounding box of the artwork's image.
 fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], map: &dyn Map) -> Option<Rect> {
     let points = images(artwork, copies, map).flatten().filter(|p| p.is_finite());
     points.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))
 }
 
-/// The first place where the artwork's image crosses the ray from `end` in the direction `along`.
+/// Returns the first point where the artwork's image crosses the ray from `end` in the direction `along`.
 fn first_across<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
     copies: &[Affine],

@@ -23,7 +23,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     create(&root, arguments.get_one::<String>("NAME").map_or("", String::as_str))
 }
 
-/// Writes the file and the two lines of the registry, and returns a summary.
+/// Writes the file and the three lines of `deform/mod.rs`, and returns a summary.
 fn create(root: &Path, name: &str) -> Result<String, ChoreError> {
     let kebab = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
     if !name.split('-').all(kebab) || name.starts_with(|c: char| c.is_ascii_digit()) {
@@ -46,31 +46,31 @@ fn create(root: &Path, name: &str) -> Result<String, ChoreError> {
     fs::write(&file, text).map_err(at(&file))?;
     fs::write(&list_file, list).map_err(at(&list_file))?;
     Ok(format!(
-        "wrote {}\nadded two lines to {}\n\nIt already bends artwork into a wave: try `cargo run -- {name} samples/logo.svg -o out.svg`.\n\
+        "wrote {}\nadded three lines to {}\n\nIt already bends artwork into a wave: try `cargo run -- {name} samples/logo.svg -o out.svg`.\n\
          Change the formula, the parameters and the cases; `cargo test -p pathwarp {module}` checks them.",
         file.display(),
         list_file.display()
     ))
 }
 
-/// Returns the text of `deform/mod.rs` with a line for the module and one for the entry.
+/// Returns the text of `deform/mod.rs` with lines for the module, its public type and its entry.
 fn register(list: &str, module: &str, ty: &str) -> Result<String, ChoreError> {
-    let unknown = "deform/mod.rs has an unexpected layout: add the `mod` line and the entry by hand";
-    let mut mods: Vec<&str> = list.lines().filter(|l| l.starts_with("mod ")).collect();
-    let (first, last) = (*mods.first().ok_or(unknown)?, *mods.last().ok_or(unknown)?);
-    let start = list.find(first).ok_or(unknown)?;
-    let end = list.find(last).ok_or(unknown)? + last.len();
-    let line = format!("mod {module};");
-    mods.push(&line);
-    mods.sort_unstable();
-    let at = list[end..].find(END_OF_LIST).ok_or(unknown)? + end;
-    Ok(format!(
-        "{}{}{}        Arc::new({module}::{ty}),\n{}",
-        &list[..start],
-        mods.join("\n"),
-        &list[end..at],
-        &list[at..]
-    ))
+    let unknown =
+        "deform/mod.rs has an unexpected layout: add the `mod` line, the `pub use` line and the entry by hand";
+    let list = insert(list, "mod ", &format!("mod {module};")).ok_or(unknown)?;
+    let list = insert(&list, "pub use ", &format!("pub use {module}::{ty};")).ok_or(unknown)?;
+    let at = list.find(END_OF_LIST).ok_or(unknown)?;
+    Ok(format!("{}        Arc::new({module}::Entry),\n{}", &list[..at], &list[at..]))
+}
+
+/// Inserts a line into the sorted block of lines that begin with `start`.
+fn insert(text: &str, start: &str, line: &str) -> Option<String> {
+    let after = text.lines().filter(|l| l.starts_with(start)).rfind(|l| *l < line);
+    let next = text.lines().find(|l| l.starts_with(start))?;
+    match after {
+        Some(before) => Some(text.replacen(&format!("{before}\n"), &format!("{before}\n{line}\n"), 1)),
+        None => Some(text.replacen(next, &format!("{line}\n{next}"), 1)),
+    }
 }
 
 /// Converts `square-wave` to `SquareWave`.
@@ -86,13 +86,58 @@ const TEMPLATE: &str = r#"//! One sentence that says what NAME does to artwork.
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::map::{Formula, Real};
 use crate::param::{Axis, Param, Settings};
+use kurbo::Rect;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-pub(super) struct TYPE;
+/// One sentence that says what NAME does to artwork.
+///
+/// x' = x, y' = y + h·sin(2π·x/l).
+///
+/// ```
+/// use pathwarp::{deform::TYPE, kurbo::{Point, Rect}, map::Map};
+///
+/// let wave = TYPE::new(Rect::new(0.0, 0.0, 100.0, 100.0)).height(3.0).length(40.0).build()?;
+/// assert!(wave.map.point(Point::new(10.0, 5.0)).distance(Point::new(10.0, 8.0)) < 1e-12);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TYPE {
+    height: f64,
+    length: f64,
+}
+
+impl TYPE {
+    /// Creates a wave over the artwork's box: 10 % of its height high, half its width long.
+    #[must_use]
+    pub fn new(frame: Rect) -> Self {
+        Self { height: 0.1 * frame.height(), length: 0.5 * frame.width() }
+    }
+
+    /// Sets h, user units.
+    #[must_use]
+    pub fn height(self, height: f64) -> Self {
+        Self { height, ..self }
+    }
+
+    /// Sets l, 1e-3 to 1e9 user units.
+    #[must_use]
+    pub fn length(self, length: f64) -> Self {
+        Self { length, ..self }
+    }
+
+    /// Builds the map.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a length out of range.
+    pub fn build(&self) -> Result<Built, Error> {
+        let length = within("length", self.length, 1e-3, 1e9)?;
+        Ok(Built::new(Arc::new(TYPEMap { height: self.height, length })))
+    }
+}
 
 static INFO: Info = Info::new("NAME", "one line for the menu")
     .group("New")
@@ -111,14 +156,16 @@ static INFO: Info = Info::new("NAME", "one line for the menu")
     // Known values in the frame 0,0,100,100: the crest, a quarter of the wave along.
     .cases(&[Case { args: &[("length", "40"), ("height", "3")], at: (10.0, 5.0), to: (10.0, 8.0), tolerance: 1e-12 }]);
 
-impl Deformation for TYPE {
+/// The registry's entry: reads the typed deformation from text.
+pub(super) struct Entry;
+
+impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let map = TYPEMap { height: s.number("height")?, length: s.number("length")? };
-        Ok(Built::new(Arc::new(map)))
+        TYPE { height: s.number("height")?, length: s.number("length")? }.build()
     }
 }
 
@@ -140,7 +187,7 @@ mod tests {
 
     #[test]
     fn is_sound() {
-        let faults = crate::check::entry(&TYPE);
+        let faults = crate::check::entry(&Entry);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 }

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn folds_are_told() {
+    fn folds_are_reported() {
         assert!(build(FOUR).explanation.warnings.is_empty());
         let dented = build(&[("target", "0,100 100,100 20,80 0,0"), ("target-as-drawn", "true")]);
         assert!(dented.explanation.warnings[0].contains("folds"));

@@ -149,7 +149,7 @@ keeps clear of the points where the map is infinite. With --spline, rows of many
         Param::new(
             "region",
             Kind::Text("artwork|X,Y,W,H"),
-            "The box that is laid between the rows; the map runs on outside it.",
+            "The box that is laid between the rows; the map continues outside it.",
         )
         .default("artwork"),
         Param::flag(

@@ -98,7 +98,7 @@ pub enum Role {
     Cage,
     /// The part of the source that the deformation takes hold of.
     Base,
-    /// The place in the result that the base goes to.
+    /// The image of the base.
     Target,
 }
 

@@ -50,7 +50,7 @@ pub struct Info {
     pub title: &'static str,
     /// The menu heading.
     pub group: &'static str,
-    /// What the deformation does and when to reach for it, for help and docs: plain sentences.
+    /// The effect and the uses of the deformation, for help and docs: plain sentences.
     pub about: &'static str,
     /// The paper or program the mathematics comes from.
     pub source: &'static str,

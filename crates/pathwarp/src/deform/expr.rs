@@ -65,7 +65,7 @@ impl Expr {
     /// Parses the formulas and builds the map.
     ///
     /// # Errors
-    /// [`Error::Missing`] without any formula, [`Error::Usage`] for a syntax error, with a caret below its place.
+    /// [`Error::Missing`] without any formula, [`Error::Usage`] for a syntax error, with a caret below it.
     pub fn build(&self) -> Result<Built, Error> {
         if self.x.is_none() && self.y.is_none() {
             return Err(Error::missing("x", "a formula for x, y or both, such as 'x + 4*sin(y/16)'"));
@@ -212,7 +212,7 @@ struct ExprMap {
     y: u32,
 }
 
-/// Points evaluated together.
+/// Points evaluated at a time.
 const LANES: usize = 8;
 
 impl ExprMap {

@@ -134,7 +134,7 @@ const LENSES: &[&str] = &["rectilinear", "stereographic", "equidistant", "equiso
 static INFO: Info = Info::new("lens", "look through a fisheye, or straighten what was seen through one")
     .group("Classics")
     .about("Redraws the artwork as another lens would have taken it. From rectilinear to one of the fisheyes, straight lines bow \
-outwards and the middle swells; the other way a fisheye picture is straightened. --field says how wide the view is from corner to \
+outwards and the middle swells; the other way a fisheye picture is straightened. --field sets the angle of view from corner to \
 corner of the artwork's box: the wider, the stronger.")
     .source("J. Kannala and S. Brandt, A generic camera model and calibration method for conventional, wide-angle, and fish-eye \
 lenses, IEEE PAMI 28, 2006, equations (1)-(5)")
@@ -225,7 +225,7 @@ impl LensModel {
         if matches!(self, Self::Rectilinear | Self::Orthographic) { PI / 2.0 } else { PI }
     }
 
-    /// ρ(θ).
+    /// Returns ρ(θ).
     fn radius<S: Real>(self, angle: S) -> S {
         let half = angle * 0.5;
         match self {
@@ -237,7 +237,7 @@ impl LensModel {
         }
     }
 
-    /// θ, ρ⁻¹(r).
+    /// Returns θ = ρ⁻¹(r).
     fn angle<S: Real>(self, r: S) -> S {
         let atan = |v: S| v.atan2(S::from(1.0));
         let asin = |v: S| v.atan2((-(v * v) + 1.0).sqrt());

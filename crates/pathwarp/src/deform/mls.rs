@@ -6,7 +6,7 @@
 //!
 //! - affine map: M = (Σ wᵢ q̂ᵢp̂ᵢᵀ)(Σ wᵢ p̂ᵢp̂ᵢᵀ)⁻¹ (equation 5),
 //! - similarity: in complex numbers M = Σ wᵢ q̂ᵢ·conj(p̂ᵢ) / Σ wᵢ|p̂ᵢ|² (equation 6),
-//! - rigid motion: the same sum divided by its own length (Theorem 2.1 and equation 8).
+//! - rigid motion: the same sum divided by its length (Theorem 2.1 and equation 8).
 //!
 //! Numerically: weights only matter up to a common factor, so they are taken as (d²/|pᵢ − v|²)^α with d the distance to the
 //! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
@@ -260,7 +260,7 @@ struct MlsMap {
 type Matrix<S> = [[S; 2]; 2];
 
 impl MlsMap {
-    /// The nearest handle and its squared distance.
+    /// Returns the nearest handle and its squared distance.
     fn nearest(&self, v: Point) -> (usize, f64) {
         let mut best = (0, f64::INFINITY);
         for (i, (p, _)) in self.handles.iter().enumerate() {
@@ -272,7 +272,7 @@ impl MlsMap {
         best
     }
 
-    /// M from the weighted sums of p̂p̂ᵀ and q̂p̂ᵀ.
+    /// Returns M from the weighted sums of p̂p̂ᵀ and q̂p̂ᵀ.
     fn matrix<S: Real>(&self, pp: [S; 3], qp: Matrix<S>) -> Matrix<S> {
         let [xx, xy, yy] = pp;
         let [[a, b], [c, d]] = qp;

@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_map_or_meets_the_pole_is_refused() {
+    fn degenerate_maps_and_poles_on_artwork_are_refused() {
         assert!(build(&[("coefficients", "1 0 2 0 2 0 4 0")]).is_err());
         assert!(build(&[("from", "0,0 1,0 2,0")]).is_err());
         assert!(build(&[("from", "0,0 1,0 0,0"), ("to", "0,0 1,0 2,0")]).is_err());

@@ -1,6 +1,13 @@
-//! The deformations: one file each, and this list of them.
+//! Deformations: a typed constructor for each, and the registry that builds them from text.
 //!
-//! To add one, write `NAME.rs` and two lines here (`cargo xtask new-deformation NAME` does both).
+//! Every deformation is a type with a constructor, chainable setters and `build`, such as [`Shaper`], [`Bend`] or [`Wave`].
+//! `build` returns a [`Built`]: the [`map`](Built::map), with notes, warnings and guides for the user. Plain numbers are user
+//! units, angles are degrees, clockwise on the screen, and boxes named `frame` are the artwork's.
+//!
+//! The [`Registry`] holds the same deformations as entries ([`Deformation`]) that read their parameters from text, as the command
+//! line and recipes do. Programs add their own with [`Registry::with`].
+//!
+//! To add one to this crate, run `cargo xtask new-deformation NAME`, which writes `NAME.rs` and three lines here.
 
 mod affine;
 mod anamorph;
@@ -24,20 +31,25 @@ mod shaper;
 mod similitude;
 mod swirl;
 mod triangle;
+#[cfg(feature = "serde")]
 mod warp;
 mod wave;
+#[cfg(feature = "serde")]
 mod wordart;
 
 pub use affine::Affine;
+pub use anamorph::{Anamorph, Onto};
 pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
 pub use birational::Birational;
 pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile};
 pub use bulge::Bulge;
 pub use entry::{Case, Deformation, Example, Gallery, Info, Law, Pairs};
+pub use envelope::{Envelope, Keep, Spread};
 pub use expr::Expr;
 pub use ffd::Ffd;
 pub use lens::{Lens, LensModel};
+pub use mesh::Mesh;
 pub use mls::{Mls, Stiffness};
 pub use mobius::Mobius;
 pub use polar::Polar;
@@ -47,9 +59,11 @@ pub use shaper::Shaper;
 pub use similitude::Similitude;
 pub use swirl::{Falloff, Swirl};
 pub use triangle::Triangle;
-pub use warp::Style;
+#[cfg(feature = "serde")]
+pub use warp::{Style, Warp};
 pub use wave::Wave;
-pub use wordart::TextShape;
+#[cfg(feature = "serde")]
+pub use wordart::{TextShape, WordArt};
 
 use std::sync::Arc;
 
@@ -57,19 +71,21 @@ use std::sync::Arc;
 pub(crate) fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::Entry),
-        Arc::new(envelope::Envelope),
-        Arc::new(warp::Warp),
-        Arc::new(wordart::WordArt),
+        Arc::new(envelope::Entry),
+        #[cfg(feature = "serde")]
+        Arc::new(warp::Entry),
+        #[cfg(feature = "serde")]
+        Arc::new(wordart::Entry),
         Arc::new(bilinear::Entry),
         Arc::new(birational::Entry),
         Arc::new(bend::Entry),
         Arc::new(polar::Entry),
         Arc::new(ffd::Entry),
-        Arc::new(mesh::Mesh),
+        Arc::new(mesh::Entry),
         Arc::new(triangle::Entry),
         Arc::new(mls::Entry),
         Arc::new(projective::Entry),
-        Arc::new(anamorph::Anamorph),
+        Arc::new(anamorph::Entry),
         Arc::new(wave::Entry),
         Arc::new(swirl::Entry),
         Arc::new(bulge::Entry),

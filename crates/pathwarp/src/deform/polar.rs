@@ -6,7 +6,7 @@
 //! - even: r = ρ + g·y, verticals are divided evenly; g = 1 unless both radii are given,
 //! - conformal: r = ρ·exp(κ·y), the complex exponential: angles are kept, heights grow with the radius.
 //!
-//! ρ = 1/κ gives the inner edge its own length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
+//! With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
 //! inner one. F = C + r·(sin φ, −cos φ) is computed from the image O of the artwork's middle, F = O + (r·sin φ, r(yₘ) − r +
 //! 2r·sin²(φ/2)), which loses nothing where the sweep is small and C far away. Inverse: r and φ from the distance to C and the
 //! direction, exact up to the ray opposite the middle. A whole turn meets itself there; artwork that crosses it is cut and joined
@@ -270,7 +270,7 @@ impl PolarMap {
         Vec2::new(v.x * self.turn.x - v.y * self.turn.y, v.x * self.turn.y + v.y * self.turn.x)
     }
 
-    /// r at a level.
+    /// Returns r at a height.
     fn radius_at<S: Real>(&self, y: S) -> S {
         let h = -(y - self.edge);
         if self.conformal { (h * self.k).exp() * self.radius } else { h * self.gain + self.radius }
@@ -319,14 +319,14 @@ struct Unrolled {
 }
 
 impl Unrolled {
-    /// Distance from the centre and angle from the middle.
+    /// Returns the distance from the centre and the angle from the middle.
     fn polar<S: Real>(&self, x: S, y: S) -> (S, S) {
         let m = &self.ring;
         let (c, t) = (m.centre(), m.turn);
         let (u, v) = (x - c.x, y - c.y);
         let (a, b) = (u * t.x + v * t.y, v * t.x - u * t.y);
         let angle = (a * m.up).atan2(b * -m.up);
-        // On the ray itself rounding gives either end of the turn.
+        // On the ray itself, rounding picks either end of the turn.
         let angle = match self.half {
             Some(sign) if angle.value() * sign < -FRAC_PI_2 => angle + sign * TAU,
             _ => angle,
@@ -344,8 +344,8 @@ impl Formula for Unrolled {
         (angle / m.k + m.middle.x, -h + m.edge)
     }
 
-    /// Undefined on the ray opposite the middle: half of what the sweep leaves free goes to either end. A whole turn leaves
-    /// nothing free: the value jumps there. The halves are told apart by the whole line, so that each has its own ends.
+    /// Undefined on the ray opposite the middle: each end extends over half of the angle that the sweep leaves free. A whole turn
+    /// leaves none, so that the value jumps there; the whole line divides it into halves with definite ends.
     fn creases(&self, out: &mut Creases) {
         let own = *self;
         if own.ring.is_whole() {
@@ -417,7 +417,7 @@ mod tests {
 
     /// A square across the ray opposite the middle, and one that is not, unrolled from a ring about 0,0.
     #[test]
-    fn a_whole_turn_is_cut_where_it_meets_itself_and_the_cut_is_told() {
+    fn a_whole_turn_is_cut_where_it_meets_itself_and_warns() {
         let pairs = [("sweep", "360"), ("inner", "20"), ("outer", "90"), ("center", "0,0"), ("turn", "-10")];
         let step = Step { inverse: true, ..Step::new("polar", Args::from_pairs(&pairs)) };
         let recipe = Recipe { steps: vec![step] };

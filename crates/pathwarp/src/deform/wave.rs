@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_that_folds_is_told_and_has_no_closed_inverse() {
+    fn a_push_that_folds_warns_and_has_no_closed_inverse() {
         let build = |h: &str| {
             Entry.build_from(&Args::from_pairs(&[("kind", "push"), ("length", "40"), ("height", h)]), &check::frame())
         };

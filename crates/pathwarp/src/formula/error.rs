@@ -34,7 +34,7 @@ impl SyntaxError {
     /// Returns the message, the formula and a caret below the error.
     pub(crate) fn show(&self, text: &str) -> String {
         let column = text.get(..self.at).unwrap_or(text).chars().count();
-        // Tabs would move the caret away from its place.
+        // Tabs would misalign the caret.
         let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         format!("is not a valid formula: {}\n  {line}\n  {}^", self.problem, " ".repeat(column))
     }

@@ -3,7 +3,7 @@
 use super::error::{Problem, SyntaxError};
 use super::program::{Binary, Program, Unary};
 
-/// Length limit: nobody types a longer formula.
+/// Length limit, far above any real formula.
 const MAX_BYTES: usize = 10_000;
 /// Nesting limit for brackets, signs and powers, so that the recursion cannot exhaust the stack.
 const MAX_DEPTH: usize = 100;

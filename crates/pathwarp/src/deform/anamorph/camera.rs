@@ -1,17 +1,17 @@
-//! What an anamorphosis looks like: unrolled true to size, from the eye, and from elsewhere.
+//! Views of an anamorphosis: unrolled true to size, from the eye, and from elsewhere.
 //!
-//! **Unrolled.** A plane has coordinates of its own. A cylinder or cone is cut along its far line and rolled out. With the
+//! **Unrolled.** A plane has coordinates in itself. A cylinder or cone is cut along its far line and rolled out. With the
 //! radius R(y) = r + g·(y − y₀), σ = √(1 + g²) and κ = −g/σ, the point at angle θ and height y lies, measured from the middle
 //! (x₀, y₀), at
 //!
 //! > X = R·sin(κθ)/κ,  Y = σ·(y − y₀) + 2R·sin²(κθ/2)/κ
 //!
 //! which are polar coordinates about the cone's apex, written so that the cylinder (κ → 0: X = rθ, Y = y − y₀) is no special
-//! place. Both directions are in closed form: (X, Y) gives R = |(κX, r − κY)|, κθ its angle, σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R),
+//! case. Both directions are in closed form: (X, Y) gives R = |(κX, r − κY)|, κθ its angle, σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R),
 //! and a point in space is seen at O + (q − O)·D/(z + D), D being the eye's distance and z the point's depth.
 //!
-//! **From elsewhere.** A pinhole camera at C that looks at the image of the drawing's middle, scaled so that things there are
-//! true to size. Where δ is a polynomial of degree n, so are numerators and denominator of the view.
+//! **From elsewhere.** A pinhole camera at C looks at the image of the drawing's middle, scaled so that the surroundings of that
+//! point are true to size. Where δ is a polynomial of degree n, so are numerators and denominator of the view.
 
 use super::surface::{Anamorphosis, Radial, Round, Space, Surface, dot, length, minus, picture_axes, swap};
 use crate::map::polynomial::{Plane, Quotient, source_coordinates};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// A pinhole camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Camera {
-    /// Where it is.
+    /// Its position.
     pub(crate) at: Space,
     forward: Space,
     axes: [Space; 2],
@@ -31,7 +31,7 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// At `at`, looking towards `target`, which appears at `centre`, true to size. `None` if the two places coincide.
+    /// Creates a camera at `at` that looks towards `target`, which appears at `centre`, true to size. `None` if the two coincide.
     #[must_use]
     pub(crate) fn new(at: Space, target: Space, centre: Point) -> Option<Self> {
         let along = minus(target, at);
@@ -40,7 +40,7 @@ impl Camera {
         (reach > 0.0 && reach.is_finite()).then(|| Self { at, forward, axes: picture_axes(forward), reach, centre })
     }
 
-    /// How far in front of the camera a point is.
+    /// Returns the distance of a point in front of the camera.
     #[must_use]
     pub(crate) fn depth_of(&self, q: Space) -> f64 {
         self.depth(q)
@@ -51,13 +51,13 @@ impl Camera {
     }
 }
 
-/// n·(q − o).
+/// Returns n·(q − o).
 fn project<S: Real>(n: Space, o: Space, [x, y, z]: [S; 3]) -> S {
     (x - o[0]) * n[0] + (y - o[1]) * n[1] + (z - o[2]) * n[2]
 }
 
 impl Anamorphosis {
-    /// δ, where it is a polynomial, with the coordinates it is in.
+    /// Returns δ, if it is a polynomial, with its coordinates and its domain.
     fn polynomial(&self) -> Option<(Affine, Plane, Rect)> {
         match &self.surface {
             Surface::Radial(Radial { pre, delta, domain }) => Some((*pre, delta.clone(), *domain)),
@@ -71,8 +71,8 @@ impl Anamorphosis {
         }
     }
 
-    /// The quotient (axis₀·(q − from), axis₁·(q − from))·scale / depth + origin of the image q, where δ is a polynomial; without a
-    /// `depth` direction, undivided.
+    /// Returns the quotient (axis₀·(q − from), axis₁·(q − from))·scale / depth + origin of the image q, if δ is a polynomial.
+    /// Without a `depth` direction it is undivided.
     fn flattened(
         &self,
         from: Space,
@@ -98,7 +98,7 @@ impl Anamorphosis {
         })
     }
 
-    /// The surface rolled out flat, true to size; `None` for surfaces that cannot be.
+    /// Returns the surface laid flat, true to size; `None` for surfaces that cannot be.
     #[must_use]
     pub(crate) fn unrolled(&self) -> Option<Arc<dyn Map>> {
         match &self.surface {
@@ -108,13 +108,13 @@ impl Anamorphosis {
         }
     }
 
-    /// What the eye sees: the drawing itself, computed through space.
+    /// Returns the eye's view: the drawing itself, computed through space.
     #[must_use]
     pub(crate) fn seen(&self) -> Arc<dyn Map> {
         Arc::new(Seen(self.clone()))
     }
 
-    /// What a camera sees. The inverse is looked for over `domain`.
+    /// Returns a camera's view. The inverse is searched over `domain`.
     #[must_use]
     pub(crate) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
         match self.flattened(camera.at, camera.axes, camera.reach, Some(camera.forward), camera.centre) {
@@ -128,7 +128,7 @@ impl Anamorphosis {
         Crease::edge(Level::Field(Arc::new(move |p| own.defined(p))))
     }
 
-    /// Where the eye sees a point in space.
+    /// Returns the point of the drawing at which the eye sees a point in space.
     fn back<S: Real>(&self, [x, y, z]: [S; 3]) -> (S, S) {
         let k = S::from(self.distance) / (z + self.distance);
         ((x - self.foot.x) * k + self.foot.x, (y - self.foot.y) * k + self.foot.y)
@@ -189,7 +189,7 @@ struct Unrolled {
 }
 
 impl Unrolled {
-    /// The surface, κ and σ, its middle with the axis upright.
+    /// Returns the surface, κ, σ, and its middle after turning the axis vertical.
     fn round(&self) -> (Round, f64, f64, Point) {
         let r = self.round;
         let sigma = r.slope.hypot(1.0);

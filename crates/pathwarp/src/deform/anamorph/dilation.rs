@@ -25,7 +25,7 @@ pub(crate) enum Reference {
 }
 
 impl Reference {
-    /// The control points' numbers, in the order of [`Dilation`]'s values. A rectangle's third number is 0.
+    /// Returns the control points' numbers, in the order of [`Dilation`]'s values. A rectangle's third number is 0.
     #[must_use]
     pub(crate) fn nodes(&self) -> Vec<[usize; 3]> {
         match *self {
@@ -34,7 +34,7 @@ impl Reference {
         }
     }
 
-    /// Whether there is such a control point.
+    /// Returns `true` if there is such a control point.
     #[must_use]
     pub(crate) fn has(&self, node: [usize; 3]) -> bool {
         match *self {
@@ -50,7 +50,7 @@ impl Reference {
         }
     }
 
-    /// Where a control point lies before it is moved.
+    /// Returns the position of a control point before it is moved.
     #[must_use]
     pub(crate) fn point(&self, node: [usize; 3]) -> Point {
         match *self {
@@ -62,7 +62,7 @@ impl Reference {
         }
     }
 
-    /// The corners, in order round the edge.
+    /// Returns the corners, in order around the edge.
     #[must_use]
     pub(crate) fn corners(&self) -> Vec<Point> {
         match *self {
@@ -73,7 +73,7 @@ impl Reference {
         }
     }
 
-    /// Whether a control point lies on side `side`, from corner `side` to the next.
+    /// Returns `true` if a control point lies on side `side`, from corner `side` to the next.
     #[must_use]
     pub(crate) fn on_side(&self, [i, j, k]: [usize; 3], side: usize) -> bool {
         match *self {
@@ -82,7 +82,7 @@ impl Reference {
         }
     }
 
-    /// The box about it.
+    /// Returns the bounding box.
     #[must_use]
     pub(crate) fn bounds(&self) -> Rect {
         match *self {
@@ -91,7 +91,7 @@ impl Reference {
         }
     }
 
-    /// The values of the basis functions at `p`, in the order of [`Self::nodes`].
+    /// Returns the values of the basis functions at `p`, in the order of [`Self::nodes`].
     #[must_use]
     pub(crate) fn basis(&self, p: Point) -> Vec<f64> {
         match *self {
@@ -104,7 +104,7 @@ impl Reference {
         }
     }
 
-    /// The coordinates in which [`Self::expanded`] gives its powers.
+    /// Returns the coordinates of the powers of [`Self::expanded`].
     pub(super) fn coordinates(&self) -> Affine {
         match *self {
             Self::Triangle(corners, _) => triangle::coordinates(corners),
@@ -126,7 +126,7 @@ impl Reference {
     }
 }
 
-/// Bernstein's polynomials of degree n at t.
+/// Returns the Bernstein polynomials of degree n at t.
 fn bernstein(n: usize, t: f64) -> Vec<f64> {
     let mut b = vec![1.0];
     for _ in 0..n {
@@ -140,7 +140,7 @@ fn bernstein(n: usize, t: f64) -> Vec<f64> {
     b
 }
 
-/// δ over a reference: how many times nearer to the eye each control point comes.
+/// δ over a reference: the factor by which each control point comes closer to the eye.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Dilation {
     reference: Reference,
@@ -148,19 +148,19 @@ pub(crate) struct Dilation {
 }
 
 impl Dilation {
-    /// δ = 1: nothing moves.
+    /// Creates δ = 1: nothing moves.
     #[must_use]
     pub(crate) fn none(reference: Reference) -> Self {
         Self { reference, values: vec![1.0; reference.nodes().len()] }
     }
 
-    /// The net.
+    /// Returns the net.
     #[must_use]
     pub(crate) fn reference(&self) -> &Reference {
         &self.reference
     }
 
-    /// δ of a control point.
+    /// Returns δ of a control point.
     #[must_use]
     pub(crate) fn of(&self, node: [usize; 3]) -> f64 {
         self.values[self.reference.index(node)]
@@ -172,16 +172,17 @@ impl Dilation {
         self.values[k] = delta;
     }
 
-    /// δ at a place.
+    /// Returns δ at a point.
     #[must_use]
     pub(crate) fn at(&self, p: Point) -> f64 {
         self.reference.basis(p).iter().zip(&self.values).map(|(b, d)| b * d).sum()
     }
 
-    /// Moves one control point so that the place `p` goes to 1/`delta` times its distance: δᵢ = δᵢ + (δ − δ(p))/Bᵢ(p); from rest,
-    /// 1 + (δ − 1)/Bᵢ. The one that counts most at `p` is taken, and none that `held` names. `None`: no such point counts there.
+    /// Moves one control point so that the point `p` goes to 1/`delta` times its distance: δᵢ = δᵢ + (δ − δ(p))/Bᵢ(p), which is
+    /// 1 + (δ − 1)/Bᵢ from rest. Among those that are not `held`, the one with the largest Bᵢ(p) moves. `None`: all of them vanish
+    /// there.
     pub(crate) fn prescribe(&mut self, p: Point, delta: f64, held: impl Fn([usize; 3]) -> bool) -> Option<[usize; 3]> {
-        /// Below this a control point would have to move further than its numbers can say.
+        /// With a smaller basis function a control point would have to move further than its numbers can express.
         const LEAST: f64 = 1e-6;
         let all = self.reference.nodes().into_iter().zip(self.reference.basis(p));
         let free = all.filter(|(node, _)| !held(*node));
@@ -190,31 +191,31 @@ impl Dilation {
         Some(node)
     }
 
-    /// Whether no control point of a side moves.
+    /// Returns `true` if no control point of a side moves.
     #[must_use]
     pub(crate) fn side_is_fixed(&self, side: usize) -> bool {
         let on = self.reference.nodes().into_iter().filter(|node| self.reference.on_side(*node, side));
         on.into_iter().all(|node| (self.of(node) - 1.0).abs() <= 1e-12)
     }
 
-    /// Whether all δ are positive: then there is no pole inside the reference.
+    /// Returns `true` if all δ are positive, so that there is no pole inside the reference.
     #[must_use]
     pub(crate) fn is_positive(&self) -> bool {
         self.values.iter().all(|d| *d > 0.0)
     }
 
-    /// The polynomial δ and the coordinates it is in.
+    /// Returns the polynomial δ and its coordinates.
     pub(super) fn plane(&self) -> (Affine, Plane) {
         (self.reference.coordinates(), self.reference.expanded(&self.values))
     }
 
-    /// Where the inverse is looked for: the reference and half as much around it.
+    /// Returns the region in which the inverse is searched: the reference with a margin of half its size.
     pub(super) fn domain(&self) -> Rect {
         let r = self.reference.bounds();
         r.inflate(0.5 * r.width(), 0.5 * r.height())
     }
 
-    /// The map of the plane for an eye in it. `bounded`: it is used inside the reference only.
+    /// Returns the map of the plane for an eye in it. If `bounded`, it is used inside the reference only.
     #[must_use]
     pub(crate) fn about(&self, eye: Point, bounded: bool) -> Quotient {
         let (pre, delta) = self.plane();
@@ -225,7 +226,7 @@ impl Dilation {
         if bounded && self.is_positive() { q.without_poles() } else { q }
     }
 
-    /// (d, d₀) of the collineation δ(p) = d·(p − O) + d₀, the rows of its matrix [I 0; d d₀] about the eye: for triangles of
+    /// Returns (d, d₀) of the collineation δ(p) = d·(p − O) + d₀, the rows of its matrix [I 0; d d₀] about the eye: for triangles of
     /// degree 1.
     #[must_use]
     pub(crate) fn collineation(&self, eye: Point) -> Option<(Vec2, f64)> {
@@ -235,7 +236,7 @@ impl Dilation {
         Some((Vec2::new(along(Vec2::new(1.0, 0.0)), along(Vec2::new(0.0, 1.0))), d0))
     }
 
-    /// The net's lines after `place` has been applied to every control point and its δ.
+    /// Draws the net's lines, with `place` applied to every control point and its δ.
     #[must_use]
     pub(crate) fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
         let at = |node: [usize; 3]| place(self.reference.point(node), self.of(node));
@@ -261,7 +262,7 @@ impl Dilation {
         path
     }
 
-    /// The reference's outline.
+    /// Draws the reference.
     #[must_use]
     pub(crate) fn outline(&self) -> BezPath {
         match self.reference {

@@ -1,4 +1,4 @@
-//! The artwork and the eye in front of it.
+//! The artwork at its apparent size, and the eye.
 
 use crate::map::Map;
 use crate::outline::Outline;
@@ -8,9 +8,9 @@ use kurbo::{Affine, BezPath, Point, Rect};
 
 /// The artwork at its apparent size, and the eye.
 pub(super) struct Scene {
-    /// The bounding box of the artwork.
+    /// The artwork's box.
     pub(super) frame: Rect,
-    /// From the drawing as given.
+    /// The scale from the drawing.
     pub(super) scale: Affine,
     /// The eye, or its foot in the drawing.
     pub(super) eye: Point,
@@ -25,7 +25,7 @@ impl Scene {
         refit::warp_path(&outline, map, &refit::Options::new(tolerance)).ok().map(|w| w.path)
     }
 
-    /// Describes the sizes of artwork and result, for `explain`.
+    /// Describes the sizes of artwork and result.
     pub(super) fn size(&self, map: &dyn Map) -> String {
         const METRE: f64 = 96.0 / 0.0254;
         let r = self.frame;
@@ -34,6 +34,6 @@ impl Scene {
         let all = grid.map(at).filter(|p| p.is_finite()).map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b));
         let all = all.unwrap_or(r);
         let say = |r: Rect| format!("{:.4} m × {:.4} m", r.width() / METRE, r.height() / METRE);
-        format!("the artwork seems to be {}; the result is {}", say(r), say(all))
+        format!("the artwork appears to be {}; the result is {}", say(r), say(all))
     }
 }

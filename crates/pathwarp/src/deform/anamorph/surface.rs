@@ -1,7 +1,7 @@
-//! Surfaces in front of the eye: where the rays through a drawing meet them, in space and unrolled.
+//! Surfaces in front of the eye, and their intersections with the rays through a drawing.
 //!
 //! Space is measured in user units: x to the right, y down, z away from the viewer; the drawing lies in z = 0 and the eye O at
-//! (x, y, −distance). The ray through the drawing's point p is O + λ·d, d = (p, 0) − O, and the surface decides λ = 1/δ:
+//! (x, y, −distance). The ray through the drawing's point p is O + λ·d, d = (p, 0) − O, and the surface determines λ = 1/δ:
 //!
 //! - a plane through P with normal n: δ = n·d / n·(P − O), linear in p;
 //! - a net of control points on rays, or the sphere on whose near pole the eye sits and whose far pole touches the drawing
@@ -40,8 +40,8 @@ fn unit(a: Space) -> Space {
     a.map(|v| v / n)
 }
 
-/// The directions (right, down) of a picture that looks along `forward`, upright where it can be; straight up or down, its
-/// foot is towards the viewer.
+/// Returns the directions (right, down) of a picture that looks along `forward`. It is upright, or with its bottom towards the viewer
+/// if it looks straight up or down.
 pub(super) fn picture_axes(forward: Space) -> [Space; 2] {
     const DOWN: Space = [0.0, 1.0, 0.0];
     let right = cross(DOWN, forward);
@@ -49,21 +49,21 @@ pub(super) fn picture_axes(forward: Space) -> [Space; 2] {
     [right, cross(forward, right)]
 }
 
-/// A plane in space with coordinates of its own.
+/// A plane in space with coordinates in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SpacePlane {
-    /// A point of it.
+    /// A point of the plane.
     pub(crate) through: Space,
     /// Its unit normal, away from the eye.
     pub(crate) normal: Space,
     /// Unit vectors: rightwards and down the page, as seen from the eye's side.
     pub(crate) axes: [Space; 2],
-    /// Where `through` lands in the plane's own coordinates.
+    /// The coordinates of `through` in the plane.
     pub(crate) at: Point,
 }
 
 impl SpacePlane {
-    /// The plane through a point, `normal` being on the side away from the eye.
+    /// Creates the plane through a point; `normal` points away from the eye.
     #[must_use]
     pub(crate) fn new(through: Space, normal: Space, at: Point) -> Self {
         let normal = unit(normal);
@@ -71,29 +71,29 @@ impl SpacePlane {
     }
 }
 
-/// A cylinder or cone with an upright (or level) axis that touches the plane of the drawing along a line or at a point.
+/// A cylinder or cone with a vertical (or horizontal) axis that touches the plane of the drawing along a line or at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Round {
-    /// Where it touches: the axis is `radius` away from there.
+    /// The point of contact, `radius` away from the axis.
     pub(crate) middle: Point,
     /// The radius there.
     pub(crate) radius: f64,
-    /// How fast the radius grows downwards (rightwards for a level axis); 0 for a cylinder.
+    /// Growth of the radius per unit downwards (rightwards for a horizontal axis); 0 for a cylinder.
     pub(crate) slope: f64,
-    /// Whether the axis runs from left to right.
+    /// The axis is horizontal.
     pub(crate) level: bool,
-    /// Whether it is seen from inside.
+    /// It is seen from inside.
     pub(crate) inside: bool,
 }
 
 /// A sphere that touches the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sphere {
-    /// Where it touches.
+    /// The point of contact.
     pub(crate) middle: Point,
     /// Its radius.
     pub(crate) radius: f64,
-    /// Whether it is seen from inside.
+    /// It is seen from inside.
     pub(crate) inside: bool,
 }
 
@@ -105,7 +105,7 @@ pub(crate) struct Radial {
     pub(super) domain: Rect,
 }
 
-/// What the drawing is thrown onto.
+/// The surface that the drawing is projected onto.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Surface {
     /// A plane.
@@ -118,14 +118,14 @@ pub(crate) enum Surface {
     Radial(Radial),
 }
 
-/// An eye and a surface: takes points of the drawing to points in space that the eye sees at the same place.
+/// An eye and a surface: takes points of the drawing to the points in space on the same ray.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Anamorphosis {
     /// The foot of the perpendicular from the eye to the drawing.
     pub(crate) foot: Point,
-    /// How far in front of the drawing the eye is; positive.
+    /// The eye's distance in front of the drawing; positive.
     pub(crate) distance: f64,
-    /// What the drawing is thrown onto.
+    /// The surface that the drawing is projected onto.
     pub(crate) surface: Surface,
 }
 
@@ -156,7 +156,7 @@ impl Quadratic<f64> {
 }
 
 impl Round {
-    /// The ray through (x, y) from the eye, the axis upright after swapping.
+    /// Returns the ray through (x, y) from the eye, after swapping coordinates for a horizontal axis.
     fn ray<S: Real>(&self, foot: Point, distance: f64, x: S, y: S) -> Quadratic<S> {
         let (x, y, foot, middle) =
             if self.level { (y, x, swap(foot), swap(self.middle)) } else { (x, y, foot, self.middle) };
@@ -171,12 +171,12 @@ impl Round {
         }
     }
 
-    /// The axis' z.
+    /// Returns the z of the axis.
     pub(super) fn axis(&self) -> f64 {
         if self.inside { -self.radius } else { self.radius }
     }
 
-    /// The radius at a point in space.
+    /// Returns the radius at a point in space.
     pub(super) fn radius_at(&self, q: Space) -> f64 {
         let along = if self.level { q[0] - self.middle.x } else { q[1] - self.middle.y };
         self.radius + self.slope * along
@@ -198,7 +198,7 @@ impl Sphere {
         }
     }
 
-    /// The centre.
+    /// Returns the centre.
     #[must_use]
     pub(crate) fn centre(&self) -> Space {
         [self.middle.x, self.middle.y, if self.inside { -self.radius } else { self.radius }]
@@ -206,14 +206,14 @@ impl Sphere {
 }
 
 impl Radial {
-    /// The surface of a net whose control points are moved along rays.
+    /// Returns the surface of a net whose control points are moved along rays.
     #[must_use]
     pub(crate) fn net(dilation: &Dilation) -> Self {
         let (pre, delta) = dilation.plane();
         Self { pre, delta, domain: dilation.domain() }
     }
 
-    /// The sphere that has the eye on its near pole and touches the drawing with its far pole: δ = 1 + |p − foot|²/distance².
+    /// Returns the sphere that has the eye on its near pole and touches the drawing with its far pole: δ = 1 + |p − foot|²/distance².
     #[must_use]
     pub(crate) fn stereographic(foot: Point, distance: f64, domain: Rect) -> Self {
         let pre = Affine::scale(1.0 / distance) * Affine::translate(-foot.to_vec2());
@@ -227,13 +227,13 @@ impl Radial {
 }
 
 impl Anamorphosis {
-    /// The eye.
+    /// Returns the eye.
     #[must_use]
     pub(crate) fn eye(&self) -> Space {
         [self.foot.x, self.foot.y, -self.distance]
     }
 
-    /// How many times as far from the eye the image of (x, y) is.
+    /// Returns the factor by which the image of (x, y) is further from the eye.
     fn stretch<S: Real>(&self, x: S, y: S) -> S {
         match &self.surface {
             Surface::Plane(p) => {
@@ -247,13 +247,13 @@ impl Anamorphosis {
         }
     }
 
-    /// The image in space.
+    /// Returns the image in space.
     pub(super) fn at<S: Real>(&self, x: S, y: S) -> [S; 3] {
         let k = self.stretch(x, y);
         [(x - self.foot.x) * k + self.foot.x, (y - self.foot.y) * k + self.foot.y, (k - 1.0) * self.distance]
     }
 
-    /// The point of the surface that the eye sees at the drawing's point `p`.
+    /// Returns the point of the surface that the eye sees at the drawing's point `p`.
     #[must_use]
     pub(crate) fn point(&self, p: Point) -> Space {
         self.at(p.x, p.y)

@@ -1,12 +1,15 @@
+//! Anamorphoses against geometry in space, the papers' figures, and their faults.
+
 use super::camera::Camera;
 use super::dilation::{Dilation, Reference};
+use super::entry::INFO;
 use super::surface::{Round, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
+use crate::deform::{Deformation, Info};
 use crate::map::{Class, Dual, Homography, RationalBezier};
 use crate::outline::Seg;
-use crate::param::{Args, Frame};
-use kurbo::Rect;
+use crate::param::{Args, Frame, Settings};
 use std::f64::consts::PI;
 
 /// The derivatives of a point in space along the drawing's x and y.
@@ -31,13 +34,13 @@ impl Deformation for With {
         &self.0
     }
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        Anamorph.build(s)
+        Entry.build(s)
     }
 }
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Anamorph);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -79,7 +82,7 @@ fn is_sound_on_every_surface() {
 }
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Anamorph.build_from(&Args::from_pairs(pairs), &check::frame())
+    Entry.build_from(&Args::from_pairs(pairs), &check::frame())
 }
 
 const FOOT: Point = Point::new(40.0, 30.0);
@@ -120,7 +123,7 @@ fn grid() -> impl Iterator<Item = Point> {
     (0..=10).flat_map(|i| (0..=10).map(move |j| Point::new(10.0 * f64::from(i), 10.0 * f64::from(j))))
 }
 
-/// On the stated surface, by its own equation, and on the ray; jets are difference quotients.
+/// On the surface, by its equation, and on the ray; jets agree with difference quotients.
 #[test]
 fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
     let away = |a: Space, b: Space| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
@@ -146,11 +149,11 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
             };
             assert!(off.abs() < 1e-10, "{cast:?} {p:?} {off:e}");
             let (jet, h) = (space_jet(&cast, p), 1e-4);
-            let slope = |d: kurbo::Vec2| {
+            let slope = |d: Vec2| {
                 let (a, b) = (cast.point(p + d), cast.point(p - d));
                 std::array::from_fn(|i| (a[i] - b[i]) / (2.0 * h))
             };
-            let (dx, dy) = (slope(kurbo::Vec2::new(h, 0.0)), slope(kurbo::Vec2::new(0.0, h)));
+            let (dx, dy) = (slope(Vec2::new(h, 0.0)), slope(Vec2::new(0.0, h)));
             assert!(away(jet.dx, dx) < 1e-5 * (1.0 + away(dx, [0.0; 3])), "{cast:?} {p:?} {jet:?} {dx:?}");
             assert!(away(jet.dy, dy) < 1e-5 * (1.0 + away(dy, [0.0; 3])));
         }
@@ -159,7 +162,7 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
 
 /// Laying flat changes no length: the derivatives have the same products in space and in the plane.
 #[test]
-fn what_is_unrolled_is_true_to_size() {
+fn unrolled_surfaces_are_true_to_size() {
     let product = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
     let mut flat = 0;
     for surface in surfaces() {
@@ -183,7 +186,7 @@ fn what_is_unrolled_is_true_to_size() {
     assert_eq!(flat, 6);
 }
 
-/// Gaussian elimination of the quadric's ten coefficients from its points: what is left of other points.
+/// Eliminates the quadric's ten coefficients from its points, and returns the residual of other points.
 fn off_quadric(points: &[Space], others: &[Space]) -> f64 {
     let size = points.iter().flatten().fold(0.0, |m, v| f64::max(m, v.abs()));
     let row = |q: &Space| -> Vec<f64> {
@@ -274,17 +277,17 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
 const METRE: f64 = 96.0 / 0.0254;
 
 /// Similar triangles: an eye 1.6 m high and 20 m away sees the far end of a 10 m marking, 30 m away, at a height of
-/// 1.6·10/30 m above the near end; the far end is 30/20 times as wide as it looks.
+/// 1.6·10/30 m above the near end; the far end is 30/20 times its apparent width.
 #[test]
 fn a_road_marking_ten_metres_long() {
     let frame = Frame::new(Rect::new(100.0, 40.0, 400.0, 240.0));
-    let args = |pairs: &[(&str, &str)]| Anamorph.build_from(&Args::from_pairs(pairs), &frame).unwrap().map;
+    let args = |pairs: &[(&str, &str)]| Entry.build_from(&Args::from_pairs(pairs), &frame).unwrap().map;
     let road = [("eye-height", "1.6m"), ("distance", "20m"), ("onto", "plane:floor")];
     let m = args(&[&road[..], &[("length", "10m")]].concat());
     let (near, far) = (m.point((250.0, 240.0).into()), m.point((250.0, 40.0).into()));
     assert!(near.distance((250.0, 240.0).into()) < 1e-9);
     assert!((near.y - far.y - 10.0 * METRE).abs() < 1e-9 * METRE && (near.x - far.x).abs() < 1e-9);
-    // 200 units stand for 1.6/3 m, so 300 for 0.8 m: 1.2 m at the far end.
+    // 200 units represent 1.6/3 m, so 300 are 0.8 m: 1.2 m at the far end.
     let width = |y: f64| m.point((400.0, y).into()).x - m.point((100.0, y).into()).x;
     assert!((width(240.0) - 0.8 * METRE).abs() < 1e-9 * METRE);
     assert!((width(40.0) - 1.2 * METRE).abs() < 1e-9 * METRE);
@@ -304,7 +307,7 @@ fn a_road_marking_ten_metres_long() {
     assert!((near.y - far.y - 10.0 * METRE).abs() < 1e-9 * METRE);
 }
 
-/// A level line at the eye's height on a cylinder: the ray at φ from the axis' direction ends where the sine rule says.
+/// A horizontal line at the eye's height on a cylinder: the ray at φ from the axis' direction ends according to the sine rule.
 #[test]
 fn labels_are_as_long_as_their_arcs() {
     let m = build(&[("distance", "300"), ("onto", "cylinder:radius=80")]).unwrap().map;
@@ -332,7 +335,7 @@ fn labels_are_as_long_as_their_arcs() {
     assert!(got.distance(want) < 1e-11, "{got:?} {want:?}");
 }
 
-/// Another camera, by its definition; and what is polynomial has exact images.
+/// Another camera, by its definition; polynomial maps have exact images.
 #[test]
 fn views_are_central_projections_and_exact_where_they_can_be() {
     let at = [-100.0, 20.0, -180.0];
@@ -404,7 +407,7 @@ fn three_pushed_corners_span_a_plane() {
 }
 
 #[test]
-fn a_prescribed_place_gets_there_and_torn_sides_are_told() {
+fn a_prescribed_point_gets_there_and_torn_sides_warn() {
     for degree in ["1", "2", "4"] {
         let m = build(&[
             ("eye", "50,300"),
@@ -424,18 +427,18 @@ fn a_prescribed_place_gets_there_and_torn_sides_are_told() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn every_fault_is_named() {
     let cases: &[(Given, &str)] = &[
         (&[("onto", "plane:floor")], "distance is needed"),
         (&[("distance", "100"), ("onto", "plane:floor")], "never comes down"),
         (&[("distance", "100"), ("eye", "50,200"), ("onto", "plane:floor")], "from behind"),
-        (&[("distance", "100"), ("onto", "plane:slope")], "does not know"),
+        (&[("distance", "100"), ("onto", "plane:slope")], "does not have"),
         (&[("distance", "100"), ("onto", "plane:")], "is not one of"),
         (&[("distance", "100"), ("onto", "cylinder:")], "needs radius"),
         (&[("distance", "100"), ("onto", "cylinder:radius=20")], "misses the surface"),
         (&[("distance", "100"), ("onto", "cylinder:radius=-20")], "not positive"),
         (&[("distance", "100"), ("onto", "cone:top=20")], "radii"),
-        (&[("distance", "100"), ("onto", "torus:radius=20")], "no surface"),
+        (&[("distance", "100"), ("onto", "torus:radius=20")], "not a surface"),
         (&[("distance", "100"), ("onto", "sphere:radius=200")], "view is needed"),
         (&[("distance", "100"), ("onto", "sphere:eye"), ("push", "0,0:2")], "has the surface already"),
         (&[("distance", "100"), ("degree", "2"), ("push", "1,1:2")], "view is needed"),
@@ -452,9 +455,9 @@ fn what_is_wrong_is_said() {
         (&[("away", "1,0:-1000")], "through the eye"),
         (&[("reference", "0,0 9,9 99,99")], "one line"),
         (&[("reference", "0,0 9,0")], "no area"),
-        (&[("degree", "0")], "no degree"),
-        (&[("degree", "3x")], "no degree"),
-        (&[("point", "50,50:1.2"), ("local", "true")], "held"),
+        (&[("degree", "0")], "not a degree"),
+        (&[("degree", "3x")], "not a degree"),
+        (&[("point", "50,50:1.2"), ("local", "true")], "fixed"),
         (&[("point", "50,50")], "X,Y:FACTOR"),
     ];
     for (pairs, part) in cases {

@@ -46,7 +46,7 @@ omitted). A handle is the image of the artwork's height.")
         Param::length("offset", Axis::X, "Shift along the skeleton, user units or % of the artwork's width.")
             .default("0"),
         Param::length("gap", Axis::X, "The least space between repeated artwork, user units or % of its width.").default("0"),
-        Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: its own baseline.")
+        Param::length("baseline", Axis::Y, "The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: the lettering's baseline.")
             .default("50%"),
         Param::number("width", "Heights are multiplied by this.").default("100%").within(1e-6, 1e6).slider(0.1, 3.0),
         Param::new(
@@ -59,7 +59,7 @@ omitted). A handle is the image of the artwork's height.")
         Param::new(
             "spline",
             Kind::Count,
-            "Take the skeleton's anchors as control points of a uniform B-spline of this degree; its own curves are ignored.",
+            "Take the skeleton's anchors as control points of a uniform B-spline of this degree; the curves between them are ignored.",
         )
         .within(1.0, 3.0),
         Param::new(
@@ -141,19 +141,6 @@ const PARAMETER: Pairs = &[("along", "M0,0 Q30,-40 60,0"), ("by", "parameter"), 
 const EIGHTH: f64 = 50.0 + 50.0 * std::f64::consts::FRAC_PI_4;
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The handles file.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HandlesFile {
-    pieces: Vec<PieceHandles>,
-}
-
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PieceHandles {
-    levels: Vec<Vec<[f64; 2]>>,
-}
-
 impl Deformation for Entry {
     fn info(&self) -> &Info {
         &INFO
@@ -199,15 +186,17 @@ impl Deformation for Entry {
     }
 }
 
-type Handles = Vec<Vec<Vec<Vec2>>>;
+/// For every piece its levels of handles, and the file's name.
+type Handles = (Vec<Vec<Vec<Vec2>>>, String);
 
-/// Reads the handles, and returns the file's name with them.
-fn handles(file: &NamedText) -> Result<(Handles, String), Error> {
-    let read: HandlesFile = serde_json::from_str(&file.text)
-        .map_err(|e| Error::input(file.name.clone(), format!("is not a file of handles: {e}")))?;
-    let vectors = |level: Vec<[f64; 2]>| level.into_iter().map(|[x, y]| Vec2::new(x, y)).collect();
-    let pieces = read.pieces.into_iter().map(|p| p.levels.into_iter().map(vectors).collect());
-    Ok((pieces.collect(), file.name.clone()))
+#[cfg(feature = "serde")]
+fn handles(file: &NamedText) -> Result<Handles, Error> {
+    Ok((super::file::read(&file.name, &file.text)?, file.name.clone()))
+}
+
+#[cfg(not(feature = "serde"))]
+fn handles(file: &NamedText) -> Result<Handles, Error> {
+    Err(crate::error::no_json(&file.name))
 }
 
 /// Reads how letters are set one by one, if they are.

@@ -17,6 +17,8 @@
 
 mod casteljau;
 mod entry;
+#[cfg(feature = "serde")]
+mod file;
 mod letters;
 mod listed;
 mod map;
@@ -37,7 +39,7 @@ use crate::param::{Letter, NamedPath};
 use kurbo::{Affine, Rect, Vec2};
 use map::{BendMap, ToStrip};
 use repeats::Repeats;
-use skeleton::{Joined, Skeleton};
+use skeleton::{Corner, Joined, Skeleton};
 use std::sync::Arc;
 
 /// A bend along a path, the skeleton: horizontals run along it, verticals stand on it.
@@ -231,7 +233,7 @@ impl Bend {
         let skeleton = self.measured(skeleton, size)?;
         let (length, closed) = (skeleton.length, skeleton.closed);
         let middle = if closed && !self.is_as_drawn() { skeleton.top() } else { 0.5 * length };
-        let joined = self.joined(skeleton)?;
+        let Joined { pieces, corners, notes } = self.joined(skeleton)?;
 
         let k = if matches!(self.stretch, Stretch::Keep | Stretch::Repeat) { 1.0 } else { length / rect.width() };
         let repeats = match self.stretch {
@@ -251,14 +253,15 @@ impl Bend {
             up: self.width * if self.stretch == Stretch::Scale { k } else { 1.0 },
             base: self.baseline,
         };
-        let pieces = joined.pieces.iter().cloned().map(Arc::new).collect();
+        let pieces = pieces.into_iter().map(Arc::new).collect();
         let shift = repeats.spacing * (repeats.count - 1) as f64;
         let rect = Rect { x1: rect.x1 + shift, ..rect };
         let reach = (rect.x0 - rect.width(), rect.x1 + rect.width());
         let map = BendMap { pieces, length, closed, to_strip, reach };
 
         let mut built = Built::new(map.simplest());
-        explain(&mut built, &map, joined, rect);
+        built.explanation.notes = notes;
+        explain(&mut built, &map, &corners, rect);
         if self.stretch == Stretch::Repeat {
             built.note(format!("artwork repeated: {} times, one every {:.6}", repeats.count, repeats.spacing));
             built.placement.copies =
@@ -353,11 +356,11 @@ where a letter begins; `glyphs bend` bends them";
 }
 
 /// Describes the skeleton; warns of corners, and of artwork longer than the skeleton. `rect` is the box of all copies.
-fn explain(built: &mut Built, map: &BendMap, joined: Joined, rect: Rect) {
+fn explain(built: &mut Built, map: &BendMap, corners: &[Corner], rect: Rect) {
     let (length, closed) = (map.length, map.closed);
-    built.note(format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" }));
-    built.explanation.notes.extend(joined.notes);
-    for c in joined.corners {
+    let skeleton = format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" });
+    built.explanation.notes.insert(0, skeleton);
+    for c in corners {
         built.warn(format!(
             "bend: the skeleton has a corner at {} (it turns by {:.1}°): the artwork is mitred there; round it for a smooth bend",
             show(c.at),

@@ -63,7 +63,7 @@ mod tests {
         Ok(through(&path, degree)?.outline.subpaths.remove(0))
     }
 
-    /// Against the textbook's values at the knots, and all derivatives that must go on.
+    /// Against the textbook's values at the knots, with all continuous derivatives.
     #[test]
     fn pieces_are_the_spline() {
         let p = [(0.0, 0.0), (10.0, 30.0), (50.0, 20.0), (60.0, -10.0), (20.0, -40.0)].map(Point::from);

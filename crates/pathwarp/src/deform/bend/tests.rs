@@ -75,7 +75,7 @@ fn joints_do_not_tear() {
         b.map.creases(&mut creases);
         assert!(creases.items().len() >= 4);
         for c in creases.items() {
-            let Level::Line { a, c, .. } = c.level else { panic!("uprights are lines") };
+            let Level::Line { a, c, .. } = c.level else { panic!("joints are vertical lines") };
             for y in [0.0, 30.0, 77.0] {
                 let at = |dx: f64| b.map.point(Point::new(-c / a + dx, y));
                 assert!(at(-1e-9).distance(at(1e-9)) < 1e-6, "{by} {c} {y}: {:?} {:?}", at(-1e-9), at(1e-9));
@@ -104,7 +104,7 @@ fn a_closed_skeleton_closes_and_runs_on() {
         assert!(m.point(Point::new(0.0, y)).distance(m.point(Point::new(100.0, y))) < 1e-10);
         assert!(m.point(Point::new(-30.0, y)).distance(m.point(Point::new(70.0, y))) < 1e-10);
     }
-    // The middle is on top though the ring starts at the left and was drawn counter-clockwise, and up is outside.
+    // The middle is on top, although the ring starts at the left and was drawn counter-clockwise; up is outside.
     assert!(m.point(Point::new(50.0, 100.0)).distance(Point::new(50.0, 20.0)) < 0.2);
     assert!(m.point(Point::new(50.0, 50.0)).y < 0.0);
 }
@@ -123,7 +123,7 @@ fn the_polynomial_mode_has_exact_images() {
     }
 }
 
-/// Handles as in a file: the box's top edge lies where the handles end, the joint conditions are told.
+/// Handles as in a file: the box's top edge lies at the ends of the handles, and the joint conditions are reported.
 #[test]
 fn handles_from_a_file() {
     let along = ("along", "M0,100 Q50,60 100,100");
@@ -164,7 +164,7 @@ fn skeletons_that_cannot_be_followed_are_refused() {
     assert!(fault("M5,5 L5,5").contains("no length"));
 }
 
-/// A line of three times the width takes three, with gaps two; a circle a whole number, evenly.
+/// Three copies fit a line of three times the width, two with gaps; on a circle they are spread evenly.
 #[test]
 fn artwork_is_repeated_as_often_as_there_is_room() {
     let row = |along: &str, gap: &str| {
@@ -200,7 +200,7 @@ fn artwork_is_repeated_as_often_as_there_is_room() {
     assert!(fault("-100").contains("would not advance") && fault("-99.999").contains("the limit is"));
 }
 
-/// Counted at half the height, equal steps of x are equal distances there, and the derivatives are right.
+/// Measured at half the height, equal steps of x are equal distances there, and the derivatives are right.
 #[test]
 fn even_spacing_keeps_widths_at_half_the_height() {
     for along in ["M0,60 C60,-40 140,160 300,50", "M-100,150 A150,150 0 0 1 200,150", "0,80 400,40"] {
@@ -257,7 +257,7 @@ fn letters_stand_on_a_circle() {
             let [m] = set(how)[k][..] else { panic!("one copy") };
             assert!((m * p).distance(to.to_point()) < 1e-10, "{how} {k}: {:?} {to:?}", m * p);
         }
-        // Stairs: where the advance begins is on the circle.
+        // Stairs: the start of the advance is on the circle.
         let (sin, cos) = ((middle - 55.0) / 100.0_f64).sin_cos();
         let [m] = set("stair")[k][..] else { panic!("one copy") };
         let on = Point::new(100.0 * sin, -100.0 * cos);

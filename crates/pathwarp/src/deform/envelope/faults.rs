@@ -1,19 +1,18 @@
-//! What is wrong with an envelope: sides that cross, and where the map folds over.
+//! Warnings about an envelope: sides that cross, and folds of the map.
 
+use super::ring::SIDES;
 use crate::error::show;
 use crate::map::{Coons, Map, Side};
 use kurbo::{Affine, Line, Point};
 
 /// Chords of a side.
 const CHORDS: u32 = 400;
-/// How far outside a chord, in its lengths, still counts as its end.
+/// Overshoot, in lengths of a chord, that still counts as its end.
 const ROUNDING: f64 = 1e-9;
-/// Places along an axis at which the map's determinant is looked at.
+/// Samples of the map's determinant along an axis.
 const GRID: u32 = 64;
 
-const NAMES: [&str; 4] = ["bottom", "right", "top", "left"];
-
-/// Warnings for people. `inverse` takes the unit square to the source.
+/// Returns the warnings. `inverse` takes the unit square to the source.
 pub(super) fn warnings(map: &Coons, inverse: Affine) -> Vec<String> {
     let s = map.sides();
     let sides = [&s.bottom, &s.right, &s.top, &s.left];
@@ -33,16 +32,16 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
         for j in i..4 {
             let meets = |p: Point| sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size);
             let pairs = chords[i].iter().enumerate().flat_map(|(k, a)| {
-                // A side against itself: each pair once, neighbours never.
+                // A side against itself: each pair once, without neighbours.
                 let from = if i == j { k + 2 } else { 0 };
                 chords[j].iter().skip(from).map(move |b| (a, b))
             });
             let found = pairs.filter_map(|(a, b)| crossing(a, b)).find(|p| !meets(*p));
             if let Some(at) = found {
                 let what = if i == j {
-                    format!("the {} side crosses itself", NAMES[i])
+                    format!("the {} side crosses itself", SIDES[i])
                 } else {
-                    format!("the {} and the {} side cross", NAMES[i], NAMES[j])
+                    format!("the {} and the {} side cross", SIDES[i], SIDES[j])
                 };
                 out.push(format!(
                     "envelope: {what} near {}: the artwork folds over there; move the curves apart",
@@ -54,11 +53,11 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
     out
 }
 
-/// Where two chords cross or touch, their ends included: sides may well cross in the joint of two chords.
+/// Returns the point where two chords cross or touch, ends included: sides may cross in the joint of two chords.
 fn crossing(a: &Line, b: &Line) -> Option<Point> {
     let (v, w, d) = (a.p1 - a.p0, b.p1 - b.p0, b.p0 - a.p0);
     let det = v.cross(w);
-    // Parallel chords, those of a straight stretch, meet nowhere or everywhere.
+    // Parallel chords, as of a straight stretch, meet nowhere or everywhere.
     if det.abs() <= 1e-9 * v.hypot() * w.hypot() {
         return None;
     }
@@ -68,7 +67,7 @@ fn crossing(a: &Line, b: &Line) -> Option<Point> {
 }
 
 fn fold(map: &Coons, inverse: Affine) -> Option<String> {
-    /// Below this share of the mean a determinant is nothing rather than negative: at smooth corners it vanishes.
+    /// Below this share of the mean a negative determinant counts as zero: it vanishes at smooth corners.
     const NOTHING: f64 = 1e-6;
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(GRID);
     let places = (0..GRID * GRID).map(|k| Point::new(at(k % GRID), at(k / GRID)));
@@ -84,9 +83,9 @@ fn fold(map: &Coons, inverse: Affine) -> Option<String> {
     let along = 100.0 * if side % 2 == 0 { q.x } else { q.y };
     Some(format!(
         "envelope: the map folds over near {} (nearest to the {} side, {along:.0} % along it; {:.1} % of the box): a side there \
-bends too sharply for its neighbours; straighten it, or put the corners elsewhere",
+bends too sharply for its neighbours; straighten it, or move the corners",
         show(map.point(inverse * q)),
-        NAMES[side],
+        SIDES[side],
         100.0 * folded.len() as f64 / dets.len() as f64
     ))
 }

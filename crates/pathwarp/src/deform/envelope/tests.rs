@@ -1,16 +1,24 @@
 //! The envelope against formulas written out separately, and against the shaper.
 
+use super::entry::INFO;
+use super::fit::paced;
 use super::*;
+use crate::deform::Deformation;
 use crate::deform::Registry;
+use crate::error::show;
 use crate::map::Creases;
+use crate::map::{AffineMap, Class, Coons, Map};
+use crate::outline::Seg;
 use crate::param::{Args, Frame};
 use crate::refit;
-use kurbo::{ParamCurve, ParamCurveArclen, PathSeg, Rect, Vec2};
+use kurbo::{Affine, ParamCurve, ParamCurveArclen, PathSeg, Rect, Vec2};
+use std::f64::consts::FRAC_1_SQRT_2;
+use std::sync::Arc;
 
 const SQUARE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
 
 fn built(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    Envelope.build_from(&Args::from_pairs(pairs), &Frame::new(SQUARE))
+    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(SQUARE))
 }
 
 fn map(pairs: &[(&str, &str)]) -> Arc<dyn Map> {
@@ -79,7 +87,7 @@ fn wavy(from: Point, to: Point, n: u32) -> String {
     out
 }
 
-/// The point at a share of a run's length, by kurbo's own integration: an independent truth.
+/// The point at a share of a run's length, by kurbo's integration: an independent reference.
 fn by_length(segs: &[Seg], share: f64) -> Point {
     let as_kurbo = |s: &Seg| match s {
         Seg::Line(l) => PathSeg::Line(*l),
@@ -179,7 +187,7 @@ fn branches_and_creases() {
     }
 }
 
-/// Criterion: text is never mirrored, wherever the path starts and whichever way it runs.
+/// Criterion: text is never mirrored, for any start and direction of the path.
 #[test]
 fn nothing_is_mirrored_and_the_bottom_is_below() {
     let shapes = [
@@ -200,13 +208,9 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 let mut turned = if reversed { sub.reversed() } else { sub.clone() };
                 turned.segs.rotate_left(start);
                 turned.start = turned.segs[0].start();
-                let path =
-                    crate::param::NamedPath { name: "envelope".into(), outline: Outline { subpaths: vec![turned] } };
-                let args = Args::new();
-                let frame = Frame::new(SQUARE);
-                let s = Settings::new(INFO.params, &args, &frame).unwrap();
-                let ring = corners::ring(&path, &s).unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
-                let sides = paced(&ring, None, "nothing", &mut Vec::new(), &mut Vec::new()).unwrap();
+                let path = NamedPath { name: "envelope".into(), outline: Outline { subpaths: vec![turned] } };
+                let ring = corners::ring(&path, None, None, false).unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
+                let sides = paced(&ring, None, Keep::Nothing, &mut Built::new(Arc::new(AffineMap::IDENTITY))).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
                 // On both sides of the middle, where a heart has its notch.
                 let [l, r] = [40.0, 60.0].map(|x| m.jet(Point::new(x, 50.0)));
@@ -227,17 +231,17 @@ fn corners_by_the_stated_rule() {
     let note = |pairs: &[(&str, &str)]| built(pairs).unwrap().explanation.notes.join("\n");
     // A circle's are on its diagonals, an ellipse's on those of its box.
     let n = note(&[("envelope", "M200,100 A100,50 0 1 1 0,100 A100,50 0 1 1 200,100 Z")]);
-    let (x, y) = (100.0 * R2, 50.0 * R2);
+    let (x, y) = (100.0 * FRAC_1_SQRT_2, 50.0 * FRAC_1_SQRT_2);
     let p = |sx: f64, sy: f64| show(Point::new(100.0 + sx * x, 100.0 + sy * y));
     let wanted = [p(-1.0, 1.0), p(1.0, 1.0), p(1.0, -1.0), p(-1.0, -1.0)].join(" ");
     assert!(n.contains(&wanted) && n.contains("nearest to the corners of its box"), "{n}\n{wanted}");
-    // A swallow-tailed pennant: five corners, the notch is none of the four.
+    // A swallow-tailed pennant: five corners, of which the notch is not chosen.
     let n = note(&[("envelope", "M0,0 L100,0 L80,50 L100,100 L0,100 Z")]);
     assert!(n.contains("0,100 100,100 100,0 0,0"), "{n}");
     // Four by angle, among smooth joints.
     let n = note(&[("envelope", "M0,0 L50,0 L100,0 L100,50 L100,100 L0,100 Z")]);
     assert!(n.contains("found by angle") && n.contains("0,100 100,100 100,0 0,0"), "{n}");
-    // A square on its tip has its corners where they are, though none is in a quarter of its box.
+    // A square on its tip keeps its corners, although none lies in a quarter of its box.
     let n = note(&[("envelope", "M50,0 L100,50 L50,100 L0,50 Z")]);
     assert!(n.contains("found by angle"), "{n}");
     // A fish's tail is narrow, yet drawn with four corners.
@@ -260,7 +264,7 @@ fn corners_by_the_stated_rule() {
     assert!(m.point(Point::new(10.0, 80.0)).distance(Point::new(90.0, 80.0)) < 1e-12);
 }
 
-/// Criterion: `keep verticals`, measured on the refitted result: upright within 0.1° and straight.
+/// Criterion: `keep verticals`, measured on the refitted result: vertical within 0.1° and straight.
 #[test]
 fn uprights_stay_upright_through_the_refit() {
     const TOLERANCE: f64 = 0.005;
@@ -287,11 +291,11 @@ fn uprights_stay_upright_through_the_refit() {
             }
             let lean = (to.x - from.x).abs().atan2((to.y - from.y).abs()).to_degrees();
             assert!(lean < 0.1, "{x} leans by {lean}°");
-            // And it is where it should be: at the same share of the curves' width, on both.
+            // Its position is at the same share of the curves' width, on both.
             assert!((from.x - 3.6 * x).abs() < 1e-9, "{x} {from:?}");
         }
     }
-    // Where no such map is, the uprights are straight all the same, and the warning says how far they lean.
+    // Without an exact map the verticals are straight all the same, and the warning gives their lean.
     let b = built(&[
         ("bottom", "M0,100 A50,50 0 0 1 100,100"),
         ("top", "M-20,100 A70,70 0 0 1 120,100"),
@@ -318,7 +322,7 @@ fn keep_says_when_nothing_can() {
     );
     let e = fault(&[("envelope", curved), ("keep", "lines")]);
     assert!(e.contains("four straight sides") && e.contains("right side"), "{e}");
-    // What is asked for exists here.
+    // Here the lines can be kept.
     let m = map(&[("envelope", curved), ("keep", "horizontals")]);
     assert!((m.point(Point::new(70.0, 30.0)).y - 30.0).abs() < 1e-10);
     let m = map(&[("envelope", "0,90 100,80 80,10 10,0"), ("keep", "lines")]);
@@ -372,7 +376,7 @@ fn every_fault_is_named() {
     assert!(fault(&[("envelope", "0,0 9,0 9,9 0,9"), ("corners", "1,2,3")]).contains("corners: `1,2,3`"));
     assert!(fault(&[("bottom", "M0,0 C150,20 -50,20 100,0"), ("by", "extent")]).contains("bottom side does not"));
     let many = (0..2100).map(|i| format!("{},{}", i, (i % 7) * (i % 5))).collect::<Vec<_>>().join(" ");
-    assert!(fault(&[("envelope", &many)]).contains("2000 are the most"));
+    assert!(fault(&[("envelope", &many)]).contains("the limit is 2000"));
 }
 
 /// The shared Newton inverse finds its way back, over joints too, at every pace.

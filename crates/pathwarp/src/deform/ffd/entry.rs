@@ -1,12 +1,13 @@
 //! The registry's entry: reads an [`Ffd`] from text.
 
-use super::file::{self, MAX_CELLS, MAX_DEGREE};
+use super::save::{self, MAX_CELLS, MAX_DEGREE};
 use super::{Change, Ffd, Grid, SIDES};
 use crate::deform::built::{Built, SavedFile};
 use crate::deform::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
-use crate::param::{Axis, Kind, Param, Settings};
-use kurbo::{Point, Vec2};
+use crate::map::Lattice;
+use crate::param::{Axis, Kind, NamedText, Param, Settings};
+use kurbo::{Point, Rect, Vec2};
 
 pub(in crate::deform) struct Entry;
 
@@ -15,7 +16,7 @@ static INFO: Info = Info::new("ffd", "pull artwork about by a grid of control po
     .about("A grid of control points lies over the artwork. Move some of them, and the artwork near them follows smoothly. Points are \
 named i,j: column from the left, row from the top, both from 0. A grid of degree 3x2 has 4 by 3 of them; higher degrees bend \
 more finely.\n\nOr move points of the artwork themselves (--pin), and the grid follows with the smallest change.\n\n\
-With a region of its own (--region) nothing moves outside it. So that the artwork does not tear at the region's border, freeze \
+With an explicit region (--region) nothing moves outside it. To keep the artwork from tearing at the region's border, freeze \
 the outermost row or column of points there (--freeze left:1); two keep it smooth, three keep its curvature.")
     .source("T. W. Sederberg, S. R. Parry, Free-form deformation of solid geometric models, SIGGRAPH 1986; T. W. Sederberg, \
 Computer Aided Geometric Design, chapter 14; for --pin: W. M. Hsu, J. F. Hughes, H. Kaufman, Direct manipulation of free-form \
@@ -25,7 +26,7 @@ deformations, SIGGRAPH 1992")
         Param::new(
             "region",
             Kind::Text("artwork|X,Y,W,H"),
-            "The box the grid lies on; outside it nothing moves. The artwork's box has no outside: there the map runs on.",
+            "The box the grid lies on; outside it nothing moves. The artwork's box has no outside: the map continues there.",
         )
         .default("artwork"),
         Param::new("move", Kind::Text("I,J:DX,DY"), "Move control point i,j by dx,dy (a length, or % of the artwork's box).").repeated(),
@@ -36,7 +37,7 @@ not frozen follow with the smallest change. Equal points hold a place.")
         .repeated(),
         Param::new("freeze", Kind::Text("SIDE:COUNT,…"), "Keep rows or columns along sides in their places, e.g. left:2,top:1: 1 for \
 no tear at the region's border there, 2 for smooth, k+1 for k continuous derivatives."),
-        Param::flag("extend", "Let the map run on outside the region instead of leaving everything there in place."),
+        Param::flag("extend", "Let the map continue outside the region instead of leaving everything there in place."),
         Param::flag("spline", "A B-spline grid: each control point has influence on a few cells only."),
         Param::new("cells", Kind::Text("NxM"), "Cells of the B-spline grid along x and y, 1 to 64 each; it has degree + cells \
 control points. Default with --spline: 4x4."),
@@ -107,7 +108,7 @@ impl Deformation for Entry {
         };
         let (mut built, lattice) = ffd.build_with_lattice()?;
         if let Some(name) = s.texts("save-lattice").last() {
-            built.saves.push(SavedFile { name: (*name).to_owned(), text: file::write(&lattice) });
+            built.saves.push(SavedFile { name: (*name).to_owned(), text: save::write(&lattice) });
         }
         Ok(built)
     }
@@ -124,7 +125,7 @@ fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
                 return Err(Error::usage(name, s.texts(name).join(" "), problem));
             }
         }
-        let (lattice, named) = file::read(&file.name, &file.text, own_region.unwrap_or(frame))?;
+        let (lattice, named) = read(file, own_region.unwrap_or(frame))?;
         // An explicit region wins: the grid is laid onto it.
         return Ok(match own_region {
             Some(r) => (Grid::Given(lattice.on(r)), true),
@@ -141,7 +142,17 @@ fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
     Ok((Grid::Regular { region: own_region.unwrap_or(frame), degree, cells }, false))
 }
 
-/// `3x2`, or `3` for both.
+#[cfg(feature = "serde")]
+fn read(file: &NamedText, frame: Rect) -> Result<(Lattice, bool), Error> {
+    super::file::read(&file.name, &file.text, frame)
+}
+
+#[cfg(not(feature = "serde"))]
+fn read(file: &NamedText, _: Rect) -> Result<(Lattice, bool), Error> {
+    Err(crate::error::no_json(&file.name))
+}
+
+/// Reads `3x2`, or `3` for both.
 fn pair(s: &Settings<'_>, name: &str, most: usize) -> Result<Option<[usize; 2]>, Error> {
     let Some(text) = s.texts(name).last().copied() else { return Ok(None) };
     let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=most).contains(n));

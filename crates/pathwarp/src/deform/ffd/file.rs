@@ -16,19 +16,15 @@
 //! degree + cells points; `cells` above 1 mean uniform clamped B-splines, and may be omitted otherwise. `region` is x, y, width
 //! and height of the box the lattice works on; without it the box is the artwork's.
 
+use super::save::{MAX_CELLS, MAX_DEGREE};
 use crate::error::Error;
 use crate::map::Lattice;
 use kurbo::{Point, Rect};
 use serde::Deserialize;
 
-/// The highest degree.
-pub(in crate::deform) const MAX_DEGREE: usize = 10;
-/// The most Bézier pieces along an axis.
-pub(in crate::deform) const MAX_CELLS: usize = 64;
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct LatticeFile {
     degree: [usize; 2],
     #[serde(default = "one")]
     cells: [usize; 2],
@@ -41,8 +37,8 @@ fn one() -> [usize; 2] {
 }
 
 /// Reads a lattice. The flag is `true` if the file names its region; otherwise the region is `frame`.
-pub(in crate::deform) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool), Error> {
-    let file: File = serde_json::from_str(text)
+pub(super) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool), Error> {
+    let file: LatticeFile = serde_json::from_str(text)
         .map_err(|e| Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is not a lattice: {e}")))?;
     let wrong = |what: String| Error::input(name, what);
     if file.degree.iter().any(|d| !(1..=MAX_DEGREE).contains(d)) {
@@ -88,32 +84,14 @@ pub(in crate::deform) fn read(name: &str, text: &str, frame: Rect) -> Result<(La
     Ok((lattice, file.region.is_some()))
 }
 
-/// Writes a lattice.
-pub(in crate::deform) fn write(lattice: &Lattice) -> String {
-    let r = lattice.region();
-    let numbers = |v: &[f64]| format!("[{}]", v.iter().map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(", "));
-    let row = |j: usize| {
-        let points = (0..lattice.columns()).map(|i| {
-            let (p, w) = (lattice.point(i, j), lattice.weight(i, j));
-            if w == 1.0 { numbers(&[p.x, p.y]) } else { numbers(&[p.x, p.y, w]) }
-        });
-        format!("    [{}]", points.collect::<Vec<_>>().join(", "))
-    };
-    let [d, c] = [lattice.degree(), lattice.cells()];
-    format!(
-        "{{\n  \"degree\": {d:?},\n  \"cells\": {c:?},\n  \"region\": {},\n  \"points\": [\n{}\n  ]\n}}\n",
-        numbers(&[r.x0, r.y0, r.width(), r.height()]),
-        (0..lattice.rows()).map(row).collect::<Vec<_>>().join(",\n")
-    )
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::save::write;
     use super::*;
     use kurbo::Vec2;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn a_written_lattice_is_read_back() {
         let mut l = Lattice::regular(Rect::new(-5.5, 2.0, 30.0, 40.0), [3, 2], [2, 1]);
         l.shift(1, 1, Vec2::new(0.1, -7.0));
         l.set_weight(2, 0, 1.5);

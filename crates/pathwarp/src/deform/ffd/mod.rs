@@ -11,11 +11,13 @@
 //! map is extended.
 
 mod entry;
+#[cfg(feature = "serde")]
 mod file;
 mod pins;
+mod save;
 
 pub(super) use entry::Entry;
-pub(super) use file::{MAX_CELLS, MAX_DEGREE};
+pub(super) use save::{MAX_CELLS, MAX_DEGREE};
 
 use super::built::{Built, Role};
 use crate::error::{Error, show, within};
@@ -203,7 +205,8 @@ impl Ffd {
             r.x1,
             r.y1
         ));
-        built.note(format!("outside the region: {}", if self.extended { "the map runs on" } else { "nothing moves" }));
+        built
+            .note(format!("outside the region: {}", if self.extended { "the map continues" } else { "nothing moves" }));
         built.overlay(Role::Base, net(&Lattice::regular(r, lattice.degree(), lattice.cells())));
         built.overlay(Role::Cage, net(&lattice));
         Ok((built, lattice))
@@ -227,9 +230,9 @@ impl Ffd {
             return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
         }
         let size = [lattice.columns(), lattice.rows()];
-        if let Some((k, count)) = self.frozen.iter().enumerate().find(|(k, count)| **count > size[k / 2]) {
+        if let Some(k) = (0..4).find(|k| self.frozen[*k] > size[k / 2]) {
             let problem = format!("freezes too many: 0 to {} there", size[k / 2]);
-            return Err(Error::usage("freeze", format!("{}:{count}", SIDES[k]), problem));
+            return Err(Error::usage("freeze", format!("{}:{}", SIDES[k], self.frozen[k]), problem));
         }
         Ok(lattice)
     }

@@ -1,6 +1,6 @@
 //! Directly manipulated free-form deformation: points of the artwork are moved, and the lattice follows.
 //!
-//! The image of a point is Σ Rₖ Pₖ with influences Rₖ that do not depend on the control points' places. Pins p → q ask for
+//! The image of a point is Σ Rₖ Pₖ with influences Rₖ that do not depend on the control points' positions. Pins p → q ask for
 //! Σₖ Rₖ(p) dₖ = q − F(p), one row of a linear system R·D = Δ per pin; the answer is the one of least squares and smallest
 //! norm, D = Rᵀ(R·Rᵀ)⁺Δ (W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of free-form deformations*, SIGGRAPH 1992;
 //! J. Gain, N. Dodgson, *Preserving topology under free-form deformation*, 2001). The pseudo-inverse comes from the
@@ -61,7 +61,7 @@ pub(crate) fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, p
 
 /// Eigenvalues and eigenvectors (in columns) of a symmetric matrix, by Jacobi's rotations.
 fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
-    /// They converge quadratically: ten sweeps are plenty.
+    /// Convergence is quadratic, so ten sweeps suffice.
     const SWEEPS: usize = 30;
     let n = a.len();
     let mut v: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn frozen_points_stay_and_contradictions_are_told() {
+    fn frozen_points_stay_and_contradictions_are_reported() {
         let mut l = lattice();
         let at = Point::new(60.0, 50.0);
         let off = pull(&mut l, |i, _| i > 1, &[(at, Point::new(65.0, 50.0))]);

@@ -1,27 +1,28 @@
-//! Warps of Photoshop layers, as the command line hands them over: JSON made of the file's warp descriptors.
+//! Warps of Photoshop layers: JSON made from the file's warp descriptors, or written by hand.
 
-use super::quilt::{File, Quilt};
+use super::file::QuiltFile;
+use super::quilt::Quilt;
 use crate::deform::built::Built;
-use crate::deform::warp::{self, Bent, Style};
+use crate::deform::warp::{self, Style, StyleParams};
 use crate::error::Error;
-use crate::param::Settings;
+use crate::param::NamedText;
 use kurbo::Rect;
 use serde::Deserialize;
 
-/// What the file holds.
+/// The file's contents.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Warps {
     All {
-        warps: Vec<Warp>,
+        warps: Vec<LayerWarp>,
     },
     /// A file written by hand needs no list.
-    One(Warp),
+    One(LayerWarp),
 }
 
 /// A layer's warp: the fields of its descriptor.
 #[derive(Deserialize)]
-struct Warp {
+struct LayerWarp {
     #[serde(default)]
     layer: String,
     #[serde(alias = "warpStyle")]
@@ -35,22 +36,19 @@ struct Warp {
     perspective_other: f64,
     #[serde(default)]
     vertical: bool,
-    /// Its points, of a custom warp.
-    mesh: Option<File>,
+    /// The control points of a custom warp.
+    mesh: Option<QuiltFile>,
 }
 
 pub(super) enum Found {
-    /// A style, set up.
+    /// The map of a style.
     Style(Built),
-    /// A quilt, and its layer's name.
+    /// A quilt and its layer's name.
     Quilt(Quilt, String),
 }
 
-/// The warp of the layer asked for, over `region`.
-pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
-    let Some(file) = s.file_if("psd")? else {
-        return Err(Error::Missing { param: "psd".into(), hint: "a Photoshop file".into() });
-    };
+/// Reads the warp of a layer, or of the only warped one, over `region`.
+pub(super) fn read(file: &NamedText, layer: Option<&str>, region: Rect) -> Result<Found, Error> {
     let parsed: Warps = serde_json::from_str(&file.text).map_err(|_| {
         Error::input(
             &file.name,
@@ -62,24 +60,23 @@ pub(super) fn read(s: &Settings<'_>, region: Rect) -> Result<Found, Error> {
         Warps::One(warp) => vec![warp],
     };
     let wrong = |what: String| Error::input(&file.name, what);
-    let wanted = s.texts("layer").last().copied();
     let listed = warps.iter().map(|w| format!("`{}` ({})", w.layer, w.style)).collect::<Vec<_>>().join(", ");
-    let mut fits = warps.into_iter().filter(|w| wanted.map_or(w.style != "warpNone", |l| w.layer == l));
+    let mut fits = warps.into_iter().filter(|w| layer.map_or(w.style != "warpNone", |l| w.layer == l));
     let warp = match (fits.next(), fits.next()) {
         (Some(one), None) => one,
         (None, _) if listed.is_empty() => return Err(wrong("has no layer with a warp".into())),
         (None, _) => return Err(wrong(format!("has no such warped layer; there are {listed}"))),
         (Some(_), Some(_)) => {
-            return Err(wrong(format!("has several warped layers; say which with `layer`: {listed}")));
+            return Err(wrong(format!("has several warped layers; choose one with `layer`: {listed}")));
         }
     };
     if let Some(mesh) = warp.mesh {
-        return Ok(Found::Quilt(Quilt::from_file(&file.name, mesh, region)?.on(region), warp.layer));
+        return Ok(Found::Quilt(mesh.quilt(&file.name, region)?.on(region), warp.layer));
     }
     let style = Style::named(&warp.style).ok_or_else(|| {
         wrong(format!("layer `{}` has the warp {}, which has no known formula", warp.layer, warp.style))
     })?;
-    let bent = Bent {
+    let bent = StyleParams {
         bend: warp.value / 100.0,
         distortion: [warp.perspective / 100.0, warp.perspective_other / 100.0],
         vertical: warp.vertical,

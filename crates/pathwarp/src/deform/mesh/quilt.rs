@@ -1,58 +1,33 @@
-//! Quilts: rows and columns of bicubic patches, as files and as paths.
-//!
-//! ```json
-//! {
-//!   "region": [20, 20, 200, 100],
-//!   "x": [0.5], "y": [],
-//!   "points": [[[20, 20], …], …]
-//! }
-//! ```
-//!
-//! `points` are rows from the top, each from left to right, in user units: 3·columns + 1 in each of 3·rows + 1, patches sharing
-//! the points of the sides where they meet. `region` is the box the quilt was made on; without it that is the artwork's. `x` and
-//! `y` say where the patches meet in it, as shares of its width and height; without them it is divided evenly. With `fit` true
-//! the quilt is laid onto the artwork's box.
+//! Quilts: rows and columns of bicubic patches.
 
 use crate::error::Error;
 use crate::map::{BicubicNet, Map, Net, TileRow, Tiled};
 use crate::param::NamedPath;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
-use serde::Deserialize;
 use std::sync::Arc;
 
-/// Patches along one side at most.
-const MOST: usize = 64;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct File {
-    region: Option<[f64; 4]>,
-    #[serde(default)]
-    fit: bool,
-    x: Option<Vec<f64>>,
-    y: Option<Vec<f64>>,
-    points: Vec<Vec<[f64; 2]>>,
-}
+/// Limit on patches along one side.
+const MAX_PATCHES: usize = 64;
 
 /// Patches side by side.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Quilt {
-    /// The box it is made on.
+    /// The box that the patches divide.
     pub(super) region: Rect,
-    /// Where patches begin and end, 0 and 1 included.
+    /// Positions where patches begin and end, as shares of the box, 0 and 1 included.
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     /// Rows of control points.
     points: Vec<Vec<Point>>,
 }
 
-/// How many patches `points` make; `None` if no whole number from 1 to [`MOST`].
+/// Returns the number of patches that `points` make; `None` unless it is a whole number from 1 to [`MAX_PATCHES`].
 fn patches(points: usize) -> Option<usize> {
     let n = points.checked_sub(1)? / 3;
-    (n * 3 + 1 == points && (1..=MOST).contains(&n)).then_some(n)
+    (n * 3 + 1 == points && (1..=MAX_PATCHES).contains(&n)).then_some(n)
 }
 
-/// Cuts with both ends, or even ones.
+/// Adds both ends to the cuts; without cuts, divides evenly.
 fn ends(cuts: Option<Vec<f64>>, n: usize) -> Option<Vec<f64>> {
     let Some(inner) = cuts else { return Some((0..=n).map(|i| i as f64 / n as f64).collect()) };
     let all: Vec<f64> = [0.0].into_iter().chain(inner).chain([1.0]).collect();
@@ -60,29 +35,7 @@ fn ends(cuts: Option<Vec<f64>>, n: usize) -> Option<Vec<f64>> {
 }
 
 impl Quilt {
-    /// From a file's text; `frame` stands in for a region it does not name.
-    pub(super) fn read(name: &str, text: &str, frame: Rect) -> Result<Self, Error> {
-        let file: File = serde_json::from_str(text)
-            .map_err(|e| Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is no mesh: {e}")))?;
-        Self::from_file(name, file, frame)
-    }
-
-    pub(super) fn from_file(name: &str, file: File, frame: Rect) -> Result<Self, Error> {
-        let wrong = |what: String| Error::input(name, what);
-        let region = match file.region {
-            None => frame,
-            Some([x, y, w, h]) if w > 0.0 && h > 0.0 && [x, y, w, h].iter().all(|v| v.abs() < 1e100) => {
-                Rect::new(x, y, x + w, y + h)
-            }
-            Some(r) => return Err(wrong(format!("its region {r:?} is no box x, y, width, height"))),
-        };
-        let points: Vec<Vec<Point>> =
-            file.points.iter().map(|row| row.iter().map(|[x, y]| Point::new(*x, *y)).collect()).collect();
-        let quilt = Self::new(name, region, points, file.x, file.y)?;
-        Ok(if file.fit { quilt.on(frame) } else { quilt })
-    }
-
-    /// From a path of one subpath per row of control points, each of as many cubics as there are columns of patches.
+    /// Reads a path with one subpath per row of control points, each of as many cubics as there are columns of patches.
     pub(super) fn from_path(path: &NamedPath, region: Rect) -> Result<Self, Error> {
         let row = |s: &crate::outline::Subpath| {
             let cubics = s.segs.iter().map(crate::outline::Seg::to_cubic);
@@ -91,7 +44,8 @@ impl Quilt {
         Self::new(&path.name, region, path.outline.subpaths.iter().map(row).collect(), None, None)
     }
 
-    fn new(
+    /// Checks the control points and divides the box. `x` and `y` default to even divisions.
+    pub(super) fn new(
         name: &str,
         region: Rect,
         points: Vec<Vec<Point>>,
@@ -101,29 +55,33 @@ impl Quilt {
         let wrong = |what: String| Error::input(name, what);
         let Some(rows) = patches(points.len()) else {
             let found = points.len();
-            return Err(wrong(format!("has {found} rows of points; patches take 4, 7, 10, … (up to {MOST} patches)")));
+            return Err(wrong(format!(
+                "has {found} rows of points; patches take 4, 7, 10, … (up to {MAX_PATCHES} patches)"
+            )));
         };
         let width = points.first().map_or(0, Vec::len);
         let Some(columns) = patches(width) else {
-            return Err(wrong(format!("has {width} points in a row; patches take 4, 7, 10, … (up to {MOST} patches)")));
+            return Err(wrong(format!(
+                "has {width} points in a row; patches take 4, 7, 10, … (up to {MAX_PATCHES} patches)"
+            )));
         };
         if let Some(j) = points.iter().position(|r| r.len() != width) {
             return Err(wrong(format!("row {j} has {} points, row 0 has {width}", points[j].len())));
         }
         if points.iter().flatten().any(|p| !(p.x.abs() < 1e100 && p.y.abs() < 1e100)) {
-            return Err(wrong("a point is larger than 1e100".into()));
+            return Err(wrong("has a point larger than 1e100".into()));
         }
         let shares = |given: Option<Vec<f64>>, n: usize, axis: &str| {
             ends(given, n).ok_or_else(|| {
                 let inner = n - 1;
-                wrong(format!("its `{axis}` must be {inner} rising number(s) between 0 and 1: where {n} patches meet"))
+                wrong(format!("its `{axis}` must be {inner} rising number(s) between 0 and 1, where {n} patches meet"))
             })
         };
         let (x, y) = (shares(x, columns, "x")?, shares(y, rows, "y")?);
         Ok(Self { region, x, y, points })
     }
 
-    /// The same laid onto another box.
+    /// Lays the quilt onto another box.
     pub(super) fn on(mut self, region: Rect) -> Self {
         let r = self.region;
         let (kx, ky) = (region.width() / r.width(), region.height() / r.height());
@@ -133,7 +91,7 @@ impl Quilt {
         Self { region, ..self }
     }
 
-    /// Patches along x and y.
+    /// Returns the number of patches along x and y.
     pub(super) fn size(&self) -> [usize; 2] {
         [self.x.len() - 1, self.y.len() - 1]
     }
@@ -164,7 +122,7 @@ impl Quilt {
         }
     }
 
-    /// The joints that are not C¹: how many handle pairs, and the largest jump of the derivative as a share of it.
+    /// Counts the pairs of handles that are not C¹, and returns the largest jump of the derivative as a share of it.
     pub(super) fn kinks(&self) -> (usize, f64) {
         /// Files keep about seven digits.
         const ROUNDING: f64 = 1e-6;
@@ -192,7 +150,7 @@ impl Quilt {
         (count, most)
     }
 
-    /// The map; `None`: the region has no area.
+    /// Returns the map; `None` if the region has no area.
     pub(super) fn map(&self) -> Option<Arc<dyn Map>> {
         let r = self.region;
         if !(r.width() > 0.0 && r.height() > 0.0) {
@@ -211,7 +169,7 @@ impl Quilt {
         Tiled::over(r, inner(&down), (0..rows).map(row).collect())
     }
 
-    /// The sides of the patches.
+    /// Draws the sides of the patches.
     pub(super) fn curves(&self) -> BezPath {
         let mut path = BezPath::new();
         let mut line = |points: Vec<Point>| {

@@ -2,12 +2,13 @@
 
 use super::*;
 use crate::check;
+use crate::deform::Deformation;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, ParamCurve, Point, Rect};
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Mesh);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -16,11 +17,11 @@ fn with(name: &str, text: &str, more: &[(&str, &str)]) -> Result<Built, Error> {
     for (n, v) in more {
         args.push(n, *v);
     }
-    args.resolve_files(Mesh.info().params, |_| Ok(text.to_owned())).unwrap();
-    Mesh.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
+    args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
+    Entry.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
 }
 
-/// Two columns, two rows, some points off their places.
+/// Two columns, two rows, some points moved.
 fn points() -> Vec<Vec<(f64, f64)>> {
     (0..7)
         .map(|j| {
@@ -64,7 +65,7 @@ fn every_patch_is_its_net() {
     }
 }
 
-/// Both sides of every joint have one derivative after --smooth, also where four patches meet, and kinks are told before.
+/// Both sides of every joint have one derivative after smoothing, also where four patches meet, and kinks are reported before.
 #[test]
 fn joints_are_smoothed() {
     let text = json(&points(), "\"region\": [0,0,120,60], \"x\": [0.25],");
@@ -125,17 +126,17 @@ fn photoshops_warps_are_the_styles_and_nets() {
     assert!(fault(with("psd", "{ \"warps\": [] }", &[])).contains("no layer"));
 }
 
-/// As people write them by hand: one warp, with the keys of Photoshop's descriptors, and what is zero left away.
+/// Written by hand: one warp, with the keys of Photoshop's descriptors, without those that are zero.
 #[test]
 fn warps_written_by_hand() {
     let flag = with("psd", "{ \"warpStyle\": \"warpFlag\", \"warpValue\": 50 }", &[]).unwrap();
-    // The flag's own formula on this box: y + 2·b·h·(3u(1-u)² - 3u²(1-u)).
+    // The flag's formula on this box: y + 2·b·h·(3u(1-u)² - 3u²(1-u)).
     for p in [(25.0, 30.0), (60.0, 70.0)].map(Point::from) {
         let u = (p.x - 10.0) / 100.0;
         let rise = 60.0 * 3.0 * u * (1.0 - u) * (1.0 - 2.0 * u);
         assert!(flag.map.point(p).distance(p + kurbo::Vec2::new(0.0, rise)) < 1e-10, "{p:?}");
     }
-    // A mesh on a box of its own is laid onto the artwork.
+    // A mesh on another box is laid onto the artwork.
     let points: Vec<Vec<(f64, f64)>> =
         (0..4).map(|j| (0..4).map(|i| (f64::from(i), f64::from(j) + f64::from(i))).collect()).collect();
     let mesh = format!("{{ \"style\": \"warpCustom\", \"mesh\": {} }}", json(&points, "\"region\": [0,0,3,3],"));
@@ -165,11 +166,11 @@ fn faults_are_named() {
     let fault = |text: &str| with("mesh", text, &[]).map(|_| ()).unwrap_err().to_string();
     assert!(fault(&json(&p[..5], "")).contains("5 rows"));
     assert!(fault(&json(&p, "\"x\": [0.5, 0.7],")).contains("`x`"));
-    assert!(fault(&json(&p, "\"region\": [0,0,0,5],")).contains("no box"));
+    assert!(fault(&json(&p, "\"region\": [0,0,0,5],")).contains("not a box"));
     let mut ragged = p.clone();
     ragged[2].pop();
     assert!(fault(&json(&ragged, "")).contains("row 2"));
     assert!(fault("{\"points\": 3}").contains("file.json:1:"));
-    let none = Mesh.build_from(&Args::new(), &check::frame()).map(|_| ()).unwrap_err().to_string();
+    let none = Entry.build_from(&Args::new(), &check::frame()).map(|_| ()).unwrap_err().to_string();
     assert!(none.contains("net is needed"));
 }

@@ -12,8 +12,8 @@ pub(in crate::deform) struct Entry;
 static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four curved sides")
     .group("Envelopes")
     .about("Draw a closed path with four anchors: that is the shape. The artwork's box (or the base) is laid onto it, side by \
-side, and everything inside follows smoothly. With a target, the shaper's corners are then moved there, so that its own \
-size and place do not matter.\n\nThe bottom is the side that lies lowest on the screen, run left to right; --bottom \
+side, and everything inside follows smoothly. With a target, the shaper's corners are then moved there, so that its \
+size and position do not matter.\n\nThe bottom is the side that lies lowest on the screen, run left to right; --bottom \
 and --reverse-shaper overrule that, and --explain says which was chosen. Bases and targets of two anchors are run left to right, \
 those of four start with their lowest side; --base-as-drawn and --target-as-drawn take them as they were drawn.\n\nA base of \
 two anchors fixes only the bottom side: artwork twice as tall as the base is wide reaches past the shaper's top.")
@@ -33,7 +33,7 @@ corners of the artwork's box.",
         ),
         Param::path(
             "target",
-            "Two or four anchors: the images of the shaper's bottom corners, or of all four. Default: the shaper's own place.",
+            "Two or four anchors: the images of the shaper's bottom corners, or of all four. Default: those corners themselves.",
         ),
         Param::new("bottom", Kind::Count, "The side that is the bottom: 1 to 4, in the order they were drawn. Default: the lowest on the screen.")
             .within(1.0, 4.0),
@@ -52,7 +52,7 @@ corners of the artwork's box.",
             command: "shaper samples/paper-two-anchors.svg --base #Base --target #Target --shaper #Shaper -o out.svg --preview out.png",
         },
         Example {
-            what: "A cage typed in place, and what was made of it",
+            what: "A cage typed in place, explained",
             command: "shaper samples/monogram.svg --shaper 'M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z' --explain -o out.svg",
         },
     ])
@@ -62,7 +62,7 @@ corners of the artwork's box.",
         Law::Identity(&[("shaper", "0,0 10,0 10,10 0,10"), ("target", "0,100 100,100")]),
         Law::Area(&[("shaper", "0,0 50,0 50,50 0,50")], 0.25),
         Law::Same(
-            // With a target, the shaper's own size and place do not matter.
+            // With a target, the shaper's size and position do not matter.
             &[("shaper", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("base", "0,100 100,100"), ("target", "5,90 70,80")],
             &[("shaper", "M 30,190 Q 90,230 200,180 L 190,40 20,30 Z"), ("base", "0,100 100,100"), ("target", "5,90 70,80")],
         ),

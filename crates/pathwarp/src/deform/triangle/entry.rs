@@ -72,7 +72,7 @@ first corner at the top, its second at the bottom left.",
         // u = (½, ¼, ¼): B110 = 2·½·¼ = ¼ of the shift.
         Case { args: SIX, at: (25.0, 25.0), to: (25.0, 32.5), tolerance: 1e-12 },
         Case { args: SIX, at: (90.0, 90.0), to: (90.0, 90.0), tolerance: 0.0 },
-        // Beyond the triangle, run on: u = (−½, ¾, ¾), B110 = −¾.
+        // Beyond the triangle, continued: u = (−½, ¾, ¾), B110 = −¾.
         Case {
             args: &[("reference", "0,0 100,0 0,100"), ("move", "1,1,0:0,30"), ("extend", "true")],
             at: (75.0, 75.0),

@@ -7,7 +7,7 @@
 //! whatever its direction: a triangle of degree n has total degree n, a rectangle of degree n × n twice that.
 //!
 //! To evaluate it, the net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓ by running de Casteljau's algorithm on polynomials.
-//! That multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, 3ⁿ in a corner: nothing at the degrees people use.
+//! That multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, 3ⁿ in a corner: negligible at practical degrees.
 
 use crate::map::polynomial::{Plane, Quotient};
 use crate::map::{AffineMap, Class, Local, Map};
@@ -24,20 +24,20 @@ pub(crate) struct TriangleNet {
     weights: Vec<f64>,
 }
 
-/// The place of control point (i, j, k) in a list: by k + j, then by k.
+/// Returns the index of control point (i, j, k) in a list ordered by k + j, then by k.
 #[must_use]
 pub(crate) fn index([_, j, k]: [usize; 3]) -> usize {
     let row = j + k;
     row * (row + 1) / 2 + k
 }
 
-/// All (i, j, k) with i + j + k = n, in the order of their [`index`].
+/// Returns all (i, j, k) with i + j + k = n, in the order of their [`index`].
 #[must_use]
 pub(crate) fn indices(n: usize) -> Vec<[usize; 3]> {
     (0..=n).flat_map(|row| (0..=row).map(move |k| [n - row, row - k, k])).collect()
 }
 
-/// (i·A + j·B + k·C)/n.
+/// Returns (i·A + j·B + k·C)/n.
 #[must_use]
 pub(crate) fn regular_point(corners: [Point; 3], [i, j, k]: [usize; 3]) -> Point {
     let n = (i + j + k).max(1) as f64;
@@ -45,14 +45,14 @@ pub(crate) fn regular_point(corners: [Point; 3], [i, j, k]: [usize; 3]) -> Point
     a + (b - a) * (j as f64 / n) + (c - a) * (k as f64 / n)
 }
 
-/// (u₁ − ⅓, u₂ − ⅓) from the place: the coordinates of [`expanded`].
+/// Returns the map from a point to (u₁ − ⅓, u₂ − ⅓), the coordinates of [`expanded`].
 pub(crate) fn coordinates([a, b, c]: [Point; 3]) -> Affine {
     let (u, v) = (b - a, c - a);
     let middle = a + (u + v) / 3.0;
     Affine::new([u.x, u.y, v.x, v.y, middle.x, middle.y]).inverse()
 }
 
-/// The polynomial with these Bernstein coefficients (by [`index`]) in powers of u₁ − ⅓ and u₂ − ⅓.
+/// Returns the polynomial with these Bernstein coefficients (by [`index`]) in powers of u₁ − ⅓ and u₂ − ⅓.
 pub(crate) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
     const THIRD: f64 = 1.0 / 3.0;
     let mut net: Vec<Plane> = coefficients.iter().map(|c| Plane::new(vec![vec![*c]])).collect();
@@ -68,7 +68,7 @@ pub(crate) fn expanded(n: usize, coefficients: &[f64]) -> Plane {
     net.pop().unwrap_or_default()
 }
 
-/// The values of all Bⁿᵢⱼₖ at `p`, by [`index`].
+/// Returns the values of all Bⁿᵢⱼₖ at `p`, by [`index`].
 #[must_use]
 pub(crate) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
     const THIRD: f64 = 1.0 / 3.0;
@@ -90,7 +90,7 @@ pub(crate) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
 }
 
 impl TriangleNet {
-    /// The net that changes nothing; `None` if the corners lie on one line.
+    /// Creates the net of the identity; `None` if the corners lie on one line.
     #[must_use]
     pub(crate) fn regular(corners: [Point; 3], degree: usize) -> Option<Self> {
         let [a, b, c] = corners;
@@ -105,13 +105,13 @@ impl TriangleNet {
         })
     }
 
-    /// The degree.
+    /// Returns the degree.
     #[must_use]
     pub(crate) fn degree(&self) -> usize {
         self.degree
     }
 
-    /// Control point (i, j, k).
+    /// Returns control point (i, j, k).
     #[must_use]
     pub(crate) fn point(&self, ijk: [usize; 3]) -> Point {
         regular_point(self.corners, ijk) + self.moves[index(ijk)]
@@ -127,12 +127,12 @@ impl TriangleNet {
         self.moves[index(ijk)] += v;
     }
 
-    /// Gives control point (i, j, k) a weight.
+    /// Sets the weight of control point (i, j, k).
     pub(crate) fn set_weight(&mut self, ijk: [usize; 3], w: f64) {
         self.weights[index(ijk)] = w;
     }
 
-    /// Whether the points of side 0 (AB), 1 (BC) or 2 (CA) all stay where they are.
+    /// Returns `true` if no control point of side 0 (AB), 1 (BC) or 2 (CA) moves.
     #[must_use]
     pub(crate) fn side_is_fixed(&self, side: usize) -> bool {
         let size = self.corners.iter().fold(0.0, |m, p| f64::max(m, p.x.abs() + p.y.abs()));
@@ -141,7 +141,7 @@ impl TriangleNet {
         on.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[on[0]])
     }
 
-    /// The map: the identity outside the triangle or, `extended`, the polynomials running on there.
+    /// Returns the map. Outside the triangle it is the identity or, if `extended`, the continued polynomials.
     #[must_use]
     pub(crate) fn map(&self, extended: bool) -> Arc<dyn Map> {
         let pre = coordinates(self.corners);

@@ -91,18 +91,18 @@ struct Shift {
 
 /// The parameters of a style.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Bent {
+pub(in crate::deform) struct StyleParams {
     /// 1 for 100 %.
-    pub(crate) bend: f64,
+    pub(in crate::deform) bend: f64,
     /// Horizontal and vertical distortion, 1 for 100 %.
-    pub(crate) distortion: [f64; 2],
+    pub(in crate::deform) distortion: [f64; 2],
     /// Turns the style sideways.
-    pub(crate) vertical: bool,
+    pub(in crate::deform) vertical: bool,
 }
 
 /// An error in a style's rules. Its message continues a sentence about the style.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub(crate) enum StyleError {
+pub(in crate::deform) enum StyleError {
     #[error(transparent)]
     Formula(#[from] FormulaError),
     #[error("has no row {0}: rows go from 0 to 3")]
@@ -186,7 +186,7 @@ impl Style {
     }
 
     /// Returns the net over a box `w` wide and `h` high with its top left corner at the origin.
-    pub(crate) fn net(&self, w: f64, h: f64, with: &Bent) -> Result<Net, StyleError> {
+    pub(in crate::deform) fn net(&self, w: f64, h: f64, with: &StyleParams) -> Result<Net, StyleError> {
         let [horizontal, vertical] = with.distortion;
         if !with.vertical {
             return self

@@ -1,17 +1,18 @@
 //! The nets against the measured table, written out here once more with plain numbers and circles.
 
-use super::style::{Bent, Style};
+use super::entry::NAMES;
 use super::*;
 use crate::check;
-use crate::outline::{Outline, Seg};
-use crate::param::{Args, Frame};
+use crate::deform::Deformation;
+use crate::outline::Outline;
+use crate::param::Args;
 use crate::refit;
 use kurbo::{CubicBez, ParamCurve, Point};
 use std::f64::consts::PI;
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&Warp);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -169,8 +170,8 @@ fn table(style: &str, b: f64, w: f64, h: f64) -> N {
 
 const BENDS: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
 
-fn plain(bend: f64) -> Bent {
-    Bent { bend, distortion: [0.0, 0.0], vertical: false }
+fn plain(bend: f64) -> StyleParams {
+    StyleParams { bend, distortion: [0.0, 0.0], vertical: false }
 }
 
 fn off(net: &Net, n: &N) -> f64 {
@@ -210,7 +211,7 @@ fn nets_are_the_tables() {
 fn the_vertical_axis_is_transposition() {
     for style in Style::builtin() {
         for b in BENDS {
-            let net = style.net(W, H, &Bent { vertical: true, ..plain(b) }).unwrap();
+            let net = style.net(W, H, &StyleParams { vertical: true, ..plain(b) }).unwrap();
             let across = table(&style.name, b, H, W);
             let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
             let expected: N = std::array::from_fn(|j| {
@@ -224,7 +225,7 @@ fn the_vertical_axis_is_transposition() {
     }
 }
 
-/// Columns, then rows (or the other way round), about the middles of their ends; what is scaled depends on the family.
+/// Columns, then rows (or the reverse), about the middles of their ends; the family decides which points are scaled.
 fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], columns_first: bool) -> N {
     let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
     let columns = |n: &N| {
@@ -273,11 +274,11 @@ fn distortions_come_in_order() {
     for style in Style::builtin() {
         for b in BENDS {
             for (h, v) in [(0.3, 0.0), (0.0, -0.4), (0.25, -0.6), (-1.0, 0.5)] {
-                let net = style.net(W, H, &Bent { distortion: [h, v], ..plain(b) }).unwrap();
+                let net = style.net(W, H, &StyleParams { distortion: [h, v], ..plain(b) }).unwrap();
                 let d = off(&net, &distorted(&style.name, b, [W, H], [h, v], true));
                 assert!(d < 1e-9, "{} {b} {h} {v}: {d:e}", style.name);
-                // Sideways the two change places; what is horizontal still comes first.
-                let net = style.net(W, H, &Bent { bend: b, distortion: [h, v], vertical: true }).unwrap();
+                // Sideways the two change roles; horizontal still comes first.
+                let net = style.net(W, H, &StyleParams { bend: b, distortion: [h, v], vertical: true }).unwrap();
                 let across = distorted(&style.name, b, [H, W], [v, h], false);
                 let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
                 let expected: N =
@@ -287,16 +288,16 @@ fn distortions_come_in_order() {
             }
         }
     }
-    // Order matters where both act on bent sides, so that the test can tell.
+    // The order matters where both act on bent sides, so that the test detects it.
     let arch = Style::builtin().into_iter().find(|s| s.name == "arch").unwrap();
-    let one = arch.net(W, H, &Bent { distortion: [0.25, -0.6], ..plain(0.5) }).unwrap();
-    let upright = arch.net(H, W, &Bent { distortion: [-0.6, 0.25], vertical: true, ..plain(0.5) }).unwrap();
+    let one = arch.net(W, H, &StyleParams { distortion: [0.25, -0.6], ..plain(0.5) }).unwrap();
+    let upright = arch.net(H, W, &StyleParams { distortion: [-0.6, 0.25], vertical: true, ..plain(0.5) }).unwrap();
     let swapped: N = std::array::from_fn(|j| std::array::from_fn(|c| (upright[c][j].y, upright[c][j].x)));
     assert!(off(&one, &swapped) > 0.1);
 }
 
 fn build(pairs: &[(&str, &str)]) -> Built {
-    Warp.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(5.0, 7.0, 5.0 + W, 7.0 + H))).unwrap()
+    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(5.0, 7.0, 5.0 + W, 7.0 + H))).unwrap()
 }
 
 /// A drawing: every node of the result that comes from one of the source lies where the table's net puts it, and the box's own
@@ -362,13 +363,13 @@ fn one_net_is_certified() {
 fn files_of_ones_own_and_their_faults() {
     let with = |text: &str| {
         let mut args = Args::from_pairs(&[("style", "my.json"), ("bend", "50%")]);
-        args.resolve_files(Warp.info().params, |_| Ok(text.to_owned())).unwrap();
-        Warp.build_from(&args, &check::frame())
+        args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
+        Entry.build_from(&args, &check::frame())
     };
     let flag = r#"{ "name": "f", "family": "points", "moves": [{ "at": "*,1", "y": "2*b*h" }, { "at": "*,2", "y": "-2*b*h" }] }"#;
     let (own, ours) = (
         with(flag).unwrap().map,
-        Warp.build_from(&Args::from_pairs(&[("style", "flag")]), &check::frame()).unwrap().map,
+        Entry.build_from(&Args::from_pairs(&[("style", "flag")]), &check::frame()).unwrap().map,
     );
     for p in [(10.0, 10.0), (60.0, 30.0), (95.0, 99.0)] {
         assert!(own.point(p.into()).distance(ours.point(p.into())) < 1e-12);
@@ -385,20 +386,20 @@ fn files_of_ones_own_and_their_faults() {
         assert!(fault.contains(part), "{fault}");
     }
     let refused = |pairs: &[(&str, &str)]| {
-        Warp.build_from(&Args::from_pairs(pairs), &check::frame()).map(|_| ()).unwrap_err().to_string()
+        Entry.build_from(&Args::from_pairs(pairs), &check::frame()).map(|_| ()).unwrap_err().to_string()
     };
     assert!(refused(&[("style", "flags")]).contains("arc-lower"));
     assert!(refused(&[("bend", "191%")]).contains("-190% to 190%"));
-    // What is no arc goes on.
-    assert!(Warp.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
+    // Styles without arcs have no limit.
+    assert!(Entry.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
 }
 
-/// `keep verticals`: upright within 0.1° where the style's sides allow it, for the styles that have no upright map of their own.
+/// `keep verticals`: vertical within 0.1° where the style's sides allow it, for styles whose own map does not keep them.
 #[test]
 fn kept_verticals_are_upright() {
-    use crate::param::{Args, Frame};
+    use crate::param::Args;
     let build = |pairs: &[(&str, &str)]| {
-        Warp.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 200.0, 100.0)))
+        Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 200.0, 100.0)))
     };
     for style in ["arch", "arc-lower", "arc-upper", "bulge", "flag", "rise", "fish"] {
         for bend in ["-50%", "20%", "50%"] {
@@ -413,15 +414,15 @@ fn kept_verticals_are_upright() {
                 assert!(lean < 0.1, "{style} {bend} at {x}: {lean}°");
                 assert!((b - a).cross(c - a).abs() < 1e-9 * (c - a).hypot2(), "{style} {bend} at {x}: bent");
             }
-            // The shape is the style's own: corners on corners, and the bottom's points on its bottom.
+            // The shape is the style's: corners on corners, and the bottom's points on its bottom.
             for corner in [(0.0, 0.0), (200.0, 0.0), (0.0, 100.0), (200.0, 100.0)] {
                 assert!(built.map.point(corner.into()).distance(free.point(corner.into())) < 1e-9, "{style} {bend}");
             }
         }
     }
     let e = build(&[("style", "inflate"), ("bend", "50%"), ("keep", "verticals")]).err().unwrap().to_string();
-    assert!(e.contains("cannot be had with this style") && e.contains("arch") && !e.contains("inflate,"), "{e}");
-    // Styles that leave the sides as they are have nothing to keep: they say so, rather than vanish.
+    assert!(e.contains("is impossible with this style") && e.contains("arch") && !e.contains("inflate,"), "{e}");
+    // Styles that leave the sides straight have nothing to keep; that is an error rather than the identity.
     for style in ["wave", "fisheye", "twist"] {
         for keep in ["verticals", "horizontals", "lines"] {
             let e = build(&[("style", style), ("bend", "50%"), ("keep", keep)]).err().unwrap().to_string();

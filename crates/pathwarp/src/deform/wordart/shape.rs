@@ -49,6 +49,17 @@ pub(super) struct Adjust {
     pub(super) most: f64,
 }
 
+impl Adjust {
+    /// Refuses a value out of range; `shape` is the shape's name.
+    pub(super) fn check(&self, value: f64, shape: &str) -> Result<(), crate::Error> {
+        if (self.least..=self.most).contains(&value) {
+            return Ok(());
+        }
+        let problem = format!("is out of range: {} of {shape} goes from {} to {}", self.name, self.least, self.most);
+        Err(crate::Error::usage("adj", value.to_string(), problem))
+    }
+}
+
 /// An error in a text shape's formulas. Its message continues a sentence about the shape.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub(super) enum GuideError {

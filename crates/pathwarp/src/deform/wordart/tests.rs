@@ -1,13 +1,15 @@
 //! The guides against the standard's formulas, written out here once more for one box.
 
+use super::entry::NAMES;
 use super::*;
 use crate::check;
+use crate::deform::Deformation;
 use crate::param::{Args, Frame};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveArclen, PathSeg, Point, QuadBez};
 
 #[test]
 fn is_sound() {
-    let faults = check::entry(&WordArt);
+    let faults = check::entry(&Entry);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -15,7 +17,7 @@ const W: f64 = 300.0;
 const H: f64 = 120.0;
 
 fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
-    WordArt.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, W, H)))
+    Entry.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, W, H)))
 }
 
 fn default_guides(name: &str) -> Guides {
@@ -35,7 +37,7 @@ fn ends(segs: &[Seg]) -> Ends {
 /// First and last points of every guide, from the formulas of presetTextWarpDefinitions with the default adjust values.
 #[test]
 fn the_guides_ends_are_the_formulas() {
-    // A circle that lacks 1/60000 of a degree, by its own parametrisation; shapes are given as shares of w and h.
+    // A circle lacks 1/60000 of a degree, in the standard's parametrisation; shapes are given as shares of w and h.
     let pairs: &[(&str, &[Ends])] = &[
         ("plain", &[[(0.0, 0.0), (1.0, 0.0)], [(0.0, 1.0), (1.0, 1.0)]]),
         ("stop", &[[(0.0, 0.25), (1.0, 0.25)], [(0.0, 0.75), (1.0, 0.75)]]),
@@ -118,7 +120,7 @@ fn the_guides_ends_are_the_formulas() {
         };
         assert_eq!(guides.len(), expected.len(), "{name}");
         for (guide, want) in guides.iter().zip(*expected) {
-            // Whole turns lack 1/60000 of a degree: the ends are as near as that on the ellipse, 2.9e-7·radius at most.
+            // Whole turns lack 1/60000 of a degree: the ends are that close on the ellipse, 2.9e-7·radius at most.
             let turns = ["ring-inside", "ring-outside", "circle", "circle-pour"].contains(name);
             let near = if turns { 3e-7 * W } else { 1e-9 * W };
             for ((x, y), (u, v)) in ends(guide).into_iter().zip(want) {
@@ -217,7 +219,7 @@ fn the_two_curve_family_reproduces_its_guides() {
                     gone += seg.arclen(1e-12);
                 }
             }
-            // Between the guides lines are straight and even.
+            // Lines between the guides are straight and evenly divided.
             let (a, b, c) =
                 (m.point((0.3 * W, 0.0).into()), m.point((0.3 * W, 0.25 * H).into()), m.point((0.3 * W, H).into()));
             assert!(b.distance(a.lerp(c, 0.25)) < 1e-9, "{name}");
@@ -256,7 +258,7 @@ fn cans_and_rings_are_ellipses() {
     }
 }
 
-/// Angles are directions from the centre, not parameters; sweeps are mirrored about the upright axis.
+/// Angles are directions from the centre, not parameters; sweeps are mirrored about the vertical axis.
 #[test]
 fn arches_begin_where_their_angle_points() {
     for degrees in [10.0_f64, 100.0, 150.0, 200.0, 300.0] {
@@ -302,13 +304,13 @@ fn names_and_limits() {
     assert!(fault(&[("preset", "button"), ("split", "50%,40%")]).contains("rising"));
 }
 
-/// A shape from a file: the triangle, told anew; without bands or paths, and with broken guides, it is refused.
+/// A shape from a file: the triangle, rewritten; without bands or paths, and with broken guides, it is refused.
 #[test]
 fn files_of_ones_own() {
     let with = |text: &str| {
         let mut args = Args::from_pairs(&[("preset", "my.json"), ("adj", "30%")]);
-        args.resolve_files(WordArt.info().params, |_| Ok(text.to_owned())).unwrap();
-        WordArt.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
+        args.resolve_files(Entry.info().params, |_| Ok(text.to_owned())).unwrap();
+        Entry.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
     };
     let head = r#"{ "name": "roof", "adj": [{ "name": "a", "default": 0, "least": 0, "most": 50000 }], "#;
     let own =

@@ -1,0 +1,133 @@
+//! The registry's entry: reads a [`Mesh`] from text.
+
+use super::quilt::Quilt;
+use super::{Mesh, Source};
+use crate::deform::built::Built;
+use crate::deform::entry::{Case, Deformation, Example, Info, Law};
+use crate::error::Error;
+use crate::param::{Kind, NamedText, Param, Settings};
+use kurbo::Rect;
+
+pub(in crate::deform) struct Entry;
+
+static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches, or by a Photoshop warp")
+    .group("Lattices and nets")
+    .about("A quilt of patches, side by side in rows and columns, each with sixteen control points; neighbours share the points of their common \
+sides. Give it as a path with one line of curves per row of control points (--net: a path of 4 lines with one curve each is one \
+patch, of 7 lines with two curves each four), or as a file (--mesh, JSON or TOML): {\"region\": [x,y,w,h], \"points\": [[[x,y], …], \
+…]}, rows from the top, and optionally \"x\" and \"y\", the positions where patches meet, as shares of the region.\n\n--psd takes the warp of a \
+layer of a Photoshop file: a style with its bend and distortions, sixteen points, or a quilt; it is laid onto the artwork's box. JSON of \
+a warp works too: {\"style\": \"warpFlag\", \"value\": 50, \"perspective\": 0, \"perspective_other\": 0, \"vertical\": false} (value \
+and perspectives in percent), or {\"style\": \"warpCustom\", \"mesh\": {\"region\": …, \"points\": …}} with a mesh as above.\n\n\
+--smooth evens out the joints, so that lines cross them without a kink.")
+    .source("Tensor product Bézier patches: G. Farin, Curves and Surfaces for CAGD, chapter 15; Adobe Photoshop File Formats \
+Specification, descriptor structure and placed layer data")
+    .params(&[
+        Param::path("net", "A path with 3·rows+1 subpaths of as many cubics as there are columns of patches."),
+        Param::new("mesh", Kind::File, "A file of control points (JSON or TOML)."),
+        Param::new("psd", Kind::File, "A Photoshop file with a warped layer, or JSON of such a warp."),
+        Param::new("layer", Kind::Text("NAME"), "The layer of the Photoshop file; needed if several are warped."),
+        Param::new(
+            "region",
+            Kind::Text("artwork|X,Y,W,H"),
+            "The box that the mesh is laid onto. Default: the file's region, else the artwork's box.",
+        ),
+        Param::flag("smooth", "Make the joints smooth: points beside them move."),
+    ])
+    .demo(&[("net", DEMO)])
+    .examples(&[
+        Example {
+            what: "Two patches side by side, from a path",
+            command: "mesh samples/logo.svg --net samples/meshes.svg#quilt --smooth -o out.svg",
+        },
+        Example {
+            what: "A file, laid onto the artwork",
+            command: "mesh samples/badge.svg --mesh samples/pinch.json --region artwork -o out.svg",
+        },
+    ])
+    .laws(&[
+        Law::Identity(&[("net", REST)]),
+        Law::Identity(&[("net", REST), ("smooth", "true")]),
+        Law::Same(
+            &[("net", REST), ("region", "0,0,50,50")],
+            &[(
+                "net",
+                "M0,0 C66.66666666666667,0 133.33333333333334,0 200,0 M0,66.66666666666667 C66.66666666666667,66.66666666666667 133.33333333333334,66.66666666666667 200,66.66666666666667 M0,133.33333333333334 C66.66666666666667,133.33333333333334 133.33333333333334,133.33333333333334 200,133.33333333333334 M0,200 C66.66666666666667,200 133.33333333333334,200 200,200",
+            )],
+        ),
+    ])
+    .cases(&[
+        // Joints and corners go to their control points.
+        Case { args: &[("net", DEMO)], at: (0.0, 0.0), to: (0.0, 10.0), tolerance: 1e-12 },
+        Case { args: &[("net", DEMO)], at: (50.0, 0.0), to: (50.0, 0.0), tolerance: 1e-12 },
+        Case { args: &[("net", DEMO)], at: (100.0, 100.0), to: (100.0, 110.0), tolerance: 1e-12 },
+        Case { args: &[("net", DEMO)], at: (25.0, 0.0), to: (25.0, 5.0), tolerance: 1e-12 },
+    ]);
+
+/// Two patches that rise in the middle.
+const DEMO: &str = "M0,10 C20,10 30,0 50,0 C70,0 80,10 100,10 M0,40 C20,40 35,30 50,33 C65,36 80,40 100,40 \
+M5,70 C20,70 30,60 50,66 C70,72 80,70 95,70 M0,100 C20,105 30,95 50,100 C70,105 80,105 100,110";
+const REST: &str = "M0,0 C33.333333333333336,0 66.66666666666667,0 100,0 \
+M0,33.333333333333336 C33.333333333333336,33.333333333333336 66.66666666666667,33.333333333333336 100,33.333333333333336 \
+M0,66.66666666666667 C33.333333333333336,66.66666666666667 66.66666666666667,66.66666666666667 100,66.66666666666667 \
+M0,100 C33.333333333333336,100 66.66666666666667,100 100,100";
+
+impl Deformation for Entry {
+    fn info(&self) -> &Info {
+        &INFO
+    }
+
+    fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
+        let frame = s.frame().rect;
+        let given: Vec<&str> = ["net", "mesh", "psd"].into_iter().filter(|n| s.given(n)).collect();
+        let [source] = given[..] else {
+            return Err(Error::missing(
+                "net",
+                "a path (`net`), a file (`mesh`) or a Photoshop file (`psd`): one of them",
+            ));
+        };
+        let region = super::with_area(s.rect_if("region")?.unwrap_or(frame))?;
+        let (quilt, layer) = if source == "net" {
+            let path = s.path_if("net")?.ok_or_else(|| Error::missing("net", "a path"))?;
+            (Quilt::from_path(&path, region)?, None)
+        } else {
+            let file = s.file_if(source)?.ok_or_else(|| Error::missing(source, "its file"))?;
+            match from_file(s, source, file, region)? {
+                Contents::Built(built) => return Ok(built),
+                Contents::Quilt(quilt, layer) => (quilt, layer),
+            }
+        };
+        let mut built = Mesh { source: Source::Quilt(quilt), smooth: s.flag("smooth")?, frame: Some(frame) }.build()?;
+        if let Some(layer) = layer {
+            built.explanation.notes.insert(0, format!("layer {layer}"));
+        }
+        Ok(built)
+    }
+}
+
+/// The contents of a file.
+enum Contents {
+    /// A warp style.
+    Built(Built),
+    /// A quilt, and the name of its layer.
+    Quilt(Quilt, Option<String>),
+}
+
+/// Reads a mesh or a Photoshop file.
+#[cfg(feature = "serde")]
+fn from_file(s: &Settings<'_>, param: &str, file: &NamedText, region: Rect) -> Result<Contents, Error> {
+    use super::{file, psd};
+    if param == "psd" {
+        return Ok(match psd::read(file, s.texts("layer").last().copied(), region)? {
+            psd::Found::Style(built) => Contents::Built(built),
+            psd::Found::Quilt(quilt, layer) => Contents::Quilt(quilt, Some(layer)),
+        });
+    }
+    let quilt = file::read(&file.name, &file.text, region)?;
+    Ok(Contents::Quilt(if s.given("region") { quilt.on(region) } else { quilt }, None))
+}
+
+#[cfg(not(feature = "serde"))]
+fn from_file(_: &Settings<'_>, _: &str, file: &NamedText, _: Rect) -> Result<Contents, Error> {
+    Err(crate::error::no_json(&file.name))
+}
