@@ -16,6 +16,7 @@ mod bilinear;
 mod birational;
 mod built;
 mod bulge;
+mod change;
 mod entry;
 mod envelope;
 mod expr;

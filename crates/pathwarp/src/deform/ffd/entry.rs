@@ -1,8 +1,9 @@
 //! The registry's entry: reads an [`Ffd`] from text.
 
 use super::save::{self, MAX_CELLS, MAX_DEGREE};
-use super::{Change, Ffd, Grid, SIDES};
+use super::{Ffd, Grid, SIDES};
 use crate::deform::built::{Built, SavedFile};
+use crate::deform::change::Change;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::Error;
 use crate::map::Lattice;

@@ -20,6 +20,7 @@ pub(super) use entry::Entry;
 pub(super) use save::{MAX_CELLS, MAX_DEGREE};
 
 use super::built::{Built, Role};
+use super::change::Change;
 use crate::error::{Error, show, within};
 use crate::map::{AffineMap, Class, Lattice, LatticeMap, Map};
 use kurbo::{BezPath, Point, Rect, Vec2};
@@ -53,24 +54,6 @@ pub struct Ffd {
 enum Grid {
     Regular { region: Rect, degree: [usize; 2], cells: [usize; 2] },
     Given(Lattice),
-}
-
-/// A change of one control point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Change {
-    Place(Point),
-    Shift(Vec2),
-    Weight(f64),
-}
-
-impl Change {
-    fn param(self) -> &'static str {
-        match self {
-            Self::Place(_) => "at",
-            Self::Shift(_) => "move",
-            Self::Weight(_) => "weight",
-        }
-    }
 }
 
 /// Sides, in the order of [`Ffd::frozen`].

@@ -1,7 +1,8 @@
 //! The registry's entry: reads a [`Triangle`] from text.
 
-use super::{Change, Triangle};
+use super::Triangle;
 use crate::deform::built::Built;
+use crate::deform::change::Change;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
 use crate::error::Error;
 use crate::param::{Axis, Kind, Param, Settings};

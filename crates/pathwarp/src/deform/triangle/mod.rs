@@ -17,6 +17,7 @@ mod tests;
 pub(super) use entry::Entry;
 
 use super::built::{Built, Role};
+use super::change::Change;
 use crate::error::{Error, GeometryError, within};
 use kurbo::{BezPath, Point, Rect, Vec2};
 use net::{TriangleNet, indices};
@@ -40,24 +41,6 @@ pub struct Triangle {
     changes: Vec<([usize; 3], Change)>,
     extended: bool,
     frame: Option<Rect>,
-}
-
-/// A change of one control point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Change {
-    Place(Point),
-    Shift(Vec2),
-    Weight(f64),
-}
-
-impl Change {
-    fn param(self) -> &'static str {
-        match self {
-            Self::Place(_) => "at",
-            Self::Shift(_) => "move",
-            Self::Weight(_) => "weight",
-        }
-    }
 }
 
 impl Triangle {
