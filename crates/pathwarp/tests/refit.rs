@@ -9,7 +9,7 @@ use kurbo::{CubicBez, Point};
 use pathwarp::map::{Formula, Map, Real};
 use pathwarp::refit::{Assurance, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
-use support::{Bicubic, Rational};
+use support::{Bicubic, Fold, Rational, Ripple};
 
 fn single(seg: Seg) -> Outline {
     Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] }
@@ -293,14 +293,6 @@ fn iso_lines_of_a_bicubic_come_out_as_their_control_points() {
     }
 }
 
-/// A sine wave of the given height.
-struct Ripple(f64);
-impl Formula for Ripple {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        (x, y + (x / 150.0).sin() * self.0)
-    }
-}
-
 #[test]
 fn images_straight_to_rounding_become_lines() {
     // A line, and a cubic along a line, between curves that join them smoothly.
@@ -402,15 +394,6 @@ fn proofs_hold_for_every_kind_of_segment() {
                 assert!(r.segments_out < 40, "{name} {tolerance} {seg:?}: {}", r.segments_out);
             }
         }
-    }
-}
-
-/// Folds the plane along a curve.
-struct Fold;
-impl Formula for Fold {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let u = (x - 500.0) / 500.0;
-        (u * u * 400.0 + y * 0.2, y + u * 30.0)
     }
 }
 

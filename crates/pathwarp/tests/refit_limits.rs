@@ -10,6 +10,7 @@ use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
 use pathwarp::refit::{Options, RefittedPath, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use std::sync::Arc;
+use support::{Fold, Ripple};
 
 fn warp(d: &str, map: &dyn Map, tolerance: f64) -> RefittedPath {
     warp_path(&Outline::from_svg(d).unwrap(), map, &Options::new(tolerance)).unwrap()
@@ -73,17 +74,9 @@ fn a_handle_of_rounding_length_has_no_direction() {
     }
 }
 
-/// A fold along x = 503.75 at (503.75, 500), where the direction (1, −0.06) is in the kernel of the Jacobian.
-struct Fold;
-impl Formula for Fold {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let u = (x - 500.0) / 500.0;
-        (u * u * 400.0 + y * 0.2, y + u * 30.0)
-    }
-}
-
 #[test]
 fn the_tangent_at_a_cusp_of_the_image_is_its_limit() {
+    // The fold runs through p, and the curve leaves along the kernel of the Jacobian.
     let p = Point::new(503.75, 500.0);
     let seg =
         Seg::Cubic(CubicBez::new(p, p + Vec2::new(100.0, -6.0), Point::new(700.0, 600.0), Point::new(800.0, 700.0)));
@@ -112,14 +105,6 @@ impl Formula for Rounding {
 #[test]
 fn rounding_inside_a_map_keeps_lines() {
     assert!(only_lines(&warp("M10.1 20.3L910.7 333.3L20.2 910.4", &Rounding, 1e-7)));
-}
-
-/// A low wave along a line.
-struct Ripple(f64);
-impl Formula for Ripple {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        (x, y + (x / 150.0).sin() * self.0)
-    }
 }
 
 #[test]

@@ -1,8 +1,8 @@
-//! Three maps of a box: a mild and a strong bicubic, and a rational one.
+//! Maps of a box: a mild and a strong bicubic, a rational one, a fold and a wave.
 
 use kurbo::{Point, Vec2};
 use pathwarp::map::batch::Lane;
-use pathwarp::map::{Jet, Map, RationalDegree};
+use pathwarp::map::{Formula, Jet, Map, RationalDegree, Real};
 
 /// Side length of the box of the icons and the maps.
 pub const BOX: f64 = 1000.0;
@@ -195,5 +195,24 @@ impl Map for Rational {
             let p = self.point(Point::new(*x, *y));
             (*x, *y) = (p.x, p.y);
         }
+    }
+}
+
+/// A fold along x = 503.75, where the direction (1, −0.06) is in the kernel of the Jacobian.
+pub struct Fold;
+
+impl Formula for Fold {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let u = (x - 500.0) / 500.0;
+        (u * u * 400.0 + y * 0.2, y + u * 30.0)
+    }
+}
+
+/// A sine wave along x of the given height.
+pub struct Ripple(pub f64);
+
+impl Formula for Ripple {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        (x, y + (x / 150.0).sin() * self.0)
     }
 }

@@ -5,7 +5,7 @@
 mod maps;
 mod oracle;
 
-pub use maps::{BOX, Bicubic, Rational};
+pub use maps::{BOX, Bicubic, Fold, Rational, Ripple};
 pub use oracle::{arriving, distance, distance_of_run, largest_turn, leaving, turn};
 
 use kurbo::{BezPath, CubicBez, PathSeg};
