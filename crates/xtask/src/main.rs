@@ -3,8 +3,10 @@
 mod chore;
 mod corpus;
 mod docs;
+mod files;
 mod new_deformation;
 mod outputs;
+mod parallel;
 mod refit_report;
 mod shell;
 

@@ -2,9 +2,9 @@
 
 use crate::chore::{ChoreError, at};
 use clap::ArgMatches;
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 
 /// The program named by `--program`, or else one built in release mode.
 pub(crate) fn program(root: &Path, arguments: &ArgMatches) -> Result<PathBuf, ChoreError> {
@@ -47,16 +47,19 @@ pub(crate) fn stages(line: &str) -> Vec<Vec<String>> {
     stages.collect()
 }
 
-/// Runs the program on `input` and returns its standard output. Any message on standard error is a failure.
-pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, ChoreError> {
-    let mut command = Command::new(program);
-    command.args(args).current_dir(root).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().map_err(at(program))?;
+/// Runs a command with `input` as its standard input and captures its output.
+pub(crate) fn feed(command: &mut Command, input: &[u8]) -> io::Result<Output> {
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     if let Some(mut stdin) = child.stdin.take() {
         // The child may exit without reading; ignore the broken pipe.
         let _ = stdin.write_all(input);
     }
-    let out = child.wait_with_output().map_err(at(program))?;
+    child.wait_with_output()
+}
+
+/// Runs the program on `input` and returns its standard output. Any message on standard error is a failure.
+pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, ChoreError> {
+    let out = feed(Command::new(program).args(args).current_dir(root), input).map_err(at(program))?;
     if out.status.success() && out.stderr.is_empty() {
         return Ok(out.stdout);
     }

@@ -1,10 +1,9 @@
 //! The commands whose output is compared.
 
 use crate::chore::{ChoreError, at};
-use crate::docs;
+use crate::{docs, files};
 use pathwarp::deform::Registry;
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -53,7 +52,10 @@ pub(super) fn all(program: &Path, drawings: &[PathBuf], count: usize) -> Result<
         add(line);
     }
     for folder in drawings {
-        let files = svg_files(folder)?;
+        let folder = folder.canonicalize().map_err(at(folder))?;
+        // A quote would end the word.
+        let plain = |path: &Path| files::ends_in(path, &["svg"]) && !path.display().to_string().contains('\'');
+        let files = files::below(&folder, plain)?;
         let step = (files.len() / count.max(1)).max(1);
         for (i, file) in files.iter().step_by(step).take(count).enumerate() {
             let warp = WARPS[i % WARPS.len()].replace("FILE", &format!("'{}'", file.display()));
@@ -82,20 +84,5 @@ fn help_examples(program: &Path) -> Result<Vec<String>, ChoreError> {
             }
         }
     }
-    Ok(out)
-}
-
-/// Every SVG file below a folder, sorted by its whole path.
-fn svg_files(folder: &Path) -> Result<Vec<PathBuf>, ChoreError> {
-    let mut out = Vec::new();
-    for entry in fs::read_dir(folder.canonicalize().map_err(at(folder))?).map_err(at(folder))? {
-        let path = entry.map_err(at(folder))?.path();
-        if path.is_dir() {
-            out.extend(svg_files(&path)?);
-        } else if path.extension().is_some_and(|e| e == "svg") && !path.display().to_string().contains('\'') {
-            out.push(path);
-        }
-    }
-    out.sort();
     Ok(out)
 }

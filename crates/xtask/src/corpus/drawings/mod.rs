@@ -22,14 +22,14 @@ mod pictures;
 mod scale;
 mod timing;
 
-use crate::chore::{ChoreError, at};
+use crate::chore::ChoreError;
+use crate::{files, parallel};
 use case::CheckOptions;
 use finding::Finding;
 use pathwarp_svg::{GenericFamilies, ReadOptions};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, mpsc};
+use std::sync::mpsc;
 use std::time::Duration;
 
 /// Time limit for all checks of one file, including its pictures.
@@ -58,9 +58,7 @@ pub(super) struct CorpusRun {
 pub(super) fn measure(run: &CorpusRun) -> Result<String, ChoreError> {
     let mut out = String::new();
     for folder in &run.folders {
-        let mut files = Vec::new();
-        collect(folder, &mut files).map_err(at(folder))?;
-        files.sort();
+        let files = files::below(folder, |path| files::ends_in(path, &["svg", "svgz"]))?;
         let files: Vec<PathBuf> = files.into_iter().step_by(run.every.max(1)).collect();
         // The families that resvg's test suite uses.
         let options = ReadOptions::default()
@@ -75,7 +73,7 @@ pub(super) fn measure(run: &CorpusRun) -> Result<String, ChoreError> {
             .with_fonts(run.fonts.iter().cloned().collect());
         if !run.times {
             let checks = CheckOptions { read: options.clone(), pictures: run.pictures.clone(), only: run.only.clone() };
-            let found = check_all(&files, &checks);
+            let found = parallel::map(&files, |file| check_guarded(file, &checks));
             report(folder, &files, &found, &mut out);
         }
         if run.only.is_empty() {
@@ -83,38 +81,6 @@ pub(super) fn measure(run: &CorpusRun) -> Result<String, ChoreError> {
         }
     }
     Ok(out)
-}
-
-/// Checks all files on separate threads. Threads of rayon's pool must not block here, since the warp needs them.
-fn check_all(files: &[PathBuf], options: &CheckOptions) -> Vec<Vec<Finding>> {
-    let next = AtomicUsize::new(0);
-    let found: Vec<Mutex<Vec<Finding>>> = files.iter().map(|_| Mutex::default()).collect();
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(|| {
-                while let Some((file, slot)) = files.iter().zip(&found).nth(next.fetch_add(1, Ordering::Relaxed)) {
-                    let findings = check_guarded(file, options);
-                    if let Ok(mut slot) = slot.lock() {
-                        *slot = findings;
-                    }
-                }
-            });
-        }
-    });
-    found.into_iter().map(|m| m.into_inner().unwrap_or_default()).collect()
-}
-
-/// Collects the SVG files below a folder.
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|e| e == "svg" || e == "svgz") {
-            files.push(path);
-        }
-    }
-    Ok(())
 }
 
 /// Checks one file on a thread that may panic or be abandoned.
