@@ -4,6 +4,7 @@ use crate::chore::{ChoreError, at};
 use crate::{docs, files};
 use pathwarp::deform::Registry;
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -30,8 +31,12 @@ const MORE: [&str; 7] = [
     "schema",
 ];
 
+/// Pages written by hand. The pages of the deformations show the registry's examples.
+const GUIDES: [&str; 5] =
+    ["README.md", "samples/README.md", "docs/gimp.md", "docs/lettering.md", "docs/lettering-on-paths.md"];
+
 /// All command lines, without the leading `pathwarp`; the stages of a pipeline are separated by ` | `.
-pub(super) fn all(program: &Path, drawings: &[PathBuf], count: usize) -> Result<Vec<String>, ChoreError> {
+pub(super) fn all(root: &Path, program: &Path, drawings: &[PathBuf], count: usize) -> Result<Vec<String>, ChoreError> {
     let mut seen = BTreeSet::new();
     let mut all = Vec::new();
     let mut add = |line: String| {
@@ -41,6 +46,11 @@ pub(super) fn all(program: &Path, drawings: &[PathBuf], count: usize) -> Result<
     };
     for line in docs::cookbook_commands().chain(MORE) {
         add(line.to_owned());
+    }
+    for guide in GUIDES.map(|guide| root.join(guide)) {
+        for command in guide_commands(&fs::read_to_string(&guide).map_err(at(&guide))?) {
+            add(command.to_owned());
+        }
     }
     for entry in Registry::builtin().entries() {
         for example in entry.info().examples {
@@ -65,6 +75,18 @@ pub(super) fn all(program: &Path, drawings: &[PathBuf], count: usize) -> Result<
     Ok(all)
 }
 
+/// The commands in the code blocks of a page that need no file of the reader's.
+fn guide_commands(page: &str) -> impl Iterator<Item = &str> {
+    // Code and prose alternate; a block opens with the name of its language.
+    let blocks = page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
+    blocks.flat_map(str::lines).filter_map(|l| l.strip_prefix("pathwarp ")).filter(|l| is_self_contained(l))
+}
+
+/// Returns `true` for a command on samples or on words that it sets itself.
+fn is_self_contained(command: &str) -> bool {
+    command.contains("samples/") || command.starts_with("text ")
+}
+
 /// The examples on samples in the help of every subcommand that is not a deformation.
 fn help_examples(program: &Path) -> Result<Vec<String>, ChoreError> {
     let help = |args: &[&str]| -> Result<String, ChoreError> {
@@ -78,11 +100,23 @@ fn help_examples(program: &Path) -> Result<Vec<String>, ChoreError> {
     for name in names.filter(|n| Registry::builtin().get(n).is_none()) {
         for line in help(&["help", name])?.lines() {
             if let Some(command) = line.trim().strip_prefix("pathwarp ")
-                && command.contains("samples/")
+                && is_self_contained(command)
             {
                 out.push(command.to_owned());
             }
         }
     }
     Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_of_a_guide_need_no_other_files() {
+        let page = "pathwarp samples/ is prose\n```sh\npathwarp warp mine.svg\npathwarp warp samples/logo.svg\n```\n\
+                    pathwarp text, too\n```json\npathwarp text json\n```\n```sh\npathwarp install gimp\npathwarp text word\n```\n";
+        assert_eq!(guide_commands(page).collect::<Vec<_>>(), ["warp samples/logo.svg", "text word"]);
+    }
 }

@@ -1,10 +1,11 @@
 //! `cargo xtask outputs`: a fingerprint of everything the program writes, to show that a restructuring changes no output.
 //!
-//! `--store FILE` runs every command of the cookbook, of the guides and of the help pages, and one over each drawing of the
-//! given folders, and writes one line per command: a hash of all its output, and the command. `--check FILE` runs the same
+//! `--store FILE` runs every command of the cookbook, of the guides and of the help pages that needs only samples, and one over
+//! each drawing of the given folders, and writes one line per command: a hash of all its output, and the command. `--check FILE` runs the same
 //! commands again and lists those whose hash differs.
 //!
-//! Wording is not compared: standard error is ignored, and messages and times are removed from reports.
+//! Wording is not compared: standard error is ignored, messages and times are removed from reports, and descriptions from the
+//! schema.
 
 mod commands;
 mod hashes;
@@ -52,7 +53,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
 
 /// Writes the hash and the text of every command to `file`.
 fn store(root: &Path, program: &Path, file: &Path, drawings: &[PathBuf], count: usize) -> Result<String, ChoreError> {
-    let lines = commands::all(program, drawings, count)?;
+    let lines = commands::all(root, program, drawings, count)?;
     let hashes = hashes::of_all(root, program, &lines)?;
     let text: String = hashes.iter().zip(&lines).map(|(h, l)| format!("{h} {l}\n")).collect();
     fs::write(file, text).map_err(at(file))?;
