@@ -151,7 +151,7 @@ fn exact_images_of_cubics_and_arcs() {
     assert_eq!(map.image(&beyond), Some(beyond.clone()));
 }
 
-/// What is outside stays, point by point and curve by curve; segments are split exactly at the border.
+/// Everything outside stays, point by point and curve by curve; segments are split exactly at the border.
 #[test]
 fn nothing_moves_outside() {
     let mut l = Lattice::regular(REGION, [3, 3], [1, 1]);

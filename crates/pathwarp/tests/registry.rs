@@ -4,7 +4,7 @@ use pathwarp::deform::Registry;
 use std::path::Path;
 
 /// Files of `src/deform/` that hold what entries share.
-const SHARED: [&str; 4] = ["mod", "built", "entry", "registry"];
+const SHARED: [&str; 5] = ["mod", "built", "change", "entry", "registry"];
 
 #[test]
 fn every_file_is_registered() {
