@@ -122,6 +122,15 @@ pub enum Patterns {
 }
 
 /// Options for warping a document.
+///
+/// ```
+/// use pathwarp::refit;
+/// use pathwarp_svg::{Strokes, WarpOptions};
+///
+/// let fine = WarpOptions::new(refit::Options::new(0.01)).with_strokes(Strokes::Outline).with_precision(Some(3));
+/// let coarse = fine.clone().with_refit(refit::Options::new(0.5));
+/// assert_eq!((coarse.refit.tolerance, coarse.precision), (0.5, Some(3)));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct WarpOptions {
@@ -206,6 +215,7 @@ macro_rules! setters {
 }
 
 setters! {
+    refit: refit::Options, with_refit;
     precision: Option<u8>, with_precision;
     strokes: Strokes, with_strokes;
     text: TextMode, with_text;

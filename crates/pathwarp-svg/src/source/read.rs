@@ -7,6 +7,16 @@ use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
 
 /// Options for reading a file.
+///
+/// ```
+/// use pathwarp_svg::{Document, ReadOptions, Selection};
+///
+/// let options = ReadOptions::default().with_dpi(72.0).with_system_fonts(false);
+/// let svg = "<svg xmlns='http://www.w3.org/2000/svg'><rect width='2in' height='1in'/></svg>";
+/// let artwork = Document::read(svg.as_bytes(), "inches.svg", &options)?.artwork_box(&Selection::default());
+/// assert_eq!(artwork.map(|b| b.width()), Some(144.0));
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ReadOptions {
@@ -60,6 +70,12 @@ impl ReadOptions {
     #[must_use]
     pub fn with_generic_families(self, generic_families: GenericFamilies) -> Self {
         Self { generic_families, ..self }
+    }
+
+    /// Sets [`dpi`](Self::dpi).
+    #[must_use]
+    pub fn with_dpi(self, dpi: f32) -> Self {
+        Self { dpi, ..self }
     }
 
     /// Sets [`max_size`](Self::max_size).
