@@ -4,6 +4,9 @@ use super::lanes::{Lane, Lanes};
 use super::source::{BreakPoint, SourceCurve};
 use kurbo::{Point, Vec2};
 
+/// Parameters of the samples of a smooth part.
+pub(super) type PartSamples = [Lane; 2];
+
 /// A curve that can be fitted: the image of one segment, or of several in a row.
 pub(super) trait ImageCurve {
     /// Writes the images at eight parameters. `Err`: the source point at which the map is not finite.
@@ -23,9 +26,10 @@ pub(super) trait ImageCurve {
     /// The break point at `t`. `Err`: the source point, if the map is not finite there.
     fn end(&self, t: f64) -> Result<BreakPoint, Point>;
 
-    /// Parameters in (t0, t1) that a dense check must sample besides those spread evenly.
-    fn places(&self, _t0: f64, _t1: f64) -> Vec<f64> {
-        Vec::new()
+    /// If the curve consists of several segments: for each of its smooth parts between t0 and t1, sixteen samples evenly spaced
+    /// in the segment's parameter, the last one at the part's end.
+    fn parts(&self, _t0: f64, _t1: f64) -> Option<Vec<PartSamples>> {
+        None
     }
 
     /// The source's point at `t`, for messages.

@@ -13,7 +13,7 @@ use super::polyline::SamplePolygon;
 use super::request::FitRequest;
 use super::residuals::FitState;
 use super::samples::{CHECKED, FITTED, UNIT, between};
-use super::stretch::StretchFitter;
+use super::stretch::{Scrutiny, StretchFitter};
 use kurbo::Point;
 
 /// The best fit so far, and its error: judged if its fit came within the tolerance, else what that would have reached.
@@ -150,6 +150,9 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         let piece = FittedPiece::Cubic(request.cubic(&fit.z));
         if error <= self.tolerance {
             return FitOutcome::Fits { piece, error, reach: fit.error };
+        }
+        if self.scrutiny == Scrutiny::Samples {
+            return FitOutcome::Misses { piece, error: error.max(fit.error), reach: error, cusp: None };
         }
         let polygon = SamplePolygon::new(request.g, request.frame.q);
         let cusp = if polygon.sharp { self.cusp(request.from, request.to, polygon.length) } else { None };

@@ -1,18 +1,16 @@
 //! Judges a fit: its error by the cheapest test that can decide, from eight samples to a dense check or a proof.
 
 use super::check;
-use super::curve::ImageCurve;
+use super::curve::{ImageCurve, PartSamples};
 use super::fit::Fit;
 use super::lanes::{Lane, Lanes, clamp_unit, larger, largest};
-use super::limits::{
-    DENSE_ACCEPTED, EIGHT_ACCEPTED, EIGHT_GROWTH, FOOT_DRIFT, JOINT_GROWTH, PEAK_ACCEPTED, SMALL_ERROR,
-};
+use super::limits::{DENSE_ACCEPTED, EIGHT_ACCEPTED, EIGHT_GROWTH, FOOT_DRIFT, PEAK_ACCEPTED, SMALL_ERROR};
 use super::peaks::highest_peak;
 use super::request::FitRequest;
 use super::residuals::FitState;
 use super::resolution::{Resolution, steady};
 use super::samples::{Evenly, between, interleaved};
-use super::stretch::StretchFitter;
+use super::stretch::{Scrutiny, StretchFitter};
 use kurbo::Point;
 
 /// A state with foot points and squared distances of the fitted samples.
@@ -38,11 +36,17 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         if error > self.tolerance {
             return Ok(error);
         }
+        if self.scrutiny == Scrutiny::Samples {
+            return Ok(error);
+        }
         if self.form.is_some() {
             return self.proven(request, fitted.z, [&fitted.s, &s], error);
         }
         let checked = Measured { z: fitted.z, s, squares, error };
         let feet = interleaved(&fitted.s, &checked.s, 1.0);
+        if let Some(parts) = self.source.parts(request.from.t, request.to.t) {
+            return Ok(self.across_joints(request, fitted.z, &feet, &parts)?.max(checked.error));
+        }
         if let Some(error) = self.by_sixteen(request, &fitted, (&check, &checked), &feet)? {
             return Ok(error);
         }
@@ -111,15 +115,24 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         Ok(closer.filter(|closer| *closer <= DENSE_ACCEPTED * tol).map(|closer| closer.max(error)))
     }
 
+    /// Samples in each segment of a run. A cubic that they cannot judge is rejected: its segments have pieces already.
+    fn across_joints(
+        &self,
+        request: &FitRequest<'_>,
+        z: &FitState,
+        feet: &Evenly,
+        parts: &[PartSamples],
+    ) -> Result<f64, Point> {
+        let error = check::joined(self.source, &request.candidate(z), feet, parts, DENSE_ACCEPTED * self.tolerance)?
+            .unwrap_or(f64::INFINITY);
+        Ok(if error > DENSE_ACCEPTED * self.tolerance { error / DENSE_ACCEPTED } else { error })
+    }
+
     /// Many samples.
     #[inline(never)]
     fn by_dense_check(&self, request: &FitRequest<'_>, z: &FitState, feet: &Evenly, error: f64) -> Result<f64, Point> {
         let c = request.candidate(z);
-        let mut e = check::dense(self.source, &c, feet, self.slow, self.tolerance)?.max(error);
-        if self.source.single().is_none() && self.careful {
-            // Joints are corners of the curvature, which no parabola follows.
-            e = (e * JOINT_GROWTH).max(check::thorough(self.source, &c, self.slow, self.tolerance)?);
-        }
+        let e = check::dense(self.source, &c, feet, self.slow, self.tolerance)?.max(error);
         Ok(if e > DENSE_ACCEPTED * self.tolerance { e / DENSE_ACCEPTED } else { e })
     }
 

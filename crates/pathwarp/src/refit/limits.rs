@@ -303,12 +303,6 @@ pub(super) const MAX_ZOOMS: usize = 4;
 /// Test: *figures* (at 8 and 2000, for merging).
 pub(super) const THOROUGH_SAMPLES: usize = 160;
 
-/// Growth of a merged piece's error between samples: joints are corners of the curvature, which no parabola follows. 1: −0.1 %
-/// pieces, −7.6 % work and no test fails; 2: +17 % pieces. The largest error of merged icon paths is 0.995 of the tolerance
-/// (docs/benchmarks.md).
-/// Test: *figures* (at 2, for merging).
-pub(super) const JOINT_GROWTH: f64 = 1.015;
-
 /// Factor from a checked error to the one reported, up to the tolerance, for errors between samples. It decides no acceptance.
 /// Test: *sample* (at 0.5 and 1), which compares reported with true errors.
 pub(super) const REPORT_MARGIN: f64 = 1.05;
@@ -388,45 +382,73 @@ pub(super) const BISECTION_MARGIN: f64 = 0.1;
 
 // Merging: figures are those of merging
 
-/// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree). 0: +18 % pieces.
+/// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree). 0: +19 % pieces.
 /// Tests: *figures* (at 0); `limits::merging_keeps_corners_that_the_tolerance_would_hide` (at 10).
 pub(super) const SMOOTH_JOINT: f64 = 0.0087;
 
-/// Places per segment at which a merged piece may end. 1: +6.8 % pieces, −72 % work; 20: −2.5 % pieces, +202 % work.
-/// Test: *figures* (at 1 and 20).
-pub(super) const MERGE_GRID: usize = 6;
+/// Joints that turn by more than this (as a tangent, a little above [`SMOOTH_JOINT`]) are corners at first sight, so that their
+/// segments are not sampled. 0: +20 % pieces. At 1e9 nothing changes but the time.
+/// Test: *figures* (at 0).
+pub(super) const SURE_CORNER: f64 = 0.009;
 
-/// Segments under one cubic: the dense check then has ten samples in each. 1: +18 % pieces; 30: unchanged.
+/// … if both derivatives are above this share of their segment's chord, times the size of the Jacobian: far above
+/// [`VANISHING_DERIVATIVE`], below which one-sided tangents decide. Unchanged at 0 and 1e9: the sample has no joint in between.
+pub(super) const CLEAR_DERIVATIVE: f64 = 1e-6;
+
+/// Places per segment at which a merged piece may end. 1: +7.6 % pieces, −56.9 % work; 4: +2.0 % pieces, −25.4 % work; 16: −1.7 % pieces, +29.6 % work.
 /// Test: *figures* (at 1).
-pub(super) const MAX_SPAN: usize = 6;
+pub(super) const MERGE_GRID: usize = 8;
+
+/// Segments under one cubic, which bounds the table of errors. 1: +19.1 % pieces, −40.7 % work; 6: unchanged here, on icons 0.1 % more pieces at 1; 30:
+/// unchanged.
+/// Test: *figures* (at 1).
+pub(super) const MAX_SPAN: usize = 12;
 
 /// Segments in one table, which bounds its memory. 1: no merging; 1000: unchanged.
 /// Test: *figures* (at 1).
 pub(super) const MAX_RUN: usize = 64;
 
-/// Misses in a row after which longer stretches are not tried. 0: +0.7 % pieces, −20 % work; 1000: −0.05 % pieces, +345 % work.
-/// Test: *figures* (at 0 and 1000).
-pub(super) const MERGE_PATIENCE: usize = 2;
-
-/// Share of the tolerance for merged pieces. If curvature jumps at a joint, the error has corners between the samples. 0.1: +14
-/// % pieces; 2: errors above the tolerance.
+/// Share of the tolerance for merged pieces, which leaves room between the samples. 0.1: +15 % pieces; 1: −0.05 %; 2: errors above
+/// the tolerance.
 /// Tests: *figures* (at 0.1); *sample* (at 2).
-pub(super) const MERGE_SHARE: f64 = 0.97;
+pub(super) const MERGE_SHARE: f64 = 0.99;
 
-/// Searches over one run, each without the pieces that the last one's checks refused. 0: no merging; 100: unchanged. On icons
-/// 1.00 to 1.03 are needed.
-/// Test: *figures* (at 0).
-pub(super) const MERGE_SEARCHES: usize = 4;
+/// Searches over one run, each without the pieces that the last one's checks refused. 1: +5.7 % pieces, −8.7 % work; 4: +0.5 %
+/// pieces, −2.4 % work; 100: unchanged.
+/// Test: *figures* (at 1).
+pub(super) const MERGE_SEARCHES: usize = 12;
+
+/// Error of the best cubic for a curve whose curvature jumps by 1, per square of the shorter side: that of x²/2 right of zero and
+/// 0 left of it, on −1..1, in the uniform norm. A joint with a larger jump than this allows is not crossed, so no fit is wasted
+/// on it. 0: −0.1 % pieces, +9.9 % work; 0.03: +1 % pieces, −10 % work.
+/// Test: *figures* (at 0.03 and 0).
+pub(super) const JUMP_ERROR: f64 = 0.0069;
+
+/// Error ÷ tolerance that the next guess of a reach aims at, by the sixth-order law. Only the order of trials depends on it. 0.3:
+/// +0.05 % pieces, +5.9 % work; 3: −0.05 % pieces, −5 % work.
+/// Test: *figures* (at 0.3).
+pub(super) const REACH_TARGET: f64 = 0.95;
+
+/// Errors below this share of the tolerance are rounding to the guess of a reach, which then grows at most fivefold. 0.1: +0.2 %
+/// work; 1e-12: unchanged.
+pub(super) const SMALLEST_REACH_ERROR: f64 = 1e-4;
+
+/// Longer stretches are tried after a miss by less than this factor. 1: +0.6 % pieces, −15 % work; 3: +0.2 % pieces, −2.6 % work;
+/// 1e9: +1 % work.
+/// Test: *figures* (at 1).
+pub(super) const LEAP_WITHIN: f64 = 10.0;
+
+/// Number of places tried beyond a near miss. 0: +0.6 % pieces, −15 % work; 3: +0.1 % pieces, −6.8 % work; 40: +14 % work.
+/// Test: *figures* (at 0 and 40).
+pub(super) const LEAPS: usize = 6;
+
+/// Error recorded for a piece that failed the final check: a miss, but a near one. 1e9: unchanged.
+pub(super) const REFUSED_ERROR: f64 = 1.2;
 
 /// Intervals of a segment's table of lengths, two batches. More even parameters save little, as foot points follow the image
 /// anyway. Fixed by the loop that fills it.
 /// Not varied.
 pub(super) const LENGTH_TABLE: usize = 16;
-
-/// Extra samples of a dense check in each segment of a run: short segments would fall between even samples of the whole. 0: −11
-/// % work and no test fails; 500: +76 % work. Merged paths had errors between samples before the places were added.
-/// Test: *figures* (at 500).
-pub(super) const PLACES_PER_SEGMENT: usize = 64;
 
 // Proofs: figures are those of certified pieces
 

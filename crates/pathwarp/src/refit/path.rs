@@ -1,6 +1,6 @@
 //! Whole paths, subpath by subpath.
 
-use super::merge::Merger;
+use super::merge::{FittedSegments, Merger, may_be_smooth};
 use super::options::Options;
 use super::piece::{FittedPiece, PathWriter, reverse};
 use super::report::Assurance;
@@ -64,6 +64,8 @@ pub(super) fn subpath(
     // The index of each segment's first piece.
     let mut bounds = Vec::with_capacity(if options.merge { sub.segs.len() + 1 } else { 0 });
     bounds.push(0);
+    // Joints of the image that may be smooth, by the index of the segment that begins there.
+    let mut smooth = Vec::with_capacity(bounds.capacity());
     let fitter = SegmentFitter { map, degree: map.rational_degree(), creases, options };
     for (i, seg) in sub.segs.iter().enumerate() {
         finite(seg)?;
@@ -73,6 +75,9 @@ pub(super) fn subpath(
         let here = i % 2;
         if seg.start() != at {
             jets[here] = map.jet(seg.start());
+        }
+        if options.merge {
+            smooth.push(i > 0 && may_be_smooth(&sub.segs[i - 1], seg, &jets[here]));
         }
         at = seg.end();
         jets[1 - here] = map.jet(at);
@@ -90,10 +95,11 @@ pub(super) fn subpath(
         }
     }
     // Across other creases than the domain's edge the image has corners.
-    let smooth = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
-    if options.merge && smooth && bounds.len() == sub.segs.len() + 1 {
+    let uncreased = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
+    if options.merge && uncreased {
         let merger = Merger { map, degree: fitter.degree, options };
-        pieces = merger.merged(&sub.segs, &pieces, &bounds, &mut out.report).map_err(infinity)?;
+        let fitted = FittedSegments { segs: &sub.segs, smooth: &smooth, pieces: &pieces, bounds: &bounds };
+        pieces = merger.merged(&fitted, &mut out.report).map_err(infinity)?;
     }
     out.subpath(start, &pieces, sub.closed);
     Ok(())

@@ -17,6 +17,14 @@ pub(super) fn predicted_peak([before, top, after]: [f64; 3], factor: f64) -> f64
     if (b >= a) & (b >= c) { peak } else { 0.0 }
 }
 
+/// The same for a sample at the end of a smooth part: the error may rise between it and the next sample, by as much as a middle
+/// sample's.
+pub(super) fn predicted_end_peak([end, next, after]: [f64; 3], factor: f64) -> f64 {
+    let side = 1.0f64.copysign(end);
+    let (a, b, c) = (end * side, next * side, after * side);
+    if a >= b { a + (factor / 8.0) * (2.0 * b - a - c).abs() } else { 0.0 }
+}
+
 /// The highest [`predicted_peak`] of sixteen samples.
 #[inline(always)]
 pub(super) fn highest_peak(errors: &Evenly) -> f64 {

@@ -19,6 +19,17 @@ use super::straight::straight;
 use crate::map::RationalDegree;
 use kurbo::{Line, Point};
 
+/// How closely a piece is examined before it is accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scrutiny {
+    /// By its sixteen samples alone: for searches, whose result is examined again.
+    Samples,
+    /// By the cheapest test that can decide.
+    Sufficient,
+    /// By samples in every segment that the piece covers.
+    EverySegment,
+}
+
 /// Fits pieces to stretches of one smooth curve.
 pub(super) struct StretchFitter<'a, C> {
     pub(super) source: &'a C,
@@ -28,8 +39,7 @@ pub(super) struct StretchFitter<'a, C> {
     pub(super) form: Option<RationalForm>,
     /// The map's degree, if it is a quotient of polynomials and the ends of the pieces lie on its image.
     pub(super) degree: Option<RationalDegree>,
-    /// Checks every piece densely.
-    pub(super) careful: bool,
+    pub(super) scrutiny: Scrutiny,
     pub(super) attempts: usize,
 }
 
@@ -55,7 +65,8 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         let floor = home.map(|a| if a > 0.0 { a.min(HANDLE_FLOOR * size) } else { HANDLE_FLOOR_STOPPED * size });
         let pull = (HANDLE_PULL * tol / size).powi(2);
         let frame = ChordFrame { q, t0: from.away, t1: to.into, floor, size, home, pull };
-        let careful = self.careful || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
+        let careful = self.scrutiny == Scrutiny::EverySegment
+            || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
         Ok(FitRequest { from, to, frame, g, check: None, ds: [0.0; 8], careful })
     }
 

@@ -47,10 +47,6 @@ pub(in crate::refit) fn dense(
             }
         }
     }
-    for chunk in source.places(c.t0, c.t1).chunks(8) {
-        let tau: Lane = std::array::from_fn(|i| c.tau(chunk[i.min(chunk.len() - 1)]));
-        worst = worst.max(largest(&probe(source, c, feet, &tau, 3)?.squares));
-    }
     let worst = worst.sqrt().max(peaks);
     if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
 }

@@ -1,15 +1,16 @@
 //! Fewer pieces across smooth joints of the source.
 //!
 //! A drawing often has more nodes than its shape needs. Smoothly joined segments have one smooth curve as their image, here
-//! parametrised by its own length. Dynamic programming finds the fewest cubics between the places of a grid (the joints, and
-//! points between them) that cover this curve. They are used only if they are fewer than the segments' own pieces and every
-//! one has passed the dense check or, if proofs are wanted, has been proven segment by segment.
+//! parametrised by its own length. A search over the places of a grid (the joints, and points between them) finds few cubics
+//! that cover this curve (`search`), each extended as far as it reaches (`reach`). They are used only if they are fewer than
+//! the segments' own pieces and every one has passed a check by samples in each of its segments or, if proofs are wanted, has
+//! been proven segment by segment.
 
+mod reach;
 mod run;
 mod search;
 
-use super::curve::ImageCurve;
-use super::limits::{MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT};
+use super::limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
 use super::options::Options;
 use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
@@ -17,10 +18,11 @@ use super::proof::{self, RationalForm};
 use super::report::{Assurance, PathReport};
 use super::source::{BreakPoint, SourceCurve};
 use super::split::SlowSpots;
-use super::stretch::StretchFitter;
-use crate::map::{Map, RationalDegree};
+use super::stretch::{Scrutiny, StretchFitter};
+use crate::map::{Jet, Map, RationalDegree};
 use crate::outline::Seg;
-use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point};
+use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
+use reach::{Reaches, RunFitter};
 use run::{RunSegment, SegmentRun};
 use search::{Leg, fewest_legs};
 
@@ -32,19 +34,41 @@ pub(super) struct Merger<'a> {
     pub(super) options: &'a Options,
 }
 
+/// The segments of a subpath, each with its own pieces.
+pub(super) struct FittedSegments<'a> {
+    pub(super) segs: &'a [Seg],
+    /// `smooth[i]` is `false` if the image has a corner where segment i begins.
+    pub(super) smooth: &'a [bool],
+    pub(super) pieces: &'a [FittedPiece],
+    /// `bounds[i]..bounds[i + 1]` are the pieces of segment i.
+    pub(super) bounds: &'a [usize],
+}
+
+/// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jet where they meet.
+#[inline]
+pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
+    let (v, w) = (before.deriv(1.0), after.deriv(0.0));
+    let (into, away) = (jet.push(v), jet.push(w));
+    // One-sided tangents decide where a derivative vanishes or nearly does.
+    let scale = CLEAR_DERIVATIVE * CLEAR_DERIVATIVE * (jet.dx.hypot2() + jet.dy.hypot2());
+    let clear = |d: Vec2, seg: &Seg| d.hypot2() > scale * seg.end().distance_squared(seg.start());
+    let (dot, cross) = (into.dot(away), into.cross(away).abs());
+    dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
+}
+
 impl Merger<'_> {
-    /// The pieces of `segs`, merged where that saves some; `bounds[i]..bounds[i + 1]` are those of segment i.
+    /// The pieces of all segments, merged where that saves some.
     pub(super) fn merged(
         &self,
-        segs: &[Seg],
-        pieces: &[FittedPiece],
-        bounds: &[usize],
+        fitted: &FittedSegments<'_>,
         report: &mut PathReport,
     ) -> Result<Vec<FittedPiece>, Point> {
+        let FittedSegments { segs, smooth, pieces, bounds } = *fitted;
         let mut out = Vec::with_capacity(pieces.len());
         let mut i = 0;
         while i < segs.len() {
-            let run = self.run(&segs[i..])?;
+            let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
+            let run = if joined > 0 { self.run(&segs[i..=i + joined])? } else { SegmentRun::default() };
             // A segment that cannot be in a run keeps its pieces.
             let end = i + run.segments.len().max(1);
             let own = &pieces[bounds[i]..bounds[end]];
@@ -68,7 +92,7 @@ impl Merger<'_> {
         Self: 's,
     {
         let mut run = SegmentRun::default();
-        for seg in segs.iter().take(MAX_RUN) {
+        for seg in segs {
             if self.options.shared.contains(seg) {
                 break;
             }
@@ -98,18 +122,13 @@ impl Merger<'_> {
 
     /// The fewest pieces for a run, and their largest error. `None` if they are not fewer than its segments have.
     ///
-    /// Searches quickly, then checks the pieces found densely. Those that fail are left out of the next search.
+    /// Searches quickly, then checks the pieces found in every segment. Those that fail are left out of the next search.
     fn fewest(
         &self,
         run: &SegmentRun<'_>,
         pieces: &[FittedPiece],
         bounds: &[usize],
     ) -> Result<Option<(Vec<FittedPiece>, f64)>, Point> {
-        let n = run.grid();
-        let mut ends = Vec::with_capacity(n + 1);
-        for k in 0..=n {
-            ends.push(run.end(run.place(k))?);
-        }
         let slow = SlowSpots::default();
         let mut fitter = StretchFitter {
             source: run,
@@ -117,27 +136,31 @@ impl Merger<'_> {
             tolerance: MERGE_SHARE * self.options.tolerance,
             form: None,
             degree: None,
-            careful: false,
+            scrutiny: Scrutiny::Samples,
             attempts: 0,
         };
-        let mut refused = Vec::new();
+        let mut reaches = Reaches::new(run, bounds, fitter.tolerance);
         for _ in 0..MERGE_SEARCHES {
-            fitter.careful = false;
-            let Some(legs) = fewest_legs(run, &mut fitter, &ends, bounds, &refused)? else { return Ok(None) };
-            fitter.careful = true;
-            let (mut out, mut worst) = (Vec::with_capacity(bounds[bounds.len() - 1] - bounds[0]), 0.0f64);
-            let known = refused.len();
+            fitter.scrutiny = Scrutiny::Samples;
+            let Some(legs) = fewest_legs(&mut reaches, &mut fitter)? else { return Ok(None) };
+            fitter.scrutiny = Scrutiny::EverySegment;
+            let (mut out, mut worst) = (Vec::with_capacity(reaches.unmerged()), 0.0f64);
+            let mut passed = true;
             for Leg { from, to, merged } in legs {
                 if !merged {
                     out.extend_from_slice(&pieces[bounds[from / MERGE_GRID]..bounds[to / MERGE_GRID]]);
-                } else if let Some((piece, error)) = self.checked(run, &mut fitter, &ends[from], &ends[to])? {
+                    continue;
+                }
+                let (first, last) = (reaches.end(from)?, reaches.end(to)?);
+                if let Some((piece, error)) = self.checked(run, &mut fitter, &first, &last)? {
                     worst = worst.max(error);
                     out.push(piece);
                 } else {
-                    refused.push((from, to));
+                    reaches.refuse(from, to);
+                    passed = false;
                 }
             }
-            if refused.len() == known {
+            if passed {
                 return Ok(Some((out, worst)));
             }
         }
@@ -148,7 +171,7 @@ impl Merger<'_> {
     fn checked(
         &self,
         run: &SegmentRun<'_>,
-        fitter: &mut StretchFitter<'_, SegmentRun<'_>>,
+        fitter: &mut RunFitter<'_, '_>,
         from: &BreakPoint,
         to: &BreakPoint,
     ) -> Result<Option<(FittedPiece, f64)>, Point> {

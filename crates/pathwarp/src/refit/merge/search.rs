@@ -1,10 +1,11 @@
-//! Dynamic programming for the fewest pieces over a grid of places.
+//! The fewest pieces over the places of a grid.
+//!
+//! After c pieces only the furthest place matters, nearly: what one cubic covers from some place it also covers from a later
+//! one. So the search keeps one place for each number of pieces, extends it as far as one cubic reaches, and compares with
+//! the segments' own pieces, which lead from joint to joint.
 
-use super::run::SegmentRun;
-use crate::refit::limits::{MAX_SPAN, MERGE_GRID, MERGE_PATIENCE};
-use crate::refit::outcome::FitOutcome;
-use crate::refit::source::BreakPoint;
-use crate::refit::stretch::StretchFitter;
+use super::reach::{Reaches, RunFitter};
+use crate::refit::limits::MERGE_GRID;
 use kurbo::Point;
 
 /// A step between two grid places.
@@ -16,63 +17,92 @@ pub(super) struct Leg {
     pub(super) merged: bool,
 }
 
-/// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have. `ends` are the
-/// break points at the grid places, `bounds` the index of each segment's first piece, and `refused` the legs to leave out.
+/// The furthest place found for some number of pieces.
+#[derive(Debug, Clone, Copy)]
+struct Furthest {
+    place: usize,
+    /// The start of the last leg, and `true` if it is merged. `None` if one piece less leads as far.
+    leg: Option<(usize, bool)>,
+}
+
+/// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have.
 pub(super) fn fewest_legs(
-    run: &SegmentRun<'_>,
-    fitter: &mut StretchFitter<'_, SegmentRun<'_>>,
-    ends: &[BreakPoint],
-    bounds: &[usize],
-    refused: &[(usize, usize)],
+    reaches: &mut Reaches<'_, '_>,
+    fitter: &mut RunFitter<'_, '_>,
 ) -> Result<Option<Vec<Leg>>, Point> {
-    let unmerged = bounds[bounds.len() - 1] - bounds[0];
-    let n = run.grid();
-    // cost[k]: the least number of pieces up to place k; back[k]: the start of the last of them, and `true` if merged.
-    let mut cost = vec![usize::MAX; n + 1];
-    let mut back = vec![(0, false); n + 1];
-    cost[0] = 0;
-    for k in 0..n {
-        if cost[k] == usize::MAX || cost[k] >= unmerged {
-            continue;
+    let last = reaches.last();
+    let mut furthest = vec![Furthest { place: 0, leg: None }];
+    // (number of pieces, joint) that a segment's own pieces lead to.
+    let mut by_own = Vec::new();
+    for count in 0..reaches.unmerged() - 1 {
+        let Furthest { place: k, leg } = furthest[count];
+        let joint = k - k % MERGE_GRID;
+        // The leg to k may end at the joint before it as well.
+        let at_joint = joint == k
+            || match leg {
+                Some((from, true)) if from < joint => reaches.fits(fitter, from, joint)?,
+                _ => false,
+            };
+        if at_joint && joint < last {
+            by_own.push((count + reaches.pieces(joint / MERGE_GRID), joint + MERGE_GRID));
         }
-        // A segment's own pieces lead from joint to joint.
-        if k % MERGE_GRID == 0 {
-            let seg = k / MERGE_GRID;
-            let with = cost[k] + bounds[seg + 1] - bounds[seg];
-            if with < cost[k + MERGE_GRID] {
-                (cost[k + MERGE_GRID], back[k + MERGE_GRID]) = (with, (k, false));
-            }
-        }
-        let mut failed = 0;
-        for m in k + 1..=n.min(k + MERGE_GRID * MAX_SPAN) {
-            // Skip places that are reached as cheaply already.
-            if cost[k] + 1 >= cost[m] || refused.contains(&(k, m)) {
-                continue;
-            }
-            match fitter.attempt(&ends[k], &ends[m])? {
-                FitOutcome::Fits { .. } => {
-                    failed = 0;
-                    (cost[m], back[m]) = (cost[k] + 1, (k, true));
-                }
-                FitOutcome::Misses { .. } => {
-                    failed += 1;
-                    if failed > MERGE_PATIENCE {
-                        break;
-                    }
+        let mut best = Furthest { place: reaches.furthest(fitter, k)?, leg: Some((k, true)) };
+        if let Some((from, true)) = leg {
+            for earlier in [joint, k - 1] {
+                if let Some(place) = beyond(reaches, fitter, [from, earlier, k], best.place)? {
+                    best = Furthest { place, leg: Some((earlier, true)) };
                 }
             }
+        }
+        for &(pieces, to) in &by_own {
+            if pieces == count + 1 && to > best.place {
+                best = Furthest { place: to, leg: Some((to - MERGE_GRID, false)) };
+            }
+        }
+        furthest.push(if best.place > k { best } else { Furthest { place: k, leg: None } });
+        if best.place == last {
+            return Ok(Some(legs(&furthest, reaches)));
         }
     }
-    if cost[n] >= unmerged {
+    Ok(None)
+}
+
+/// The place that a cubic from `earlier` reaches beyond `best`, if it does. `earlier` is a place before `k` to which the cubic
+/// that begins at `from` can be shortened: its end tangent may suit what follows better.
+fn beyond(
+    reaches: &mut Reaches<'_, '_>,
+    fitter: &mut RunFitter<'_, '_>,
+    [from, earlier, k]: [usize; 3],
+    best: usize,
+) -> Result<Option<usize>, Point> {
+    let limit = reaches.limit(earlier);
+    if !(from < earlier && earlier < k && best < limit)
+        || !reaches.fits(fitter, earlier, best + 1)?
+        || !reaches.fits(fitter, from, earlier)?
+    {
         return Ok(None);
     }
-    let mut legs = Vec::with_capacity(cost[n]);
-    let mut to = n;
+    let mut place = best + 1;
+    while place < limit && reaches.fits(fitter, earlier, place + 1)? {
+        place += 1;
+    }
+    Ok(Some(place))
+}
+
+/// Follows the legs back from the end.
+fn legs(furthest: &[Furthest], reaches: &Reaches<'_, '_>) -> Vec<Leg> {
+    let mut legs = Vec::new();
+    let mut count = furthest.len() - 1;
+    let mut to = reaches.last();
     while to > 0 {
-        let (from, merged) = back[to];
+        let Some((from, merged)) = furthest[count].leg else {
+            count -= 1;
+            continue;
+        };
         legs.push(Leg { from, to, merged });
+        count -= if merged { 1 } else { reaches.pieces(from / MERGE_GRID) };
         to = from;
     }
     legs.reverse();
-    Ok(Some(legs))
+    legs
 }

@@ -3,9 +3,12 @@
 //! The Jacobian determinant is the local area scale. It is negative if the map mirrors the neighbourhood of a point. A map that
 //! mirrors everything folds nothing; a map whose determinant changes sign on the artwork folds it.
 
+mod interior;
+
 use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::Outline;
-use kurbo::{BezPath, Point, Shape};
+use interior::interior;
+use kurbo::Point;
 
 /// Signs of the Jacobian determinant over samples of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -44,15 +47,9 @@ pub fn orientation(outline: &Outline, filled: bool, map: &dyn Map) -> Orientatio
         let points: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
         out.sample(&points, map);
     }
-    if let (true, Some(b)) = (filled, outline.bounding_box()) {
-        let size = b.width().hypot(b.height());
-        let path: BezPath = outline.to_bez_path(size * 1e-3);
-        for j in 0..GRID {
-            let y = b.y0 + b.height() * (j as f64 + 0.5) / GRID as f64;
-            let row: Vec<Point> = (0..GRID)
-                .map(|i| Point::new(b.x0 + b.width() * (i as f64 + 0.5) / GRID as f64, y))
-                .filter(|p| path.winding(*p) != 0 && creases.defined_at(*p))
-                .collect();
+    if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
+        for mut row in interior(outline, bounds, GRID) {
+            row.retain(|p| creases.defined_at(*p));
             out.sample(&row, map);
         }
     }

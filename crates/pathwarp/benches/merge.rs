@@ -1,0 +1,78 @@
+//! `cargo bench -p pathwarp --bench merge`: pieces and time with merging, as the command line runs by default, next to no merging.
+//!
+//! Data and maps are those of the `refit` benchmark. Times are medians over interleaved rounds, per source segment.
+//! `EVERY=n` measures each n-th path (default 8; 1 is all of them); `ONLY="strong 0.1"` one row; `MODE=merged` (or `off`,
+//! `certify`) one column, for profiling.
+
+#![allow(clippy::print_stdout, missing_docs)]
+
+mod support;
+
+use pathwarp::Outline;
+use pathwarp::map::Map;
+use pathwarp::refit::{Options, warp_path};
+use std::hint::black_box;
+use std::time::Instant;
+use support::{Bicubic, Rational};
+
+const ROUNDS: usize = 3;
+
+fn median(mut v: Vec<f64>) -> f64 {
+    v.sort_by(f64::total_cmp);
+    v.get(v.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+fn env(name: &str) -> String {
+    std::env::var(name).unwrap_or_default()
+}
+
+fn main() {
+    let every = env("EVERY").parse().unwrap_or(8);
+    let (all, fetched) = support::corpus();
+    let outlines: Vec<Outline> = all.into_iter().step_by(if fetched { every } else { 1 }).collect();
+    let n = outlines.iter().flat_map(Outline::segs).count();
+    println!("{n} segments of {} paths", outlines.len());
+    println!(
+        "{:<16} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>7} {:>7}",
+        "map, tolerance", "off", "merged", "certify", "ns off", "merged", "certify", "m/off", "c/m"
+    );
+    let (only, mode) = (env("ONLY"), env("MODE"));
+    let maps: [(&str, Box<dyn Map>); 3] = [
+        ("mild", Box::new(Bicubic::mild())),
+        ("strong", Box::new(Bicubic::strong())),
+        ("rational", Box::new(Rational::new())),
+    ];
+    for (name, map) in &maps {
+        for tolerance in [1.0, 0.1, 0.01, 0.001] {
+            let row = format!("{name} {tolerance}");
+            if !only.is_empty() && only != row {
+                continue;
+            }
+            let off = Options::new(tolerance);
+            let merge = off.clone().with_merge(true);
+            let certify = merge.clone().with_certify(true);
+            let columns = [("off", &off), ("merged", &merge), ("certify", &certify)];
+            let mut times: [Vec<f64>; 3] = Default::default();
+            let mut counts = [0; 3];
+            for _ in 0..env("ROUNDS").parse().unwrap_or(ROUNDS) {
+                for (i, (column, options)) in columns.iter().enumerate() {
+                    if !mode.is_empty() && mode != *column {
+                        continue;
+                    }
+                    let start = Instant::now();
+                    let warp = |p: &Outline| warp_path(p, map.as_ref(), options).map_or(0, |w| w.report.segments_out);
+                    counts[i] = black_box(outlines.iter().map(warp).sum());
+                    times[i].push(start.elapsed().as_nanos() as f64 / n as f64);
+                }
+            }
+            let [a, b, c] = times.map(median);
+            let [ka, kb, kc] = counts.map(|k| k as f64 / n as f64);
+            println!(
+                "{:<16} {ka:>8.4} {kb:>8.4} {kc:>8.4} | {a:>8.0} {b:>8.0} {c:>8.0} {:>7.2} {:>7.2}",
+                row,
+                b / a,
+                c / b
+            );
+        }
+    }
+}

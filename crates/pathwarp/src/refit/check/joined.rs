@@ -1,0 +1,70 @@
+//! The check of a cubic across joints: the error is smooth along each segment, and may have corners at the joints.
+
+use super::probe::probe;
+use crate::refit::candidate::Candidate;
+use crate::refit::curve::{ImageCurve, PartSamples};
+use crate::refit::lanes::{Lane, largest};
+use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
+use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
+use crate::refit::resolution::turns_little;
+use crate::refit::samples::Evenly;
+use kurbo::Point;
+
+/// The distance between the candidate and the image, by the samples of each smooth part and closer ones where it may exceed
+/// `enough` between them. `None` if the foot points do not advance along the cubic or see it turn by more than 60° from one to
+/// the next, so that the samples may have missed something.
+pub(in crate::refit) fn joined(
+    source: &impl ImageCurve,
+    c: &Candidate,
+    feet: &Evenly,
+    parts: &[PartSamples],
+    enough: f64,
+) -> Result<Option<f64>, Point> {
+    let [c1, c2, c3] = c.frame.power(c.a, c.b);
+    let (mut last, mut slope) = (0.0, c.frame.t0);
+    let mut worst = 0.0f64;
+    // Signed distances at the ends of the intervals between samples, and their places on the piece.
+    let (mut errors, mut taus) = ([0.0; 17], [0.0; 17]);
+    for part in parts {
+        (errors[0], taus[0]) = (errors[16], taus[16]);
+        for (batch, t) in part.iter().enumerate() {
+            let tau = t.map(|t| c.tau(t));
+            let p = probe(source, c, feet, &tau, 3)?;
+            worst = worst.max(largest(&p.squares).sqrt());
+            let signed = c.frame.signed_distances(&p.g, c.a, c.b, &p.s, &p.squares);
+            errors[8 * batch + 1..=8 * batch + 8].copy_from_slice(&signed);
+            taus[8 * batch + 1..=8 * batch + 8].copy_from_slice(&tau);
+            for s in p.s {
+                let next = c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
+                if s < last - FOOT_ROUNDING || !turns_little(slope, next) {
+                    return Ok(None);
+                }
+                (last, slope) = (s, next);
+            }
+        }
+        if worst > enough {
+            return Ok(Some(worst));
+        }
+        for i in 0..17 {
+            let (before, after) = (i.max(1) - 1, (i + 1).min(16));
+            let peak = match i {
+                0 => predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR),
+                16 => predicted_end_peak([errors[16], errors[15], errors[14]], PEAK_FACTOR),
+                _ => predicted_peak([errors[before], errors[i], errors[after]], PEAK_FACTOR),
+            };
+            if peak > enough {
+                worst = worst.max(closely(source, c, feet, [taus[before], taus[after]])?);
+            }
+        }
+    }
+    Ok(turns_little(slope, c.frame.t1).then_some(worst))
+}
+
+/// The largest distance between two places, by eight samples and the parabolas through them.
+fn closely(source: &impl ImageCurve, c: &Candidate, feet: &Evenly, [a, b]: [f64; 2]) -> Result<f64, Point> {
+    let tau: Lane = std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 9.0);
+    let errors = probe(source, c, feet, &tau, 3)?.squares.map(f64::sqrt);
+    let top = largest(&errors);
+    let tops = errors.windows(3).filter(|w| w[1] >= PEAK_NEAR * top && w[1] >= w[0] && w[1] >= w[2]);
+    Ok(tops.map(|w| parabola_peak(w[0], w[1], w[2])).fold(top, f64::max))
+}

@@ -1,0 +1,148 @@
+//! Random smooth curves of several segments under random maps: merged paths stay within the tolerance and have no more pieces than
+//! unmerged ones.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "../benches/support/mod.rs"]
+mod support;
+
+use kurbo::{CubicBez, ParamCurve, Point, Vec2};
+use pathwarp::map::{Formula, Map, Real};
+use pathwarp::refit::{Options, warp_path};
+use pathwarp::{Outline, Seg, Subpath};
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+use support::Bicubic;
+
+/// A knot: its place, direction, and the lengths of the handles before and after it.
+type Knot = (Point, f64, [f64; 2]);
+
+fn knot() -> impl Strategy<Value = Knot> {
+    let handle = || prop_oneof![3 => 20.0..200.0f64, 1 => 0.5..20.0f64];
+    ((0.0..1000.0f64, 0.0..1000.0f64), 0.0..TAU, [handle(), handle()]).prop_map(|(p, a, h)| (p.into(), a, h))
+}
+
+/// Smoothly joined cubics between random knots, each cut at random places: curvature jumps at the knots and not at the cuts.
+fn spline() -> impl Strategy<Value = Vec<Seg>> {
+    let cuts = prop::collection::vec(0.02..0.98f64, 0..3);
+    prop::collection::vec((knot(), cuts), 3..8).prop_map(|knots| {
+        let mut out = Vec::new();
+        for w in knots.windows(2) {
+            let ((p, a, h), cuts) = &w[0];
+            let (q, b, k) = &w[1].0;
+            let c = CubicBez::new(*p, *p + Vec2::from_angle(*a) * h[1], *q - Vec2::from_angle(*b) * k[0], *q);
+            cut(c, cuts.clone(), &mut out);
+        }
+        out
+    })
+}
+
+/// Points along a smooth closed curve with random harmonics, joined by Hermite cubics: few nodes would do.
+fn blob() -> impl Strategy<Value = Vec<Seg>> {
+    let harmonics = prop::array::uniform6(-0.25..0.25f64);
+    (harmonics, 50.0..450.0f64, 6usize..40, prop::array::uniform32(0.0..0.8f64)).prop_map(|(h, size, n, jitter)| {
+        let at = |t: f64| {
+            let (mut r, mut d) = (1.0, 0.0);
+            for (k, amplitude) in h.iter().enumerate() {
+                let (f, shift) = ((k + 1) as f64, k as f64);
+                r += amplitude * (f * t + shift).cos() / f;
+                d -= amplitude * (f * t + shift).sin();
+            }
+            let u = Vec2::from_angle(t);
+            (Point::new(500.0, 500.0) + u * (size * r), u * (size * d) + Vec2::new(-u.y, u.x) * (size * r))
+        };
+        let knots: Vec<f64> = (0..=n).map(|i| (i as f64 + jitter[i % 32]) * TAU / n as f64).collect();
+        let hermite = |w: &[f64]| {
+            let ((p, v), (q, u), h) = (at(w[0]), at(w[1]), (w[1] - w[0]) / 3.0);
+            Seg::Cubic(CubicBez::new(p, p + v * h, q - u * h, q))
+        };
+        knots.windows(2).map(hermite).collect()
+    })
+}
+
+/// The parts of a cubic between random parameters; parts share their ends bit by bit.
+fn cut(c: CubicBez, mut at: Vec<f64>, out: &mut Vec<Seg>) {
+    at.sort_by(f64::total_cmp);
+    at.dedup_by(|a, b| *a - *b < 1e-3);
+    at.push(1.0);
+    let (mut t, mut from) = (0.0, c.p0);
+    for next in at {
+        let mut part = c.subsegment(t..next);
+        part.p0 = from;
+        (t, from) = (next, part.p3);
+        out.push(Seg::Cubic(part));
+    }
+}
+
+fn map() -> impl Strategy<Value = Bicubic> {
+    (prop::array::uniform32(-1.0..1.0f64), prop_oneof![Just(0.0), Just(30.0), Just(150.0), Just(500.0)])
+        .prop_map(|(d, size)| Bicubic::moved(|i, j| (size * d[2 * (4 * i + j)], size * d[2 * (4 * i + j) + 1])))
+}
+
+/// Waves in both directions: a map that declares nothing about itself.
+#[derive(Debug, Clone)]
+struct Waves {
+    length: [f64; 2],
+    height: [f64; 2],
+}
+
+impl Formula for Waves {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let wave = |i: usize, t: S| (t * (TAU / self.length[i])).sin() * self.height[i];
+        (x + wave(0, y), y + wave(1, x))
+    }
+}
+
+/// The steepest have a slope of one.
+fn waves() -> impl Strategy<Value = Waves> {
+    (prop::array::uniform2(60.0..1500.0f64), prop::array::uniform2(0.0..0.16f64))
+        .prop_map(|(length, steep)| Waves { length, height: [length[0] * steep[0], length[1] * steep[1]] })
+}
+
+fn holds(segs: Vec<Seg>, map: &dyn Map, tolerance: f64, certify: bool) -> Result<(), TestCaseError> {
+    let path = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs: segs.clone(), closed: false }] };
+    let off = Options::new(tolerance).with_certify(certify);
+    let w = warp_path(&path, map, &off.clone().with_merge(true)).unwrap();
+    let separate = warp_path(&path, map, &off).unwrap();
+    prop_assert!(w.report.segments_out <= separate.report.segments_out);
+    if w.report.over_budget.is_empty() {
+        prop_assert!(w.report.max_error <= tolerance);
+        let out = support::cubics(&w.path);
+        let distance = |samples| support::distance_of_run(&segs, map, &out, samples, 0.9 * tolerance);
+        // Where the image hardly moves, few samples put the nearest point between the wrong neighbours.
+        let mut e = distance(400);
+        if e > tolerance {
+            e = distance(4000);
+        }
+        prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} of {:?}", e / tolerance, w.report);
+    }
+    Ok(())
+}
+
+fn tolerance() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(3.0), Just(1.0), Just(0.1), Just(0.01), Just(0.001)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    #[test]
+    fn merged_splines_under_bicubic_maps(segs in spline(), map in map(), tolerance in tolerance(), certify: bool) {
+        holds(segs, &map, tolerance, certify)?;
+    }
+
+    #[test]
+    fn merged_splines_under_opaque_maps(segs in spline(), map in waves(), tolerance in tolerance()) {
+        holds(segs, &map, tolerance, false)?;
+    }
+
+    #[test]
+    fn merged_blobs_under_bicubic_maps(segs in blob(), map in map(), tolerance in tolerance(), certify: bool) {
+        holds(segs, &map, tolerance, certify)?;
+    }
+
+    #[test]
+    fn merged_blobs_under_opaque_maps(segs in blob(), map in waves(), tolerance in tolerance()) {
+        holds(segs, &map, tolerance, false)?;
+    }
+}
