@@ -94,7 +94,7 @@ pub(super) const HANDLE_FLOOR_STOPPED: f64 = 1e-5;
 /// A handle that differs from Hermite's by the piece's size counts like a residual of this share of the tolerance. Without the
 /// pull, nearly straight pieces leave the handles undetermined; a strong one raises the error. 0.02 and 0.12: within 0.1 % of
 /// pieces.
-/// Test: *figures* (at 0 for merging, and at 1e3).
+/// Test: *figures* (at 1e3; at 0 nothing fails).
 pub(super) const HANDLE_PULL: f64 = 0.05;
 
 /// Relative damping of the normal equations: just enough to keep the two by two system from being singular. 1e-3: +6.5 %
@@ -298,9 +298,9 @@ pub(super) const ZOOM_RISE: f64 = 1.001;
 /// Test: `random::errors_between_the_samples_are_seen` (at 0).
 pub(super) const MAX_ZOOMS: usize = 4;
 
-/// Samples of the thorough check in each direction, so that Newton's method starts close enough. With merging, 8: −40 % work,
-/// +0.05 % pieces; 2000: +212 % work.
-/// Test: *figures* (at 8 and 2000, for merging).
+/// Samples of the thorough check in each direction, so that Newton's method starts close enough. 8: errors between the samples;
+/// 2000: more work.
+/// Tests: `random::errors_between_the_samples_are_seen` (at 8); *figures* (at 2000).
 pub(super) const THOROUGH_SAMPLES: usize = 160;
 
 /// Factor from a checked error to the one reported, up to the tolerance, for errors between samples. It decides no acceptance.
