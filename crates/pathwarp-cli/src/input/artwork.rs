@@ -39,6 +39,8 @@ pub(crate) trait Artwork {
 pub(crate) struct WarpRequest<'a> {
     pub(crate) built: &'a BuiltRecipe,
     pub(crate) options: &'a CommonOptions,
+    /// The artwork's bounding box.
+    pub(crate) bounds: Option<Rect>,
     /// User units.
     pub(crate) tolerance: f64,
     /// `None`: standard output, or the copy that `--into` names.

@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
-use pathwarp::fold::{self, Orientation};
+use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{Class, Map};
 use pathwarp::param::Frame;
@@ -167,8 +167,10 @@ impl GimpArtwork {
             .with_shared(Arc::new(SharedEdges::among(self.outlines.iter())));
         let places =
             if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
+        let segments = self.outlines.iter().map(|o| o.segs().count()).sum();
+        let survey = Survey::new(&built.map, request.bounds, segments);
         let warp = |(&i, outline): (&usize, &Outline)| {
-            (warp_strokes(self.path(i), &places, &built.map, &refit), fold::orientation(outline, false, &built.map))
+            (warp_strokes(self.path(i), &places, &built.map, &refit), survey.orientation(outline, false))
         };
         let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> =
             self.selected.par_iter().zip(&self.outlines).map(warp).collect();

@@ -12,10 +12,9 @@ use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
-use pathwarp::fold::{self, Orientation};
+use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
-use pathwarp::recipe::BuiltRecipe;
 use pathwarp::refit;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::{
@@ -84,13 +83,21 @@ impl SvgArtwork {
     }
 
     /// Every selected shape's orientation under the map.
-    fn orientations(&self, built: &BuiltRecipe, options: &WarpOptions) -> Vec<(&str, Orientation)> {
+    fn orientations(&self, request: &WarpRequest<'_>, options: &WarpOptions) -> Vec<(&str, Orientation)> {
+        let WarpRequest { built, bounds, .. } = request;
+        let copies = &built.placement.copies;
         let shapes: Vec<_> = self.doc.selected(&options.selection).collect();
+        let segments: usize = shapes.iter().map(|s| s.outline.segs().count()).sum();
+        let all_copies = bounds.and_then(|b| match copies.as_slice() {
+            [] => Some(b),
+            places => places.iter().map(|m| m.transform_rect_bbox(b)).reduce(|a, b| a.union(b)),
+        });
+        let survey = Survey::new(&built.map, all_copies, segments * copies.len().max(1));
         // A letter that is placed on its own can fold only in a later step.
         let placed = self.doc.placed(options);
         let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {
             Some(outline) => fold::orientation(outline, s.filled, &built.after),
-            None => fold::orientation(&s.outline.repeated(&built.placement.copies), s.filled, &built.map),
+            None => survey.orientation_of_copies(&s.outline, copies, s.filled),
         };
         let all: Vec<Orientation> = shapes.par_iter().map(|s| *s).zip(&placed).map(orientation).collect();
         shapes.iter().map(|s| s.id.as_str()).zip(all).collect()
@@ -99,14 +106,14 @@ impl SvgArtwork {
     /// The report of every shape, and the fold warnings.
     fn shape_reports(
         &self,
-        built: &BuiltRecipe,
+        request: &WarpRequest<'_>,
         options: &WarpOptions,
         warped: &WarpedDocument,
     ) -> (Vec<ReportedShape>, Vec<String>) {
         // Parts of one text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
-        for (id, o) in self.orientations(built, options) {
+        for (id, o) in self.orientations(request, options) {
             all = all.and(&o);
             let sum = by_id.entry(id).or_default();
             *sum = sum.and(&o);
@@ -189,7 +196,7 @@ impl Artwork for SvgArtwork {
             let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
             warped.svg = origin.embed(&warped.svg)?;
         }
-        let (shapes, folds) = self.shape_reports(built, &options, &warped);
+        let (shapes, folds) = self.shape_reports(request, &options, &warped);
         let mut warnings = warped.warnings;
         warnings.extend(warped.overhang.map(advice::overhang));
         warnings.extend(folds);

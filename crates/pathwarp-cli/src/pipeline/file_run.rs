@@ -49,7 +49,7 @@ impl Batch<'_> {
         let tolerance = options.tolerance_for(bounds);
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
-        let request = WarpRequest { built: &built, options, tolerance, target, embedded_recipe };
+        let request = WarpRequest { built: &built, options, bounds, tolerance, target, embedded_recipe };
         let warped = artwork.warp(&request)?;
 
         let (mut files, mut stdout) = (Vec::new(), None);
