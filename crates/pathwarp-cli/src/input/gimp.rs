@@ -158,6 +158,9 @@ impl WarpedPaths {
     }
 }
 
+/// With fewer segments, starting threads takes longer than the work.
+const WORTH_THREADS: usize = 1000;
+
 impl GimpArtwork {
     fn warp_paths(&self, request: &WarpRequest<'_>) -> Result<WarpedPaths, Failure> {
         let WarpRequest { built, options, .. } = request;
@@ -167,13 +170,16 @@ impl GimpArtwork {
             .with_shared(Arc::new(SharedEdges::among(self.outlines.iter())));
         let places =
             if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
-        let segments = self.outlines.iter().map(|o| o.segs().count()).sum();
+        let segments: usize = self.outlines.iter().map(|o| o.segs().count()).sum();
         let survey = Survey::new(&built.map, request.bounds, segments);
         let warp = |(&i, outline): (&usize, &Outline)| {
             (warp_strokes(self.path(i), &places, &built.map, &refit), survey.orientation(outline, false))
         };
-        let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> =
-            self.selected.par_iter().zip(&self.outlines).map(warp).collect();
+        let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> = if segments < WORTH_THREADS {
+            self.selected.iter().zip(&self.outlines).map(warp).collect()
+        } else {
+            self.selected.par_iter().zip(&self.outlines).map(warp).collect()
+        };
 
         let all = results.iter().fold(Orientation::default(), |a, (_, o)| a.and(o));
         let mut out = WarpedPaths {

@@ -26,6 +26,9 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
+/// With fewer segments, starting threads takes longer than looking for folds.
+const WORTH_THREADS: usize = 5000;
+
 /// An SVG drawing. Its plane is root user space.
 pub(crate) struct SvgArtwork {
     name: String,
@@ -99,7 +102,11 @@ impl SvgArtwork {
             Some(outline) => fold::orientation(outline, s.filled, &built.after),
             None => survey.orientation_of_copies(&s.outline, copies, s.filled),
         };
-        let all: Vec<Orientation> = shapes.par_iter().map(|s| *s).zip(&placed).map(orientation).collect();
+        let all: Vec<Orientation> = if survey.samples() && segments >= WORTH_THREADS {
+            shapes.par_iter().map(|s| *s).zip(&placed).map(orientation).collect()
+        } else {
+            shapes.iter().copied().zip(&placed).map(orientation).collect()
+        };
         shapes.iter().map(|s| s.id.as_str()).zip(all).collect()
     }
 

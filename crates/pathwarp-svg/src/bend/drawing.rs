@@ -88,7 +88,7 @@ fn warp_parts(
     slots: &[PlacedSlot],
 ) -> Vec<Option<Result<WarpedPart, GeometryError>>> {
     /// With fewer segments, starting threads takes longer than the work.
-    const WORTH_IT: usize = 100;
+    const WORTH_IT: usize = 1000;
     let scene = drawing.scene();
     let parts = &scene.parts;
     let pieces = letters::pieces(drawing, options);

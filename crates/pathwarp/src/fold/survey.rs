@@ -48,6 +48,12 @@ impl<'a> Survey<'a> {
         Self { map, creases, knowledge }
     }
 
+    /// Returns `true` if shapes must be sampled: the map is not known to keep its orientation on the whole artwork.
+    #[must_use]
+    pub fn samples(&self) -> bool {
+        matches!(self.knowledge, Knowledge::Nothing)
+    }
+
     /// Returns the orientation of a shape of the artwork. Unless the survey has a proof, the determinant is sampled along `outline`, and
     /// inside it if `filled`; of an affine map no samples are taken.
     ///
