@@ -68,8 +68,11 @@ fn root() -> Command {
         .infer_subcommands(false)
 }
 
+/// Declares a subcommand.
+type Declare = fn(&Registry) -> Command;
+
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, fn(&Registry) -> Command); 14] = [
+const OTHERS: [(&str, Declare); 14] = [
     (run::NAME, |_| run::command()),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),

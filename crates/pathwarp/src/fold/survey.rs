@@ -4,7 +4,7 @@ use super::interior::interior;
 use super::orientation::Orientation;
 use super::sign;
 use crate::map::{Class, Creases, Jet, Map};
-use crate::outline::Outline;
+use crate::outline::{Outline, Seg};
 use kurbo::{Affine, Point, Rect};
 
 /// Intervals per segment.
@@ -64,7 +64,8 @@ impl<'a> Survey<'a> {
         match self.knowledge {
             Knowledge::Affine => Orientation::default(),
             Knowledge::Sign(sign) => {
-                Orientation::uniform(sign, outline.segs().count() * (PER_SEGMENT + 1), outline.segs().next().map(|s| s.start()))
+                let samples = outline.segs().count() * (PER_SEGMENT + 1);
+                Orientation::uniform(sign, samples, outline.segs().next().map(Seg::start))
             }
             Knowledge::Nothing => self.sampled(outline, filled),
         }

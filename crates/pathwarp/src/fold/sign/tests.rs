@@ -85,12 +85,7 @@ fn to_unit() -> Affine {
 
 fn tilt(random: &mut Random, strength: f64) -> Homography {
     let corner = |x, y| Point::new(x, y);
-    let from = [
-        corner(BOX.x0, BOX.y0),
-        corner(BOX.x1, BOX.y0),
-        corner(BOX.x1, BOX.y1),
-        corner(BOX.x0, BOX.y1),
-    ];
+    let from = [corner(BOX.x0, BOX.y0), corner(BOX.x1, BOX.y0), corner(BOX.x1, BOX.y1), corner(BOX.x0, BOX.y1)];
     let moved = from.map(|p| p + random.shift(strength * 40.0));
     Homography::from_points(from, moved).unwrap_or(Homography::from(Affine::IDENTITY))
 }
@@ -114,11 +109,7 @@ fn quotients() {
     check("quotient", |r, s| {
         let mut plane = |of: [f64; 3]| {
             let mut own = |k: f64| s * k * r.next();
-            Plane::new(vec![
-                vec![of[0], of[1], own(60.0)],
-                vec![of[2], own(60.0)],
-                vec![own(60.0)],
-            ])
+            Plane::new(vec![vec![of[0], of[1], own(60.0)], vec![of[2], own(60.0)], vec![own(60.0)]])
         };
         let (x, y) = (plane([0.0, 120.0, 0.0]), plane([0.0, 0.0, 60.0]));
         let w = plane([1.0, 0.0, 0.0]).scaled(0.02).plus(0.98, &Plane::linear([1.0, 0.0, 0.0]));
