@@ -1,6 +1,6 @@
 //! GIMP paths as artwork: warped, and written in a format that GIMP reads.
 
-use super::artwork::{Artwork, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::folds::{self, Fold};
 use super::gimp_file::GimpFile;
 use super::gimp_format::{GimpFormat, format};
@@ -104,7 +104,7 @@ impl Artwork for GimpArtwork {
         self.outlines.iter().filter_map(Outline::bounding_box).reduce(|a, b| a.union(b))
     }
 
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, _on_baseline: bool) -> Result<Frame, Failure> {
+    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, _baseline: Baseline) -> Result<Frame, Failure> {
         let [width, height] = self.file.canvas();
         let canvas = Rect::new(0.0, 0.0, width, height);
         match choice {

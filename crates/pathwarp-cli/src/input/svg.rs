@@ -1,6 +1,6 @@
 //! SVG drawings as artwork.
 
-use super::artwork::{Artwork, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::folds::{self, Fold};
 use super::gimp_format::is_named_point_list_or_xcf;
 use super::picture::is_named_picture;
@@ -174,19 +174,27 @@ impl Artwork for SvgArtwork {
         self.doc.artwork_box(&self.selection)
     }
 
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, on_baseline: bool) -> Result<Frame, Failure> {
-        let lettering = self.doc.lettering(&self.selection);
+    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure> {
         let artwork = || Frame::new(bounds.unwrap_or_else(|| self.doc.view_box()));
-        let frame = match choice {
-            FrameChoice::Default if on_baseline && lettering.is_all() && lettering.is_level() => {
-                lettering.frame(LetteringFrame::BaselineAscent).unwrap_or_else(|_| artwork())
-            }
-            FrameChoice::Default | FrameChoice::Artwork => artwork(),
-            FrameChoice::ViewBox => Frame::new(self.doc.view_box()),
-            FrameChoice::Rect(r) => Frame::new(r),
-            FrameChoice::Lettering(kind) => {
+        let plain = match choice {
+            FrameChoice::Default | FrameChoice::Artwork => Some(artwork()),
+            FrameChoice::ViewBox => Some(Frame::new(self.doc.view_box())),
+            FrameChoice::Rect(r) => Some(Frame::new(r)),
+            FrameChoice::Lettering(_) => None,
+        };
+        // Finding the lettering takes longer than reading the drawing.
+        let lettering = match (&plain, baseline) {
+            (Some(frame), Baseline::None) => return Ok(frame.clone()),
+            _ => self.doc.lettering(&self.selection),
+        };
+        let frame = match (choice, plain) {
+            (FrameChoice::Lettering(kind), _) => {
                 lettering.frame(kind).map_err(|e| Error::input(&self.name, advice::lettering_frame(&e)))?
             }
+            (FrameChoice::Default, _) if baseline == Baseline::Open && lettering.is_all() && lettering.is_level() => {
+                lettering.frame(LetteringFrame::BaselineAscent).unwrap_or_else(|_| artwork())
+            }
+            (_, plain) => plain.unwrap_or_else(artwork),
         };
         Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
     }

@@ -38,7 +38,7 @@ pub(crate) fn bend(
     out: &mut WarpedDocument,
 ) -> Result<BentDrawing, Error> {
     let scene = drawing.scene();
-    let selected = selected_parts(drawing, options);
+    let selected = bent_parts(drawing, options);
     let slots = slots::place(drawing, map, &selected, &options.selection);
     let results = warp_parts(drawing, map, options, &selected, &slots);
     let mut outcomes = Vec::with_capacity(scene.parts.len());
@@ -147,7 +147,7 @@ fn warn(
 }
 
 /// Determines the parts to warp. Clip paths and masks follow the elements that refer to them.
-fn selected_parts(drawing: &Drawing, options: &WarpOptions) -> Vec<bool> {
+pub(crate) fn bent_parts(drawing: &Drawing, options: &WarpOptions) -> Vec<bool> {
     let scene = drawing.scene();
     let mut selected = drawing.selected_parts(&options.selection);
     let all = options.selection.is_everything();
