@@ -106,7 +106,7 @@ fn warp_parts(
     if identity || segments() < WORTH_IT {
         (0..parts.len()).map(warp).collect()
     } else {
-        map_parallel(parts.len(), warp)
+        map_parallel(parts.len(), |i| warp(i).map(|warped| warped.map(WarpedPart::with_data)))
     }
 }
 

@@ -12,9 +12,23 @@ pub(crate) const MOST_DECIMALS: u8 = 14;
 /// Appends `v` rounded to `decimals`, without trailing zeros and never as `-0`.
 pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
     let mut digits = Digits::new();
-    match digits.write(v, usize::from(decimals.min(MOST_DECIMALS))) {
+    let decimals = usize::from(decimals.min(MOST_DECIMALS));
+    match digits.write(v, decimals).and_then(|text| std::str::from_utf8(text).ok()) {
         Some(text) => out.push_str(text),
-        None => push_trimmed(out, v, usize::from(decimals.min(MOST_DECIMALS))),
+        None => push_trimmed(out, v, decimals),
+    }
+}
+
+/// Does the same for a text that is checked as a whole.
+fn push_bytes(out: &mut Vec<u8>, v: f64, decimals: u8) {
+    let decimals = usize::from(decimals.min(MOST_DECIMALS));
+    match Digits::new().write(v, decimals) {
+        Some(text) => out.extend_from_slice(text),
+        None => {
+            let mut text = String::new();
+            push_trimmed(&mut text, v, decimals);
+            out.extend_from_slice(text.as_bytes());
+        }
     }
 }
 
@@ -28,7 +42,7 @@ impl Digits {
 
     /// Writes `v` rounded to `decimals`. `None` if it does not fit an integer that is exact in f64; integers are much faster to
     /// write than decimals.
-    fn write(&mut self, v: f64, decimals: usize) -> Option<&str> {
+    fn write(&mut self, v: f64, decimals: usize) -> Option<&[u8]> {
         const WHOLE: f64 = 9e15;
         let scaled = (v * POWERS[decimals]).abs();
         if scaled.is_nan() || scaled >= WHOLE - 1.0 {
@@ -38,7 +52,7 @@ impl Digits {
         let whole = scaled as u64;
         let n = whole + u64::from(scaled - whole as f64 >= 0.5);
         if n == 0 {
-            return Some("0");
+            return Some(b"0");
         }
         let unit = UNITS[decimals];
         let (mut before, mut after) = (n / unit, n % unit);
@@ -79,7 +93,7 @@ impl Digits {
             at -= 1;
             self.0[at] = b'-';
         }
-        std::str::from_utf8(&self.0[at..]).ok()
+        Some(&self.0[at..])
     }
 
     /// Writes the two digits of a number below 100.
@@ -157,55 +171,56 @@ pub(crate) fn matrix(m: Affine) -> String {
 
 /// Formats a path as a `d` attribute with absolute commands.
 pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
-    let mut out = String::with_capacity(path.elements().len() * 24);
-    let point = |out: &mut String, p: Point| {
-        push(out, p.x, decimals);
-        out.push(',');
-        push(out, p.y, decimals);
+    let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * 48);
+    let point = |out: &mut Vec<u8>, p: Point| {
+        push_bytes(out, p.x, decimals);
+        out.push(b',');
+        push_bytes(out, p.y, decimals);
     };
     let mut at = Point::ORIGIN;
     // Write a cubic as a quadratic if the two differ by less than the rounding.
     let near = 0.1 * 0.1_f64.powi(i32::from(decimals));
     for el in path.elements() {
         if !out.is_empty() {
-            out.push(' ');
+            out.push(b' ');
         }
         match *el {
             PathEl::MoveTo(p) => {
-                out.push('M');
+                out.push(b'M');
                 point(&mut out, p);
             }
             PathEl::LineTo(p) => {
-                out.push('L');
+                out.push(b'L');
                 point(&mut out, p);
             }
             PathEl::QuadTo(a, p) => {
-                out.push('Q');
+                out.push(b'Q');
                 point(&mut out, a);
-                out.push(' ');
+                out.push(b' ');
                 point(&mut out, p);
             }
             PathEl::CurveTo(a, b, p) if quadratic(at, a, b, p).is_some_and(|q| q.1 < near) => {
                 if let Some((q, _)) = quadratic(at, a, b, p) {
-                    out.push('Q');
+                    out.push(b'Q');
                     point(&mut out, q);
-                    out.push(' ');
+                    out.push(b' ');
                     point(&mut out, p);
                 }
             }
             PathEl::CurveTo(a, b, p) => {
-                out.push('C');
+                out.push(b'C');
                 point(&mut out, a);
-                out.push(' ');
+                out.push(b' ');
                 point(&mut out, b);
-                out.push(' ');
+                out.push(b' ');
                 point(&mut out, p);
             }
-            PathEl::ClosePath => out.push('Z'),
+            PathEl::ClosePath => out.push(b'Z'),
         }
         at = el.end_point().unwrap_or(at);
     }
-    out
+    // ASCII only, so this cannot fail.
+    String::from_utf8(out).unwrap_or_default()
 }
 
 /// Appends `v` in the shortest form that reads back unchanged; as an f32 if `v` is one.
