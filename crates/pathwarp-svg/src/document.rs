@@ -199,7 +199,7 @@ fn warp(drawing: &Drawing, map: &dyn Map, options: &WarpOptions) -> Result<Warpe
     let mut options = options.clone();
     if options.refit.merge && !is_identity(map, &options) {
         let bent = drawing.shapes().iter().zip(bent_parts(drawing, &options)).filter(|(_, bent)| *bent);
-        let shared = refit::SharedEdges::among(bent.map(|(s, _)| &s.outline));
+        let shared = refit::SharedEdges::among(bent.map(|(s, _)| &*s.outline));
         options.refit.shared = Arc::new(shared);
     }
     let mut out = WarpedDocument::default();

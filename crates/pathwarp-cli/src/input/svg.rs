@@ -200,7 +200,7 @@ impl Artwork for SvgArtwork {
     }
 
     fn outlines(&self) -> Vec<&Outline> {
-        self.doc.selected(&self.selection).map(|s| &s.outline).collect()
+        self.doc.selected(&self.selection).map(|s| &*s.outline).collect()
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {

@@ -99,6 +99,11 @@ impl Drawing {
 
     /// The shapes, one for each part of the scene.
     pub(crate) fn shapes(&self) -> &[Shape] {
+        if let Some(shapes) = self.shapes.get() {
+            return shapes;
+        }
+        // Not inside of `get_or_init`: while a thread of a pool waits for others, it may run a task that needs the shapes, too.
+        shape::read_outlines(self.scene(), &self.source);
         self.shapes.get_or_init(|| shape::shapes(self.scene(), &self.source))
     }
 

@@ -79,8 +79,8 @@ impl Part {
     }
 
     /// Outline in root user space.
-    pub(crate) fn outline(&self) -> Outline {
-        self.local.transformed(self.frame)
+    pub(crate) fn outline(&self) -> Arc<Outline> {
+        if self.frame == Affine::IDENTITY { self.local.0.clone() } else { Arc::new(self.local.transformed(self.frame)) }
     }
 
     /// The element that the part belongs to.
@@ -97,11 +97,11 @@ pub(crate) struct Tiles {
 }
 
 /// An outline computed on first use. Shapes that are read and written unchanged never need theirs.
-pub(crate) struct LazyOutline(LazyLock<Outline, Box<dyn FnOnce() -> Outline + Send>>);
+pub(crate) struct LazyOutline(LazyLock<Arc<Outline>, Box<dyn FnOnce() -> Arc<Outline> + Send>>);
 
 impl LazyOutline {
     pub(crate) fn new(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
-        Self(LazyLock::new(Box::new(f)))
+        Self(LazyLock::new(Box::new(|| Arc::new(f()))))
     }
 }
 
