@@ -40,16 +40,16 @@ fn stained_glass_has_no_gaps() {
         o.flat_map(edges).for_each(|e| *seen.entry(e).or_default() += 1);
         seen.values().filter(|n| **n == 2).count()
     };
-    let shared_before = count(&mut doc.shapes().iter().map(|s| &s.outline));
+    let shared_before = count(&mut doc.shapes().iter().map(|s| &*s.outline));
     assert!(shared_before > 20, "the sample has shared edges: {shared_before}");
-    let shared = refit::SharedEdges::among(doc.shapes().iter().map(|s| &s.outline));
+    let shared = refit::SharedEdges::among(doc.shapes().iter().map(|s| &*s.outline));
     assert_ne!(shared, refit::SharedEdges::default());
     for merge in [false, true] {
         let options = refit::Options::new(1e-3).with_merge(merge);
         let warped = doc.warp(&map, &WarpOptions::new(options)).unwrap();
         let after = Document::read(warped.svg.as_bytes(), "out", &ReadOptions::default()).unwrap();
         // Every shared source edge gives one or more pieces, each found on both sides.
-        let shared_after = count(&mut after.shapes().iter().map(|s| &s.outline));
+        let shared_after = count(&mut after.shapes().iter().map(|s| &*s.outline));
         assert!(shared_after >= shared_before, "merge {merge}: {shared_before} before, {shared_after} after");
     }
 }

@@ -1,6 +1,6 @@
 //! The public face of a drawing.
 
-use crate::bend::drawing::{bend, is_identity};
+use crate::bend::drawing::{bend, bent_parts, is_identity};
 use crate::bend::letters::placed_outlines;
 use crate::bend::options::{PageFit, Structure, WarpOptions};
 use crate::bend::outcome::WarpedDocument;
@@ -198,7 +198,8 @@ impl Document {
 fn warp(drawing: &Drawing, map: &dyn Map, options: &WarpOptions) -> Result<WarpedDocument, Error> {
     let mut options = options.clone();
     if options.refit.merge && !is_identity(map, &options) {
-        let shared = refit::SharedEdges::among(drawing.shapes().iter().map(|s| &s.outline));
+        let bent = drawing.shapes().iter().zip(bent_parts(drawing, &options)).filter(|(_, bent)| *bent);
+        let shared = refit::SharedEdges::among(bent.map(|(s, _)| &*s.outline));
         options.refit.shared = Arc::new(shared);
     }
     let mut out = WarpedDocument::default();

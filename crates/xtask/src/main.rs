@@ -9,13 +9,15 @@ mod outputs;
 mod parallel;
 mod refit_report;
 mod shell;
+mod speed;
 
 use chore::Chore;
 use clap::Command;
 use std::process::ExitCode;
 
 /// Every chore, declared with its options in a separate file.
-const CHORES: [Chore; 5] = [new_deformation::CHORE, corpus::CHORE, refit_report::CHORE, outputs::CHORE, docs::CHORE];
+const CHORES: [Chore; 6] =
+    [new_deformation::CHORE, corpus::CHORE, refit_report::CHORE, outputs::CHORE, speed::CHORE, docs::CHORE];
 
 fn main() -> ExitCode {
     let matches = Command::new("cargo xtask")

@@ -41,31 +41,53 @@ Exit codes: 0 success; 1 done, but something was left unchanged or missed the to
 
 /// The whole command line.
 pub(crate) fn build(registry: &Registry) -> Command {
-    let mut c = Command::new("pathwarp")
+    let deformations = registry.entries().iter().map(|e| deformation::command(e.info()));
+    root().subcommands(deformations).subcommands(OTHERS.iter().map(|(_, command)| command(registry)))
+}
+
+/// The command line with no other subcommand than the one that `word` names: declaring them all takes longer than warping a
+/// small drawing.
+fn build_for(registry: &Registry, word: Option<&OsString>) -> Command {
+    let word = word.and_then(|w| w.to_str()).unwrap_or_default();
+    if let Some(entry) = registry.get(word) {
+        return root().subcommand(deformation::command(entry.info()));
+    }
+    match OTHERS.iter().find(|(name, _)| *name == word) {
+        Some((_, command)) => root().subcommand(command(registry)),
+        None => build(registry),
+    }
+}
+
+fn root() -> Command {
+    Command::new("pathwarp")
         .version(env!("CARGO_PKG_VERSION"))
         .about(ABOUT)
         .after_help(AFTER)
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .infer_subcommands(false);
-    for e in registry.entries() {
-        c = c.subcommand(deformation::command(e.info()));
-    }
-    c.subcommand(run::command())
-        .subcommand(list::command())
-        .subcommand(map::command(registry))
-        .subcommand(unwarp::command())
-        .subcommand(schema::command())
-        .subcommand(text::command())
-        .subcommand(paths::command())
-        .subcommand(convert::command())
-        .subcommand(render::command())
-        .subcommand(gallery::command(registry))
-        .subcommand(compare::command())
-        .subcommand(install::command())
-        .subcommand(completions::command())
-        .subcommand(man::command())
+        .infer_subcommands(false)
 }
+
+/// Declares a subcommand.
+type Declare = fn(&Registry) -> Command;
+
+/// The subcommands that are not deformations, in the order of the help.
+const OTHERS: [(&str, Declare); 14] = [
+    (run::NAME, |_| run::command()),
+    (list::NAME, |_| list::command()),
+    (map::NAME, map::command),
+    (unwarp::NAME, |_| unwarp::command()),
+    (schema::NAME, |_| schema::command()),
+    (text::NAME, |_| text::command()),
+    (paths::NAME, |_| paths::command()),
+    (convert::NAME, |_| convert::command()),
+    (render::NAME, |_| render::command()),
+    (gallery::NAME, gallery::command),
+    (compare::NAME, |_| compare::command()),
+    (install::NAME, |_| install::command()),
+    (completions::NAME, |_| completions::command()),
+    (man::NAME, |_| man::command()),
+];
 
 /// Runs the subcommand that `args` names; the first of them is the program's name.
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
@@ -73,7 +95,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
-    let matches = build(registry).try_get_matches_from(first)?;
+    let matches = build_for(registry, first.get(1)).try_get_matches_from(first)?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };

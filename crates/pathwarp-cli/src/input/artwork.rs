@@ -24,9 +24,8 @@ pub(crate) trait Artwork {
     /// The bounding box of the artwork; `None` if there is none.
     fn bounding_box(&self) -> Option<Rect>;
 
-    /// The frame for building the first step. `bounds` is the artwork's bounding box; `on_baseline` says that the step has a
-    /// baseline and leaves it at its default.
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, on_baseline: bool) -> Result<Frame, Failure>;
+    /// The frame for building the first step. `bounds` is the artwork's bounding box.
+    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure>;
 
     /// The outlines of the artwork.
     fn outlines(&self) -> Vec<&Outline>;
@@ -35,10 +34,23 @@ pub(crate) trait Artwork {
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure>;
 }
 
+/// The baseline of a recipe's first step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Baseline {
+    /// The deformation has none; it has no use for lettering.
+    None,
+    /// The recipe gives it.
+    Given,
+    /// The recipe leaves it at its default, which follows the lettering.
+    Open,
+}
+
 /// A warp of one input.
 pub(crate) struct WarpRequest<'a> {
     pub(crate) built: &'a BuiltRecipe,
     pub(crate) options: &'a CommonOptions,
+    /// The artwork's bounding box.
+    pub(crate) bounds: Option<Rect>,
     /// User units.
     pub(crate) tolerance: f64,
     /// `None`: standard output, or the copy that `--into` names.

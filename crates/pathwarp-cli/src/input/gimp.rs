@@ -1,6 +1,6 @@
 //! GIMP paths as artwork: warped, and written in a format that GIMP reads.
 
-use super::artwork::{Artwork, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::folds::{self, Fold};
 use super::gimp_file::GimpFile;
 use super::gimp_format::{GimpFormat, format};
@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
-use pathwarp::fold::{self, Orientation};
+use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{Class, Map};
 use pathwarp::param::Frame;
@@ -104,7 +104,7 @@ impl Artwork for GimpArtwork {
         self.outlines.iter().filter_map(Outline::bounding_box).reduce(|a, b| a.union(b))
     }
 
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, _on_baseline: bool) -> Result<Frame, Failure> {
+    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, _baseline: Baseline) -> Result<Frame, Failure> {
         let [width, height] = self.file.canvas();
         let canvas = Rect::new(0.0, 0.0, width, height);
         match choice {
@@ -158,6 +158,9 @@ impl WarpedPaths {
     }
 }
 
+/// With fewer segments, starting threads takes longer than the work.
+const WORTH_THREADS: usize = 1000;
+
 impl GimpArtwork {
     fn warp_paths(&self, request: &WarpRequest<'_>) -> Result<WarpedPaths, Failure> {
         let WarpRequest { built, options, .. } = request;
@@ -167,11 +170,16 @@ impl GimpArtwork {
             .with_shared(Arc::new(SharedEdges::among(self.outlines.iter())));
         let places =
             if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
+        let segments: usize = self.outlines.iter().map(|o| o.segs().count()).sum();
+        let survey = Survey::new(&built.map, request.bounds, segments);
         let warp = |(&i, outline): (&usize, &Outline)| {
-            (warp_strokes(self.path(i), &places, &built.map, &refit), fold::orientation(outline, false, &built.map))
+            (warp_strokes(self.path(i), &places, &built.map, &refit), survey.orientation(outline, false))
         };
-        let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> =
-            self.selected.par_iter().zip(&self.outlines).map(warp).collect();
+        let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> = if segments < WORTH_THREADS {
+            self.selected.iter().zip(&self.outlines).map(warp).collect()
+        } else {
+            self.selected.par_iter().zip(&self.outlines).map(warp).collect()
+        };
 
         let all = results.iter().fold(Orientation::default(), |a, (_, o)| a.and(o));
         let mut out = WarpedPaths {

@@ -15,7 +15,7 @@ mod reference_name;
 mod surface;
 mod svg;
 
-pub(crate) use artwork::{WarpRequest, WarpedResult};
+pub(crate) use artwork::{Baseline, WarpRequest, WarpedResult};
 pub(crate) use data_file::read_data_file;
 pub(crate) use gimp_file::GimpFile;
 pub(crate) use gimp_format::{file_name, svg_name};

@@ -1,6 +1,6 @@
 //! Photographs (PNG, JPEG) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
-use super::artwork::{Artwork, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::read::display;
 use super::reference_name::no_document;
 use crate::bitmap::{ROUNDING, inverse};
@@ -69,7 +69,7 @@ impl Artwork for PictureArtwork {
         Some(self.area())
     }
 
-    fn frame(&self, choice: FrameChoice, _bounds: Option<Rect>, _on_baseline: bool) -> Result<Frame, Failure> {
+    fn frame(&self, choice: FrameChoice, _bounds: Option<Rect>, _baseline: Baseline) -> Result<Frame, Failure> {
         match choice {
             FrameChoice::Default | FrameChoice::Artwork | FrameChoice::ViewBox => Ok(Frame::new(self.area())),
             FrameChoice::Rect(r) => Ok(Frame::new(r)),

@@ -1,6 +1,6 @@
 //! SVG drawings as artwork.
 
-use super::artwork::{Artwork, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::folds::{self, Fold};
 use super::gimp_format::is_named_point_list_or_xcf;
 use super::picture::is_named_picture;
@@ -12,10 +12,9 @@ use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
-use pathwarp::fold::{self, Orientation};
+use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
-use pathwarp::recipe::BuiltRecipe;
 use pathwarp::refit;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::{
@@ -26,6 +25,9 @@ use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
+
+/// With fewer segments, starting threads takes longer than looking for folds.
+const WORTH_THREADS: usize = 5000;
 
 /// An SVG drawing. Its plane is root user space.
 pub(crate) struct SvgArtwork {
@@ -84,29 +86,41 @@ impl SvgArtwork {
     }
 
     /// Every selected shape's orientation under the map.
-    fn orientations(&self, built: &BuiltRecipe, options: &WarpOptions) -> Vec<(&str, Orientation)> {
+    fn orientations(&self, request: &WarpRequest<'_>, options: &WarpOptions) -> Vec<(&str, Orientation)> {
+        let WarpRequest { built, bounds, .. } = request;
+        let copies = &built.placement.copies;
         let shapes: Vec<_> = self.doc.selected(&options.selection).collect();
+        let segments: usize = shapes.iter().map(|s| s.outline.segs().count()).sum();
+        let all_copies = bounds.and_then(|b| match copies.as_slice() {
+            [] => Some(b),
+            places => places.iter().map(|m| m.transform_rect_bbox(b)).reduce(|a, b| a.union(b)),
+        });
+        let survey = Survey::new(&built.map, all_copies, segments * copies.len().max(1));
         // A letter that is placed on its own can fold only in a later step.
         let placed = self.doc.placed(options);
         let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {
             Some(outline) => fold::orientation(outline, s.filled, &built.after),
-            None => fold::orientation(&s.outline.repeated(&built.placement.copies), s.filled, &built.map),
+            None => survey.orientation_of_copies(&s.outline, copies, s.filled),
         };
-        let all: Vec<Orientation> = shapes.par_iter().map(|s| *s).zip(&placed).map(orientation).collect();
+        let all: Vec<Orientation> = if survey.samples() && segments >= WORTH_THREADS {
+            shapes.par_iter().map(|s| *s).zip(&placed).map(orientation).collect()
+        } else {
+            shapes.iter().copied().zip(&placed).map(orientation).collect()
+        };
         shapes.iter().map(|s| s.id.as_str()).zip(all).collect()
     }
 
     /// The report of every shape, and the fold warnings.
     fn shape_reports(
         &self,
-        built: &BuiltRecipe,
+        request: &WarpRequest<'_>,
         options: &WarpOptions,
         warped: &WarpedDocument,
     ) -> (Vec<ReportedShape>, Vec<String>) {
         // Parts of one text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
-        for (id, o) in self.orientations(built, options) {
+        for (id, o) in self.orientations(request, options) {
             all = all.and(&o);
             let sum = by_id.entry(id).or_default();
             *sum = sum.and(&o);
@@ -160,25 +174,33 @@ impl Artwork for SvgArtwork {
         self.doc.artwork_box(&self.selection)
     }
 
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, on_baseline: bool) -> Result<Frame, Failure> {
-        let lettering = self.doc.lettering(&self.selection);
+    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure> {
         let artwork = || Frame::new(bounds.unwrap_or_else(|| self.doc.view_box()));
-        let frame = match choice {
-            FrameChoice::Default if on_baseline && lettering.is_all() && lettering.is_level() => {
-                lettering.frame(LetteringFrame::BaselineAscent).unwrap_or_else(|_| artwork())
-            }
-            FrameChoice::Default | FrameChoice::Artwork => artwork(),
-            FrameChoice::ViewBox => Frame::new(self.doc.view_box()),
-            FrameChoice::Rect(r) => Frame::new(r),
-            FrameChoice::Lettering(kind) => {
+        let plain = match choice {
+            FrameChoice::Default | FrameChoice::Artwork => Some(artwork()),
+            FrameChoice::ViewBox => Some(Frame::new(self.doc.view_box())),
+            FrameChoice::Rect(r) => Some(Frame::new(r)),
+            FrameChoice::Lettering(_) => None,
+        };
+        // Finding the lettering takes longer than reading the drawing.
+        let lettering = match (&plain, baseline) {
+            (Some(frame), Baseline::None) => return Ok(frame.clone()),
+            _ => self.doc.lettering(&self.selection),
+        };
+        let frame = match (choice, plain) {
+            (FrameChoice::Lettering(kind), _) => {
                 lettering.frame(kind).map_err(|e| Error::input(&self.name, advice::lettering_frame(&e)))?
             }
+            (FrameChoice::Default, _) if baseline == Baseline::Open && lettering.is_all() && lettering.is_level() => {
+                lettering.frame(LetteringFrame::BaselineAscent).unwrap_or_else(|_| artwork())
+            }
+            (_, plain) => plain.unwrap_or_else(artwork),
         };
         Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
     }
 
     fn outlines(&self) -> Vec<&Outline> {
-        self.doc.selected(&self.selection).map(|s| &s.outline).collect()
+        self.doc.selected(&self.selection).map(|s| &*s.outline).collect()
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
@@ -189,7 +211,7 @@ impl Artwork for SvgArtwork {
             let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
             warped.svg = origin.embed(&warped.svg)?;
         }
-        let (shapes, folds) = self.shape_reports(built, &options, &warped);
+        let (shapes, folds) = self.shape_reports(request, &options, &warped);
         let mut warnings = warped.warnings;
         warnings.extend(warped.overhang.map(advice::overhang));
         warnings.extend(folds);

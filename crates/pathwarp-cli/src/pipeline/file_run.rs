@@ -2,7 +2,7 @@
 
 use crate::advice::Flags;
 use crate::failure::Failure;
-use crate::input::{Input, WarpRequest, WarpedResult};
+use crate::input::{Baseline, Input, WarpRequest, WarpedResult};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::report::FileReport;
@@ -42,14 +42,14 @@ impl Batch<'_> {
         artwork.remove_guides(guides);
 
         let bounds = artwork.bounding_box();
-        let frame = artwork.frame(options.frame, bounds, leaves_baseline_open(registry, &recipe))?;
+        let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
         let baseline = frame.baseline;
         let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
 
         let tolerance = options.tolerance_for(bounds);
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
-        let request = WarpRequest { built: &built, options, tolerance, target, embedded_recipe };
+        let request = WarpRequest { built: &built, options, bounds, tolerance, target, embedded_recipe };
         let warped = artwork.warp(&request)?;
 
         let (mut files, mut stdout) = (Vec::new(), None);
@@ -102,9 +102,12 @@ impl Batch<'_> {
     }
 }
 
-/// Returns `true` if a recipe's first step has a baseline and leaves it at its default.
-fn leaves_baseline_open(registry: &Registry, recipe: &Recipe) -> bool {
-    let Some(step) = recipe.steps.first() else { return false };
-    let baseline = registry.get(&step.deformation).and_then(|e| e.info().baseline);
-    baseline.is_some_and(|param| step.args.get(param).is_empty())
+/// The baseline of a recipe's first step.
+fn first_baseline(registry: &Registry, recipe: &Recipe) -> Baseline {
+    let Some(step) = recipe.steps.first() else { return Baseline::None };
+    match registry.get(&step.deformation).and_then(|e| e.info().baseline) {
+        None => Baseline::None,
+        Some(param) if step.args.get(param).is_empty() => Baseline::Open,
+        Some(_) => Baseline::Given,
+    }
 }

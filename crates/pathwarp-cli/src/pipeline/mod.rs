@@ -61,22 +61,24 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given) -> Result
     Ok(status)
 }
 
-/// Runs every input, in parallel; the results are in order.
+/// Runs every input, in parallel; the results are in order. A single input starts threads only when it has work for them.
 fn run_files(batch: &Batch<'_>, inputs: &[PathBuf], targets: &[Option<PathBuf>]) -> Result<Vec<FileRun>, Failure> {
     let CommonOptions { jobs, quiet, .. } = batch.options;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs.unwrap_or(0))
-        .build()
-        .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
     let bar = progress::bar(inputs.len(), *quiet);
-    let runs = pool.install(|| {
-        let run = |(input, target): (&PathBuf, &Option<PathBuf>)| {
-            let run = batch.run(input, target.as_deref());
-            bar.inc(1);
-            run.map_err(|f| f.about(&display(input)))
-        };
-        inputs.par_iter().zip(targets).map(run).collect()
-    });
+    let run = |(input, target): (&PathBuf, &Option<PathBuf>)| {
+        let run = batch.run(input, target.as_deref());
+        bar.inc(1);
+        run.map_err(|f| f.about(&display(input)))
+    };
+    let runs = if inputs.len() == 1 && jobs.is_none() {
+        inputs.iter().zip(targets).map(run).collect()
+    } else {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(jobs.unwrap_or(0))
+            .build()
+            .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
+        pool.install(|| inputs.par_iter().zip(targets).map(run).collect())
+    };
     bar.finish_and_clear();
     runs
 }

@@ -11,6 +11,7 @@ use super::task::{PartContext, PartTask};
 use crate::scene::affine::is_invertible;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{Bitmap, Part, PartRole};
+use crate::source::parallel::map_parallel;
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{Class, Map};
 use pathwarp::{Error, GeometryError};
@@ -38,7 +39,7 @@ pub(crate) fn bend(
     out: &mut WarpedDocument,
 ) -> Result<BentDrawing, Error> {
     let scene = drawing.scene();
-    let selected = selected_parts(drawing, options);
+    let selected = bent_parts(drawing, options);
     let slots = slots::place(drawing, map, &selected, &options.selection);
     let results = warp_parts(drawing, map, options, &selected, &slots);
     let mut outcomes = Vec::with_capacity(scene.parts.len());
@@ -88,9 +89,9 @@ fn warp_parts(
     slots: &[PlacedSlot],
 ) -> Vec<Option<Result<WarpedPart, GeometryError>>> {
     /// With fewer segments, starting threads takes longer than the work.
-    const WORTH_IT: usize = 100;
+    const WORTH_IT: usize = 1000;
     let scene = drawing.scene();
-    let parts = &scene.parts;
+    let (parts, shapes) = (&scene.parts, drawing.shapes());
     let pieces = letters::pieces(drawing, options);
     let gradients = if options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
     let context = PartContext { map, options, to_px: scene.to_px, gradients };
@@ -99,26 +100,15 @@ fn warp_parts(
         let p = &parts[i];
         let write = written(scene, slots, p.slot, p.frame);
         (selected[i] && !identity && is_invertible(p.frame) && is_invertible(write))
-            .then(|| part::warp(&PartTask::new(p, write, &context, &pieces[i])))
+            .then(|| part::warp(&PartTask::new(p, shapes[i].outline.clone(), write, &context, &pieces[i])))
     };
     let segments =
         || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * options.copies.len().max(1) };
     if identity || segments() < WORTH_IT {
         (0..parts.len()).map(warp).collect()
     } else {
-        map_parallel(parts.len(), warp)
+        map_parallel(parts.len(), |i| warp(i).map(|warped| warped.map(WarpedPart::with_data)))
     }
-}
-
-#[cfg(feature = "parallel")]
-fn map_parallel<T: Send>(n: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    use rayon::prelude::*;
-    (0..n).into_par_iter().map(f).collect()
-}
-
-#[cfg(not(feature = "parallel"))]
-fn map_parallel<T>(n: usize, f: impl Fn(usize) -> T) -> Vec<T> {
-    (0..n).map(f).collect()
 }
 
 /// Number of gradients on a part.
@@ -147,7 +137,7 @@ fn warn(
 }
 
 /// Determines the parts to warp. Clip paths and masks follow the elements that refer to them.
-fn selected_parts(drawing: &Drawing, options: &WarpOptions) -> Vec<bool> {
+pub(crate) fn bent_parts(drawing: &Drawing, options: &WarpOptions) -> Vec<bool> {
     let scene = drawing.scene();
     let mut selected = drawing.selected_parts(&options.selection);
     let all = options.selection.is_everything();

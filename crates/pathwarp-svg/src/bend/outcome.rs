@@ -2,6 +2,7 @@
 
 use super::paint::PaintFit;
 use super::picture::{BentImage, PictureError};
+use crate::source::number::path_data;
 use pathwarp::kurbo::{BezPath, Point};
 use pathwarp::refit::{Assurance, PathReport};
 use std::collections::{BTreeMap, BTreeSet};
@@ -146,6 +147,8 @@ pub(crate) struct WarpedPart {
     /// too. Empty if there is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
+    /// The text of `path`, if it has been written already: a large drawing's on the threads that bend it.
+    pub(crate) data: Option<String>,
     pub(crate) stroke: StrokeOutcome,
     /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
     pub(crate) fit: Option<PaintFit>,
@@ -159,6 +162,13 @@ pub(crate) struct WarpedPart {
     pub(super) report: PathReport,
     /// Largest error from rounding coordinates, in root user units.
     pub(super) rounding: f64,
+}
+
+impl WarpedPart {
+    /// Writes the text of the path.
+    pub(super) fn with_data(self) -> Self {
+        Self { data: Some(path_data(&self.path, self.decimals)), ..self }
+    }
 }
 
 #[derive(Debug)]

@@ -32,6 +32,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         path,
         fill,
         decimals: t.decimals,
+        data: None,
         stroke,
         fit,
         fill_image: None,

@@ -14,6 +14,10 @@ use usvg::{LineCap, Stroke};
 /// Largest relative error of the width of a scaled stroke; beyond it, the stroke is expanded.
 const WIDTH_ERROR: f64 = 0.02;
 
+/// Share of the tolerance for expanding a stroke; the rest is for refitting the outline. Twice as much needs two thirds of the
+/// segments, so a finer outline would cost more nodes than a finer refit saves.
+const EXPANSION: f64 = 0.5;
+
 /// Warps the stroke of a part whose path is bent to `path`. A stroke with a picture (`pictured`) is always expanded.
 pub(super) fn stroke(t: &PartTask<'_>, path: &BezPath, pictured: bool) -> Result<StrokeOutcome, GeometryError> {
     let p = t.part;
@@ -53,8 +57,7 @@ fn part_width(t: &PartTask<'_>, s: &Stroke) -> Option<StrokeWidth> {
 /// Expands a part's stroke and bends the outline.
 fn outlined(t: &PartTask<'_>, s: &Stroke) -> Result<BezPath, GeometryError> {
     let (p, options) = (t.part, t.options());
-    // The expansion may use a quarter of the tolerance.
-    let fine = (options.refit.tolerance / stretch(p.frame) * 0.25).max(1e-9);
+    let fine = (options.refit.tolerance / stretch(p.frame) * EXPANSION).max(1e-9);
     let expanded = |local: &Outline, places: &[Affine]| {
         stroke_outline(local, s, fine).transformed(p.frame).repeated(places).subpaths
     };
@@ -63,7 +66,8 @@ fn outlined(t: &PartTask<'_>, s: &Stroke) -> Result<BezPath, GeometryError> {
     } else {
         t.pieces.iter().flat_map(|piece| expanded(&piece.of(&p.local), &piece.places)).collect()
     };
-    let warped = refit::warp_path(&Outline { subpaths }, t.map, &options.refit)?;
+    let refit = options.refit.clone().with_tolerance(options.refit.tolerance * (1.0 - EXPANSION));
+    let warped = refit::warp_path(&Outline { subpaths }, t.map, &refit)?;
     Ok(t.to_local(warped.path))
 }
 

@@ -9,6 +9,7 @@ use pathwarp::kurbo::{Affine, BezPath};
 use pathwarp::map::Map;
 use pathwarp::refit::{self, PathReport};
 use pathwarp::{GeometryError, Outline};
+use std::sync::Arc;
 
 /// The fraction of the tolerance that rounding may use.
 const ROUNDING: f64 = 0.01;
@@ -34,9 +35,9 @@ pub(super) struct PartTask<'a> {
     /// The placed letters of the part.
     pub(super) pieces: &'a [LetterPiece],
     /// The part's outline in root user space.
-    pub(super) whole: Outline,
+    pub(super) whole: Arc<Outline>,
     /// The outline to bend: all copies, or the placed letters.
-    pub(super) outline: Outline,
+    pub(super) outline: Arc<Outline>,
     /// The map that bends `outline`.
     pub(super) map: &'a dyn Map,
     pub(super) decimals: u8,
@@ -45,14 +46,20 @@ pub(super) struct PartTask<'a> {
 }
 
 impl<'a> PartTask<'a> {
-    pub(super) fn new(part: &'a Part, write: Affine, context: &'a PartContext<'a>, pieces: &'a [LetterPiece]) -> Self {
+    /// `whole` is the part's outline in root user space.
+    pub(super) fn new(
+        part: &'a Part,
+        whole: Arc<Outline>,
+        write: Affine,
+        context: &'a PartContext<'a>,
+        pieces: &'a [LetterPiece],
+    ) -> Self {
         let options = context.options;
-        let whole = part.outline();
         // Placed letters skip the first step; everything else goes through the whole map.
-        let (outline, map): (Outline, &dyn Map) = if pieces.is_empty() {
-            (whole.repeated(&options.copies), context.map)
-        } else {
-            (placed(&whole, pieces), &options.letters.after)
+        let (outline, map): (Arc<Outline>, &dyn Map) = match (pieces, options.copies.as_slice()) {
+            ([], []) => (whole.clone(), context.map),
+            ([], copies) => (Arc::new(whole.repeated(copies)), context.map),
+            _ => (Arc::new(placed(&whole, pieces)), &options.letters.after),
         };
         let size = stretch(write);
         let tolerance = options.refit.tolerance;

@@ -1,6 +1,7 @@
 //! A drawing: its source text, usvg's tree, and the scene resolved from both.
 
 use super::geometry::GeometryReader;
+use super::lettering::{self, line::TextLine};
 use super::letters;
 use super::model::Scene;
 use super::resolve::{self, Tiling};
@@ -22,6 +23,7 @@ pub(crate) struct Drawing {
     /// Computed on first use, except for deep drawings, which need a large stack.
     scene: OnceLock<Scene>,
     shapes: OnceLock<Vec<Shape>>,
+    lines: OnceLock<Vec<TextLine>>,
     pub(crate) missed: Missed,
     /// Size in px.
     pub(crate) page: Size,
@@ -56,6 +58,7 @@ impl Drawing {
             source: Arc::new(source),
             scene,
             shapes: OnceLock::new(),
+            lines: OnceLock::new(),
             missed,
             page: Size::new(f64::from(tree.size().width()), f64::from(tree.size().height())),
             shallow,
@@ -74,6 +77,7 @@ impl Drawing {
             source: self.source.clone(),
             scene: scene.into(),
             shapes: OnceLock::new(),
+            lines: OnceLock::new(),
             missed: self.missed.clone(),
             page: self.page,
             shallow: self.shallow,
@@ -95,7 +99,18 @@ impl Drawing {
 
     /// The shapes, one for each part of the scene.
     pub(crate) fn shapes(&self) -> &[Shape] {
+        if let Some(shapes) = self.shapes.get() {
+            return shapes;
+        }
+        // Not inside of `get_or_init`: while a thread of a pool waits for others, it may run a task that needs the shapes, too.
+        shape::read_outlines(self.scene(), &self.source);
         self.shapes.get_or_init(|| shape::shapes(self.scene(), &self.source))
+    }
+
+    /// The lines of lettering, each with its letters: those of texts, then those of outlines. Computed on first use, because it
+    /// takes longer than reading the drawing, and few deformations ask for it.
+    pub(crate) fn lines(&self) -> &[TextLine] {
+        self.lines.get_or_init(|| lettering::lines(&self.tree, &self.reader(), self.scene()))
     }
 
     pub(crate) fn reader(&self) -> GeometryReader<'_> {

@@ -1,7 +1,6 @@
 //! The drawing as it is painted: usvg's tree in f64. Each shape has its source element, its exact outline and its transform to
 //! root user space, the coordinate system inside the root `<svg>` (viewBox units).
 
-use super::lettering::line::TextLine;
 use crate::source::tags::ElementId;
 use crate::source::unpatchable::Unpatchable;
 use pathwarp::Outline;
@@ -80,8 +79,8 @@ impl Part {
     }
 
     /// Outline in root user space.
-    pub(crate) fn outline(&self) -> Outline {
-        self.local.transformed(self.frame)
+    pub(crate) fn outline(&self) -> Arc<Outline> {
+        if self.frame == Affine::IDENTITY { self.local.0.clone() } else { Arc::new(self.local.transformed(self.frame)) }
     }
 
     /// The element that the part belongs to.
@@ -98,11 +97,11 @@ pub(crate) struct Tiles {
 }
 
 /// An outline computed on first use. Shapes that are read and written unchanged never need theirs.
-pub(crate) struct LazyOutline(LazyLock<Outline, Box<dyn FnOnce() -> Outline + Send>>);
+pub(crate) struct LazyOutline(LazyLock<Arc<Outline>, Box<dyn FnOnce() -> Arc<Outline> + Send>>);
 
 impl LazyOutline {
     pub(crate) fn new(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
-        Self(LazyLock::new(Box::new(f)))
+        Self(LazyLock::new(Box::new(|| Arc::new(f()))))
     }
 }
 
@@ -283,6 +282,19 @@ pub(crate) struct SceneNote {
     pub(crate) name: String,
 }
 
+/// A painted text.
+#[derive(Debug)]
+pub(crate) struct PlacedText {
+    /// Address of usvg's text (which the document keeps alive).
+    pub(crate) text: usize,
+    /// The element of the whole text, if any.
+    pub(crate) owner: Option<ElementId>,
+    /// Maps the text to root user space.
+    pub(crate) frame: Affine,
+    /// Its first part.
+    pub(crate) first: usize,
+}
+
 #[derive(Debug)]
 pub(crate) struct Scene {
     pub(crate) root: Group,
@@ -296,8 +308,8 @@ pub(crate) struct Scene {
     /// Addresses of gradients and filters that the source does not define.
     pub(crate) foreign: HashSet<usize>,
     pub(crate) slots: Vec<Slot>,
-    /// Lines of lettering.
-    pub(crate) lines: Vec<TextLine>,
+    /// Painted texts.
+    pub(crate) texts: Vec<PlacedText>,
     /// Parts by source element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
     /// Root user space to px.
@@ -320,7 +332,7 @@ impl Scene {
             bitmaps: Vec::new(),
             foreign: HashSet::new(),
             slots: Vec::new(),
-            lines: Vec::new(),
+            texts: Vec::new(),
             by_source: HashMap::new(),
             to_px: Affine::IDENTITY,
             unpatchable,

@@ -2,6 +2,7 @@
 
 use super::geometry::GeometryReader;
 use super::model::{Part, PartRole, Scene};
+use crate::source::parallel::map_parallel;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Outline;
@@ -16,7 +17,7 @@ pub struct Shape {
     /// Source element, e.g. `circle`.
     pub element: String,
     /// Outline in root user space.
-    pub outline: Outline,
+    pub outline: Arc<Outline>,
     /// Line and column of the element in the source, counted from 1.
     pub at: (usize, usize),
     /// `true` if the shape is visible, has a fill or a stroke, and is not part of a clip path or mask.
@@ -48,6 +49,15 @@ pub struct NamedPath {
     pub group: Option<Arc<str>>,
 }
 
+/// Reads the outlines of a large drawing on several threads.
+pub(super) fn read_outlines(scene: &Scene, source: &SourceText) {
+    /// Bytes of source text below which starting threads takes longer than reading the outlines.
+    const WORTH_THREADS: usize = 200_000;
+    if source.text.len() >= WORTH_THREADS {
+        map_parallel(scene.parts.len(), |i| scene.parts[i].local.segs().next().is_some());
+    }
+}
+
 /// Lists the shapes of a scene.
 pub(super) fn shapes(scene: &Scene, source: &SourceText) -> Vec<Shape> {
     let shape = |p: &Part| {
@@ -71,7 +81,7 @@ pub(crate) fn named_path(scene: &Scene, reader: &GeometryReader<'_>, e: ElementI
     let parts = scene.by_source.get(&e).map_or(&[][..], Vec::as_slice);
     let painted = parts.iter().map(|&i| &scene.parts[i]).find(|p| p.role == PartRole::Paint);
     let outline = match painted {
-        Some(p) => p.outline(),
+        Some(p) => Arc::unwrap_or_clone(p.outline()),
         None => {
             let t = reader.transform_to_root(e).unwrap_or_default();
             reader.outline(e)?.transformed(t)

@@ -7,6 +7,7 @@ mod fontface;
 pub(crate) mod fonts;
 mod marks;
 pub(crate) mod number;
+pub(crate) mod parallel;
 pub(crate) mod read;
 pub(crate) mod select;
 pub(crate) mod stack;

@@ -11,42 +11,119 @@ pub(crate) const MOST_DECIMALS: u8 = 14;
 
 /// Appends `v` rounded to `decimals`, without trailing zeros and never as `-0`.
 pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
+    let mut digits = Digits::new();
     let decimals = usize::from(decimals.min(MOST_DECIMALS));
-    // Integers up to this size are exact in f64 and much faster to write than decimals.
-    const WHOLE: f64 = 9e15;
-    let scaled = (v * POWERS[decimals]).round();
-    if scaled.abs() >= WHOLE || !scaled.is_finite() {
-        return push_trimmed(out, v, decimals);
+    match digits.write(v, decimals).and_then(|text| std::str::from_utf8(text).ok()) {
+        Some(text) => out.push_str(text),
+        None => push_trimmed(out, v, decimals),
     }
-    let mut n = scaled.abs() as u64;
-    if n == 0 {
-        return out.push('0');
-    }
-    if scaled < 0.0 {
-        out.push('-');
-    }
-    let mut decimals = decimals;
-    while decimals > 0 && n.is_multiple_of(10) {
-        n /= 10;
-        decimals -= 1;
-    }
-    // Digits from right to left; a u64 has at most twenty.
-    let mut buffer = [b'0'; 24];
-    let mut at = buffer.len();
-    let mut written = 0;
-    while n > 0 || written <= decimals {
-        at -= 1;
-        if written == decimals && decimals > 0 {
-            buffer[at] = b'.';
-            at -= 1;
-        }
-        buffer[at] = b'0' + (n % 10) as u8;
-        n /= 10;
-        written += 1;
-    }
-    // The buffer holds ASCII digits only, so this cannot fail.
-    out.push_str(std::str::from_utf8(&buffer[at..]).unwrap_or_default());
 }
+
+/// Does the same for a text that is checked as a whole.
+fn push_bytes(out: &mut Vec<u8>, v: f64, decimals: u8) {
+    let decimals = usize::from(decimals.min(MOST_DECIMALS));
+    match Digits::new().write(v, decimals) {
+        Some(text) => out.extend_from_slice(text),
+        None => {
+            let mut text = String::new();
+            push_trimmed(&mut text, v, decimals);
+            out.extend_from_slice(text.as_bytes());
+        }
+    }
+}
+
+/// Room for the digits of a number: a sign, at most 16 digits before and 14 after the point.
+struct Digits([u8; 32]);
+
+impl Digits {
+    fn new() -> Self {
+        Self([b'0'; 32])
+    }
+
+    /// Writes `v` rounded to `decimals`. `None` if it does not fit an integer that is exact in f64; integers are much faster to
+    /// write than decimals.
+    fn write(&mut self, v: f64, decimals: usize) -> Option<&[u8]> {
+        const WHOLE: f64 = 9e15;
+        let scaled = (v * POWERS[decimals]).abs();
+        if scaled.is_nan() || scaled >= WHOLE - 1.0 {
+            return None;
+        }
+        // Round half away from zero; the difference is exact.
+        let whole = scaled as u64;
+        let n = whole + u64::from(scaled - whole as f64 >= 0.5);
+        if n == 0 {
+            return Some(b"0");
+        }
+        let unit = UNITS[decimals];
+        let (mut before, mut after) = (n / unit, n % unit);
+        let mut at = self.0.len();
+        if after > 0 {
+            // Drop the trailing zeros.
+            let mut kept = decimals;
+            while after % 10 == 0 {
+                after /= 10;
+                kept -= 1;
+            }
+            while kept > 1 {
+                at -= 2;
+                self.pair(at, after % 100);
+                after /= 100;
+                kept -= 2;
+            }
+            if kept == 1 {
+                at -= 1;
+                self.0[at] = b'0' + after as u8;
+            }
+            at -= 1;
+            self.0[at] = b'.';
+        }
+        while before >= 100 {
+            at -= 2;
+            self.pair(at, before % 100);
+            before /= 100;
+        }
+        if before >= 10 {
+            at -= 2;
+            self.pair(at, before);
+        } else {
+            at -= 1;
+            self.0[at] = b'0' + before as u8;
+        }
+        if v < 0.0 {
+            at -= 1;
+            self.0[at] = b'-';
+        }
+        Some(&self.0[at..])
+    }
+
+    /// Writes the two digits of a number below 100.
+    fn pair(&mut self, at: usize, n: u64) {
+        let n = n as usize * 2;
+        self.0[at..at + 2].copy_from_slice(&PAIRS[n..n + 2]);
+    }
+}
+
+/// The numbers from 00 to 99.
+const PAIRS: [u8; 200] = {
+    let mut out = [b'0'; 200];
+    let mut n = 0;
+    while n < 100 {
+        out[2 * n] = b'0' + (n / 10) as u8;
+        out[2 * n + 1] = b'0' + (n % 10) as u8;
+        n += 1;
+    }
+    out
+};
+
+const UNITS: [u64; MOST_DECIMALS as usize + 1] = {
+    let mut out = [1; MOST_DECIMALS as usize + 1];
+    let mut i = 1;
+    while i < out.len() {
+        out[i] = out[i - 1] * 10;
+        i += 1;
+    }
+    out
+};
 
 const POWERS: [f64; MOST_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
@@ -94,55 +171,56 @@ pub(crate) fn matrix(m: Affine) -> String {
 
 /// Formats a path as a `d` attribute with absolute commands.
 pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
-    let mut out = String::with_capacity(path.elements().len() * 24);
-    let point = |out: &mut String, p: Point| {
-        push(out, p.x, decimals);
-        out.push(',');
-        push(out, p.y, decimals);
+    let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * 48);
+    let point = |out: &mut Vec<u8>, p: Point| {
+        push_bytes(out, p.x, decimals);
+        out.push(b',');
+        push_bytes(out, p.y, decimals);
     };
     let mut at = Point::ORIGIN;
     // Write a cubic as a quadratic if the two differ by less than the rounding.
     let near = 0.1 * 0.1_f64.powi(i32::from(decimals));
     for el in path.elements() {
         if !out.is_empty() {
-            out.push(' ');
+            out.push(b' ');
         }
         match *el {
             PathEl::MoveTo(p) => {
-                out.push('M');
+                out.push(b'M');
                 point(&mut out, p);
             }
             PathEl::LineTo(p) => {
-                out.push('L');
+                out.push(b'L');
                 point(&mut out, p);
             }
             PathEl::QuadTo(a, p) => {
-                out.push('Q');
+                out.push(b'Q');
                 point(&mut out, a);
-                out.push(' ');
+                out.push(b' ');
                 point(&mut out, p);
             }
             PathEl::CurveTo(a, b, p) if quadratic(at, a, b, p).is_some_and(|q| q.1 < near) => {
                 if let Some((q, _)) = quadratic(at, a, b, p) {
-                    out.push('Q');
+                    out.push(b'Q');
                     point(&mut out, q);
-                    out.push(' ');
+                    out.push(b' ');
                     point(&mut out, p);
                 }
             }
             PathEl::CurveTo(a, b, p) => {
-                out.push('C');
+                out.push(b'C');
                 point(&mut out, a);
-                out.push(' ');
+                out.push(b' ');
                 point(&mut out, b);
-                out.push(' ');
+                out.push(b' ');
                 point(&mut out, p);
             }
-            PathEl::ClosePath => out.push('Z'),
+            PathEl::ClosePath => out.push(b'Z'),
         }
         at = el.end_point().unwrap_or(at);
     }
-    out
+    // ASCII only, so this cannot fail.
+    String::from_utf8(out).unwrap_or_default()
 }
 
 /// Appends `v` in the shortest form that reads back unchanged; as an f32 if `v` is one.
@@ -245,6 +323,25 @@ mod tests {
         assert_eq!(short(0.000_012_345), "0.000012345");
         assert_eq!(short(1234.5), "1234.5");
         assert_eq!(short(-1e-40), "0");
+    }
+
+    /// Compares with the standard library, which rounds the exact value of the number.
+    #[test]
+    fn every_number_of_decimals_agrees_with_the_standard_library() {
+        let mut seed = 7_u64;
+        for i in 0..100_000_u32 {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let decimals = (seed >> 59) as u8 % (MOST_DECIMALS + 1);
+            let v = ((seed >> 11) as f64 / 2f64.powi(52) - 1.0) * 10f64.powi((i % 16) as i32 - 4);
+            let mut out = String::new();
+            push(&mut out, v, decimals);
+            let mut wanted = String::new();
+            push_trimmed(&mut wanted, v, usize::from(decimals));
+            // The product with a power of ten is rounded once more, which decides only near a tie.
+            let product = v * POWERS[usize::from(decimals)];
+            let tie = ((product.fract().abs() - 0.5).abs() * 1e15) < product.abs().max(1.0) * 4.0;
+            assert!(out == wanted || tie, "{v:e} to {decimals}: {out} {wanted}");
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::source::number::short;
 use crate::source::select::Selection;
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
+use std::borrow::Cow;
 use std::str::FromStr;
 use svgtypes::{Length, LengthUnit};
 
@@ -155,7 +156,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         let boxes = c.parts.clone().map(|i| {
             let p = &scene.parts[i];
             let frame = input.written(p.slot, p.frame);
-            (frame * path(p, input.warped(i))).bounding_box()
+            box_under(frame, &path(p, input.warped(i)))
         });
         all = all.intersect(boxes.reduce(|a, b| a.union(b))?);
     }
@@ -163,12 +164,17 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
 }
 
 /// Approximates the path that is written for a part.
-fn path(p: &Part, warped: Option<&WarpedPart>) -> BezPath {
+fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezPath> {
     if let Some(d) = warped {
-        return d.path.clone();
+        return Cow::Borrowed(&d.path);
     }
     let size = p.local.bounding_box().map_or(1.0, |b| b.width().max(b.height()));
-    p.local.to_bez_path((size * FINE).max(1e-12))
+    Cow::Owned(p.local.to_bez_path((size * FINE).max(1e-12)))
+}
+
+/// Bounding box of a path's image under `frame`.
+fn box_under(frame: Affine, path: &BezPath) -> Rect {
+    if frame == Affine::IDENTITY { path.bounding_box() } else { (frame * path).bounding_box() }
 }
 
 /// A cheap bounding box of everything a part paints; it may be too large.
@@ -192,16 +198,16 @@ fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
 
 fn painted_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
     let path = path(p, warped);
-    let inside = (frame * &path).bounding_box();
+    let inside = box_under(frame, &path);
     match (&p.stroke, warped.map(|d| &d.stroke)) {
         (None, _) => inside,
-        (Some(_), Some(StrokeOutcome::Outlined(o))) => inside.union((frame * o).bounding_box()),
+        (Some(_), Some(StrokeOutcome::Outlined(o))) => inside.union(box_under(frame, o)),
         (Some(s), _) => {
             // Expansion is linear in the width: scale the path down instead of the width up.
             let scale = stroke_scale(warped);
             let size = path.bounding_box();
             let size = size.width().max(size.height()) / scale;
-            let back = Outline::from(&path).transformed(Affine::scale(1.0 / scale));
+            let back = Outline::from(&*path).transformed(Affine::scale(1.0 / scale));
             let outline = stroke_outline(&back, s, (FINE * size).max(1e-9)).transformed(frame * Affine::scale(scale));
             outline.bounding_box().map_or(inside, |b| inside.union(b))
         }

@@ -65,7 +65,8 @@ pub struct Info {
     /// Values known from elsewhere; [`check::entry`](crate::check::entry) tests them.
     pub cases: &'static [Case],
     /// The parameter that puts a baseline on the deformation's curve, if there is one. While it is not given, a frame around
-    /// lettering takes its baseline from the lettering.
+    /// lettering takes its baseline from the lettering. The command line looks for [letters](crate::param::Frame::letters) only
+    /// for deformations that have such a parameter.
     pub baseline: Option<&'static str>,
     /// The presets that a gallery draws one by one, if the deformation has any.
     pub gallery: Option<Gallery>,

@@ -61,12 +61,11 @@ impl Rows {
     /// Records where the line crosses rows.
     fn add(&mut self, a: Point, b: Point) {
         let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
-        if !(top.y < bottom.y) {
-            return;
-        }
-        for k in self.first_from(top.y)..self.first_from(bottom.y) {
-            let t = (self.y(k) - top.y) / (bottom.y - top.y);
-            self.crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
+        if top.y < bottom.y {
+            for k in self.first_from(top.y)..self.first_from(bottom.y) {
+                let t = (self.y(k) - top.y) / (bottom.y - top.y);
+                self.crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
+            }
         }
     }
 

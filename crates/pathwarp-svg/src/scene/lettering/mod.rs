@@ -15,6 +15,18 @@
 //! element's user units. The heights count from the baseline.
 
 pub(crate) mod line;
-pub(crate) mod marked;
+mod marked;
 pub(crate) mod selected;
-pub(crate) mod shaped;
+mod shaped;
+mod texts;
+
+use super::geometry::GeometryReader;
+use super::model::Scene;
+use line::TextLine;
+
+/// Finds all lines of a drawing: those of texts in painting order, then those of outlines.
+pub(crate) fn lines(tree: &usvg::Tree, reader: &GeometryReader<'_>, scene: &Scene) -> Vec<TextLine> {
+    let mut out = texts::lines(tree, scene);
+    out.extend(marked::lines(reader, &scene.parts, &scene.by_source));
+    out
+}

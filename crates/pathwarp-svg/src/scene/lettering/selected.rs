@@ -151,8 +151,7 @@ fn selected_lines(drawing: &Drawing, selected: &[bool]) -> Vec<TextLine> {
     let shapes = drawing.shapes();
     let whole = |l: &PlacedLetter| l.subpaths.iter().all(|(i, _)| selected[*i] && shapes[*i].painted);
     let lines = drawing
-        .scene()
-        .lines
+        .lines()
         .iter()
         .map(|line| TextLine { letters: line.letters.iter().filter(|l| whole(l)).cloned().collect(), ..line.clone() });
     lines.filter(|l| !l.letters.is_empty()).collect()

@@ -21,7 +21,6 @@ pub(super) struct SceneBuilder<'a> {
     pub(super) scene: Scene,
     pub(super) reader: GeometryReader<'a>,
     pub(super) letters: &'a Owners,
-    pub(super) fonts: &'a usvg::fontdb::Database,
     /// The patterns to lay out as geometry, if any.
     pub(super) tiling: Option<Tiling<'a>>,
     /// Source elements by their id in usvg's tree.
@@ -64,18 +63,12 @@ impl Context {
 }
 
 impl<'a> SceneBuilder<'a> {
-    pub(super) fn new(
-        reader: GeometryReader<'a>,
-        tree: &'a usvg::Tree,
-        letters: &'a Owners,
-        tiling: Option<Tiling<'a>>,
-    ) -> Self {
+    pub(super) fn new(reader: GeometryReader<'a>, letters: &'a Owners, tiling: Option<Tiling<'a>>) -> Self {
         let source = reader.source;
         Self {
             scene: Scene::empty(source.unpatchable.clone()),
             reader,
             letters,
-            fonts: tree.fontdb(),
             tiling,
             ids: source.by_tree_id(),
             exact: exact_transforms(&reader),

@@ -14,7 +14,6 @@ pub(crate) use tiling::Tiling;
 
 use super::affine::{affine, f32_bits, is_near, linear_part};
 use super::geometry::GeometryReader;
-use super::lettering::marked;
 use super::letters::Owners;
 use super::model::{PartRole, Scene};
 use crate::source::text::SourceText;
@@ -32,7 +31,7 @@ pub(crate) fn build(
 ) -> Scene {
     let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
     let reader = GeometryReader { source, dpi, page };
-    let mut b = SceneBuilder::new(reader, tree, letters, tiling);
+    let mut b = SceneBuilder::new(reader, letters, tiling);
     let (top, to_px) = root_group(&b, tree, page);
     b.top = Some(std::ptr::from_ref(top));
     let root = walk::group(&mut b, top, Affine::IDENTITY, Context::top(PartRole::Paint));
@@ -47,7 +46,6 @@ pub(crate) fn build(
         }
     }
     scene.by_source = by_source;
-    scene.lines.extend(marked::lines(&reader, &scene.parts, &scene.by_source));
     scene
 }
 

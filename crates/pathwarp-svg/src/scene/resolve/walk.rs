@@ -6,9 +6,7 @@ use super::slots::{GroupAt, holds_drawing, slot};
 use super::tiles::{PaintOf, blends, tile_context, tiles};
 use super::trace::trace;
 use crate::scene::affine::bits;
-use crate::scene::lettering::line::TextLine;
-use crate::scene::lettering::shaped;
-use crate::scene::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, Referrer};
+use crate::scene::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, PlacedText, Referrer};
 use crate::source::tags::ElementId;
 use crate::source::unpatchable::Unpatchable;
 use pathwarp::Outline;
@@ -94,8 +92,8 @@ fn text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Contex
     let first = b.scene.parts.len();
     let content = group(b, t.flattened(), frame, context);
     if context.role == PartRole::Paint {
-        let lines = shaped::lines(t, b.fonts, frame, &b.scene.parts, first);
-        b.scene.lines.extend(lines.into_iter().map(|l| TextLine { owner: context.owner, ..l }));
+        let text = std::ptr::from_ref(t) as usize;
+        b.scene.texts.push(PlacedText { text, owner: context.owner, frame, first });
     }
     let owners = element.and_then(|e| b.letters.get(&e)).cloned().unwrap_or_default();
     Node::Text { element, content: Box::new(content), owners }

@@ -1,0 +1,209 @@
+//! Proof that det J keeps its sign on a box, for maps made of quotients of polynomials.
+//!
+//! With F = (X, Y)/W of degree d, W³·det J is the determinant of (X, Y, W) and their two partial derivatives: a polynomial of degree
+//! 3(d − 1), or 2(d − 1) if W = 1. Its values at sufficiently many Chebyshev nodes determine its coefficients in Chebyshev
+//! polynomials Tᵢ(s)·Tⱼ(t), and because |Tᵢ| ≤ 1, it has no zero if
+//!
+//! > |c₀₀| > Σ |cᵢⱼ|, (i, j) ≠ (0, 0)
+//!
+//! A box for which that fails is divided into four. Two values of different signs end the attempt.
+
+use crate::map::{Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
+use kurbo::{Point, Rect};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Highest degree of the determinant: above it, one box would take more samples than most drawings.
+const MAX_DEGREE: usize = 24;
+/// Divisions of a box into four. Near a zero of det J every division fails; the sixth has boxes of a 64th.
+const DEPTH: usize = 6;
+/// Rounding errors of the values and their sums, relative to the largest product in det J. They are some hundred units in the last
+/// place (2⁻⁵²).
+const ROUNDING: f64 = 1e-10;
+
+/// Returns the sign that det J has in all of `bounds`, as 1 or −1, if it can be proven with at most `samples` jets.
+///
+/// The map may have creases parallel to the axes; at others, and where a denominator vanishes, nothing is proven.
+pub(super) fn proven(map: &dyn Map, bounds: Rect, samples: usize) -> Option<f64> {
+    let mut left = samples;
+    let mut all = None;
+    for (cell, piece) in pieces(map, bounds, samples)? {
+        let sign = Proof::new(&*piece, cell, &mut left)?.sign(cell, DEPTH)?;
+        if *all.get_or_insert(sign) != sign {
+            return None;
+        }
+    }
+    all
+}
+
+/// A smooth piece of a map, borrowed if it is the map itself.
+enum Piece<'a> {
+    Whole(&'a dyn Map),
+    Branch(Arc<dyn Map>),
+}
+
+impl<'a> std::ops::Deref for Piece<'a> {
+    type Target = dyn Map + 'a;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Whole(m) => *m,
+            Self::Branch(m) => &**m,
+        }
+    }
+}
+
+/// Divides `bounds` along the creases. `None` if a crease is not parallel to an axis, or if there would be more than `most` pieces.
+fn pieces(map: &dyn Map, bounds: Rect, most: usize) -> Option<Vec<(Rect, Piece<'_>)>> {
+    if map.branch(bounds.center()).is_none() {
+        return Some(vec![(bounds, Piece::Whole(map))]);
+    }
+    let mut creases = Creases::default();
+    map.creases(&mut creases);
+    let (mut xs, mut ys) = (vec![bounds.x0, bounds.x1], vec![bounds.y0, bounds.y1]);
+    for Crease { level, .. } in creases.items() {
+        match *level {
+            Level::Line { a, b, c } | Level::Stretch { a, b, c, .. } => match (a == 0.0, b == 0.0) {
+                (false, true) => xs.push(-c / a),
+                (true, false) => ys.push(-c / b),
+                _ => return None,
+            },
+            Level::Field(_) => return None,
+        }
+    }
+    let cut = |mut at: Vec<f64>, from: f64, to: f64| {
+        at.retain(|v| (from..=to).contains(v));
+        at.sort_by(f64::total_cmp);
+        at.dedup();
+        at
+    };
+    let (xs, ys) = (cut(xs, bounds.x0, bounds.x1), cut(ys, bounds.y0, bounds.y1));
+    if xs.len() * ys.len() > most {
+        return None;
+    }
+    let mut out = Vec::with_capacity(xs.len() * ys.len());
+    for y in ys.windows(2) {
+        for x in xs.windows(2) {
+            let cell = Rect::new(x[0], y[0], x[1], y[1]);
+            out.push((cell, Piece::Branch(map.branch(cell.center())?)));
+        }
+    }
+    Some(out)
+}
+
+/// The degree of a smooth map as a quotient of polynomials, as declared or as the exact image of a line shows.
+fn algebra(map: &dyn Map, bounds: Rect) -> Option<RationalDegree> {
+    map.rational_degree().or_else(|| {
+        let diagonal = [bounds.origin(), Point::new(bounds.x1, bounds.y1)];
+        let image = map.image(&RationalBezier::polynomial(&diagonal))?;
+        image.is_polynomial().then(|| RationalDegree::polynomial(image.degree()))
+    })
+}
+
+/// A proof for one smooth piece.
+struct Proof<'a> {
+    map: &'a dyn Map,
+    rational: bool,
+    basis: Chebyshev,
+    /// Jets that may still be taken.
+    left: &'a mut usize,
+}
+
+impl<'a> Proof<'a> {
+    fn new(map: &'a dyn Map, bounds: Rect, left: &'a mut usize) -> Option<Self> {
+        let RationalDegree { degree, rational } = algebra(map, bounds)?;
+        // The nodes serve for W as well, whose degree is d.
+        let below = degree.saturating_sub(1);
+        let degree = if rational { below.checked_mul(3)?.max(degree) } else { below.checked_mul(2)? };
+        (degree <= MAX_DEGREE).then(|| Self { map, rational, basis: Chebyshev::new(degree), left })
+    }
+
+    fn sign(&mut self, cell: Rect, depth: usize) -> Option<f64> {
+        let n = self.basis.nodes.len();
+        *self.left = self.left.checked_sub(n * n)?;
+        let at = |from: f64, to: f64, s: f64| 0.5 * ((to + from) + (to - from) * s);
+        let (mut points, mut jets) = (Vec::with_capacity(n * n), vec![Jet::default(); n * n]);
+        for t in &self.basis.nodes {
+            let y = at(cell.y0, cell.y1, *t);
+            points.extend(self.basis.nodes.iter().map(|s| Point::new(at(cell.x0, cell.x1, *s), y)));
+        }
+        self.map.jets(&points, &mut jets);
+        let mut values: Vec<f64> = jets.iter().map(Jet::det).collect();
+        let mut sizes: Vec<f64> = jets.iter().map(|j| j.dx.hypot() * j.dy.hypot()).collect();
+        let mut positive = true;
+        if self.rational {
+            let below: Vec<f64> = points.iter().map(|p| self.map.denominator(*p)).collect();
+            for ((v, size), w) in values.iter_mut().zip(&mut sizes).zip(&below) {
+                let cube = w * w * w;
+                (*v, *size) = (*v * cube, *size * cube.abs());
+            }
+            positive = self.basis.sign(&below, largest(&below)) == Some(1.0);
+        }
+        if values.iter().any(|v| *v < 0.0) && values.iter().any(|v| *v > 0.0) {
+            return None;
+        }
+        match self.basis.sign(&values, largest(&sizes)) {
+            Some(sign) if positive => Some(sign),
+            _ if depth == 0 => None,
+            _ => {
+                let c = cell.center();
+                let quarters = [(cell.x0, cell.y0), (cell.x1, cell.y0), (cell.x0, cell.y1), (cell.x1, cell.y1)];
+                let mut signs = quarters.into_iter().map(|p| self.sign(Rect::from_points(p, c), depth - 1));
+                let first = signs.next()??;
+                signs.all(|s| s == Some(first)).then_some(first)
+            }
+        }
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| f64::max(m, v.abs()))
+}
+
+/// Interpolation at Chebyshev nodes: exact for polynomials of the degree in each variable.
+struct Chebyshev {
+    /// cos(π(k + ½)/n).
+    nodes: Vec<f64>,
+    /// Row i gives the coefficient of Tᵢ from the values at the nodes.
+    rows: Vec<f64>,
+}
+
+impl Chebyshev {
+    fn new(degree: usize) -> Self {
+        let n = degree + 1;
+        let angle = |k: usize| PI * (k as f64 + 0.5) / n as f64;
+        let row = |i: usize| {
+            let scale = if i == 0 { 1.0 } else { 2.0 } / n as f64;
+            (0..n).map(move |k| scale * (i as f64 * angle(k)).cos())
+        };
+        Self { nodes: (0..n).map(|k| angle(k).cos()).collect(), rows: (0..n).flat_map(row).collect() }
+    }
+
+    /// Returns the sign of the polynomial with these `values`, row by row, if it has no zero in the square. Rounding errors are
+    /// a small share of `size`.
+    fn sign(&self, values: &[f64], size: f64) -> Option<f64> {
+        let n = self.nodes.len();
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let (mut first, mut others) = (0.0, ROUNDING * size);
+        // Transform the rows, then the columns.
+        let across: Vec<f64> = values.chunks(n).flat_map(|v| self.rows.chunks(n).map(move |r| dot(r, v))).collect();
+        let mut column = vec![0.0; n];
+        for i in 0..n {
+            for (c, row) in column.iter_mut().zip(across.chunks(n)) {
+                *c = row[i];
+            }
+            for (j, r) in self.rows.chunks(n).enumerate() {
+                let c = dot(r, &column);
+                if (i, j) == (0, 0) {
+                    first = c;
+                } else {
+                    others += c.abs();
+                }
+            }
+        }
+        (first.abs() > others).then(|| first.signum())
+    }
+}
+
+#[cfg(test)]
+mod tests;

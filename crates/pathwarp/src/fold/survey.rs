@@ -1,0 +1,112 @@
+//! The orientations of many shapes under one map.
+
+use super::interior::interior;
+use super::orientation::Orientation;
+use super::sign;
+use crate::map::{Class, Creases, Jet, Map};
+use crate::outline::{Outline, Seg};
+use kurbo::{Affine, Point, Rect};
+
+/// Intervals per segment.
+const PER_SEGMENT: usize = 16;
+/// Samples in each direction over the bounding box of a filled shape.
+const GRID: usize = 24;
+/// Samples that a proof may always take: those of two filled shapes.
+const FOR_ANY_PROOF: usize = 2 * GRID * GRID;
+
+/// Examines the shapes of a drawing for folds of one map.
+pub struct Survey<'a> {
+    map: &'a dyn Map,
+    creases: Creases,
+    knowledge: Knowledge,
+}
+
+/// What is known before any shape is sampled.
+enum Knowledge {
+    /// The map is affine and folds nothing.
+    Affine,
+    /// The determinant has this sign, 1 or −1, on all of the artwork.
+    Sign(f64),
+    Nothing,
+}
+
+impl<'a> Survey<'a> {
+    /// Prepares the survey of artwork with this bounding box and this number of segments. The more segments it has, the more
+    /// effort goes into proving for the whole box that the map does not fold.
+    #[must_use]
+    pub fn new(map: &'a dyn Map, bounds: Option<Rect>, segments: usize) -> Self {
+        let mut creases = Creases::default();
+        let proven = |b: Rect| sign::proven(map, b, FOR_ANY_PROOF.max(segments.saturating_mul(PER_SEGMENT)));
+        let knowledge = match (map.class(), bounds) {
+            (Class::Affine(_), _) => Knowledge::Affine,
+            (_, Some(b)) if b.is_finite() => proven(b).map_or(Knowledge::Nothing, Knowledge::Sign),
+            _ => Knowledge::Nothing,
+        };
+        if matches!(knowledge, Knowledge::Nothing) {
+            map.creases(&mut creases);
+        }
+        Self { map, creases, knowledge }
+    }
+
+    /// Returns `true` if shapes must be sampled: the map is not known to keep its orientation on the whole artwork.
+    #[must_use]
+    pub fn samples(&self) -> bool {
+        matches!(self.knowledge, Knowledge::Nothing)
+    }
+
+    /// Returns the orientation of a shape of the artwork. Unless the survey has a proof, the determinant is sampled along `outline`, and
+    /// inside it if `filled`; of an affine map no samples are taken.
+    ///
+    /// Folds narrower than the spacing of the samples (a sixteenth of a segment, a twenty-fourth of the bounding box) can go
+    /// unnoticed.
+    #[must_use]
+    pub fn orientation(&self, outline: &Outline, filled: bool) -> Orientation {
+        match self.knowledge {
+            Knowledge::Affine => Orientation::default(),
+            Knowledge::Sign(sign) => {
+                let samples = outline.segs().count() * (PER_SEGMENT + 1);
+                Orientation::uniform(sign, samples, outline.segs().next().map(Seg::start))
+            }
+            Knowledge::Nothing => self.sampled(outline, filled),
+        }
+    }
+
+    /// Returns the orientation of all copies of a shape, at `places`; of the shape itself if there are none.
+    #[must_use]
+    pub fn orientation_of_copies(&self, outline: &Outline, places: &[Affine], filled: bool) -> Orientation {
+        match (places, &self.knowledge) {
+            ([], _) => self.orientation(outline, filled),
+            (_, Knowledge::Nothing) => self.sampled(&outline.repeated(places), filled),
+            ([first, ..], _) => {
+                let one = self.orientation(outline, filled);
+                Orientation {
+                    positive: one.positive * places.len(),
+                    negative: one.negative * places.len(),
+                    first_positive: one.first_positive.map(|p| *first * p),
+                    first_negative: one.first_negative.map(|p| *first * p),
+                    ..one
+                }
+            }
+        }
+    }
+
+    fn sampled(&self, outline: &Outline, filled: bool) -> Orientation {
+        let mut out = Orientation::default();
+        let mut jets = [Jet::default(); PER_SEGMENT + 1];
+        for seg in outline.segs() {
+            let points: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
+            self.map.jets(&points, &mut jets);
+            out.add(&points, &jets);
+        }
+        if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
+            let mut jets = [Jet::default(); GRID];
+            for mut row in interior(outline, bounds, GRID) {
+                row.retain(|p| self.creases.defined_at(*p));
+                let jets = &mut jets[..row.len()];
+                self.map.jets(&row, jets);
+                out.add(&row, jets);
+            }
+        }
+        out
+    }
+}
