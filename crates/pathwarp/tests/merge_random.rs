@@ -99,8 +99,8 @@ fn waves() -> impl Strategy<Value = Waves> {
         .prop_map(|(length, steep)| Waves { length, height: [length[0] * steep[0], length[1] * steep[1]] })
 }
 
-fn holds(segs: Vec<Seg>, map: &dyn Map, tolerance: f64, certify: bool) -> Result<(), TestCaseError> {
-    let path = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs: segs.clone(), closed: false }] };
+fn holds(segs: &[Seg], map: &dyn Map, tolerance: f64, certify: bool) -> Result<(), TestCaseError> {
+    let path = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs: segs.to_vec(), closed: false }] };
     let off = Options::new(tolerance).with_certify(certify);
     let w = warp_path(&path, map, &off.clone().with_merge(true)).unwrap();
     let separate = warp_path(&path, map, &off).unwrap();
@@ -108,7 +108,7 @@ fn holds(segs: Vec<Seg>, map: &dyn Map, tolerance: f64, certify: bool) -> Result
     if w.report.over_budget.is_empty() {
         prop_assert!(w.report.max_error <= tolerance);
         let out = support::cubics(&w.path);
-        let distance = |samples| support::distance_of_run(&segs, map, &out, samples, 0.9 * tolerance);
+        let distance = |samples| support::distance_of_run(segs, map, &out, samples, 0.9 * tolerance);
         // Where the image hardly moves, few samples put the nearest point between the wrong neighbours.
         let mut e = distance(400);
         if e > tolerance {
@@ -128,21 +128,21 @@ proptest! {
 
     #[test]
     fn merged_splines_under_bicubic_maps(segs in spline(), map in map(), tolerance in tolerance(), certify: bool) {
-        holds(segs, &map, tolerance, certify)?;
+        holds(&segs, &map, tolerance, certify)?;
     }
 
     #[test]
     fn merged_splines_under_opaque_maps(segs in spline(), map in waves(), tolerance in tolerance()) {
-        holds(segs, &map, tolerance, false)?;
+        holds(&segs, &map, tolerance, false)?;
     }
 
     #[test]
     fn merged_blobs_under_bicubic_maps(segs in blob(), map in map(), tolerance in tolerance(), certify: bool) {
-        holds(segs, &map, tolerance, certify)?;
+        holds(&segs, &map, tolerance, certify)?;
     }
 
     #[test]
     fn merged_blobs_under_opaque_maps(segs in blob(), map in waves(), tolerance in tolerance()) {
-        holds(segs, &map, tolerance, false)?;
+        holds(&segs, &map, tolerance, false)?;
     }
 }

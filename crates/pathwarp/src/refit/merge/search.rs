@@ -76,10 +76,8 @@ fn beyond(
     best: usize,
 ) -> Result<Option<usize>, Point> {
     let limit = reaches.limit(earlier);
-    if !(from < earlier && earlier < k && best < limit)
-        || !reaches.fits(fitter, earlier, best + 1)?
-        || !reaches.fits(fitter, from, earlier)?
-    {
+    let possible = from < earlier && earlier < k && best < limit;
+    if !(possible && reaches.fits(fitter, earlier, best + 1)? && reaches.fits(fitter, from, earlier)?) {
         return Ok(None);
     }
     let mut place = best + 1;
