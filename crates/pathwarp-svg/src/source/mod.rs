@@ -5,6 +5,7 @@ pub(crate) mod edit;
 pub(crate) mod element;
 mod fontface;
 pub(crate) mod fonts;
+pub(crate) mod live;
 mod marks;
 pub(crate) mod number;
 pub(crate) mod read;

@@ -4,6 +4,7 @@ use super::animations;
 use super::keeper::{Keeper, NO_EFFECTS};
 use crate::scene::letters::{inside, is_named, is_naming};
 use crate::scene::model::Group;
+use crate::source::live::is_live;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 
@@ -130,7 +131,8 @@ impl SpanWriter<'_, '_, '_, '_> {
         let again = self.seen.contains(&element);
         self.seen.push(element);
         let text = &source.text;
-        let kept = el.attrs.iter().filter(|a| is_naming(a, text) && !(again && a.name(text) == "id"));
+        let kept =
+            el.attrs.iter().filter(|a| is_naming(a, text) && !is_live(a, text) && !(again && a.name(text) == "id"));
         let mut head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
         if source.has_css() {
             head.push_str(NO_EFFECTS);
