@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::fs::{self, File};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -30,6 +30,14 @@ pub fn is_installed() -> bool {
             false
         }
     }
+}
+
+/// The drawings that come with Inkscape.
+pub fn examples() -> Option<Vec<PathBuf>> {
+    let data = Command::new(program()).arg("--system-data-directory").stdin(Stdio::null()).output().ok()?;
+    let folder = Path::new(str::from_utf8(&data.stdout).ok()?.trim()).join("examples");
+    let files = fs::read_dir(folder).ok()?.map(|f| f.unwrap().path());
+    Some(files.filter(|f| f.extension().is_some_and(|e| e == "svg" || e == "svgz")).collect())
 }
 
 /// Opens and edits `NAME.svg` in a folder for each name, and saves it as `NAME.edited.svg`.
