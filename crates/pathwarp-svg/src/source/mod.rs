@@ -8,6 +8,7 @@ pub(crate) mod fonts;
 pub(crate) mod live;
 mod marks;
 pub(crate) mod number;
+mod prefixes;
 pub(crate) mod read;
 pub(crate) mod select;
 pub(crate) mod stack;
