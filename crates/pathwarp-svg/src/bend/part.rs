@@ -8,11 +8,12 @@ use super::paint::{self, PaintFit};
 use super::picture::{BentImage, PictureError};
 use super::shading::Shading;
 use super::stroke;
+use super::stubs;
 use super::task::PartTask;
 use crate::scene::affine::stretch;
 use crate::scene::model::{Part, PartRole};
 use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Rect, Shape as _};
-use pathwarp::map::{Class, Map};
+use pathwarp::map::Class;
 use pathwarp::outline::Subpath;
 use pathwarp::{GeometryError, Outline, Seg};
 use usvg::Paint;
@@ -76,7 +77,7 @@ fn filled(t: &PartTask<'_>, path: BezPath) -> Result<(BezPath, Option<BezPath>),
     // With `Strokes::Keep`, each centre line is to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
     let tolerance = t.options().refit.tolerance;
-    let area = filled_area(t.part, &t.outline, t.map, tolerance).filter(|a| closes || a.is_empty());
+    let area = filled_area(t, tolerance).filter(|a| closes || a.is_empty());
     Ok(match area {
         None => (path, None),
         Some(area) if area.is_empty() => (path, Some(BezPath::new())),
@@ -87,9 +88,10 @@ fn filled(t: &PartTask<'_>, path: BezPath) -> Result<(BezPath, Option<BezPath>),
 
 /// Closes the subpaths of a fill if the map bends one of the closing lines, which are not drawn. Subpaths that enclose nothing
 /// are dropped. Returns `None` if the fill equals the outline.
-fn filled_area(p: &Part, outline: &Outline, map: &dyn Map, tolerance: f64) -> Option<Outline> {
+fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<Outline> {
     /// Samples along a line.
     const SAMPLES: u32 = 16;
+    let (p, outline, map) = (t.part, &t.outline, t.map);
     let bends = |a: Point, b: Point| {
         let (from, to) = (map.point(a), map.point(b));
         (1..SAMPLES).any(|i| {
@@ -110,6 +112,7 @@ fn filled_area(p: &Part, outline: &Outline, map: &dyn Map, tolerance: f64) -> Op
         if open(&s) {
             s.segs.push(Seg::Line(Line::new(s.end(), s.start)));
             s.closed = true;
+            stubs::drop_closing_stub(&mut s, t.rounding);
         }
         s
     };
