@@ -33,7 +33,7 @@ fn difference(a: &Path, b: &Path) -> f64 {
         // White below: transparent pixels have no colour.
         for p in paper.data_mut().chunks_exact_mut(4) {
             let rest = 255 - p[3];
-            p.iter_mut().for_each(|c| *c += rest);
+            p.iter_mut().for_each(|c| *c = c.saturating_add(rest));
         }
         paper
     });

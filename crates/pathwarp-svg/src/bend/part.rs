@@ -6,7 +6,7 @@ use super::options::{Gradients, Strokes, WarpOptions};
 use super::outcome::{StrokeOutcome, WarpedPart};
 use super::paint::{self, PaintFit};
 use super::picture::{BentImage, PictureError};
-use super::shading::Shading;
+use super::shading::{Seen, Shading};
 use super::stroke;
 use super::stubs;
 use super::task::PartTask;
@@ -129,6 +129,9 @@ fn follows_fit(p: &Part, warped: &WarpedPart, options: &WarpOptions) -> bool {
         || stroke.is_some_and(|s| follows(s.paint(), warped.stroke_image.is_some() || p.stroke_tiles.is_some()))
 }
 
+/// Tolerance for a shape's inside, as a fraction of its width.
+const INSIDE: f64 = 1e-3;
+
 /// Returns the gradient of a paint if it must become a picture to look right.
 fn shading(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>) -> Option<Shading> {
     let (p, options) = (t.part, t.options());
@@ -139,7 +142,13 @@ fn shading(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>) -> Option<Sha
     }
     let shading = Shading::of(paint)?;
     let map = t.context.map;
-    let wrong = fit.is_none_or(|f| shading.differs_from(&f, painted_area(p), p.frame, t.back, map));
+    let strict = matches!(options.gradients, Gradients::Exact(_));
+    // Only a fill has an inside; a gradient on a stroke is compared over the whole box.
+    let is_fill = p.fill.as_ref().is_some_and(|f| std::ptr::eq(f.paint(), paint));
+    let inside =
+        (is_fill && !strict).then(|| p.local.to_bez_path(INSIDE * p.local.bounding_box().map_or(1.0, |b| b.width())));
+    let seen = Seen { strict, inside: inside.as_ref(), area: painted_area(p) };
+    let wrong = fit.is_none_or(|f| shading.differs_from(&f, &seen, p.frame, t.back, map));
     wrong.then_some(shading)
 }
 
@@ -156,7 +165,7 @@ fn painted(
     target: &BezPath,
     unpainted: &mut Option<PictureError>,
 ) -> Option<BentImage> {
-    let Gradients::Exact(painter) = &t.options().gradients else { return None };
+    let (Gradients::Exact(painter) | Gradients::Auto(painter)) = &t.options().gradients else { return None };
     let request = GradientRequest {
         color: &|q| shading.color(q),
         area: painted_area(t.part),

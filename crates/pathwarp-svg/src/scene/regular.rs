@@ -65,8 +65,8 @@ pub(super) fn polygon(s: &Subpath, tolerance: f64) -> Outline {
 #[cfg(test)]
 mod tests {
     use crate::scene::expand::stroke_outline;
-    use pathwarp::Outline;
     use pathwarp::kurbo::{ParamCurveNearest as _, Point, Shape as _};
+    use pathwarp::{Outline, Seg};
     use usvg::{Node, Options, Tree};
 
     /// Paths with every kind of degenerate segment, at the start, inside, at the end, and before `Z`.
@@ -113,7 +113,7 @@ mod tests {
             for width in [0.2, 4.0] {
                 let round = format!("stroke-width='{width}' stroke-linecap='round' stroke-linejoin='round'");
                 let covered = stroke_outline(&path, &stroke(&round), 1e-3).to_bez_path(1e-4);
-                let segs: Vec<_> = path.segs().map(|s| s.to_cubic()).collect();
+                let segs: Vec<_> = path.segs().map(Seg::to_cubic).collect();
                 for i in 0..60 * 60 {
                     let p = Point::new(f64::from(i % 60) * 1.7, f64::from(i / 60) * 1.7);
                     let off = segs.iter().map(|s| s.nearest(p, 1e-6).distance_sq.sqrt()).fold(f64::INFINITY, f64::min);
