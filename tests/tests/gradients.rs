@@ -87,3 +87,35 @@ fn a_gradient_that_can_follow_stays_one() {
     assert_eq!((svg.matches("<image").count(), pictures(&report)), (0, 0), "{svg}");
     assert!(report["inputs"][0]["shapes"][0]["paint_residual"].as_f64().unwrap() > 0.1, "{report}");
 }
+
+/// By default, a gradient becomes a picture only if its fit would be noticed.
+#[test]
+fn gradients_that_would_look_wrong_are_exact_by_default() {
+    for (name, body, count) in GRADIENTS {
+        let (auto, svg, report) = bent(body, "auto");
+        let (fitted, ..) = bent(body, "fit");
+        println!("{name}: {:.2} / 255 by default, {:.2} / 255 fitted", auto.mean, fitted.mean);
+        assert!(auto.mean <= 1.0 && fitted.mean > 2.0 * auto.mean, "{name}: {auto:?} and {fitted:?}");
+        assert!((1..=*count).contains(&pictures(&report)), "{name}");
+        // The default is `auto`.
+        let dir = tempfile::tempdir().unwrap();
+        let run = |args: &[&str]| {
+            pathwarp_in(
+                dir.path(),
+                &[&["expr", "--x", "x + 6*sin(y/30)", "--y", "y + 8*sin(x/25)"], args].concat(),
+                drawing(body).as_bytes(),
+            )
+        };
+        assert_eq!(String::from_utf8(run(&[]).stdout).unwrap(), svg);
+    }
+    // Six levels of difference: visible in a comparison, not by itself.
+    let soft = "<linearGradient id='a'><stop stop-color='#555'/><stop offset='1' stop-color='#777'/></linearGradient>\
+                <rect width='90' height='90' fill='url(#a)'/>";
+    let count = |way: &str| pictures(&bent(soft, way).2);
+    assert_eq!((count("auto"), count("exact"), count("fit")), (0, 1, 0));
+    // A hard edge that moves a little.
+    let hard = "<linearGradient id='a'><stop offset='.5' stop-color='red'/><stop offset='.5' stop-color='blue'/>\
+                </linearGradient><rect width='6' height='6' fill='url(#a)'/>";
+    assert_eq!(pictures(&bent(hard, "auto").2), 0);
+    assert_eq!(pictures(&bent(&hard.replace("'6'", "'90'"), "auto").2), 1);
+}

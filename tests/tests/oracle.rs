@@ -109,12 +109,13 @@ fn read(path: &Path) -> Document {
     Document::read(&fs::read(path).unwrap(), "test", &ReadOptions::default()).unwrap()
 }
 
-/// Runs the program on a sample and checks every shape and the report. Strokes are kept, so that every shape of the input is one
-/// shape of the output.
+/// Runs the program on a sample and checks every shape and the report. Strokes are kept and gradients fitted, so that every shape
+/// of the input is one shape of the output.
 fn check(name: &str, deformation: &str, args: &[(&str, &str)], tolerance: Option<&str>) {
     let dir = tempfile::tempdir().unwrap();
     let (out, report) = (dir.path().join("out.svg"), dir.path().join("r.json"));
     let mut line = vec![deformation.to_owned(), sample(name).display().to_string(), "--strokes".into(), "keep".into()];
+    line.extend(["--gradients".into(), "fit".into()]);
     for (k, v) in args {
         line.extend([format!("--{k}"), (*v).to_owned()]);
     }

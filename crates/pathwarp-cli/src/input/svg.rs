@@ -65,6 +65,7 @@ impl SvgArtwork {
         let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), options.image_dpi));
         let gradients = match options.gradients {
             GradientChoice::Fit => Gradients::Fit,
+            GradientChoice::Auto => Gradients::Auto(bender.clone()),
             GradientChoice::Exact => Gradients::Exact(bender.clone()),
             GradientChoice::Keep => Gradients::Keep,
         };

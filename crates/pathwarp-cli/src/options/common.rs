@@ -24,8 +24,9 @@ pub(crate) enum FrameChoice {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum GradientChoice {
     #[default]
-    Fit,
+    Auto,
     Exact,
+    Fit,
     Keep,
 }
 

@@ -14,5 +14,6 @@ pub(crate) mod picture;
 mod shading;
 pub(crate) mod slots;
 mod stroke;
+mod stubs;
 mod task;
 pub(crate) mod tiles;

@@ -66,7 +66,10 @@ pub enum Gradients {
     /// Transform them by the map's best affine fit over the painted shape.
     #[default]
     Fit,
-    /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would be visibly wrong.
+    /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would look wrong: if its colour is off by more
+    /// than 3 % over more than 1 % of the shape.
+    Auto(Arc<dyn GradientPainter>),
+    /// The same if the colour would be off by more than 0.6 % anywhere.
     Exact(Arc<dyn GradientPainter>),
     /// Leave them unchanged.
     Keep,
@@ -76,6 +79,7 @@ impl fmt::Debug for Gradients {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Fit => "Fit",
+            Self::Auto(_) => "Auto",
             Self::Exact(_) => "Exact",
             Self::Keep => "Keep",
         })
@@ -86,7 +90,7 @@ impl PartialEq for Gradients {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Fit, Self::Fit) | (Self::Keep, Self::Keep) => true,
-            (Self::Exact(a), Self::Exact(b)) => Arc::ptr_eq(a, b),
+            (Self::Exact(a), Self::Exact(b)) | (Self::Auto(a), Self::Auto(b)) => Arc::ptr_eq(a, b),
             _ => false,
         }
     }
@@ -195,7 +199,7 @@ impl WarpOptions {
 
     /// Returns `true` if `gradients` allows for pictures.
     pub(crate) fn paints_gradients(&self) -> bool {
-        matches!(self.gradients, Gradients::Exact(_))
+        matches!(self.gradients, Gradients::Exact(_) | Gradients::Auto(_))
     }
 }
 

@@ -6,13 +6,14 @@ use super::options::{Gradients, Strokes, WarpOptions};
 use super::outcome::{StrokeOutcome, WarpedPart};
 use super::paint::{self, PaintFit};
 use super::picture::{BentImage, PictureError};
-use super::shading::Shading;
+use super::shading::{Seen, Shading};
 use super::stroke;
+use super::stubs;
 use super::task::PartTask;
 use crate::scene::affine::stretch;
 use crate::scene::model::{Part, PartRole};
 use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Rect, Shape as _};
-use pathwarp::map::{Class, Map};
+use pathwarp::map::Class;
 use pathwarp::outline::Subpath;
 use pathwarp::{GeometryError, Outline, Seg};
 use usvg::Paint;
@@ -77,7 +78,7 @@ fn filled(t: &PartTask<'_>, path: BezPath) -> Result<(BezPath, Option<BezPath>),
     // With `Strokes::Keep`, each centre line is to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
     let tolerance = t.options().refit.tolerance;
-    let area = filled_area(t.part, &t.outline, t.map, tolerance).filter(|a| closes || a.is_empty());
+    let area = filled_area(t, tolerance).filter(|a| closes || a.is_empty());
     Ok(match area {
         None => (path, None),
         Some(area) if area.is_empty() => (path, Some(BezPath::new())),
@@ -88,9 +89,10 @@ fn filled(t: &PartTask<'_>, path: BezPath) -> Result<(BezPath, Option<BezPath>),
 
 /// Closes the subpaths of a fill if the map bends one of the closing lines, which are not drawn. Subpaths that enclose nothing
 /// are dropped. Returns `None` if the fill equals the outline.
-fn filled_area(p: &Part, outline: &Outline, map: &dyn Map, tolerance: f64) -> Option<Outline> {
+fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<Outline> {
     /// Samples along a line.
     const SAMPLES: u32 = 16;
+    let (p, outline, map) = (t.part, &t.outline, t.map);
     let bends = |a: Point, b: Point| {
         let (from, to) = (map.point(a), map.point(b));
         (1..SAMPLES).any(|i| {
@@ -111,6 +113,7 @@ fn filled_area(p: &Part, outline: &Outline, map: &dyn Map, tolerance: f64) -> Op
         if open(&s) {
             s.segs.push(Seg::Line(Line::new(s.end(), s.start)));
             s.closed = true;
+            stubs::drop_closing_stub(&mut s, t.rounding);
         }
         s
     };
@@ -127,6 +130,9 @@ fn follows_fit(p: &Part, warped: &WarpedPart, options: &WarpOptions) -> bool {
         || stroke.is_some_and(|s| follows(s.paint(), warped.stroke_image.is_some() || p.stroke_tiles.is_some()))
 }
 
+/// Tolerance for a shape's inside, as a fraction of its width.
+const INSIDE: f64 = 1e-3;
+
 /// Returns the gradient of a paint if it must become a picture to look right.
 fn shading(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>) -> Option<Shading> {
     let (p, options) = (t.part, t.options());
@@ -137,7 +143,13 @@ fn shading(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>) -> Option<Sha
     }
     let shading = Shading::of(paint)?;
     let map = t.context.map;
-    let wrong = fit.is_none_or(|f| shading.differs_from(&f, painted_area(p), p.frame, t.back, map));
+    let strict = matches!(options.gradients, Gradients::Exact(_));
+    // Only a fill has an inside; a gradient on a stroke is compared over the whole box.
+    let is_fill = p.fill.as_ref().is_some_and(|f| std::ptr::eq(f.paint(), paint));
+    let inside =
+        (is_fill && !strict).then(|| p.local.to_bez_path(INSIDE * p.local.bounding_box().map_or(1.0, |b| b.width())));
+    let seen = Seen { strict, inside: inside.as_ref(), area: painted_area(p) };
+    let wrong = fit.is_none_or(|f| shading.differs_from(&f, &seen, p.frame, t.back, map));
     wrong.then_some(shading)
 }
 
@@ -154,7 +166,7 @@ fn painted(
     target: &BezPath,
     unpainted: &mut Option<PictureError>,
 ) -> Option<BentImage> {
-    let Gradients::Exact(painter) = &t.options().gradients else { return None };
+    let (Gradients::Exact(painter) | Gradients::Auto(painter)) = &t.options().gradients else { return None };
     let request = GradientRequest {
         color: &|q| shading.color(q),
         area: painted_area(t.part),

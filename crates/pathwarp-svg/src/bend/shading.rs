@@ -2,7 +2,7 @@
 
 use super::paint::PaintFit;
 use crate::scene::affine::{affine, is_invertible};
-use pathwarp::kurbo::{Affine, Point, Rect};
+use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
 use pathwarp::map::Map;
 use usvg::{Paint, SpreadMethod};
 
@@ -99,28 +99,51 @@ impl Shading {
         }
     }
 
-    /// Returns `true` if the affine fit is visibly wrong: somewhere in the shape's box, its colour differs from the map's.
+    /// Returns `true` if the affine fit is visibly wrong: its colours differ from the map's.
     pub(super) fn differs_from(
         &self,
         fit: &PaintFit,
-        area: Rect,
+        seen: &Seen<'_>,
         placed: Affine,
         after: Affine,
         map: &dyn Map,
     ) -> bool {
-        /// Smallest visible difference: more than one of 255 levels.
-        const SEEN: f64 = 1.5 / 255.0;
         /// Samples along a side. They avoid the symmetry axes of the box, where stops tend to be.
         const N: u32 = 24;
+        let (least, share) = if seen.strict { (SMALLEST, 0.0) } else { (NOTICED, NOTICED_SHARE) };
+        let area = seen.area;
         let back = fit.affine.inverse();
         let at = |k: u32| (f64::from(k) + 0.37) / f64::from(N);
-        (0..N * N).any(|k| {
-            let p = Point::new(area.x0 + at(k % N) * area.width(), area.y0 + at(k / N) * area.height());
+        let points =
+            (0..N * N).map(|k| Point::new(area.x0 + at(k % N) * area.width(), area.y0 + at(k / N) * area.height()));
+        let (mut off, mut count) = (0, 0);
+        for p in points.filter(|p| seen.inside.is_none_or(|i| i.contains(*p))) {
             let q = back * (after * map.point(placed * p));
             let (expected, found) = (premultiplied(self.color(p)), premultiplied(self.color(q)));
-            q.is_finite() && expected.iter().zip(found).any(|(w, f)| (w - f).abs() > SEEN)
-        })
+            count += 1;
+            off += u32::from(q.is_finite() && expected.iter().zip(found).any(|(w, f)| (w - f).abs() > least));
+            if seen.strict && off > 0 {
+                return true;
+            }
+        }
+        f64::from(off) > share * f64::from(count)
     }
+}
+
+/// Smallest visible difference: more than one of 255 levels.
+const SMALLEST: f64 = 1.5 / 255.0;
+/// Smallest difference that is noticed without a comparison.
+const NOTICED: f64 = 8.0 / 255.0;
+/// The fraction of the shape on which it must be exceeded. Less are edges between hard stops, which move a little.
+const NOTICED_SHARE: f64 = 0.01;
+
+/// The place where colours are compared.
+pub(super) struct Seen<'a> {
+    /// Every visible difference counts, not only those that are noticed.
+    pub(super) strict: bool,
+    /// The part of the area that counts; `None` for all of it.
+    pub(super) inside: Option<&'a BezPath>,
+    pub(super) area: Rect,
 }
 
 fn premultiplied([r, g, b, a]: [f64; 4]) -> [f64; 4] {

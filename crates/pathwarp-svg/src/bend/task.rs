@@ -2,6 +2,7 @@
 
 use super::letters::{LetterPiece, placed};
 use super::options::WarpOptions;
+use super::stubs;
 use crate::scene::affine::stretch;
 use crate::scene::model::Part;
 use crate::source::number::MOST_DECIMALS;
@@ -68,6 +69,8 @@ impl<'a> PartTask<'a> {
             if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
         });
         let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
+        let mut outline = outline;
+        outline.subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
         Self { part, context, write, back: write.inverse(), pieces, whole, outline, map, decimals, rounding }
     }
 

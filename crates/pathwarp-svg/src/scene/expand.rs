@@ -1,6 +1,7 @@
 //! Expands strokes to filled outlines.
 
-use pathwarp::kurbo::{self, Cap, Circle, Join, Point, Rect, Shape as _, StrokeOpts};
+use super::regular::{is_point, polygon, regular};
+use pathwarp::kurbo::{self, Cap, Circle, Join, Rect, Shape as _, StrokeOpts};
 use pathwarp::{Outline, Seg};
 use usvg::{LineCap, LineJoin, Stroke};
 
@@ -38,8 +39,18 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     // Subpaths of zero length show only their caps.
     let (points, lines): (Vec<_>, Vec<_>) =
         local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
-    let path = Outline { subpaths: lines }.to_bez_path(tolerance);
-    let mut out: Outline = (&kurbo::stroke(path, &style, &StrokeOpts::default(), tolerance)).into();
+    let expanded = |o: &Outline| -> Outline {
+        (&kurbo::stroke(o.to_bez_path(tolerance), &style, &StrokeOpts::default(), tolerance)).into()
+    };
+    let mut out = Outline { subpaths: Vec::new() };
+    for s in lines {
+        let s = regular(&s, tolerance);
+        let mut edge = expanded(&Outline { subpaths: vec![s.clone()] });
+        if !is_finite(&edge) {
+            edge = expanded(&polygon(&s, tolerance));
+        }
+        out.subpaths.extend(edge.subpaths);
+    }
     let reach = width / 2.0;
     for s in points.iter().filter(|s| s.closed || !s.segs.is_empty()) {
         let dot = match cap {
@@ -52,10 +63,9 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     out
 }
 
-/// Returns `true` if the whole segment is the point `at`.
-pub(crate) fn is_point(s: &Seg, at: Point) -> bool {
-    let c = s.to_cubic();
-    [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
+/// Returns `true` if all control points of an outline are finite.
+fn is_finite(o: &Outline) -> bool {
+    o.segs().map(Seg::to_cubic).all(|c| [c.p0, c.p1, c.p2, c.p3].iter().all(|p| p.is_finite()))
 }
 
 /// Length of the control polygons, an upper bound of the path's length.

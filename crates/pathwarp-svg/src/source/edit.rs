@@ -1,11 +1,13 @@
 //! Edits to the source text: attributes, style properties, tags and whole elements. Everything else stays as it is, byte for
 //! byte.
 
+use super::element::Attr;
 use super::style::{declared, with_declaration};
 use super::tags::{ElementId, Namespace};
 use super::text::SourceText;
 use super::xml::escape;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Edits of one element.
 #[derive(Debug, Default)]
@@ -13,6 +15,8 @@ struct Change {
     /// New values; `None` removes the attribute.
     attrs: Vec<(&'static str, Option<String>)>,
     properties: Vec<(&'static str, String)>,
+    /// Ranges of attributes to remove, whatever their namespace.
+    removed: Vec<Range<usize>>,
     tag: Option<&'static str>,
     /// Replaces the content.
     content: Option<String>,
@@ -55,6 +59,15 @@ impl<'a> Edits<'a> {
         let attrs = &mut self.change(e).attrs;
         attrs.retain(|a| a.0 != name);
         attrs.push((name, None));
+    }
+
+    /// Removes the attributes that satisfy a condition.
+    pub(crate) fn remove_attrs(&mut self, e: ElementId, mut condition: impl FnMut(&Attr) -> bool) {
+        let hits: Vec<_> =
+            self.source.elements[e].attrs.iter().filter(|a| condition(a)).map(|a| a.range.clone()).collect();
+        if !hits.is_empty() {
+            self.change(e).removed.extend(hits);
+        }
     }
 
     pub(crate) fn rename(&mut self, e: ElementId, tag: &'static str) {
@@ -170,16 +183,14 @@ fn patch(source: &SourceText, e: ElementId, c: Change, out: &mut Vec<(usize, usi
                         set = true;
                     }
                 }
-                None => {
-                    let before = text[..a.range.start].trim_end().len();
-                    out.push((before, a.range.end, String::new()));
-                }
+                None => out.push(removal(text, &a.range)),
             }
         }
         if let (Some(v), false) = (&value, set) {
             added.push_str(&format!(" {name}=\"{}\"", escape(v)));
         }
     }
+    out.extend(c.removed.iter().map(|r| removal(text, r)));
     let slash = usize::from(text.as_bytes().get(el.open_end.wrapping_sub(2)) == Some(&b'/'));
     let end = text[..el.open_end - 1 - slash].trim_end().len();
     if !added.is_empty() {
@@ -205,6 +216,11 @@ fn patch(source: &SourceText, e: ElementId, c: Change, out: &mut Vec<(usize, usi
             }
         }
     }
+}
+
+/// Removes an attribute with the space before it.
+fn removal(text: &str, attr: &Range<usize>) -> (usize, usize, String) {
+    (text[..attr.start].trim_end().len(), attr.end, String::new())
 }
 
 /// Escapes a value for the given kind of quotes.

@@ -2,7 +2,7 @@
 
 use super::element::{Attr, Element};
 use super::marks::{self, TextPatch};
-use super::tags::{ElementId, INKSCAPE, Namespace, SVG, XLINK, XML};
+use super::tags::{ElementId, Namespace, SVG};
 use super::unpatchable::Unpatchable;
 use memchr::memrchr;
 use std::borrow::Cow;
@@ -111,13 +111,7 @@ fn element(places: &Places<'_>, node: roxmltree::Node<'_, '_>, parent: Option<El
         let full = a.range_qname();
         let mut attr = Attr {
             name: moved(&(full.end.checked_sub(a.name().len())?..full.end), shift),
-            namespace: match a.namespace() {
-                None => Namespace::None,
-                Some(XLINK) => Namespace::Xlink,
-                Some(XML) => Namespace::Xml,
-                Some(INKSCAPE) => Namespace::Inkscape,
-                Some(_) => Namespace::Other,
-            },
+            namespace: Namespace::of(a.namespace()),
             range: moved(&r, shift),
             value_range: moved(&v, shift),
             value: (raw != a.value()).then(|| a.value().to_owned()),

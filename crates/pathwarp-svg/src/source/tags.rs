@@ -4,6 +4,8 @@ pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
 pub(crate) const XLINK: &str = "http://www.w3.org/1999/xlink";
 pub(crate) const XML: &str = "http://www.w3.org/XML/1998/namespace";
 pub(crate) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
+/// End of the namespace of Sodipodi, whose host has changed over the years.
+const SODIPODI: &str = "/DTD/sodipodi-0.dtd";
 
 /// An element's number in document order.
 pub(crate) type ElementId = usize;
@@ -15,7 +17,22 @@ pub(crate) enum Namespace {
     Xlink,
     Xml,
     Inkscape,
+    Sodipodi,
     Other,
+}
+
+impl Namespace {
+    /// The namespace with the given URI.
+    pub(crate) fn of(uri: Option<&str>) -> Self {
+        match uri {
+            None => Self::None,
+            Some(XLINK) => Self::Xlink,
+            Some(XML) => Self::Xml,
+            Some(INKSCAPE) => Self::Inkscape,
+            Some(uri) if uri.ends_with(SODIPODI) => Self::Sodipodi,
+            Some(_) => Self::Other,
+        }
+    }
 }
 
 /// Returns `true` for the basic shapes and `path`.

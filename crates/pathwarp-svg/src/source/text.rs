@@ -2,6 +2,7 @@
 
 use super::element::{Attr, Element};
 use super::marks::{self, Marks};
+use super::prefixes;
 use super::style;
 use super::table::Table;
 use super::tags::{ElementId, Namespace, is_animation, is_tracked};
@@ -14,6 +15,9 @@ use std::ops::Range;
 use std::sync::OnceLock;
 use usvg::roxmltree;
 
+/// Limit on prefixes to declare. Each costs one parse.
+const MOST_PREFIXES: usize = 16;
+
 /// The text and its elements.
 #[derive(Debug)]
 pub(crate) struct SourceText {
@@ -25,6 +29,8 @@ pub(crate) struct SourceText {
     pub(crate) animated: bool,
     /// Reason why the text cannot be patched in place.
     pub(crate) unpatchable: Option<Unpatchable>,
+    /// Namespace prefixes that the file did not declare; the text does.
+    pub(crate) undeclared: Vec<String>,
     marks: Marks,
     // The rest is computed on first use.
     by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
@@ -41,17 +47,30 @@ impl SourceText {
         name: &str,
         then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
     ) -> Result<(Self, T), Error> {
-        if let Some(marked) = marks::mark(&text)
-            && let Ok(doc) = xml::parse(&marked.text, name)
-            && let Some(table) = Table::of(&doc, &marked.patches)
-            && table.unpatchable.is_none()
-            && table.elements.len() == marked.elements
-        {
-            let source = Self::new(text, table, marked.marks);
+        let mut text = text;
+        let mut undeclared = Vec::new();
+        while let Some(marked) = marks::mark(&text) {
+            let doc = match xml::document(&marked.text) {
+                Ok(doc) => doc,
+                Err(roxmltree::Error::UnknownNamespace(prefix, _)) => match prefixes::declared(&text, &prefix) {
+                    Some(mended) if undeclared.len() < MOST_PREFIXES => {
+                        text = mended;
+                        undeclared.push(prefix);
+                        continue;
+                    }
+                    _ => break,
+                },
+                Err(_) => break,
+            };
+            let Some(table) = Table::of(&doc, &marked.patches) else { break };
+            if table.unpatchable.is_some() || table.elements.len() != marked.elements {
+                break;
+            }
+            let source = Self { undeclared, ..Self::new(text, table, marked.marks) };
             let result = then(&source, &doc)?;
             return Ok((source, result));
         }
-        let mut source = Self::parse(text, name)?;
+        let mut source = Self { undeclared, ..Self::parse(text, name)? };
         let (marked, marks) = source.instrumented();
         source.marks = marks;
         // Without reliable positions, ids cannot be inserted.
@@ -84,6 +103,7 @@ impl SourceText {
             css,
             animated,
             unpatchable,
+            undeclared: Vec::new(),
             marks,
             by_id: OnceLock::new(),
             by_tree_id: OnceLock::new(),

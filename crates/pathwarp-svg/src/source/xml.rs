@@ -4,12 +4,18 @@ use memchr::memchr3;
 use pathwarp::Error;
 use usvg::roxmltree;
 
+/// Limit on elements, text and comment nodes together. usvg accepts at most a million elements.
+const MOST: u32 = 4_000_000;
+
+/// Parses XML.
+pub(crate) fn document(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error> {
+    let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MOST, ..Default::default() };
+    roxmltree::Document::parse_with_options(text, options)
+}
+
 /// Parses XML. `name` identifies the text in errors.
 pub(crate) fn parse<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
-    /// Limit on elements, text and comment nodes together. usvg accepts at most a million elements.
-    const MOST: u32 = 4_000_000;
-    let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MOST, ..Default::default() };
-    roxmltree::Document::parse_with_options(text, options).map_err(|e| {
+    document(text).map_err(|e| {
         if matches!(e, roxmltree::Error::NodesLimitReached) {
             return Error::input(name, format!("it has more than {MOST} elements, texts and comments"));
         }

@@ -1,7 +1,7 @@
 //! Writes a warped document: patched in place, or flattened.
 
 use super::input::WriteInput;
-use super::{flat, keep, page};
+use super::{flat, keep, page, unsupported};
 use crate::bend::options::{Structure, WarpOptions};
 use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
 use crate::scene::drawing::Drawing;
@@ -11,10 +11,13 @@ use pathwarp::Error;
 /// Writes the document to `out`, with warnings and everything skipped.
 pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
     let structure = input.options.structure;
-    let unread = unread_images(input.drawing, input.options);
+    let unread = unread_images(input.drawing, input.options).chain(unsupported::elements(input));
     let mut notes = Notes::default();
     for note in &input.scene.notes {
         notes.add(note.text, &note.name);
+    }
+    for prefix in &input.source.undeclared {
+        notes.add("the file used namespace prefixes without declaring them; the result declares them", prefix);
     }
     let patched = match (structure, &input.scene.unpatchable) {
         (Structure::Flatten, _) => None,

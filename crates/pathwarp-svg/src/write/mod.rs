@@ -15,4 +15,5 @@ mod masks;
 mod page;
 mod patterns;
 mod style;
+mod unsupported;
 mod values;

@@ -1,7 +1,7 @@
 //! Animations under a warp. They stay unless they move a warped shape, or apply to an element that has become a group.
 
 use super::keeper::{GEOMETRY, Keeper};
-use crate::bend::bitmap::EmbeddedImage;
+use super::warped::Warped;
 use crate::source::tags::{ElementId, is_animation};
 use crate::source::text::SourceText;
 
@@ -19,12 +19,11 @@ enum Animated {
 }
 
 /// Removes animations that no longer fit.
-pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>) {
+pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>, warped: &Warped) {
     let source = k.source;
     if !source.animated {
         return;
     }
-    let (warped, around) = warped_elements(k);
     for a in (0..source.elements.len()).filter(|&a| is_animation(&source.elements[a].tag)) {
         let target = match source.href(a) {
             Some(id) => source.by_id().get(&id).and_then(|all| all.first().copied()),
@@ -32,33 +31,14 @@ pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>) {
         };
         let Some(target) = target else { continue };
         let why = match animated(source, a) {
-            Animated::Geometry if warped[target] => OF_GEOMETRY,
-            Animated::Position if around[target] => OF_POSITION,
+            Animated::Geometry if warped.own[target] => OF_GEOMETRY,
+            Animated::Position if warped.within[target] => OF_POSITION,
             Animated::Paint if k.fragments.contains(&target) => OF_PAINT,
             _ => continue,
         };
         k.edits.replace(a, String::new());
         k.writer.notes.add(why, &source.display_name(target));
     }
-}
-
-/// Determines for every element whether it is warped, and whether it contains anything warped.
-fn warped_elements(k: &Keeper<'_, '_>) -> (Vec<bool>, Vec<bool>) {
-    let (scene, count) = (k.input.scene, k.source.elements.len());
-    let (mut warped, mut around) = (vec![false; count], vec![false; count]);
-    let parts = scene.parts.iter().zip(k.input.outcomes);
-    let parts = parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element());
-    let bitmaps = scene.bitmaps.iter().zip(k.input.images);
-    let bitmaps = bitmaps.filter(|b| matches!(b.1, EmbeddedImage::Bent(_))).filter_map(|b| b.0.owner);
-    for e in parts.chain(bitmaps) {
-        warped[e] = true;
-        for a in k.source.ancestors(e) {
-            if std::mem::replace(&mut around[a], true) {
-                break;
-            }
-        }
-    }
-    (warped, around)
 }
 
 /// The animations among the children of an element whose content is replaced, except those that no longer fit.

@@ -5,6 +5,7 @@ use super::keeper::{Keeper, NO_EFFECTS};
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::outcome::Skipped;
 use crate::scene::model::{Group, Node};
+use crate::source::live::is_live;
 use crate::source::tags::{ElementId, Namespace};
 use crate::write::values::{bent_attributes, bent_url};
 use pathwarp::kurbo::Affine;
@@ -20,6 +21,9 @@ pub(super) fn bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
                 k.edits.set_attr(e, name, value);
             }
             k.edits.set_attr(e, "href", bent_url(bent));
+            let text = &k.source.text;
+            // Inkscape's path to the file that the image was linked to.
+            k.edits.remove_attrs(e, |a| a.namespace == Namespace::Sodipodi && a.name(text) == "absref");
             return;
         }
         (EmbeddedImage::Bent(_), None) => "its element was not found; it is placed by the best affine fit".to_owned(),
@@ -49,14 +53,16 @@ pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
         return;
     }
     let source = k.source;
+    let text = &source.text;
     let is_kept =
         |name: &str| name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
     let el = &source.elements[e];
     let mut head: String = el
         .attrs
         .iter()
-        .filter(|a| is_kept(a.name(&source.text)) || matches!(a.namespace, Namespace::Inkscape))
-        .map(|a| format!(" {}", &source.text[a.range.clone()]))
+        .filter(|a| is_kept(a.name(text)) || matches!(a.namespace, Namespace::Inkscape | Namespace::Sodipodi))
+        .filter(|a| !is_live(a, text))
+        .map(|a| format!(" {}", &text[a.range.clone()]))
         .collect();
     let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
     k.fragments.insert(e);

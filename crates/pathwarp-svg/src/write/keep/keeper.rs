@@ -3,6 +3,7 @@
 use crate::bend::bitmap::EmbeddedImage;
 use crate::scene::model::Node;
 use crate::source::edit::Edits;
+use crate::source::live::is_live;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::write::defs::Replaced;
@@ -73,7 +74,8 @@ impl<'a, 'w> Keeper<'a, 'w> {
     /// An element's attributes except `omitted`, as written in the source.
     pub(super) fn attributes_without(&self, e: ElementId, omitted: &[&str]) -> String {
         let el = &self.source.elements[e];
-        let kept = el.attrs.iter().filter(|a| !omitted.contains(&a.name(&self.source.text)));
+        let text = &self.source.text;
+        let kept = el.attrs.iter().filter(|a| !omitted.contains(&a.name(text)) && !is_live(a, text));
         kept.map(|a| format!(" {}", &self.source.text[a.range.clone()])).collect()
     }
 

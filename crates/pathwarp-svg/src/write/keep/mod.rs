@@ -4,20 +4,24 @@ mod animations;
 mod clips;
 mod copies;
 mod keeper;
+mod live;
 mod shape;
 mod text;
 mod walk;
+mod warped;
 
 use super::fragment::Writer;
 use super::input::WriteInput;
 use super::page;
 use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
+use crate::source::live::is_live;
 use crate::source::number::matrix;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
 use keeper::Keeper;
 use pathwarp::kurbo::Affine;
+use warped::Warped;
 
 /// Patches the text.
 pub(super) fn write(
@@ -31,7 +35,9 @@ pub(super) fn write(
     clips::masks(&mut k)?;
     walk::group(&mut k, &input.scene.root);
     slots(&mut k);
-    animations::remove_unfit(&mut k);
+    let warped = Warped::new(input);
+    live::let_go(&mut k, &warped);
+    animations::remove_unfit(&mut k, &warped);
     for (name, value) in page::attributes(input).into_iter().flatten() {
         k.edits.set_attr(0, name, value);
     }
@@ -48,6 +54,7 @@ fn slots(k: &mut Keeper<'_, '_>) {
         {
             let own = k.input.drawing.own_transform(e);
             k.edits.set_attr(e, "transform", matrix(own * placed.fit));
+            k.edits.remove_attrs(e, |a| is_live(a, &k.source.text));
         }
     }
 }

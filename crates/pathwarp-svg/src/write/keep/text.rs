@@ -4,8 +4,10 @@ use super::animations;
 use super::keeper::{Keeper, NO_EFFECTS};
 use crate::scene::letters::{inside, is_named, is_naming};
 use crate::scene::model::Group;
-use crate::source::tags::ElementId;
+use crate::source::live::is_live;
+use crate::source::tags::{ElementId, Namespace};
 use crate::source::text::SourceText;
+use std::ops::Range;
 
 /// A named element of a text, with its content in painting order.
 struct TextSpan {
@@ -130,7 +132,8 @@ impl SpanWriter<'_, '_, '_, '_> {
         let again = self.seen.contains(&element);
         self.seen.push(element);
         let text = &source.text;
-        let kept = el.attrs.iter().filter(|a| is_naming(a, text) && !(again && a.name(text) == "id"));
+        let kept =
+            el.attrs.iter().filter(|a| is_naming(a, text) && !is_live(a, text) && !(again && a.name(text) == "id"));
         let mut head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
         if source.has_css() {
             head.push_str(NO_EFFECTS);
@@ -142,6 +145,24 @@ impl SpanWriter<'_, '_, '_, '_> {
     }
 }
 
+/// Positions of the elements of a text that start a line: Inkscape's lines, and each `tspan` that goes back to the left and
+/// down. Letters placed one by one do not go down.
+fn line_starts(source: &SourceText, text: ElementId) -> Vec<usize> {
+    let mut last = source.attr(text, "y");
+    let mut out = Vec::new();
+    for e in inside(source, text) {
+        let is_line = source.attr_in(e, Namespace::Sodipodi, "role").is_some_and(|r| r == "line");
+        let (y, dy) = (source.attr(e, "y"), source.attr(e, "dy"));
+        let moves_down = dy.is_some_and(|dy| dy.contains(|c: char| matches!(c, '1'..='9')))
+            || y.as_ref().is_some_and(|y| last.as_ref().is_some_and(|last| last != y));
+        if is_line || moves_down && source.attr(e, "x").is_some() {
+            out.push(source.elements[e].range.start);
+        }
+        last = y.or(last);
+    }
+    out
+}
+
 /// The words of a text, without tags and elements that are not drawn.
 fn words(source: &SourceText, e: ElementId) -> String {
     let el = &source.elements[e];
@@ -151,11 +172,18 @@ fn words(source: &SourceText, e: ElementId) -> String {
         .descendants(e)
         .map(|c| &source.elements[c])
         .filter(|c| matches!(c.tag.as_ref(), "title" | "desc" | "metadata" | "style" | "script"));
+    // Text to skip, and positions of line breaks.
+    let mut gaps: Vec<Range<usize>> =
+        hidden.map(|h| h.range.clone()).chain(line_starts(source, e).into_iter().map(|at| at..at)).collect();
+    gaps.sort_by_key(|g| g.start);
     let mut raw = String::new();
     let mut at = el.open_end;
-    for h in hidden {
-        raw.push_str(text.get(at..h.range.start).unwrap_or(""));
-        at = at.max(h.range.end);
+    for gap in gaps {
+        raw.push_str(text.get(at..gap.start).unwrap_or(""));
+        if gap.is_empty() {
+            raw.push(' ');
+        }
+        at = at.max(gap.end);
     }
     raw.push_str(text.get(at..close.start).unwrap_or(""));
     let mut out = String::new();

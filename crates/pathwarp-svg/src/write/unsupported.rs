@@ -1,0 +1,72 @@
+//! Content that the renderer does not know, and that is therefore not warped: each such element is reported.
+
+use super::input::WriteInput;
+use crate::bend::outcome::Skipped;
+use crate::source::cascade;
+use crate::source::tags::{ElementId, is_shape};
+use crate::source::text::SourceText;
+use std::collections::HashSet;
+
+/// A paint server that the renderer does not know, in words.
+fn paint(tag: &str) -> Option<&'static str> {
+    match tag {
+        "meshgradient" | "meshGradient" | "mesh" => Some("a mesh gradient"),
+        "hatch" => Some("a hatch"),
+        _ => None,
+    }
+}
+
+/// Content that the renderer does not know, with the reason why it is not warped.
+fn content(source: &SourceText, e: ElementId) -> Option<&'static str> {
+    match source.elements[e].tag.as_ref() {
+        "flowRoot" => Some(
+            "text that flows in a frame (flowRoot) cannot be warped, as only Inkscape lays it out; convert it to ordinary text or \
+             to paths there",
+        ),
+        // Private data of an editor is not shown.
+        "foreignObject" if source.attr(e, "requiredExtensions").is_none() => {
+            Some("foreign content (HTML in a foreignObject) cannot be warped")
+        }
+        _ => None,
+    }
+}
+
+/// Lists the selected elements that are not warped because the renderer does not know them or their paint.
+pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
+    let source = input.source;
+    let known = |e: ElementId| content(source, e).is_none() && paint(&source.elements[e].tag).is_none();
+    let all = 0..source.elements.len();
+    if all.clone().all(known) {
+        return Vec::new();
+    }
+    let selected = input.options.selection.resolve(source);
+    let [fills, strokes] = ["fill", "stroke"].map(|p| cascade::values(source, p));
+    let parts = input.scene.parts.iter().zip(input.outcomes);
+    let warped: HashSet<ElementId> =
+        parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element()).collect();
+    let unknown = |e: ElementId, values: &[Option<String>]| {
+        let value = source.ancestors(e).find_map(|a| values[a].as_deref().filter(|v| *v != "inherit"))?;
+        let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
+        paint(&source.elements[*source.by_id().get(id)?.first()?].tag)
+    };
+    let hidden = |e: ElementId| source.ancestors(e).any(|a| source.elements[a].tag == "defs");
+    let why = |e: ElementId| {
+        if let Some(why) = content(source, e) {
+            return Some(why.to_owned());
+        }
+        let tag = source.elements[e].tag.as_ref();
+        let paints = [("fill", &fills), ("stroke", &strokes)];
+        let (name, kind) = paints
+            .into_iter()
+            .filter(|_| is_shape(tag) || tag == "text")
+            .find_map(|(name, values)| Some((name, unknown(e, values)?)))?;
+        Some(if warped.contains(&e) {
+            format!("its {name}, {kind}, cannot be warped and is unchanged")
+        } else {
+            format!("its {name} is {kind}; such shapes cannot be warped")
+        })
+    };
+    all.filter(|&e| selected[e] && !hidden(e))
+        .filter_map(|e| Some(Skipped { id: source.display_name(e), why: why(e)? }))
+        .collect()
+}

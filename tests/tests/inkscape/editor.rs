@@ -1,0 +1,76 @@
+//! Opens files in an installed Inkscape without a screen, moves everything there and back, and saves.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Longest run. A file takes a few hundredths of a second; the largest of Inkscape's examples take several seconds.
+const LONGEST: Duration = Duration::from_secs(300);
+
+/// Inkscape: the program that the environment variable names, or the one with the usual name.
+const VARIABLE: &str = "PATHWARP_INKSCAPE";
+
+fn program() -> OsString {
+    std::env::var_os(VARIABLE).unwrap_or_else(|| "inkscape".into())
+}
+
+/// Returns `true` if Inkscape is installed, else prints a remark.
+pub fn is_installed() -> bool {
+    match Command::new(program()).arg("--version").stdin(Stdio::null()).output() {
+        Ok(out) => {
+            eprint!("{}", String::from_utf8_lossy(&out.stdout));
+            out.status.success()
+        }
+        Err(e) if std::env::var_os(VARIABLE).is_some() => panic!("{VARIABLE} names no program that runs: {e}"),
+        Err(_) => {
+            eprintln!("skipped: there is no program `inkscape` here, and {VARIABLE} names none");
+            false
+        }
+    }
+}
+
+/// The drawings that come with Inkscape.
+pub fn examples() -> Option<Vec<PathBuf>> {
+    let data = Command::new(program()).arg("--system-data-directory").stdin(Stdio::null()).output().ok()?;
+    let folder = Path::new(str::from_utf8(&data.stdout).ok()?.trim()).join("examples");
+    let files = fs::read_dir(folder).ok()?.map(|f| f.unwrap().path());
+    Some(files.filter(|f| f.extension().is_some_and(|e| e == "svg" || e == "svgz")).collect())
+}
+
+/// Opens and edits `NAME.svg` in a folder for each name, and saves it as `NAME.edited.svg`.
+pub fn edit(folder: &Path, names: &[String]) {
+    let mut script = String::new();
+    for n in names {
+        let at = |end: &str| folder.join(format!("{n}{end}")).display().to_string();
+        let _ = write!(
+            script,
+            "file-open:{}\nselect-all:all\ntransform-translate:5,0\ntransform-translate:-5,0\nexport-filename:{}\n\
+             export-plain-svg\nexport-do\nfile-close\n",
+            at(".svg"),
+            at(".edited.svg")
+        );
+    }
+    script.push_str("quit\n");
+    fs::write(folder.join("script"), script).unwrap();
+    let has_screen = Command::new("xvfb-run").arg("--help").output().is_ok();
+    let mut run = if has_screen { Command::new("xvfb-run") } else { Command::new(program()) };
+    if has_screen {
+        run.arg("-a").arg(program());
+    }
+    let log = File::create(folder.join("log")).unwrap();
+    // A profile of its own, so that the user's is neither read nor changed.
+    run.arg("--shell").env("INKSCAPE_PROFILE_DIR", folder.join("profile")).current_dir(folder);
+    run.stdin(File::open(folder.join("script")).unwrap()).stdout(log.try_clone().unwrap()).stderr(log);
+    let mut child = run.spawn().unwrap();
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > LONGEST {
+            child.kill().unwrap();
+            panic!("Inkscape takes too long: {}", fs::read_to_string(folder.join("log")).unwrap());
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
