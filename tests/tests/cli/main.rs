@@ -1,10 +1,12 @@
 //! The program from outside: exit codes, files, streams, messages.
 
+mod batches;
 mod chains;
 mod commands;
 mod common;
 mod documentation;
 mod exit_codes;
+mod overwriting;
 mod report;
 mod streams;
 #[path = "../support/mod.rs"]

@@ -63,7 +63,8 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, false)?.into_iter().map(|part| part.step));
-    references::resolve(registry, &mut recipe, |name| Err(input::no_document(name)))?;
+    references::resolve_files(registry, &mut recipe)?;
+    references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;
     let points = parse(&String::from_utf8_lossy(&bytes))

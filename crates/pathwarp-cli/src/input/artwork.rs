@@ -8,6 +8,7 @@ use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp::{Error, Outline};
+use pathwarp_svg::Overhang;
 use std::path::Path;
 
 /// Artwork of one kind, read and ready to be warped.
@@ -53,6 +54,8 @@ pub(crate) struct WarpedArtwork {
     pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
+    /// The artwork extends past the page and did not before.
+    pub(crate) overhang: Option<Overhang>,
     /// Files besides the result.
     pub(crate) files: Vec<PendingFile>,
     /// The PNG of `--preview`.

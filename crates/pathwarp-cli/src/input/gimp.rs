@@ -131,6 +131,7 @@ impl Artwork for GimpArtwork {
         let warped = self.warp_paths(request)?;
         Ok(WarpedArtwork {
             result: self.write(&warped, request)?,
+            overhang: None,
             files: Vec::new(),
             preview: options.preview.is_some().then(|| self.preview(&warped, built)).transpose()?,
             shapes: warped.shapes,
@@ -194,7 +195,7 @@ impl GimpArtwork {
                 }
                 Err(e) => {
                     let e = e.on_shape(&path.name);
-                    if options.on_error == OnError::Stop {
+                    if options.on_failure.of_shapes() == OnError::Stop {
                         return Err(Error::Geometry(e).into());
                     }
                     out.skipped.push(SkippedShape { id: path.name.clone(), why: e.to_string() });

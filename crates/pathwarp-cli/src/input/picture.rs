@@ -98,7 +98,7 @@ impl Artwork for PictureArtwork {
         let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &*map, Affine::IDENTITY)
             .ok_or_else(|| Failure::Geometry(undefined_at(area.center())))?;
         if let Some(p) = undefined {
-            if options.on_error == OnError::Stop {
+            if options.on_failure.of_shapes() == OnError::Stop {
                 return Err(Failure::Geometry(format!("{}; --on-error skip leaves that part out", undefined_at(p))));
             }
             warnings.push(undefined_at(p));
@@ -119,6 +119,7 @@ impl Artwork for PictureArtwork {
             shapes: Vec::new(),
             skipped: Vec::new(),
             warnings,
+            overhang: None,
             files: Vec::new(),
             preview: None,
             partial: undefined.is_some(),

@@ -74,7 +74,7 @@ impl SvgArtwork {
             .with_text(options.text)
             .with_structure(options.structure)
             .with_selection(self.selection.clone())
-            .with_on_error(options.on_error)
+            .with_on_error(options.on_failure.of_shapes())
             .with_gradients(gradients)
             .with_patterns(options.patterns)
             .with_page(options.page)
@@ -191,7 +191,6 @@ impl Artwork for SvgArtwork {
         }
         let (shapes, folds) = self.shape_reports(built, &options, &warped);
         let mut warnings = warped.warnings;
-        warnings.extend(warped.overhang.map(advice::overhang));
         warnings.extend(folds);
         let surfaces = surface::files(&self.doc, built, &options)?;
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
@@ -208,6 +207,7 @@ impl Artwork for SvgArtwork {
             shapes,
             skipped: warped.skipped.into_iter().map(|s| SkippedShape { id: s.id, why: s.why }).collect(),
             warnings,
+            overhang: warped.overhang,
             files,
             preview: preview.transpose()?,
             partial: false,

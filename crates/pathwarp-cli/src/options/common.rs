@@ -29,6 +29,25 @@ pub(crate) enum GradientChoice {
     Keep,
 }
 
+/// Reaction to an input or a shape that cannot be warped.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum OnFailure {
+    /// Leave the input out and go on with the others.
+    #[default]
+    Continue,
+    /// End the run and write nothing.
+    Stop,
+    /// Leave the shape unchanged, or the input out.
+    Skip,
+}
+
+impl OnFailure {
+    /// The reaction to a shape.
+    pub(crate) fn of_shapes(self) -> OnError {
+        if self == Self::Skip { OnError::Skip } else { OnError::Stop }
+    }
+}
+
 /// The values of the common options. `Default` holds the unset state; [`Given::read`](super::Given::read) applies the defaults
 /// that the table declares and then the values given.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,6 +56,12 @@ pub(crate) struct CommonOptions {
     /// `None`: standard output.
     pub(crate) out: Option<PathBuf>,
     pub(crate) out_dir: Option<PathBuf>,
+    /// Overwrite the inputs.
+    pub(crate) in_place: bool,
+    /// Warp the SVG files in folders.
+    pub(crate) recursive: bool,
+    /// Print what would be written, and write nothing.
+    pub(crate) dry_run: bool,
     /// Copy of the input XCF that receives the warped paths.
     pub(crate) into: Option<PathBuf>,
     /// Read the paths before the damage in a damaged GIMP file.
@@ -59,7 +84,7 @@ pub(crate) struct CommonOptions {
     pub(crate) image_dpi: Option<f64>,
     /// Width, and height if given, of a warped picture in pixels.
     pub(crate) image_size: Option<(u32, Option<u32>)>,
-    pub(crate) on_error: OnError,
+    pub(crate) on_failure: OnFailure,
     pub(crate) report: Option<PathBuf>,
     pub(crate) preview: Option<PathBuf>,
     pub(crate) write_recipe: Option<PathBuf>,

@@ -11,7 +11,7 @@ mod parse;
 mod table;
 
 pub(crate) use args::{args, options_without_inputs};
-pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice};
+pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
 pub(crate) use given::Given;
 pub(crate) use parse::rect;
 pub(crate) use table::OPTIONS;
