@@ -8,6 +8,7 @@ mod documentation;
 mod exit_codes;
 mod overwriting;
 mod report;
+mod selection;
 mod streams;
 #[path = "../support/mod.rs"]
 mod support;

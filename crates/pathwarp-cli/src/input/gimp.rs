@@ -43,6 +43,9 @@ impl GimpArtwork {
     pub(super) fn new(file: GimpFile, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
         let format = format(options, &file, target)?;
         let (select, exclude) = (options.select.clone(), options.exclude.clone());
+        for name in select.iter().chain(&exclude) {
+            file.path_named(name.strip_prefix('#').unwrap_or(name))?;
+        }
         Ok(Self { file, format, select, exclude, selected: Vec::new(), outlines: Vec::new() })
     }
 
@@ -128,7 +131,11 @@ impl Artwork for GimpArtwork {
                 "--{param} is for SVG files; convert the paths to SVG first (`pathwarp convert`)"
             )));
         }
-        let warped = self.warp_paths(request)?;
+        let mut warped = self.warp_paths(request)?;
+        let empty = self.selected.is_empty();
+        if empty {
+            warped.warnings.push("there is nothing to warp: no paths with strokes".into());
+        }
         Ok(WarpedArtwork {
             result: self.write(&warped, request)?,
             overhang: None,
@@ -137,7 +144,7 @@ impl Artwork for GimpArtwork {
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings: warped.warnings,
-            partial: self.file.damage.is_some(),
+            partial: empty || self.file.damage.is_some(),
         })
     }
 }

@@ -55,6 +55,7 @@ impl SvgArtwork {
         let doc = Document::read(bytes, &name, &read)?;
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
+        doc.check_selection(&selection)?;
         Ok(Self { name, doc, read, selection })
     }
 
@@ -191,6 +192,10 @@ impl Artwork for SvgArtwork {
         }
         let (shapes, folds) = self.shape_reports(built, &options, &warped);
         let mut warnings = warped.warnings;
+        let empty = !self.doc.has_artwork(&self.selection);
+        if empty {
+            warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
+        }
         warnings.extend(folds);
         let surfaces = surface::files(&self.doc, built, &options)?;
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
@@ -210,7 +215,7 @@ impl Artwork for SvgArtwork {
             overhang: warped.overhang,
             files,
             preview: preview.transpose()?,
-            partial: false,
+            partial: empty,
         })
     }
 }
