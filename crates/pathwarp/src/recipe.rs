@@ -74,7 +74,9 @@ impl Recipe {
                 Error::input(format!("step {}", i + 1), problem)
             })?;
             if i > 0 {
-                frame = out.image_box(artwork.clone(), &letters).map_or(frame, Frame::new);
+                let units_per_px = frame.units_per_px;
+                let image = out.image_box(artwork.clone(), &letters);
+                frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
             }
             let mut built = entry.build_from(&step.args, &frame)?;
             check_placement(&built.placement, i, step)?;

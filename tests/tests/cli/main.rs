@@ -12,3 +12,4 @@ mod selection;
 mod streams;
 #[path = "../support/mod.rs"]
 mod support;
+mod units;

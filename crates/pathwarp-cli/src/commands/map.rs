@@ -71,7 +71,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
     let cloud = Outline::from_points(&points, false);
     let frame = match m.get_one::<String>("frame") {
-        Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?,
+        Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
         None => cloud.bounding_box().unwrap_or(Rect::ZERO),
     };
     let map = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud)).map_err(Failure::of_recipe)?.map;

@@ -29,6 +29,11 @@ pub(crate) trait Artwork {
     /// baseline and leaves it at its default.
     fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, on_baseline: bool) -> Result<Frame, Failure>;
 
+    /// User units per px along x and y.
+    fn units_per_px(&self) -> [f64; 2] {
+        [1.0; 2]
+    }
+
     /// The outlines of the artwork.
     fn outlines(&self) -> Vec<&Outline>;
 

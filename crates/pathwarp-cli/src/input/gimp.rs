@@ -113,7 +113,7 @@ impl Artwork for GimpArtwork {
         match choice {
             FrameChoice::Default | FrameChoice::Artwork => Ok(Frame::new(bounds.unwrap_or(canvas))),
             FrameChoice::ViewBox => Ok(Frame::new(canvas)),
-            FrameChoice::Rect(r) => Ok(Frame::new(r)),
+            FrameChoice::Rect(r) => Ok(Frame::new(r.rect(self.units_per_px()))),
             FrameChoice::Lettering(_) => {
                 Err(Failure::usage("--frame: GIMP paths do not store their baseline; give X,Y,W,H"))
             }

@@ -72,7 +72,7 @@ impl Artwork for PictureArtwork {
     fn frame(&self, choice: FrameChoice, _bounds: Option<Rect>, _on_baseline: bool) -> Result<Frame, Failure> {
         match choice {
             FrameChoice::Default | FrameChoice::Artwork | FrameChoice::ViewBox => Ok(Frame::new(self.area())),
-            FrameChoice::Rect(r) => Ok(Frame::new(r)),
+            FrameChoice::Rect(r) => Ok(Frame::new(r.rect(self.units_per_px()))),
             FrameChoice::Lettering(_) => {
                 Err(Failure::usage("--frame: a photograph has no lettering to put a frame around; give X,Y,W,H"))
             }

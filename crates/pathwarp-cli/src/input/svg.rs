@@ -170,12 +170,18 @@ impl Artwork for SvgArtwork {
             }
             FrameChoice::Default | FrameChoice::Artwork => artwork(),
             FrameChoice::ViewBox => Frame::new(self.doc.view_box()),
-            FrameChoice::Rect(r) => Frame::new(r),
+            FrameChoice::Rect(r) => Frame::new(r.rect(self.units_per_px())),
             FrameChoice::Lettering(kind) => {
                 lettering.frame(kind).map_err(|e| Error::input(&self.name, advice::lettering_frame(&e)))?
             }
         };
         Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
+    }
+
+    fn units_per_px(&self) -> [f64; 2] {
+        let [a, b, c, d, ..] = self.doc.user_to_px().as_coeffs();
+        let usable = |px: f64| if px > 0.0 && px.is_finite() { 1.0 / px } else { 1.0 };
+        [usable(a.hypot(b)), usable(c.hypot(d))]
     }
 
     fn outlines(&self) -> Vec<&Outline> {

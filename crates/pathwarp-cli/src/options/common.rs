@@ -1,6 +1,8 @@
 //! The common options as typed values.
 
+use super::typed_box::TypedBox;
 use pathwarp::kurbo::Rect;
+use pathwarp::param::{Axis, Frame, Length};
 use pathwarp_svg::{LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::path::PathBuf;
 
@@ -17,7 +19,7 @@ pub(crate) enum FrameChoice {
     Artwork,
     Lettering(LetteringFrame),
     ViewBox,
-    Rect(Rect),
+    Rect(TypedBox),
 }
 
 /// Treatment of gradients.
@@ -66,7 +68,7 @@ pub(crate) struct CommonOptions {
     pub(crate) into: Option<PathBuf>,
     /// Read the paths before the damage in a damaged GIMP file.
     pub(crate) salvage: bool,
-    pub(crate) tolerance: Option<f64>,
+    pub(crate) tolerance: Option<Length>,
     pub(crate) certify: bool,
     pub(crate) merge: bool,
     pub(crate) frame: FrameChoice,
@@ -96,9 +98,10 @@ pub(crate) struct CommonOptions {
 }
 
 impl CommonOptions {
-    /// Returns the tolerance given, or the default for artwork with this bounding box.
-    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>) -> f64 {
+    /// Returns the tolerance given, or the default for artwork with this bounding box, in user units.
+    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> f64 {
         let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
-        self.tolerance.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
+        let given = self.tolerance.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0);
+        given.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
     }
 }

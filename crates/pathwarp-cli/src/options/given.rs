@@ -196,8 +196,11 @@ mod tests {
         line.push("tolerance", "3").unwrap();
         line.push("select", "b").unwrap();
         let o = recipe.overridden_by(&line).read().unwrap();
-        assert_eq!((o.tolerance, o.select, o.merge), (Some(3.0), vec!["a".to_owned(), "b".to_owned()], false));
-        assert_eq!(recipe.read().unwrap().tolerance, Some(2.0));
+        assert_eq!(
+            (o.tolerance.map(|l| l.value), o.select, o.merge),
+            (Some(3.0), vec!["a".to_owned(), "b".to_owned()], false)
+        );
+        assert_eq!(recipe.read().unwrap().tolerance.map(|l| l.value), Some(2.0));
         assert!(recipe.joined(&line).is_err(), "--tolerance in both parts of a chain");
     }
 

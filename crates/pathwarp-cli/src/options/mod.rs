@@ -9,6 +9,7 @@ mod definition;
 mod given;
 mod parse;
 mod table;
+mod typed_box;
 
 pub(crate) use args::{args, options_without_inputs};
 pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};

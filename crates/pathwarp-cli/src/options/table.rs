@@ -76,9 +76,9 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Text {
                 name: "D",
                 minus: LeadingMinus::Number,
-                set: |o, text| parse::positive(text).map(|d| o.tolerance = Some(d)),
+                set: |o, text| parse::positive_length(text).map(|d| o.tolerance = Some(d)),
             },
-            "Largest distance between the exact curve and the output, in user units",
+            "Largest distance between the exact curve and the output: user units, or a length such as 0.05mm",
         )
     },
     stored(
@@ -105,7 +105,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             },
             "Box that percentages and defaults refer to. For lettering (text, or output of `pathwarp text`) also \
              baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the \
-             lines), ascent-descent, or ink (the bounding box of the letters)",
+             lines), ascent-descent, or ink (the bounding box of the letters). X, Y, W and H may have units, such as 20mm",
         )
     },
     stored(

@@ -45,10 +45,11 @@ impl Batch<'_> {
 
         let bounds = artwork.bounding_box();
         let frame = artwork.frame(options.frame, bounds, leaves_baseline_open(registry, &recipe))?;
+        let frame = frame.with_units_per_px(artwork.units_per_px());
         let baseline = frame.baseline;
+        let tolerance = options.tolerance_for(bounds, &frame);
         let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
 
-        let tolerance = options.tolerance_for(bounds);
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
         let request = WarpRequest { built: &built, options, tolerance, target, embedded_recipe };
