@@ -30,11 +30,17 @@ impl Document {
     /// Reads an SVG or svgz file. `name` identifies it in messages.
     ///
     /// # Errors
-    /// Returns [`Error::Input`] with the position if the file is not UTF-8, not XML, not SVG, or too large.
+    /// Returns [`Error::Input`] with the position if the file is not text in its encoding, not XML, not SVG, or too large.
     pub fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
         let drawing = Drawing::read(data, name, options)?;
-        let packed = (drawing.source.text.len() != data.len()).then(|| data.into());
+        let packed = (drawing.source.text.as_bytes() != data).then(|| data.into());
         Ok(Self { drawing, packed })
+    }
+
+    /// The text of the file, decoded: where that was another encoding than UTF-8, the XML declaration names UTF-8.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.drawing.source.text
     }
 
     /// Content of the file.

@@ -5,6 +5,7 @@ mod chains;
 mod commands;
 mod common;
 mod documentation;
+mod encodings;
 mod exit_codes;
 mod overwriting;
 mod report;

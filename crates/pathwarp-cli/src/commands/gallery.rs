@@ -120,7 +120,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let mut cells: Vec<Cell> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
     // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
     if sets.iter().any(|(_, g)| g.bend.is_some()) {
-        let svg = String::from_utf8_lossy(doc.source()).into_owned();
+        let svg = doc.text().to_owned();
         cells.insert(0, Cell { svg, label: "as it is".into() });
     }
     let options = SheetOptions {
