@@ -108,9 +108,10 @@ fn text_is_read_from_arguments_files_and_standard_input() {
 
 #[test]
 fn lengths_have_units() {
-    // 3 units of 100 are 3 %; an inch is 96 units.
+    // 3 units of 100 are 3 %; an inch is 96 px. (A size in inches makes a page in inches.)
     assert_eq!(run("text ab --size 100 --letter-spacing 3%"), run("text ab --size 100 --letter-spacing 3"));
-    assert_eq!(run("text ab --size 1in"), run("text ab --size 96"));
+    assert_eq!(run("text ab --letter-spacing 1in"), run("text ab --letter-spacing 96"));
+    assert_eq!(run("text ab --size 96px"), run("text ab --size 96"));
     assert_eq!(run("text 'a\nb' --size 50 --line-height 120%"), run("text 'a\nb' --size 50 --line-height 60"));
 }
 

@@ -12,8 +12,10 @@ pub(crate) enum Failure {
     Clap(clap::Error),
     /// Wrong usage.
     Usage(String),
-    /// A file cannot be read, parsed or written.
+    /// A file cannot be read or parsed.
     Input(String),
+    /// An output cannot be written.
+    Output(String),
     /// The geometry does not allow it.
     Geometry(String),
     /// An error of the libraries; flags and advice are added when it is shown.
@@ -37,9 +39,22 @@ impl Failure {
         Self::Input(format!("{}: {problem}", path.display()))
     }
 
+    /// A problem with the output file `path`.
+    pub(crate) fn output(path: &Path, problem: impl Display) -> Self {
+        Self::Output(format!("{}: {problem}", path.display()))
+    }
+
     /// A failed write to standard output.
     pub(crate) fn stdout(e: &std::io::Error) -> Self {
-        Self::Input(format!("standard output: {e}"))
+        Self::Output(format!("standard output: {e}"))
+    }
+
+    /// Returns `true` if the recipe is at fault, so that every input fails alike.
+    pub(crate) fn is_of_recipe(&self) -> bool {
+        match self {
+            Self::Library { error, of_recipe, .. } => *of_recipe && !matches!(**error, pathwarp::Error::Geometry(_)),
+            _ => false,
+        }
     }
 
     /// The exit code.
@@ -49,6 +64,7 @@ impl Failure {
             Self::Usage(_) => 2,
             Self::Input(_) => 3,
             Self::Geometry(_) => 4,
+            Self::Output(_) => 5,
             Self::Library { error, .. } => match **error {
                 pathwarp::Error::Input { .. } => 3,
                 pathwarp::Error::Geometry(_) => 4,
@@ -62,10 +78,18 @@ impl Failure {
         match self {
             // clap picks the stream: help goes to standard output. Ignore a closed pipe.
             Self::Clap(e) => drop(e.print()),
-            Self::Usage(m) | Self::Input(m) | Self::Geometry(m) => terminal::error(m),
+            _ => terminal::error(&self.message(flags)),
+        }
+    }
+
+    /// The message, with parameters as `flags`.
+    pub(crate) fn message(&self, flags: &Flags) -> String {
+        match self {
+            Self::Clap(e) => e.to_string(),
+            Self::Usage(m) | Self::Input(m) | Self::Output(m) | Self::Geometry(m) => m.clone(),
             Self::Library { error, input, .. } => {
                 let message = advice::error(error, flags);
-                terminal::error(&input.as_ref().map_or_else(|| message.clone(), |i| prefixed(i, &message)));
+                input.as_ref().map_or_else(|| message.clone(), |i| prefixed(i, &message))
             }
         }
     }

@@ -9,8 +9,9 @@
 //! }
 //! ```
 //!
-//! Exit codes: 0 success; 1 done, but something was left unchanged (the report says why); 2 wrong usage; 3 unreadable input;
-//! 4 the geometry does not allow it. On 2, 3 and 4 no output file is touched.
+//! Exit codes: 0 success; 1 done, but something was left unchanged or, of several inputs, left out (the messages and the report
+//! say why); 2 wrong usage; 3 unreadable input; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
+//! On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.
 
 mod advice;
 mod bitmap;
@@ -24,8 +25,10 @@ mod pipeline;
 mod recipe_file;
 mod references;
 mod report;
+mod sources;
 mod status;
 mod steps;
+mod temporaries;
 mod terminal;
 
 pub use bitmap::Bender;

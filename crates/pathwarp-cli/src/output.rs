@@ -1,11 +1,12 @@
 //! Output: files, each written completely or not at all, and standard output.
 
 use crate::failure::Failure;
+use crate::temporaries::{self, Temporary};
 use std::fs::File;
-use std::io::Write;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// An output file with its content. Nothing appears under its name before [`PendingFile::commit_all`].
+/// An output with its content. Nothing appears under its name before [`PendingFile::commit_all`].
 pub(crate) struct PendingFile {
     content: Content,
     to: PathBuf,
@@ -13,70 +14,178 @@ pub(crate) struct PendingFile {
 
 enum Content {
     /// A temporary file, to be renamed.
-    File(tempfile::NamedTempFile),
+    File(Temporary),
     /// The bytes for a device or pipe (`/dev/null`, `/dev/stdout`): renaming would replace it by a file.
-    Bytes(Vec<u8>),
+    Device(Vec<u8>),
+    Stdout(Vec<u8>),
 }
 
 impl PendingFile {
-    /// Writes `bytes` to a temporary file beside `to`.
+    /// Writes `bytes` to a temporary file beside `to`; `-` is standard output.
     pub(crate) fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
-        if is_device(to) {
-            return Ok(Self { content: Content::Bytes(bytes.to_vec()), to: to.to_owned() });
+        if is_stdout(to) {
+            return Ok(Self::stdout(bytes.to_vec()));
         }
-        Self::with_writer(to, |file| file.write_all(bytes).map_err(|e| format!("cannot be written: {e}")))
+        if is_device(to) {
+            return Ok(Self { content: Content::Device(bytes.to_vec()), to: to.to_owned() });
+        }
+        Self::with_writer(to, |file| file.write_all(bytes).map_err(|e| cannot_be_written(&e)))
+    }
+
+    /// The bytes for standard output.
+    pub(crate) fn stdout(bytes: Vec<u8>) -> Self {
+        Self { content: Content::Stdout(bytes), to: PathBuf::from("-") }
     }
 
     /// Calls `write` with a temporary file beside `to`.
     pub(crate) fn with_writer(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
         if is_device(to) {
-            return Err(Failure::file(to, "is a device, not a file; name a file"));
+            return Err(Failure::output(to, "is a device, not a file; name a file"));
         }
-        // Keep a symbolic link and replace the file it points to.
-        let to = &to.canonicalize().unwrap_or_else(|_| to.to_owned());
-        let folder = match to.parent() {
-            Some(p) if !p.as_os_str().is_empty() => p,
-            _ => Path::new("."),
-        };
-        if to.is_dir() {
-            return Err(Failure::file(to, "is a folder; name a file, or use --out-dir"));
-        }
-        if !folder.is_dir() {
-            return Err(Failure::file(folder, "does not exist; create the folder first"));
-        }
-        let make = || -> std::io::Result<tempfile::NamedTempFile> {
-            let mut builder = tempfile::Builder::new();
-            builder.prefix(".pathwarp-");
-            #[cfg(unix)]
-            {
-                // The permissions of any newly created file; the umask applies.
-                use std::os::unix::fs::PermissionsExt;
-                builder.permissions(std::fs::Permissions::from_mode(0o666));
-            }
-            builder.tempfile_in(folder)
-        };
-        let mut file = make().map_err(|e| Failure::file(to, format!("cannot be written: {e}")))?;
-        write(file.as_file_mut()).map_err(|e| Failure::file(to, e))?;
-        Ok(Self { content: Content::File(file), to: to.to_owned() })
+        let (to, temporary, mut file) = temporary_for(to)?;
+        write(&mut file).map_err(|e| Failure::output(&to, e))?;
+        Ok(Self { content: Content::File(temporary), to })
     }
 
-    /// Renames all files to their final names.
+    /// Puts all outputs in place. If one cannot be, the files before it are put back as they were.
     pub(crate) fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
-        for p in all {
-            let written = match p.content {
-                Content::File(file) => file.persist(&p.to).map(drop).map_err(|e| e.error),
-                Content::Bytes(bytes) => {
-                    std::fs::OpenOptions::new().write(true).open(&p.to).and_then(|mut to| to.write_all(&bytes))
+        // What is printed cannot be taken back, so it goes first: nothing is in place yet if it fails.
+        let (files, streams): (Vec<Self>, Vec<Self>) =
+            all.into_iter().partition(|p| matches!(p.content, Content::File(_)));
+        for stream in streams {
+            stream.print()?;
+        }
+        let _gate = temporaries::hold();
+        let alone = files.len() == 1;
+        let mut placed = Vec::with_capacity(files.len());
+        for file in files {
+            let to = file.to.clone();
+            match file.put_in_place(alone) {
+                Ok(done) => placed.push(done),
+                Err(e) => {
+                    placed.into_iter().rev().for_each(Placed::undo);
+                    return Err(Failure::output(&to, cannot_be_written(&e)));
                 }
-            };
-            written.map_err(|e| Failure::file(&p.to, format!("cannot be written: {e}")))?;
+            }
         }
         Ok(())
     }
+
+    fn print(self) -> Result<(), Failure> {
+        match self.content {
+            Content::Stdout(bytes) => to_stdout(&bytes),
+            Content::Device(bytes) => {
+                let opened = std::fs::OpenOptions::new().write(true).open(&self.to);
+                let written = opened.and_then(|mut to| to.write_all(&bytes));
+                written.map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))
+            }
+            Content::File(_) => Ok(()),
+        }
+    }
+
+    /// Renames a file to its final name. A file that is not `alone` keeps what it replaces, to be able to put it back.
+    fn put_in_place(self, alone: bool) -> io::Result<Placed> {
+        let backup =
+            if !alone && self.to.exists() { Some(Temporary::backup(&self.to, folder(&self.to))?) } else { None };
+        if let Content::File(temporary) = self.content {
+            temporary.rename(&self.to)?;
+        }
+        Ok(Placed { to: self.to, backup })
+    }
+}
+
+/// An output that is written piece by piece.
+pub(crate) struct Draft {
+    sink: Sink,
+    to: PathBuf,
+}
+
+enum Sink {
+    File(Temporary, BufWriter<File>),
+    /// For a stream, which gets nothing before everything has succeeded.
+    Bytes(Vec<u8>),
+}
+
+impl Draft {
+    /// Creates a temporary file beside `to`; `-` is standard output.
+    pub(crate) fn new(to: &Path) -> Result<Self, Failure> {
+        if is_stdout(to) || is_device(to) {
+            return Ok(Self { sink: Sink::Bytes(Vec::new()), to: to.to_owned() });
+        }
+        let (to, temporary, file) = temporary_for(to)?;
+        Ok(Self { sink: Sink::File(temporary, BufWriter::new(file)), to })
+    }
+
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let written = match &mut self.sink {
+            Sink::File(_, file) => file.write_all(bytes),
+            Sink::Bytes(all) => all.write_all(bytes),
+        };
+        written.map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))
+    }
+
+    /// The output, complete.
+    pub(crate) fn finish(self) -> Result<PendingFile, Failure> {
+        match self.sink {
+            Sink::File(temporary, mut file) => {
+                file.flush().map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))?;
+                Ok(PendingFile { content: Content::File(temporary), to: self.to })
+            }
+            Sink::Bytes(bytes) => PendingFile::new(&self.to, &bytes),
+        }
+    }
+}
+
+/// A temporary file beside `to`, and the file that `to` stands for: a symbolic link is kept, and what it points to is replaced.
+fn temporary_for(to: &Path) -> Result<(PathBuf, Temporary, File), Failure> {
+    let to = to.canonicalize().unwrap_or_else(|_| to.to_owned());
+    let folder = folder(&to);
+    if to.is_dir() {
+        return Err(Failure::output(&to, "is a folder; name a file, or use --out-dir"));
+    }
+    if !folder.is_dir() {
+        return Err(Failure::output(folder, "does not exist; create the folder first"));
+    }
+    let made = Temporary::create_in(folder);
+    let (temporary, file) = made.map_err(|e| Failure::output(&to, cannot_be_written(&e)))?;
+    Ok((to, temporary, file))
+}
+
+/// A file in place.
+struct Placed {
+    to: PathBuf,
+    /// The file it replaced.
+    backup: Option<Temporary>,
+}
+
+impl Placed {
+    /// Puts back the file that was there. An error on the way back has no remedy; the first error is reported.
+    fn undo(self) {
+        let _ = match self.backup {
+            Some(old) => old.rename(&self.to),
+            None => std::fs::remove_file(&self.to),
+        };
+    }
+}
+
+fn folder(file: &Path) -> &Path {
+    match file.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    }
+}
+
+fn cannot_be_written(e: &io::Error) -> String {
+    format!("cannot be written: {e}")
+}
+
+/// Returns `true` if `to` stands for standard output.
+pub(crate) fn is_stdout(to: &Path) -> bool {
+    to.as_os_str() == "-"
 }
 
 /// Returns `true` if `to` exists and is neither a file nor a folder: a pipe, a terminal.
-fn is_device(to: &Path) -> bool {
+pub(crate) fn is_device(to: &Path) -> bool {
     to.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
 
@@ -90,9 +199,9 @@ pub(crate) fn write(target: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> 
 
 /// Writes to standard output. The reader may close the pipe early; ignore that.
 pub(crate) fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
+    let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other.map_err(|e| Failure::stdout(&e)),
     }
 }

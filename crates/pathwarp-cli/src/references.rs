@@ -4,33 +4,72 @@ use crate::failure::Failure;
 use crate::input::{GimpFile, read_data_file, split_reference};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
+use pathwarp::param::{Kind, is_inline};
 use pathwarp::recipe::Recipe;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::{Document, ReadOptions};
+use std::path::{Path, PathBuf};
 
-/// Looks up every path and file that a recipe refers to. `in_input` finds a path of the input document.
-///
-/// Returns the names found in the input document: those paths are guides, not artwork.
-pub(crate) fn resolve(
-    registry: &Registry,
-    recipe: &mut Recipe,
-    in_input: impl Fn(&str) -> Result<Outline, Error>,
-) -> Result<Vec<String>, Failure> {
-    let mut guides = Vec::new();
+/// Looks up every file that a recipe refers to. References to the input document, `#NAME`, stay open.
+pub(crate) fn resolve_files(registry: &Registry, recipe: &mut Recipe) -> Result<(), Failure> {
+    let outside = |reference: &str| if reference.starts_with('#') { Ok(None) } else { in_file(reference).map(Some) };
     for step in &mut recipe.steps {
         let Some(e) = registry.get(&step.deformation) else { continue };
-        let paths = step.args.resolve_paths(e.info().params, |reference| match reference.strip_prefix('#') {
-            Some(name) => {
-                let outline = in_input(name)?;
-                guides.push(name.to_owned());
-                Ok(outline)
-            }
-            None => in_file(reference),
-        });
+        let paths = step.args.resolve_paths(e.info().params, outside);
         let all = paths.and_then(|()| step.args.resolve_files(e.info().params, read_data_file));
         all.map_err(Failure::of_recipe)?;
     }
+    Ok(())
+}
+
+/// Looks up the references that [`resolve_files`] leaves open: `in_input` finds a path of the input document.
+///
+/// Returns the names: those paths are guides, not artwork.
+pub(crate) fn resolve_names(
+    registry: &Registry,
+    recipe: &mut Recipe,
+    in_input: impl Fn(&str) -> Result<Outline, Error>,
+) -> Result<Vec<String>, Error> {
+    let mut guides = Vec::new();
+    for step in &mut recipe.steps {
+        let Some(e) = registry.get(&step.deformation) else { continue };
+        step.args.resolve_paths(e.info().params, |reference| {
+            let name = reference.strip_prefix('#').unwrap_or(reference);
+            let outline = in_input(name)?;
+            guides.push(name.to_owned());
+            Ok(Some(outline))
+        })?;
+    }
     Ok(guides)
+}
+
+/// The files that a recipe reads.
+pub(crate) fn files_read(registry: &Registry, recipe: &Recipe) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for step in &recipe.steps {
+        for p in registry.get(&step.deformation).map_or(&[][..], |e| e.info().params) {
+            for value in step.args.get(p.name) {
+                match p.kind {
+                    Kind::Path if !value.starts_with('#') && !is_inline(value) => files.push(split_reference(value).0),
+                    _ if p.reads_file(value) => files.push(value.into()),
+                    _ => {}
+                }
+            }
+        }
+    }
+    files
+}
+
+/// The files that a recipe's parameters ask to be written.
+pub(crate) fn files_written<'a>(
+    registry: &'a Registry,
+    recipe: &'a Recipe,
+) -> impl Iterator<Item = (&'static str, &'a Path)> {
+    recipe.steps.iter().flat_map(|step| {
+        let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+        let saves = params.iter().filter(|p| p.kind == Kind::Save);
+        saves.flat_map(|p| step.args.get(p.name).iter().map(|file| (p.name, Path::new(file))))
+    })
 }
 
 /// Looks up `FILE#NAME` or `FILE`.

@@ -1,31 +1,39 @@
-//! The report, `--report FILE`: the result of every file and shape. The field names are the JSON's.
+//! The report, `--report FILE`: the result of every file and shape. The field names are the JSON's. `pipeline/report_file.rs`
+//! writes it.
 
 use pathwarp::refit::Assurance;
 use serde::Serialize;
-
-/// The whole run.
-#[derive(Debug, Serialize)]
-pub(crate) struct Report {
-    pub(crate) tool: &'static str,
-    pub(crate) version: &'static str,
-    pub(crate) steps: Vec<String>,
-    pub(crate) inputs: Vec<FileReport>,
-    pub(crate) totals: Totals,
-}
 
 /// One input file.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct FileReport {
     pub(crate) file: String,
+    /// `None`: standard output, or none because of an error.
     pub(crate) output: Option<String>,
-    /// User units.
-    pub(crate) tolerance: f64,
+    /// Why the input could not be warped; omitted if it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) error: Option<String>,
+    /// User units; `None` after an error.
+    pub(crate) tolerance: Option<f64>,
     pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
 }
 
 impl FileReport {
+    /// An input that could not be warped.
+    pub(crate) fn failed(file: String, error: String) -> Self {
+        Self {
+            file,
+            output: None,
+            error: Some(error),
+            tolerance: None,
+            shapes: Vec::new(),
+            skipped: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
     /// Returns `true` if a shape was skipped or missed the tolerance.
     pub(crate) fn is_partial(&self) -> bool {
         !self.skipped.is_empty() || self.shapes.iter().any(|s| !s.over_budget.is_empty())
@@ -74,6 +82,9 @@ pub(crate) struct SkippedShape {
 /// Sums over all inputs.
 #[derive(Debug, Default, Serialize)]
 pub(crate) struct Totals {
+    pub(crate) inputs: usize,
+    /// Number of inputs that could not be warped.
+    pub(crate) failed: usize,
     pub(crate) shapes: usize,
     pub(crate) segments_in: usize,
     pub(crate) segments_out: usize,
@@ -103,18 +114,17 @@ pub(crate) fn assurance_word(a: Assurance) -> &'static str {
 }
 
 impl Totals {
-    pub(crate) fn of(inputs: &[FileReport], seconds: f64) -> Self {
-        let mut t = Self { seconds, ..Self::default() };
-        for i in inputs {
-            t.skipped += i.skipped.len();
-            for s in &i.shapes {
-                t.shapes += 1;
-                t.segments_in += s.segments_in;
-                t.segments_out += s.segments_out;
-                t.max_error = t.max_error.max(s.max_error);
-                t.folds += s.folds;
-            }
+    /// Adds one input.
+    pub(crate) fn add(&mut self, input: &FileReport) {
+        self.inputs += 1;
+        self.failed += usize::from(input.error.is_some());
+        self.skipped += input.skipped.len();
+        for s in &input.shapes {
+            self.shapes += 1;
+            self.segments_in += s.segments_in;
+            self.segments_out += s.segments_out;
+            self.max_error = self.max_error.max(s.max_error);
+            self.folds += s.folds;
         }
-        t
     }
 }

@@ -9,7 +9,7 @@ use crate::scene::drawing::Drawing;
 use crate::scene::lettering::selected::{Lettering, lettering};
 use crate::scene::shape::{NamedPath, Shape, named_path};
 use crate::source::read::ReadOptions;
-use crate::source::select::{Selection, is_named};
+use crate::source::select::{Selection, candidates, is_named, matches_any};
 use crate::source::tags::{ElementId, is_shape};
 use crate::write;
 use crate::write::input::WriteInput;
@@ -30,11 +30,17 @@ impl Document {
     /// Reads an SVG or svgz file. `name` identifies it in messages.
     ///
     /// # Errors
-    /// Returns [`Error::Input`] with the position if the file is not UTF-8, not XML, not SVG, or too large.
+    /// Returns [`Error::Input`] with the position if the file is not text in its encoding, not XML, not SVG, or too large.
     pub fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
         let drawing = Drawing::read(data, name, options)?;
-        let packed = (drawing.source.text.len() != data.len()).then(|| data.into());
+        let packed = (drawing.source.text.as_bytes() != data).then(|| data.into());
         Ok(Self { drawing, packed })
+    }
+
+    /// The text of the file, decoded: where that was another encoding than UTF-8, the XML declaration names UTF-8.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.drawing.source.text
     }
 
     /// Content of the file.
@@ -89,6 +95,36 @@ impl Document {
     pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
         let selected = self.drawing.selected_parts(selection);
         self.shapes().iter().zip(selected).filter(|(s, selected)| *selected && s.painted).map(|(s, _)| s)
+    }
+
+    /// Returns `true` if the selection holds a painted shape or a bitmap.
+    #[must_use]
+    pub fn has_artwork(&self, selection: &Selection) -> bool {
+        let elements = selection.resolve(&self.drawing.source);
+        let mut bitmaps = self.drawing.scene().bitmaps.iter();
+        self.selected(selection).next().is_some()
+            || bitmaps.any(|b| b.owner.map_or(selection.is_everything(), |e| elements[e]))
+    }
+
+    /// Checks that every selector matches something.
+    ///
+    /// # Errors
+    /// Returns [`Error::Input`] with the first selector that matches no element, or selects nothing painted, and similar names.
+    pub fn check_selection(&self, selection: &Selection) -> Result<(), Error> {
+        let source = &self.drawing.source;
+        for selector in selection.select.iter().chain(&selection.exclude) {
+            if !matches_any(source, selector) {
+                let hint = similar(candidates(source, selector), selector, "names");
+                return Err(Error::input(self.name(), format!("nothing matches `{selector}`; {hint}")));
+            }
+        }
+        for selector in &selection.select {
+            let alone = Selection { select: vec![selector.clone()], ..Selection::default() };
+            if !self.has_artwork(&alone) {
+                return Err(Error::input(self.name(), format!("`{selector}` holds nothing that is painted")));
+            }
+        }
+        Ok(())
     }
 
     /// The lettering among the selected painted shapes.
@@ -157,20 +193,10 @@ impl Document {
     }
 
     fn no_such_path(&self, wanted: &str, exists: bool) -> Error {
-        /// Number of names listed, about two lines.
-        const SHOWN: usize = 12;
-        let mut names: Vec<String> = self.paths().into_iter().map(|p| p.label.or(p.title).unwrap_or(p.id)).collect();
-        let all = names.len();
-        names.sort_by_cached_key(|n| distance(n, wanted));
-        names.truncate(SHOWN);
+        let names = self.paths().into_iter().map(|p| p.label.or(p.title).unwrap_or(p.id)).collect();
         let place = format!("{}#{wanted}", self.name());
         let what = if exists { "this is not a single path" } else { "there is no path of this name" };
-        let hint = match (names.is_empty(), all > SHOWN) {
-            (true, _) => "the file has no paths".to_owned(),
-            (_, true) => format!("among the {all} paths are {}", names.join(", ")),
-            _ => format!("the paths are {}", names.join(", ")),
-        };
-        Error::input(place, format!("{what}; {hint}"))
+        Error::input(place, format!("{what}; {}", similar(names, wanted, "paths")))
     }
 
     fn named_path(&self, e: ElementId) -> Option<NamedPath> {
@@ -207,6 +233,20 @@ fn warp(drawing: &Drawing, map: &dyn Map, options: &WarpOptions) -> Result<Warpe
     let input = WriteInput::new(drawing, &bent, map, &options);
     drawing.with_stack(|| write::document::write(&input, &mut out))?;
     Ok(out)
+}
+
+/// Lists the names most like `wanted`; `what` they name is in the plural.
+fn similar(mut names: Vec<String>, wanted: &str, what: &str) -> String {
+    /// Number of names listed, about two lines.
+    const SHOWN: usize = 12;
+    let all = names.len();
+    names.sort_by_cached_key(|n| distance(n, wanted));
+    names.truncate(SHOWN);
+    match (names.is_empty(), all > SHOWN) {
+        (true, _) => format!("the file has no {what}"),
+        (_, true) => format!("among the {all} {what} are {}", names.join(", ")),
+        _ => format!("the {what} are {}", names.join(", ")),
+    }
 }
 
 /// Edit distance, ignoring case, over at most 40 characters, so that long names cost nothing.

@@ -161,7 +161,8 @@ fn spread(a: &[Point]) -> f64 {
     a.iter().flat_map(|p| a.iter().map(move |q| p.distance(*q))).fold(0.0, f64::max)
 }
 
-/// The order of four corners in which the lowest side on the screen comes first, left to right.
+/// The order of four corners in which the bottom side comes first, and on which end of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Arrangement {
     /// The bottom side: 0 to 3, as drawn.
     pub(crate) bottom: usize,

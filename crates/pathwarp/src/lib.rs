@@ -31,6 +31,7 @@
 // Without the presets, the parts that only they use have no caller.
 #![cfg_attr(not(feature = "serde"), allow(dead_code, unused_imports))]
 
+mod ambiguity;
 pub(crate) mod anchors;
 pub mod check;
 pub mod decimal;

@@ -1,5 +1,6 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
 
+use crate::ambiguity::ambiguity;
 use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, show};
 use crate::map::{Chain, Map, NewtonInverse};
@@ -74,7 +75,9 @@ impl Recipe {
                 Error::input(format!("step {}", i + 1), problem)
             })?;
             if i > 0 {
-                frame = out.image_box(artwork.clone(), &letters).map_or(frame, Frame::new);
+                let units_per_px = frame.units_per_px;
+                let image = out.image_box(artwork.clone(), &letters);
+                frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
             }
             let mut built = entry.build_from(&step.args, &frame)?;
             check_placement(&built.placement, i, step)?;
@@ -85,7 +88,7 @@ impl Recipe {
                 if let Some(warning) = out.torn_seam(artwork.clone(), &built, &step.deformation) {
                     built.warn(warning);
                 }
-                built = inverted(built, &frame);
+                built = inverted(built, &frame, &step.deformation);
             }
             if i > 0 {
                 out.after.push(Arc::clone(&built.map));
@@ -149,11 +152,20 @@ impl BuiltRecipe {
 }
 
 /// Inverts a deformation: by its closed-form inverse, or by Newton's method over the frame.
-fn inverted(mut built: Built, frame: &Frame) -> Built {
+fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
     /// Distance beyond the frame at which a solution is accepted, as a share of its diagonal: strokes and handles extend past it.
     const REACH: f64 = 0.25;
     let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
     let map = built.map.inverse().unwrap_or_else(newton);
+    if let Some(a) = ambiguity(&*built.map, &*map, frame.rect) {
+        built.warn(format!(
+            "{deformation}: undoing it is ambiguous: {} and {} have the same image, {}, of which only one can come back; artwork \
+             there, and beyond the fold, may come out wrong",
+            show(a.source),
+            show(a.returned),
+            show(a.image)
+        ));
+    }
     // Source and result change places.
     for Overlay { role, .. } in &mut built.explanation.overlays {
         *role = match role {

@@ -1,11 +1,16 @@
 //! The program from outside: exit codes, files, streams, messages.
 
+mod batches;
 mod chains;
 mod commands;
 mod common;
 mod documentation;
+mod encodings;
 mod exit_codes;
+mod overwriting;
 mod report;
+mod selection;
 mod streams;
 #[path = "../support/mod.rs"]
 mod support;
+mod units;

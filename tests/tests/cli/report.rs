@@ -108,3 +108,39 @@ fn explain_prints_the_corners() {
         assert!(said.contains(part), "{part} not in {said}");
     }
 }
+
+/// Where a map folds, two points of the source have one image, and undoing it cannot bring both back.
+#[test]
+fn undoing_a_fold_is_warned_of_with_the_place() {
+    let dir = tempfile::tempdir().unwrap();
+    let back = |map: &[&str]| {
+        let forth = pathwarp_in(dir.path(), &[map, &["-q"]].concat(), SQUARE.as_bytes());
+        assert_eq!(forth.status.code(), Some(0), "{}", text(&forth.stderr));
+        let undo = [map, &["--inverse", "--frame", "0,0,100,100", "-o", "back.svg"]].concat();
+        let out = pathwarp_in(dir.path(), &undo, &forth.stdout);
+        (out.status.code(), text(&out.stderr))
+    };
+    // A hairpin, narrower than the artwork is high. Both points of the message have the image that it says.
+    let hairpin = ["bend", "--along", "M0,0 C60,-100 40,-100 100,0"];
+    let (_, said) = back(&hairpin);
+    assert!(said.contains("undoing it is ambiguous") && said.contains("have the same image"), "{said}");
+    let is_coordinate = |w: &&str| w.parse::<f64>().is_ok() && w.contains('.');
+    let line = said.lines().find(|l| l.contains("undoing")).unwrap();
+    let places: Vec<&str> = line.split([' ', ',']).filter(is_coordinate).take(6).collect();
+    let points = format!("{} {}\n{} {}\n", places[0], places[1], places[2], places[3]);
+    let map = [&["map"], &hairpin[..], &["--frame", "0,0,100,100", "--points", "-"]].concat();
+    let images = text(&pathwarp_in(dir.path(), &map, points.as_bytes()).stdout);
+    assert_eq!(images.lines().count(), 2);
+    for image in images.lines() {
+        for (found, shown) in image.split(' ').zip(&places[4..]) {
+            assert!((found.parse::<f64>().unwrap() - shown.parse::<f64>().unwrap()).abs() < 1e-3, "{images} {said}");
+        }
+    }
+    for map in [&["warp", "--style", "flag"][..], &["swirl"], &["polar"], &["wordart", "--preset", "arch-up"]] {
+        let (code, said) = back(map);
+        assert!(code == Some(0) && !said.contains("ambiguous"), "{map:?}: {said}");
+    }
+    // This one cannot be undone on all of the square: an error or a warning, never silence.
+    let (code, said) = back(&["wordart", "--preset", "button"]);
+    assert!(code == Some(4) || said.contains("ambiguous"), "{code:?}: {said}");
+}

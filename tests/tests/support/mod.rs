@@ -69,6 +69,13 @@ pub fn pathwarp_in(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
     child.wait_with_output().unwrap()
 }
 
+/// Starts `pathwarp` in a folder, without standard input.
+pub fn start_in(folder: &Path, args: &[&str]) -> std::process::Child {
+    let mut command = Command::new(pathwarp_program());
+    command.args(args).current_dir(folder);
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
 /// Runs `pathwarp` and asserts its exit code. Returns standard output and standard error.
 #[track_caller]
 pub fn expect_code<S: AsRef<std::ffi::OsStr> + std::fmt::Debug>(code: i32, args: &[S]) -> (String, String) {

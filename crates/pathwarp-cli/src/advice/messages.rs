@@ -49,6 +49,15 @@ pub(crate) fn overhang(o: Overhang) -> String {
     )
 }
 
+/// Describes inputs of a batch whose artwork extends past the page; `file` is the one with the largest `share` of its page.
+pub(crate) fn overhangs(count: usize, inputs: usize, share: f64, file: &str) -> String {
+    format!(
+        "the artwork of {count} of {inputs} inputs extends past the page, most that of {file} ({} %); --fit grow enlarges \
+         the pages, --fit page fits them to the artwork",
+        three_figures(100.0 * share)
+    )
+}
+
 /// Describes why there is no frame around lettering, with the options that help.
 pub(crate) fn lettering_frame(error: &LetteringFrameError) -> String {
     let advice = match error {

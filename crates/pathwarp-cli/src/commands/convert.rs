@@ -4,6 +4,7 @@ use super::file_args;
 use crate::failure::Failure;
 use crate::input::{self, GimpFile};
 use crate::output::{self, PendingFile};
+use crate::sources::Files;
 use crate::status::Status;
 use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -43,6 +44,9 @@ pub(super) fn command() -> Command {
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "FILE")?;
+    let split = m.get_flag("split");
+    // The files that --split writes are checked below.
+    let target = file_args::target(m, (!split).then_some(file))?;
     let gimp = GimpFile::open(file, m.get_flag("salvage"))?;
     let damage = gimp.as_ref().and_then(|g| g.damage.clone());
     let (size, paths) = match &gimp {
@@ -52,10 +56,13 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     if let Some(d) = &damage {
         terminal::warning(&format!("{}: {d}", input::display(file)));
     }
-    match file_args::target(m) {
+    match target {
         None => output::to_stdout(to_svg(size, &paths, None).as_bytes())?,
-        Some(out) if m.get_flag("split") => {
+        Some(out) if split => {
             let names = names(out, &paths);
+            let mut files = Files::default();
+            files.read(file);
+            names.iter().try_for_each(|to| files.write(to, ""))?;
             let single =
                 |(to, p): (&PathBuf, &GimpPath)| PendingFile::new(to, &bytes(to, size, std::slice::from_ref(p))?);
             let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();

@@ -33,5 +33,5 @@ pub(super) fn run(registry: &Registry, name: &str, m: &ArgMatches, later: &[&[Os
         given = given.joined(&part.options)?;
     }
     let given = given.joined(&Given::inputs_and_options(m))?;
-    pipeline::run(registry, &Recipe { steps }, &given)
+    pipeline::run(registry, &Recipe { steps }, &given, None)
 }

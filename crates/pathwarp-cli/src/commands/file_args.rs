@@ -1,6 +1,8 @@
 //! Arguments for files that several subcommands share.
 
 use crate::failure::Failure;
+use crate::output::is_stdout;
+use crate::sources::Files;
 use clap::{Arg, ArgMatches, value_parser};
 use std::path::{Path, PathBuf};
 
@@ -24,6 +26,18 @@ pub(super) fn out(value_name: &'static str, help: &'static str) -> Arg {
 }
 
 /// The output file; `None` is standard output.
-pub(super) fn target(m: &ArgMatches) -> Option<&Path> {
-    m.get_one::<PathBuf>(OUT).map(PathBuf::as_path).filter(|o| o.as_os_str() != "-")
+///
+/// # Errors
+/// The output is one of the files `read`.
+pub(super) fn target(
+    m: &ArgMatches,
+    read: impl IntoIterator<Item = impl AsRef<Path>>,
+) -> Result<Option<&Path>, Failure> {
+    let target = m.get_one::<PathBuf>(OUT).map(PathBuf::as_path).filter(|o| !is_stdout(o));
+    if let Some(to) = target {
+        let mut files = Files::default();
+        read.into_iter().for_each(|f| files.read(f.as_ref()));
+        files.write(to, "")?;
+    }
+    Ok(target)
 }

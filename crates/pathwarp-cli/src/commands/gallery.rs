@@ -106,6 +106,7 @@ fn cell(text: &str) -> Result<(f64, f64), String> {
 
 pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "INPUT")?;
+    let target = file_args::target(m, [file])?;
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
@@ -119,7 +120,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let mut cells: Vec<Cell> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
     // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
     if sets.iter().any(|(_, g)| g.bend.is_some()) {
-        let svg = String::from_utf8_lossy(doc.source()).into_owned();
+        let svg = doc.text().to_owned();
         cells.insert(0, Cell { svg, label: "as it is".into() });
     }
     let options = SheetOptions {
@@ -128,7 +129,6 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
         title: title(file, &sets, bend, axis),
     };
     let svg = sheet(&cells, &options, &input::read_options(file))?;
-    let target = file_args::target(m);
     let bytes = if target.is_some_and(is_png) {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));

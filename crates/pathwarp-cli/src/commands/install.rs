@@ -74,7 +74,7 @@ fn uninstall(home: &Path, files: &[&PathBuf], dry: bool) -> Result<String, Failu
     for f in existing {
         let _ = writeln!(done, "{} {}", if dry { "would remove" } else { "removed" }, f.display());
         if !dry {
-            fs::remove_file(f).map_err(|e| Failure::file(f, format!("cannot be removed: {e}")))?;
+            fs::remove_file(f).map_err(|e| Failure::output(f, format!("cannot be removed: {e}")))?;
         }
     }
     if !dry {
@@ -89,12 +89,12 @@ fn install(script: &Path, program: &Path) -> Result<(), Failure> {
     let own = env::current_exe().and_then(fs::read);
     let own = own.map_err(|e| Failure::Input(format!("the program file cannot be read: {e}")))?;
     let folder = program.parent().unwrap_or(Path::new(""));
-    fs::create_dir_all(folder).map_err(|e| Failure::file(folder, format!("cannot be created: {e}")))?;
+    fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))?;
     PendingFile::commit_all(vec![PendingFile::new(script, PLUG_IN.as_bytes())?, PendingFile::new(program, &own)?])?;
     #[cfg(unix)]
     for f in [script, program] {
         use std::os::unix::fs::PermissionsExt;
-        fs::set_permissions(f, fs::Permissions::from_mode(0o755)).map_err(|e| Failure::file(f, e))?;
+        fs::set_permissions(f, fs::Permissions::from_mode(0o755)).map_err(|e| Failure::output(f, e))?;
     }
     Ok(())
 }

@@ -63,14 +63,15 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, false)?.into_iter().map(|part| part.step));
-    references::resolve(registry, &mut recipe, |name| Err(input::no_document(name)))?;
+    references::resolve_files(registry, &mut recipe)?;
+    references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;
     let points = parse(&String::from_utf8_lossy(&bytes))
         .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
     let cloud = Outline::from_points(&points, false);
     let frame = match m.get_one::<String>("frame") {
-        Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?,
+        Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
         None => cloud.bounding_box().unwrap_or(Rect::ZERO),
     };
     let map = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud)).map_err(Failure::of_recipe)?.map;

@@ -36,8 +36,9 @@ const AFTER: &str = "Path references (PATHREF), for every option that takes a pa
 Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
 All steps are composed before any curve is fitted. Name the inputs in the first part; common options may be in any part.
 
-Exit codes: 0 success; 1 done, but something was left unchanged or missed the tolerance; 2 wrong usage;
-3 unreadable input; 4 the geometry does not allow it. On 2, 3 and 4 no output file is touched.";
+Exit codes: 0 success; 1 done, but something was left unchanged or missed the tolerance, or some of several inputs failed;
+2 wrong usage; 3 unreadable input; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
+On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.";
 
 /// The whole command line.
 pub(crate) fn build(registry: &Registry) -> Command {

@@ -42,6 +42,7 @@ pub(super) fn command() -> Command {
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "INPUT")?;
+    let target = file_args::target(m, [file])?;
     let size = if let Some(&w) = m.get_one::<u32>("width") {
         Size::Width(w)
     } else if let Some(&h) = m.get_one::<u32>("height") {
@@ -56,6 +57,6 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     };
     let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
     let png = encode_png(&RenderOptions { size, background }.render(&tree)?)?;
-    output::write(file_args::target(m), &png)?;
+    output::write(target, &png)?;
     Ok(Status::Complete)
 }

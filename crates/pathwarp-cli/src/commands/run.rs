@@ -37,5 +37,5 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     // The command line alone has no conflicts, so one that shows up now involves the recipe.
     given.check_conflicts().map_err(|e| Failure::file(file, format!("[options] {e}")))?;
     let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
-    pipeline::run(registry, &recipe, &given)
+    pipeline::run(registry, &recipe, &given, Some(file))
 }

@@ -20,12 +20,13 @@ pub(super) fn command() -> Command {
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "FILE")?;
+    let target = file_args::target(m, [file])?;
     let name = input::display(file);
     let text = String::from_utf8(input::bytes(file)?).map_err(|_| Failure::file(file, "is not UTF-8 text"))?;
     let origin = Origin::read(&text).map_err(|e| Failure::from(e).about(&name))?;
     let origin =
         origin.ok_or_else(|| Failure::file(file, "holds no source; only drawings written with --embed-recipe do"))?;
     let bytes = if m.get_flag("recipe") { origin.recipe.into_bytes() } else { origin.source };
-    output::write(file_args::target(m), &bytes)?;
+    output::write(target, &bytes)?;
     Ok(Status::Complete)
 }

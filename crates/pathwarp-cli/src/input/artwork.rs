@@ -8,6 +8,7 @@ use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp::{Error, Outline};
+use pathwarp_svg::Overhang;
 use std::path::Path;
 
 /// Artwork of one kind, read and ready to be warped.
@@ -26,6 +27,11 @@ pub(crate) trait Artwork {
 
     /// The frame for building the first step. `bounds` is the artwork's bounding box.
     fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure>;
+
+    /// User units per px along x and y.
+    fn units_per_px(&self) -> [f64; 2] {
+        [1.0; 2]
+    }
 
     /// The outlines of the artwork.
     fn outlines(&self) -> Vec<&Outline>;
@@ -65,6 +71,8 @@ pub(crate) struct WarpedArtwork {
     pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
+    /// The artwork extends past the page and did not before.
+    pub(crate) overhang: Option<Overhang>,
     /// Files besides the result.
     pub(crate) files: Vec<PendingFile>,
     /// The PNG of `--preview`.

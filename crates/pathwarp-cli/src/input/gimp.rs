@@ -43,6 +43,9 @@ impl GimpArtwork {
     pub(super) fn new(file: GimpFile, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
         let format = format(options, &file, target)?;
         let (select, exclude) = (options.select.clone(), options.exclude.clone());
+        for name in select.iter().chain(&exclude) {
+            file.path_named(name.strip_prefix('#').unwrap_or(name))?;
+        }
         Ok(Self { file, format, select, exclude, selected: Vec::new(), outlines: Vec::new() })
     }
 
@@ -110,7 +113,7 @@ impl Artwork for GimpArtwork {
         match choice {
             FrameChoice::Default | FrameChoice::Artwork => Ok(Frame::new(bounds.unwrap_or(canvas))),
             FrameChoice::ViewBox => Ok(Frame::new(canvas)),
-            FrameChoice::Rect(r) => Ok(Frame::new(r)),
+            FrameChoice::Rect(r) => Ok(Frame::new(r.rect(self.units_per_px()))),
             FrameChoice::Lettering(_) => {
                 Err(Failure::usage("--frame: GIMP paths do not store their baseline; give X,Y,W,H"))
             }
@@ -128,15 +131,20 @@ impl Artwork for GimpArtwork {
                 "--{param} is for SVG files; convert the paths to SVG first (`pathwarp convert`)"
             )));
         }
-        let warped = self.warp_paths(request)?;
+        let mut warped = self.warp_paths(request)?;
+        let empty = self.selected.is_empty();
+        if empty {
+            warped.warnings.push("there is nothing to warp: no paths with strokes".into());
+        }
         Ok(WarpedArtwork {
             result: self.write(&warped, request)?,
+            overhang: None,
             files: Vec::new(),
             preview: options.preview.is_some().then(|| self.preview(&warped, built)).transpose()?,
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings: warped.warnings,
-            partial: self.file.damage.is_some(),
+            partial: empty || self.file.damage.is_some(),
         })
     }
 }
@@ -202,7 +210,7 @@ impl GimpArtwork {
                 }
                 Err(e) => {
                     let e = e.on_shape(&path.name);
-                    if options.on_error == OnError::Stop {
+                    if options.on_failure.of_shapes() == OnError::Stop {
                         return Err(Error::Geometry(e).into());
                     }
                     out.skipped.push(SkippedShape { id: path.name.clone(), why: e.to_string() });

@@ -36,7 +36,8 @@ pub(super) fn format(options: &CommonOptions, input: &GimpFile, target: Option<&
         "svg" => Ok(GimpFormat::Svg),
         "json" => Ok(GimpFormat::Json),
         "xcf" => Err(Failure::usage(
-            "an XCF holds more than paths; --into COPY.xcf writes a copy of the input with its paths warped",
+            "an XCF holds more than paths; --into COPY.xcf writes a copy of the input with its paths warped (--into \
+             INPUT.xcf --in-place overwrites the input)",
         )),
         other => Err(Failure::usage(format!("GIMP paths are written as .svg or .json, not as .{other}"))),
     }
@@ -56,11 +57,6 @@ fn check_into(input: &GimpFile, copy: &Path) -> Result<(), Failure> {
     }
     if !copy.extension().is_some_and(|e| e.eq_ignore_ascii_case("xcf")) {
         return Err(Failure::usage(format!("--into writes an XCF; give {} the extension .xcf", copy.display())));
-    }
-    if let (Ok(a), Ok(b)) = (copy.canonicalize(), input.path.canonicalize())
-        && a == b
-    {
-        return Err(Failure::usage("--into names the input itself; give the copy another name"));
     }
     Ok(())
 }

@@ -72,7 +72,7 @@ impl Artwork for PictureArtwork {
     fn frame(&self, choice: FrameChoice, _bounds: Option<Rect>, _baseline: Baseline) -> Result<Frame, Failure> {
         match choice {
             FrameChoice::Default | FrameChoice::Artwork | FrameChoice::ViewBox => Ok(Frame::new(self.area())),
-            FrameChoice::Rect(r) => Ok(Frame::new(r)),
+            FrameChoice::Rect(r) => Ok(Frame::new(r.rect(self.units_per_px()))),
             FrameChoice::Lettering(_) => {
                 Err(Failure::usage("--frame: a photograph has no lettering to put a frame around; give X,Y,W,H"))
             }
@@ -98,7 +98,7 @@ impl Artwork for PictureArtwork {
         let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &*map, Affine::IDENTITY)
             .ok_or_else(|| Failure::Geometry(undefined_at(area.center())))?;
         if let Some(p) = undefined {
-            if options.on_error == OnError::Stop {
+            if options.on_failure.of_shapes() == OnError::Stop {
                 return Err(Failure::Geometry(format!("{}; --on-error skip leaves that part out", undefined_at(p))));
             }
             warnings.push(undefined_at(p));
@@ -119,6 +119,7 @@ impl Artwork for PictureArtwork {
             shapes: Vec::new(),
             skipped: Vec::new(),
             warnings,
+            overhang: None,
             files: Vec::new(),
             preview: None,
             partial: undefined.is_some(),

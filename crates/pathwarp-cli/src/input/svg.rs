@@ -57,6 +57,7 @@ impl SvgArtwork {
         let doc = Document::read(bytes, &name, &read)?;
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
+        doc.check_selection(&selection)?;
         Ok(Self { name, doc, read, selection })
     }
 
@@ -77,7 +78,7 @@ impl SvgArtwork {
             .with_text(options.text)
             .with_structure(options.structure)
             .with_selection(self.selection.clone())
-            .with_on_error(options.on_error)
+            .with_on_error(options.on_failure.of_shapes())
             .with_gradients(gradients)
             .with_patterns(options.patterns)
             .with_page(options.page)
@@ -180,7 +181,7 @@ impl Artwork for SvgArtwork {
         let plain = match choice {
             FrameChoice::Default | FrameChoice::Artwork => Some(artwork()),
             FrameChoice::ViewBox => Some(Frame::new(self.doc.view_box())),
-            FrameChoice::Rect(r) => Some(Frame::new(r)),
+            FrameChoice::Rect(r) => Some(Frame::new(r.rect(self.units_per_px()))),
             FrameChoice::Lettering(_) => None,
         };
         // Finding the lettering takes longer than reading the drawing.
@@ -200,6 +201,12 @@ impl Artwork for SvgArtwork {
         Ok(if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame })
     }
 
+    fn units_per_px(&self) -> [f64; 2] {
+        let [a, b, c, d, ..] = self.doc.user_to_px().as_coeffs();
+        let usable = |px: f64| if px > 0.0 && px.is_finite() { 1.0 / px } else { 1.0 };
+        [usable(a.hypot(b)), usable(c.hypot(d))]
+    }
+
     fn outlines(&self) -> Vec<&Outline> {
         self.doc.selected(&self.selection).map(|s| &*s.outline).collect()
     }
@@ -214,7 +221,10 @@ impl Artwork for SvgArtwork {
         }
         let (shapes, folds) = self.shape_reports(request, &options, &warped);
         let mut warnings = warped.warnings;
-        warnings.extend(warped.overhang.map(advice::overhang));
+        let empty = !self.doc.has_artwork(&self.selection);
+        if empty {
+            warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
+        }
         warnings.extend(folds);
         let surfaces = surface::files(&self.doc, built, &options)?;
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
@@ -231,9 +241,10 @@ impl Artwork for SvgArtwork {
             shapes,
             skipped: warped.skipped.into_iter().map(|s| SkippedShape { id: s.id, why: s.why }).collect(),
             warnings,
+            overhang: warped.overhang,
             files,
             preview: preview.transpose()?,
-            partial: false,
+            partial: empty,
         })
     }
 }

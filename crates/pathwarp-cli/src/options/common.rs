@@ -1,6 +1,8 @@
 //! The common options as typed values.
 
+use super::typed_box::TypedBox;
 use pathwarp::kurbo::Rect;
+use pathwarp::param::{Axis, Frame, Length};
 use pathwarp_svg::{LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::path::PathBuf;
 
@@ -17,7 +19,7 @@ pub(crate) enum FrameChoice {
     Artwork,
     Lettering(LetteringFrame),
     ViewBox,
-    Rect(Rect),
+    Rect(TypedBox),
 }
 
 /// Treatment of gradients.
@@ -30,6 +32,25 @@ pub(crate) enum GradientChoice {
     Keep,
 }
 
+/// Reaction to an input or a shape that cannot be warped.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum OnFailure {
+    /// Leave the input out and go on with the others.
+    #[default]
+    Continue,
+    /// End the run and write nothing.
+    Stop,
+    /// Leave the shape unchanged, or the input out.
+    Skip,
+}
+
+impl OnFailure {
+    /// The reaction to a shape.
+    pub(crate) fn of_shapes(self) -> OnError {
+        if self == Self::Skip { OnError::Skip } else { OnError::Stop }
+    }
+}
+
 /// The values of the common options. `Default` holds the unset state; [`Given::read`](super::Given::read) applies the defaults
 /// that the table declares and then the values given.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -38,11 +59,17 @@ pub(crate) struct CommonOptions {
     /// `None`: standard output.
     pub(crate) out: Option<PathBuf>,
     pub(crate) out_dir: Option<PathBuf>,
+    /// Overwrite the inputs.
+    pub(crate) in_place: bool,
+    /// Warp the SVG files in folders.
+    pub(crate) recursive: bool,
+    /// Print what would be written, and write nothing.
+    pub(crate) dry_run: bool,
     /// Copy of the input XCF that receives the warped paths.
     pub(crate) into: Option<PathBuf>,
     /// Read the paths before the damage in a damaged GIMP file.
     pub(crate) salvage: bool,
-    pub(crate) tolerance: Option<f64>,
+    pub(crate) tolerance: Option<Length>,
     pub(crate) certify: bool,
     pub(crate) merge: bool,
     pub(crate) frame: FrameChoice,
@@ -60,7 +87,7 @@ pub(crate) struct CommonOptions {
     pub(crate) image_dpi: Option<f64>,
     /// Width, and height if given, of a warped picture in pixels.
     pub(crate) image_size: Option<(u32, Option<u32>)>,
-    pub(crate) on_error: OnError,
+    pub(crate) on_failure: OnFailure,
     pub(crate) report: Option<PathBuf>,
     pub(crate) preview: Option<PathBuf>,
     pub(crate) write_recipe: Option<PathBuf>,
@@ -72,9 +99,10 @@ pub(crate) struct CommonOptions {
 }
 
 impl CommonOptions {
-    /// Returns the tolerance given, or the default for artwork with this bounding box.
-    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>) -> f64 {
+    /// Returns the tolerance given, or the default for artwork with this bounding box, in user units.
+    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> f64 {
         let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
-        self.tolerance.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
+        let given = self.tolerance.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0);
+        given.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
     }
 }

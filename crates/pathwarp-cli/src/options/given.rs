@@ -107,7 +107,7 @@ impl Given {
     /// The typed values: the defaults of the table, overridden by what is given.
     ///
     /// # Errors
-    /// A value with its own syntax cannot be parsed, or several inputs are given where only one can be.
+    /// A value with its own syntax cannot be parsed.
     pub(crate) fn read(&self) -> Result<CommonOptions, Failure> {
         let mut options = defaults();
         options.inputs.clone_from(&self.inputs);
@@ -115,17 +115,6 @@ impl Given {
             for value in values {
                 apply(option, value, &mut options)
                     .map_err(|problem| Failure::usage(format!("--{}: {problem}", option.name)))?;
-            }
-        }
-        if options.inputs.len() > 1 {
-            if options.out_dir.is_none() {
-                return Err(Failure::usage("several inputs need --out-dir DIR; their results cannot share one file"));
-            }
-            if options.into.is_some() {
-                return Err(Failure::usage("--into writes one file; give one XCF"));
-            }
-            if options.preview.is_some() {
-                return Err(Failure::usage("--preview draws one input; give one"));
             }
         }
         Ok(options)
@@ -207,8 +196,11 @@ mod tests {
         line.push("tolerance", "3").unwrap();
         line.push("select", "b").unwrap();
         let o = recipe.overridden_by(&line).read().unwrap();
-        assert_eq!((o.tolerance, o.select, o.merge), (Some(3.0), vec!["a".to_owned(), "b".to_owned()], false));
-        assert_eq!(recipe.read().unwrap().tolerance, Some(2.0));
+        assert_eq!(
+            (o.tolerance.map(|l| l.value), o.select, o.merge),
+            (Some(3.0), vec!["a".to_owned(), "b".to_owned()], false)
+        );
+        assert_eq!(recipe.read().unwrap().tolerance.map(|l| l.value), Some(2.0));
         assert!(recipe.joined(&line).is_err(), "--tolerance in both parts of a chain");
     }
 

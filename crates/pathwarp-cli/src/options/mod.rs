@@ -9,9 +9,10 @@ mod definition;
 mod given;
 mod parse;
 mod table;
+mod typed_box;
 
 pub(crate) use args::{args, options_without_inputs};
-pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice};
+pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
 pub(crate) use given::Given;
 pub(crate) use parse::rect;
 pub(crate) use table::OPTIONS;

@@ -1,7 +1,8 @@
 //! Parsers for option values with their own syntax. Errors name the fault without the option.
 
 use super::common::FrameChoice;
-use pathwarp::kurbo::Rect;
+use super::typed_box::TypedBox;
+use pathwarp::param::{Length, LengthUnit};
 use pathwarp_svg::LetteringFrame;
 
 /// Parses a positive, finite number.
@@ -10,6 +11,12 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
         Ok(v) if v > 0.0 && v.is_finite() => Ok(v),
         _ => Err(format!("`{text}` is not a positive number")),
     }
+}
+
+/// Parses a positive length.
+pub(super) fn positive_length(text: &str) -> Result<Length, String> {
+    let length: Length = text.parse().map_err(|e| format!("`{text}` {e}"))?;
+    if length.value > 0.0 { Ok(length) } else { Err(format!("`{text}` is not positive")) }
 }
 
 /// Parses a size in pixels, `W` or `WxH`.
@@ -37,13 +44,17 @@ pub(super) fn frame(text: &str) -> Result<FrameChoice, String> {
 }
 
 /// Parses a box, `X,Y,W,H`.
-pub(crate) fn rect(text: &str) -> Result<Rect, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|w| w.trim().parse::<f64>()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, w, h]) if w > 0.0 && h > 0.0 && (x + y + w + h).is_finite() => Ok(Rect::new(x, y, x + w, y + h)),
+pub(crate) fn rect(text: &str) -> Result<TypedBox, String> {
+    let lengths: Result<Vec<Length>, _> = text.split(',').map(str::parse).collect();
+    match lengths.as_deref() {
+        Ok(&[x, y, w, h])
+            if w.value > 0.0 && h.value > 0.0 && [x, y, w, h].iter().all(|l| l.unit != LengthUnit::Percent) =>
+        {
+            Ok(TypedBox([x, y, w, h]))
+        }
         _ => Err(format!(
-            "`{text}` is not one of artwork, viewbox, X,Y,W,H (W and H positive) or, for lettering, baseline-ascent, \
-             baseline-capheight, baseline-xheight, ascent-descent, ink"
+            "`{text}` is not one of artwork, viewbox, X,Y,W,H (lengths; W and H positive) or, for lettering, \
+             baseline-ascent, baseline-capheight, baseline-xheight, ascent-descent, ink"
         )),
     }
 }

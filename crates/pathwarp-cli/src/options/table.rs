@@ -1,9 +1,9 @@
 //! The table of common options: each is declared here, and nowhere else.
 
-use super::common::GradientChoice;
+use super::common::{GradientChoice, OnFailure};
 use super::definition::{CommonOption, LeadingMinus, OptionValue};
 use super::parse;
-use pathwarp_svg::{OnError, PageFit, Patterns, Strokes, Structure, TextMode};
+use pathwarp_svg::{PageFit, Patterns, Strokes, Structure, TextMode};
 
 /// An option without short name, default and conflicts, stored in recipes.
 const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
@@ -22,7 +22,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "out",
             OptionValue::File { name: "OUT", set: |o, file| o.out = Some(file).filter(|f| f.as_os_str() != "-") },
-            "Write the result to this file; - or none writes to standard output",
+            "Write the result to this file; - or none writes to standard output. {stem} in the name stands for the \
+             input's name without extension",
         )
     },
     CommonOption {
@@ -30,9 +31,31 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "out-dir",
             OptionValue::File { name: "DIR", set: |o, dir| o.out_dir = Some(dir) },
-            "Write the results of several inputs to this folder, under their own names",
+            "Write the results of several inputs to this folder, under their own names, or under another, such as \
+             DIR/{stem}-bent.svg; missing folders are created",
         )
     },
+    CommonOption {
+        conflicts: &["out-dir"],
+        ..of_the_run(
+            "in-place",
+            OptionValue::Switch(|o| o.in_place = true),
+            "Overwrite the inputs; without it, an output that is also an input is an error",
+        )
+    },
+    CommonOption {
+        short: Some('r'),
+        ..of_the_run(
+            "recursive",
+            OptionValue::Switch(|o| o.recursive = true),
+            "Warp the SVG files (.svg, .svgz) in folders and the folders below; --out-dir gets the same folders",
+        )
+    },
+    of_the_run(
+        "dry-run",
+        OptionValue::Switch(|o| o.dry_run = true),
+        "Print which file would be written for each input, and write none",
+    ),
     CommonOption {
         conflicts: &["out", "out-dir"],
         ..of_the_run(
@@ -53,9 +76,9 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Text {
                 name: "D",
                 minus: LeadingMinus::Number,
-                set: |o, text| parse::positive(text).map(|d| o.tolerance = Some(d)),
+                set: |o, text| parse::positive_length(text).map(|d| o.tolerance = Some(d)),
             },
-            "Largest distance between the exact curve and the output, in user units",
+            "Largest distance between the exact curve and the output: user units, or a length such as 0.05mm",
         )
     },
     stored(
@@ -82,7 +105,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             },
             "Box that percentages and defaults refer to. For lettering (text, or output of `pathwarp text`) also \
              baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the \
-             lines), ascent-descent, or ink (the bounding box of the letters)",
+             lines), ascent-descent, or ink (the bounding box of the letters). X, Y, W and H may have units, such as 20mm",
         )
     },
     stored(
@@ -212,11 +235,16 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         )
     },
     CommonOption {
-        default: Some("stop"),
+        default: Some("continue"),
         ..stored(
             "on-error",
-            OptionValue::Choice(&[("stop", |o| o.on_error = OnError::Stop), ("skip", |o| o.on_error = OnError::Skip)]),
-            "If a shape cannot be warped: stop, or leave it unchanged",
+            OptionValue::Choice(&[
+                ("continue", |o| o.on_failure = OnFailure::Continue),
+                ("stop", |o| o.on_failure = OnFailure::Stop),
+                ("skip", |o| o.on_failure = OnFailure::Skip),
+            ]),
+            "If an input cannot be read or one of its shapes cannot be warped: continue with the other inputs, stop \
+             and write nothing, or skip only the shape and leave it unchanged",
         )
     },
     of_the_run(

@@ -1,6 +1,7 @@
 //! The run of one input: open, look up references, choose the frame, build, warp, report.
 
-use crate::advice::Flags;
+use super::plan::Job;
+use crate::advice::{self, Flags};
 use crate::failure::Failure;
 use crate::input::{Baseline, Input, WarpRequest, WarpedResult};
 use crate::options::{CommonOptions, FrameChoice, Given};
@@ -24,8 +25,8 @@ pub(super) struct Batch<'a> {
 pub(super) struct FileRun {
     pub(super) report: FileReport,
     pub(super) files: Vec<PendingFile>,
-    /// The bytes for standard output.
-    pub(super) stdout: Option<Vec<u8>>,
+    /// Share of the page's size by which the artwork extends past it; the last warning says so.
+    pub(super) past_page: Option<f64>,
     /// The lines of `--explain`.
     pub(super) notes: Vec<String>,
     pub(super) partial: bool,
@@ -33,48 +34,59 @@ pub(super) struct FileRun {
 
 impl Batch<'_> {
     /// Warps one input; without a target the result goes to standard output.
-    pub(super) fn run(&self, input: &Path, target: Option<&Path>) -> Result<FileRun, Failure> {
+    pub(super) fn run(&self, job: &Job) -> Result<FileRun, Failure> {
         let Batch { registry, options, .. } = self;
-        let mut input = Input::open(input, options, target)?;
+        let target = job.target.as_deref();
+        let mut input = Input::open(&job.input, options, target)?;
         let artwork = input.artwork();
         let mut recipe = self.recipe.clone();
-        let guides = references::resolve(registry, &mut recipe, |name| artwork.path_named(name))?;
+        let guides = references::resolve_names(registry, &mut recipe, |name| artwork.path_named(name))?;
         artwork.remove_guides(guides);
 
         let bounds = artwork.bounding_box();
         let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
+        let frame = frame.with_units_per_px(artwork.units_per_px());
         let baseline = frame.baseline;
+        let tolerance = options.tolerance_for(bounds, &frame);
         let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
 
-        let tolerance = options.tolerance_for(bounds);
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
         let request = WarpRequest { built: &built, options, bounds, tolerance, target, embedded_recipe };
         let warped = artwork.warp(&request)?;
 
-        let (mut files, mut stdout) = (Vec::new(), None);
+        let mut files = Vec::new();
         match (warped.result, target) {
             (WarpedResult::File(file), _) => files.push(file),
             (WarpedResult::Bytes(bytes), Some(t)) => files.push(PendingFile::new(t, &bytes)?),
-            (WarpedResult::Bytes(bytes), None) => stdout = Some(bytes),
+            (WarpedResult::Bytes(bytes), None) => files.push(PendingFile::stdout(bytes)),
         }
         files.extend(warped.files);
         for file in built.steps.iter().flat_map(|s| &s.saves) {
             files.push(PendingFile::new(Path::new(&file.name), file.text.as_bytes())?);
         }
-        if let (Some(file), Some(png)) = (&options.preview, warped.preview) {
+        if let (Some(file), Some(png)) = (&job.preview, warped.preview) {
             files.push(PendingFile::new(file, &png)?);
         }
+        let mut warnings: Vec<String> = self.in_flags(&built, |e| &e.warnings).chain(warped.warnings).collect();
+        warnings.extend(warped.overhang.map(advice::overhang));
         let report = FileReport {
             file: artwork.file_name(),
             output: target.or(options.into.as_deref()).map(|t| t.display().to_string()),
-            tolerance,
+            error: None,
+            tolerance: Some(tolerance),
             shapes: warped.shapes,
             skipped: warped.skipped,
-            warnings: self.in_flags(&built, |e| &e.warnings).chain(warped.warnings).collect(),
+            warnings,
         };
         let partial = warped.partial || report.is_partial();
-        Ok(FileRun { report, files, stdout, notes: self.notes(&built, baseline), partial })
+        Ok(FileRun {
+            report,
+            files,
+            past_page: warped.overhang.map(|o| o.share),
+            notes: self.notes(&built, baseline),
+            partial,
+        })
     }
 
     /// The decisions made on the user's behalf.

@@ -1,15 +1,17 @@
-//! Warnings on the terminal about one file's report.
+//! Warnings on the terminal: about one input, and those that are counted over a batch.
 
+use super::file_run::FileRun;
+use crate::advice;
 use crate::report::FileReport;
 use crate::terminal;
 
 /// Most messages of a kind; the report holds the rest.
 const SHOWN: usize = 8;
 
-/// Prints warnings, skipped shapes and missed tolerances.
-pub(super) fn warn(r: &FileReport) {
+/// Prints the first `count` warnings, skipped shapes and missed tolerances.
+pub(super) fn warn(r: &FileReport, count: usize) {
     let of_file = |message: &str| format!("{}: {message}", r.file);
-    for w in r.warnings.iter().take(SHOWN) {
+    for w in r.warnings.iter().take(count.min(SHOWN)) {
         terminal::warning(&of_file(w));
     }
     for s in r.skipped.iter().take(SHOWN) {
@@ -22,8 +24,35 @@ pub(super) fn warn(r: &FileReport) {
             s.id, s.max_error
         )));
     }
-    let more = r.warnings.len().saturating_sub(SHOWN) + r.skipped.len().saturating_sub(SHOWN);
+    let more = count.saturating_sub(SHOWN) + r.skipped.len().saturating_sub(SHOWN);
     if more > 0 {
         terminal::warning(&of_file(&format!("and {more} more; --report FILE lists them all")));
+    }
+}
+
+/// The inputs of a batch whose artwork extends past the page: one warning for all.
+#[derive(Default)]
+pub(super) struct PastPage {
+    count: usize,
+    /// The largest share of the page's size, and the input that has it.
+    most: Option<(f64, String)>,
+}
+
+impl PastPage {
+    /// Counts an input if its last warning is about the page.
+    pub(super) fn count(&mut self, run: &FileRun) -> bool {
+        let Some(share) = run.past_page else { return false };
+        self.count += 1;
+        if self.most.as_ref().is_none_or(|(most, _)| share > *most) {
+            self.most = Some((share, run.report.file.clone()));
+        }
+        true
+    }
+
+    /// Prints the warning.
+    pub(super) fn warn(&self, inputs: usize) {
+        if let Some((share, file)) = &self.most {
+            terminal::warning(&advice::overhangs(self.count, inputs, *share, file));
+        }
     }
 }

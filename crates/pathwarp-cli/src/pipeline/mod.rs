@@ -1,97 +1,115 @@
-//! The one run of every deformation: each input is opened, built, warped and reported (`file_run.rs`); when all have
-//! succeeded, every output file is put in place, or none.
+//! The one run of every deformation: the outputs are planned, each input is opened, built, warped and reported
+//! (`file_run.rs`), and its files are put in place, all or none. Of several inputs, each is finished on its own.
 
 mod file_run;
+mod folders;
+mod inputs;
 mod messages;
+mod naming;
+mod plan;
 mod progress;
-mod targets;
+mod report_file;
+mod session;
 
 use crate::advice::Flags;
 use crate::failure::Failure;
 use crate::input::display;
-use crate::options::{CommonOptions, Given};
-use crate::output::{self, PendingFile};
-use crate::recipe_file;
-use crate::report::{FileReport, Report, Totals};
+use crate::options::{Given, OnFailure};
+use crate::output::{self, Draft, PendingFile};
 use crate::status::Status;
-use crate::terminal;
+use crate::{recipe_file, references, temporaries};
 use file_run::{Batch, FileRun};
+use folders::Folders;
+use indicatif::ProgressBar;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
+use plan::Job;
 use rayon::prelude::*;
-use std::path::{Path, PathBuf};
+use report_file::ReportFile;
+use session::Session;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::time::Instant;
 
-/// Warps all inputs by a recipe.
-pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given) -> Result<Status, Failure> {
+/// Number of inputs per thread that are warped before their reports are written: enough to keep all threads busy, few enough to
+/// hold in memory.
+const CHUNK_PER_THREAD: usize = 64;
+
+/// Warps all inputs by a recipe, which was read from the file `from` if there is one.
+pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Option<&Path>) -> Result<Status, Failure> {
     let started = Instant::now();
     let options = given.read()?;
-    let inputs = if options.inputs.is_empty() { vec![PathBuf::from("-")] } else { options.inputs.clone() };
-    let targets = targets::targets(&options, &inputs)?;
-    let batch = Batch { registry, recipe, options: &options, given, flags: Flags::of(registry) };
-    let runs = run_files(&batch, &inputs, &targets)?;
+    let inputs = inputs::inputs(&options)?;
+    let jobs = plan::plan(registry, recipe, &options, &inputs, from)?;
+    drop(inputs);
+    if options.dry_run {
+        output::to_stdout(plan::listing(&options, &jobs).as_bytes())?;
+        return Ok(Status::Complete);
+    }
+    let mut resolved = recipe.clone();
+    references::resolve_files(registry, &mut resolved)?;
+    let batch = Batch { registry, recipe: &resolved, options: &options, given, flags: Flags::of(registry) };
 
-    let mut status = Status::Complete;
-    let (mut pending, mut reports, mut printed) = (Vec::new(), Vec::new(), Vec::new());
-    for run in runs {
-        for n in &run.notes {
-            terminal::note(n);
-        }
-        if !options.quiet {
-            messages::warn(&run.report);
-        }
-        if run.partial {
-            status = Status::Partial;
-        }
-        pending.extend(run.files);
-        printed.extend(run.stdout);
-        reports.push(run.report);
-    }
-    if let Some(file) = &options.report {
-        pending.push(report(file, recipe, reports, started)?);
-    }
+    let _empty_ones_removed_at_the_end = Folders::create(&options, &jobs)?;
+    let draft = options.report.as_deref().map(Draft::new).transpose()?;
+    let report = draft.map(|d| ReportFile::new(d, recipe, started)).transpose()?;
+    let mut session = Session::new(&options, &batch.flags, report, jobs.len());
+    run_jobs(&batch, &jobs, &mut session)?;
     if let Some(file) = &options.write_recipe {
         let text = recipe_file::write(registry, recipe, given, file.parent().unwrap_or(Path::new("")))?;
-        pending.push(PendingFile::new(file, text.as_bytes())?);
+        session.pending.push(PendingFile::new(file, text.as_bytes())?);
     }
-    PendingFile::commit_all(pending)?;
-    for bytes in printed {
-        output::to_stdout(&bytes)?;
-    }
-    Ok(status)
+    session.finish()
 }
 
-/// Runs every input, in parallel; the results are in order. A single input starts threads only when it has work for them.
-fn run_files(batch: &Batch<'_>, inputs: &[PathBuf], targets: &[Option<PathBuf>]) -> Result<Vec<FileRun>, Failure> {
-    let CommonOptions { jobs, quiet, .. } = batch.options;
-    let bar = progress::bar(inputs.len(), *quiet);
-    let run = |(input, target): (&PathBuf, &Option<PathBuf>)| {
-        let run = batch.run(input, target.as_deref());
-        bar.inc(1);
-        run.map_err(|f| f.about(&display(input)))
-    };
-    let runs = if inputs.len() == 1 && jobs.is_none() {
-        inputs.iter().zip(targets).map(run).collect()
-    } else {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(jobs.unwrap_or(0))
-            .build()
-            .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
-        pool.install(|| inputs.par_iter().zip(targets).map(run).collect())
-    };
+/// Runs every job, in parallel; the session gets the results in order.
+///
+/// # Errors
+/// The only input fails, any fails and the options say to stop, or the recipe is at fault.
+fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Session<'_>) -> Result<(), Failure> {
+    // A single input starts threads only when it has work for them.
+    let threads = (jobs.len() > 1 || batch.options.jobs.is_some()).then(|| batch.options.jobs.unwrap_or(0));
+    let pool = threads
+        .map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build())
+        .transpose()
+        .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
+    let at_once = pool.as_ref().map_or(1, |p| p.current_num_threads() * CHUNK_PER_THREAD);
+    let bar = progress::bar(jobs.len(), batch.options.quiet);
+    let stops = jobs.len() == 1 || batch.options.on_failure == OnFailure::Stop;
+    let mut rest = jobs;
+    while !rest.is_empty() {
+        // An error in the recipe must show before any file is written, so the first inputs go alone until one succeeds.
+        let size = if session.is_untried() { 1 } else { at_once };
+        let (chunk, later) = rest.split_at(size.min(rest.len()));
+        rest = later;
+        let one = |job: &Job| one(batch, job, stops, &bar);
+        let results: Vec<Result<FileRun, Failure>> = match &pool {
+            Some(pool) => pool.install(|| chunk.par_iter().map(one).collect()),
+            None => chunk.iter().map(one).collect(),
+        };
+        for (job, result) in chunk.iter().zip(results) {
+            bar.suspend(|| match result {
+                Ok(run) => session.done(run),
+                Err(failure) if stops || failure.is_of_recipe() && session.is_untried() => Err(failure),
+                Err(failure) => session.failed(&job.input, &failure),
+            })?;
+        }
+    }
     bar.finish_and_clear();
-    runs
+    Ok(())
 }
 
-fn report(file: &Path, recipe: &Recipe, inputs: Vec<FileReport>, started: Instant) -> Result<PendingFile, Failure> {
-    let report = Report {
-        tool: "pathwarp",
-        version: env!("CARGO_PKG_VERSION"),
-        steps: recipe.steps.iter().map(|s| s.deformation.clone()).collect(),
-        totals: Totals::of(&inputs, started.elapsed().as_secs_f64()),
-        inputs,
-    };
-    let mut json = serde_json::to_vec_pretty(&report).map_err(|e| Failure::file(file, e))?;
-    json.push(b'\n');
-    PendingFile::new(file, &json)
+/// Runs one job, and puts its files in place unless they have to wait for the others.
+fn one(batch: &Batch<'_>, job: &Job, files_wait: bool, bar: &ProgressBar) -> Result<FileRun, Failure> {
+    let name = display(&job.input);
+    let run = catch_unwind(AssertUnwindSafe(|| batch.run(job))).unwrap_or_else(|_| {
+        Err(Failure::Input("the program failed on this input (see the message above); please report it".into()))
+    });
+    bar.inc(1);
+    let mut run = run.map_err(|f| f.about(&name))?;
+    if !files_wait {
+        PendingFile::commit_all(std::mem::take(&mut run.files))?;
+        temporaries::count_finished();
+    }
+    Ok(run)
 }

@@ -4,12 +4,18 @@ use pathwarp::Seg;
 use pathwarp::kurbo::Point;
 use pathwarp::outline::Subpath;
 
-/// Drops the closing line of a subpath if it is not longer than `shortest`. The segment before it then ends at the start.
+/// Returns `true` if a subpath is closed by a line not longer than `shortest`, after other segments.
+pub(super) fn has_closing_stub(s: &Subpath, shortest: f64) -> bool {
+    matches!(s.segs.as_slice(), [.., _, Seg::Line(stub)] if s.closed && stub.p0.distance(stub.p1) <= shortest)
+}
+
+/// Drops the closing line of a subpath if it is a stub. The segment before it then ends at the start.
 pub(super) fn drop_closing_stub(s: &mut Subpath, shortest: f64) {
-    let [.., before, Seg::Line(stub)] = s.segs.as_mut_slice() else { return };
-    if s.closed && stub.p0.distance(stub.p1) <= shortest {
-        *end(before) = s.start;
+    if has_closing_stub(s, shortest) {
         s.segs.pop();
+        if let Some(before) = s.segs.last_mut() {
+            *end(before) = s.start;
+        }
     }
 }
 

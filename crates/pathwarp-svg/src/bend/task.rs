@@ -57,7 +57,7 @@ impl<'a> PartTask<'a> {
     ) -> Self {
         let options = context.options;
         // Placed letters skip the first step; everything else goes through the whole map.
-        let (outline, map): (Arc<Outline>, &dyn Map) = match (pieces, options.copies.as_slice()) {
+        let (mut outline, map): (Arc<Outline>, &dyn Map) = match (pieces, options.copies.as_slice()) {
             ([], []) => (whole.clone(), context.map),
             ([], copies) => (Arc::new(whole.repeated(copies)), context.map),
             _ => (Arc::new(placed(&whole, pieces)), &options.letters.after),
@@ -69,8 +69,10 @@ impl<'a> PartTask<'a> {
             if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
         });
         let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
-        let mut outline = outline;
-        outline.subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
+        if outline.subpaths.iter().any(|s| stubs::has_closing_stub(s, rounding)) {
+            let subpaths = &mut Arc::make_mut(&mut outline).subpaths;
+            subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
+        }
         Self { part, context, write, back: write.inverse(), pieces, whole, outline, map, decimals, rounding }
     }
 

@@ -3,6 +3,7 @@
 pub(crate) mod cascade;
 pub(crate) mod edit;
 pub(crate) mod element;
+mod encoding;
 mod fontface;
 pub(crate) mod fonts;
 pub(crate) mod live;

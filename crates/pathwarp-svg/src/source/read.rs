@@ -1,5 +1,6 @@
 //! File content to text and back: encoding, compression, limits.
 
+use super::encoding::decoded;
 use super::fonts::GenericFamilies;
 use pathwarp::Error;
 use std::borrow::Cow;
@@ -100,14 +101,7 @@ pub(crate) fn text(data: &[u8], name: &str, options: &ReadOptions) -> Result<Str
     if bytes.len() > options.max_size {
         return Err(Error::input(name, format!("the text is longer than the limit of {} bytes", options.max_size)));
     }
-    String::from_utf8(bytes.into_owned()).map_err(|e| {
-        let at = e.utf8_error().valid_up_to();
-        let hint = match e.as_bytes() {
-            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "this is UTF-16 text; save it as UTF-8",
-            _ => "this is not UTF-8 text; save it as UTF-8",
-        };
-        Error::input(format!("{name}: byte {at}"), hint)
-    })
+    decoded(bytes).map_err(|(at, problem)| Error::input(format!("{name}: byte {at}"), problem))
 }
 
 /// Compresses an SVG file to an svgz file: gzip without time and name, so that equal texts give equal files.

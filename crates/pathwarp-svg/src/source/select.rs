@@ -2,6 +2,7 @@
 
 use super::tags::ElementId;
 use super::text::SourceText;
+use std::collections::HashSet;
 
 /// The part of a document to warp. By default, everything.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -36,6 +37,30 @@ impl Selection {
         }
         selected.iter().zip(&excluded).map(|(s, x)| *s && !*x).collect()
     }
+}
+
+/// Returns `true` if a selector matches an element.
+pub(crate) fn matches_any(source: &SourceText, selector: &str) -> bool {
+    (0..source.elements.len()).any(|e| matches(source, e, selector))
+}
+
+/// The names that a selector of this kind can match, in document order: classes for `.class`, else ids, labels and titles.
+pub(crate) fn candidates(source: &SourceText, selector: &str) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for e in 0..source.elements.len() {
+        if selector.starts_with('.') {
+            let classes = source.attr(e, "class").unwrap_or_default();
+            out.extend(classes.split_ascii_whitespace().map(|c| format!(".{c}")));
+        } else {
+            let mark = if selector.starts_with('#') { "#" } else { "" };
+            let names = [source.attr(e, "id"), source.label(e)].into_iter().flatten().map(|n| n.to_string());
+            let names = names.chain(source.elements[e].title.iter().map(ToString::to_string));
+            out.extend(names.filter(|n| !n.trim().is_empty()).map(|n| format!("{mark}{n}")));
+        }
+    }
+    let mut seen = HashSet::new();
+    out.retain(|n| seen.insert(n.clone()));
+    out
 }
 
 fn matches(source: &SourceText, e: ElementId, selector: &str) -> bool {

@@ -3,6 +3,7 @@
 use crate::source::number::{path_data, push};
 use crate::source::xml::escape;
 use pathwarp::Error;
+use pathwarp::param::LengthUnit;
 use pathwarp_text::OutlinedText;
 use std::fmt::Write as _;
 use std::str::FromStr as _;
@@ -14,6 +15,21 @@ pub struct LetteringOptions {
     pub fill: Option<String>,
     /// Margin around ink and lines, in user units, at least 0.
     pub margin: f64,
+    /// The unit of the lettering's coordinates, which becomes that of the page: `Mm`, `Cm`, `In`, `Pt` or `Pc`; anything else
+    /// is px.
+    pub unit: Option<LengthUnit>,
+}
+
+/// The unit in the page's width and height; px need none.
+fn page_unit(unit: LengthUnit) -> &'static str {
+    match unit {
+        LengthUnit::Mm => "mm",
+        LengthUnit::Cm => "cm",
+        LengthUnit::In => "in",
+        LengthUnit::Pt => "pt",
+        LengthUnit::Pc => "pc",
+        _ => "",
+    }
 }
 
 /// Significant digits of the largest coordinate on the page.
@@ -32,7 +48,7 @@ const DIGITS: i32 = 10;
 ///
 /// let font = Font::new(bundled_font(), 0)?;
 /// let text = layout("Hi", &[font], &TextStyle { size: 100.0, ..TextStyle::default() })?;
-/// let svg = write_lettering(&text, &LetteringOptions { fill: Some("#c00".into()), margin: 10.0 })?;
+/// let svg = write_lettering(&text, &LetteringOptions { fill: Some("#c00".into()), margin: 10.0, ..LetteringOptions::default() })?;
 /// assert!(svg.contains(r#"viewBox="-10 -10 119.9 156.2""#));
 /// assert!(svg.contains(r#"data-cap-height="71.4""#) && svg.contains(r#"<path aria-label="H" data-glyph="0 106.9 74.1" d="M"#));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -68,9 +84,9 @@ pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> 
     let numbers = |v: &[f64]| v.iter().map(|v| number(*v)).collect::<Vec<_>>().join(" ");
 
     let (w, h) = (number(page.width()), number(page.height()));
-    let m = &lettering.metrics;
+    let (m, unit) = (&lettering.metrics, options.unit.map_or("", page_unit));
     let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"{}\">\n<title>{}</title>\n\
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}{unit}\" height=\"{h}{unit}\" viewBox=\"{}\">\n<title>{}</title>\n\
          <g aria-label=\"{}\" data-ascent=\"{}\" data-descent=\"{}\" data-cap-height=\"{}\" data-x-height=\"{}\"{fill}>\n",
         numbers(&[page.x0, page.y0, page.width(), page.height()]),
         escape(&lettering.text.replace('\n', " ")),

@@ -65,19 +65,21 @@ impl Args {
     }
 
     /// Looks up every path reference that is not inline (`M …`, `x,y …`) with `look_up`, so that building a deformation needs no
-    /// files.
+    /// files. `look_up` returns `None` to leave a reference to a later call; references already looked up are kept.
     ///
     /// # Errors
     /// The errors of `look_up`.
     pub fn resolve_paths(
         &mut self,
         params: &[Param],
-        mut look_up: impl FnMut(&str) -> Result<Outline, Error>,
+        mut look_up: impl FnMut(&str) -> Result<Option<Outline>, Error>,
     ) -> Result<(), Error> {
         for p in params.iter().filter(|p| p.kind == Kind::Path) {
             for text in self.typed.get(p.name).into_iter().flatten() {
-                if !is_inline(text) && !self.paths.contains_key(text) {
-                    let outline = look_up(text)?;
+                if !is_inline(text)
+                    && !self.paths.contains_key(text)
+                    && let Some(outline) = look_up(text)?
+                {
                     self.paths.insert(text.clone(), NamedPath { name: text.clone(), outline });
                 }
             }

@@ -13,6 +13,8 @@ pub struct Frame {
     /// The y coordinate of the baseline if the box belongs to lettering. Deformations along a curve place it on the curve by
     /// default.
     pub baseline: Option<f64>,
+    /// User units per px along x and y: 1 unless the drawing's `viewBox` scales it. Lengths with units refer to px.
+    pub units_per_px: [f64; 2],
     /// The known letters of the artwork. Empty if there are none, or if their baseline is not horizontal.
     pub letters: Arc<[Letter]>,
 }
@@ -21,13 +23,30 @@ impl Frame {
     /// A frame without lettering.
     #[must_use]
     pub fn new(rect: Rect) -> Self {
-        Self { rect: rect.abs(), baseline: None, letters: Arc::new([]) }
+        Self { rect: rect.abs(), baseline: None, units_per_px: [1.0; 2], letters: Arc::new([]) }
     }
 
     /// Adds letters.
     #[must_use]
     pub fn with_letters(self, letters: Arc<[Letter]>) -> Self {
         Self { letters, ..self }
+    }
+
+    /// Sets the user units per px along x and y.
+    #[must_use]
+    pub fn with_units_per_px(self, units_per_px: [f64; 2]) -> Self {
+        Self { units_per_px, ..self }
+    }
+
+    /// The length of a px along `axis`, in user units. Along the diagonal: as SVG defines it, the root mean square.
+    #[must_use]
+    pub fn px(&self, axis: Axis) -> f64 {
+        let [x, y] = self.units_per_px;
+        match axis {
+            Axis::X => x,
+            Axis::Y => y,
+            Axis::Diagonal => x.hypot(y) / std::f64::consts::SQRT_2,
+        }
     }
 
     /// Sets the baseline of the lettering to `y`.

@@ -26,12 +26,15 @@
 mod args;
 mod declaration;
 mod frame;
+mod length;
 mod letter;
+mod number;
 mod settings;
 mod value;
 
 pub use args::{Args, NamedPath, NamedText, is_inline};
 pub use declaration::{Axis, Kind, Param};
 pub use frame::Frame;
+pub use length::{Length, LengthError, LengthUnit};
 pub use letter::Letter;
 pub use settings::Settings;

@@ -1,6 +1,7 @@
 //! Typed and range-checked access to the values of parameters.
 
-use super::value::{self, ValueError};
+use super::number::ValueError;
+use super::value;
 use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args};
 use crate::error::Error;
 use crate::outline::Outline;

@@ -1,51 +1,9 @@
 //! Parsing of values: numbers, lengths and angles with units, points and boxes.
 
+use super::length::parse;
+use super::number::{ValueError, split};
 use super::{Axis, Frame};
 use kurbo::{Point, Rect, Size};
-use thiserror::Error;
-
-/// Text that is not a value of the expected kind. Messages continue a sentence that begins with the text.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub(super) enum ValueError {
-    #[error("is not a number")]
-    NotANumber,
-    #[error("has the unit `{0}`, but must be a plain number or a percentage")]
-    UnexpectedUnit(String),
-    #[error("is not a whole number")]
-    NotWhole,
-    #[error("is not a length, such as 12, 3mm or 50%")]
-    NotALength,
-    #[error("has the unknown unit `{0}`; use px, mm, cm, m, in, pt, pc, q or %")]
-    UnknownLengthUnit(String),
-    #[error("is not an angle, such as 30 or 0.5turn")]
-    NotAnAngle,
-    #[error("has the unknown unit `{0}`; use deg, rad, grad or turn")]
-    UnknownAngleUnit(String),
-    #[error("has {found} numbers instead of {expected}")]
-    WrongCount { found: usize, expected: usize },
-    #[error("is not a point x,y")]
-    NotAPoint,
-    #[error("is neither a box x,y,w,h nor the word artwork")]
-    NotABox,
-    #[error("has no area")]
-    NoArea,
-    /// One word of several has the error.
-    #[error("contains `{word}`, which {error}")]
-    In { word: String, error: Box<Self> },
-}
-
-/// CSS: 96 px to the inch; one user unit is one px.
-const PX_PER_INCH: f64 = 96.0;
-
-/// Splits a number from its unit: `12.5mm` into 12.5 and `mm`.
-fn split(text: &str) -> Option<(f64, &str)> {
-    let text = text.trim();
-    // The longest prefix that is a number: the `e` of an exponent belongs to it, the `e` of a unit does not.
-    (1..=text.len())
-        .rev()
-        .filter(|&n| text.is_char_boundary(n))
-        .find_map(|n| text[..n].parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| (v, text[n..].trim_start())))
-}
 
 /// A plain number or a percentage.
 pub(super) fn number(text: &str) -> Result<f64, ValueError> {
@@ -67,22 +25,7 @@ pub(super) fn count(text: &str) -> Result<f64, ValueError> {
 
 /// A length in user units.
 pub(super) fn length(text: &str, axis: Axis, frame: &Frame) -> Result<f64, ValueError> {
-    let Some((v, unit)) = split(text) else {
-        return Err(ValueError::NotALength);
-    };
-    let per = match unit {
-        "" | "px" => 1.0,
-        "%" => frame.extent(axis) / 100.0,
-        "in" => PX_PER_INCH,
-        "mm" => PX_PER_INCH / 25.4,
-        "cm" => PX_PER_INCH / 2.54,
-        "m" => PX_PER_INCH / 0.0254,
-        "q" | "Q" => PX_PER_INCH / 101.6,
-        "pt" => PX_PER_INCH / 72.0,
-        "pc" => PX_PER_INCH / 6.0,
-        _ => return Err(ValueError::UnknownLengthUnit(unit.to_owned())),
-    };
-    Ok(v * per)
+    Ok(parse(text)?.in_units(axis, frame))
 }
 
 /// An angle in degrees.

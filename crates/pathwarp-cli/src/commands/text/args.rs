@@ -61,7 +61,7 @@ fn text_and_font() -> Vec<Arg> {
              characters that the ones before lack [default: the bundled Noto Sans]",
         )
         .action(ArgAction::Append),
-        value("size", "LENGTH", "Size of the em [default: 72]"),
+        value("size", "LENGTH", "Size of the em; with a unit such as 20mm, the page has that unit too [default: 72]"),
         value(
             "weight",
             "100-900|NAME",

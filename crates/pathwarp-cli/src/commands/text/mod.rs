@@ -12,6 +12,8 @@ use crate::{output, terminal};
 use clap::{ArgMatches, Command};
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
 use pathwarp_text::{Font, layout};
+use std::path::{Path, PathBuf};
+use style::Em;
 
 pub(super) const NAME: &str = "text";
 
@@ -24,10 +26,13 @@ pub(super) fn command() -> Command {
 
 /// Sets the text and writes the drawing.
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
-    let text = words::words(m)?;
-    let style = style::style(m)?;
-    let weight = m.get_one::<String>("weight").map(|w| fonts::weight_of(w)).transpose()?;
+    let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
+    let target = file_args::target(m, read.chain(names.iter().map(Path::new)))?;
+    let text = words::words(m)?;
+    let em = Em::given(m)?;
+    let style = style::style(m, &em)?;
+    let weight = m.get_one::<String>("weight").map(|w| fonts::weight_of(w)).transpose()?;
     let find = |name: &&str| fonts::find(name, weight.unwrap_or(fonts::REGULAR), m.get_flag("italic"));
     let files: Vec<FontFile> = names.iter().map(find).collect::<Result<_, _>>()?;
     let mut chosen: Vec<Font<'_>> = Vec::with_capacity(files.len() + 1);
@@ -39,12 +44,12 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
 
     let set = layout(&text, &chosen, &style).map_err(|e| failure(&e))?;
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
-    let margin = style::length(m, "margin", style.size)?.unwrap_or(0.0);
-    let svg = write_lettering(&set, &LetteringOptions { fill, margin })?;
+    let margin = em.length(m, "margin")?.unwrap_or(0.0);
+    let svg = write_lettering(&set, &LetteringOptions { fill, margin, unit: em.unit })?;
     if !set.missing.is_empty() && !m.get_flag("quiet") {
         terminal::warning(&missing(&set.missing, &names));
     }
-    output::write(file_args::target(m), svg.as_bytes())?;
+    output::write(target, svg.as_bytes())?;
     Ok(Status::partial_if(!set.missing.is_empty()))
 }
 

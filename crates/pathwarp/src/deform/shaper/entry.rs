@@ -1,10 +1,10 @@
 //! The registry's entry: reads a [`Shaper`] from text.
 
-use super::net::from_rows;
+use super::net::{Bottom, from_rows};
 use super::{Cage, Shaper};
 use crate::deform::built::Built;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::param::{Kind, Param, Settings};
 
 pub(in crate::deform) struct Entry;
@@ -13,8 +13,9 @@ static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four
     .group("Envelopes")
     .about("Draw a closed path with four anchors: that is the shape. The artwork's box (or the base) is laid onto it, side by \
 side, and everything inside follows smoothly. With a target, the shaper's corners are then moved there, so that its \
-size and position do not matter.\n\nThe bottom is the side that lies lowest on the screen, run left to right; --bottom \
-and --reverse-shaper overrule that, and --explain says which was chosen. Bases and targets of two anchors are run left to right, \
+size and position do not matter.\n\nThe bottom is the side that lies lowest on the screen, run left to right, unless another \
+way of laying the four corners distorts them much less, as for a wide logo in a tilted shape; --bottom and --reverse-shaper overrule \
+that, and --explain says which was chosen and why. Bases and targets of two anchors are run left to right, \
 those of four start with their lowest side; --base-as-drawn and --target-as-drawn take them as they were drawn.\n\nA base of \
 two anchors fixes only the bottom side: artwork twice as tall as the base is wide reaches past the shaper's top.")
     .source("Markku Koppinen, A plane transformation from 16 control points, equations (1)-(10)")
@@ -35,8 +36,7 @@ corners of the artwork's box.",
             "target",
             "Two or four anchors: the images of the shaper's bottom corners, or of all four. Default: those corners themselves.",
         ),
-        Param::new("bottom", Kind::Count, "The side that is the bottom: 1 to 4, in the order they were drawn. Default: the lowest on the screen.")
-            .within(1.0, 4.0),
+        Param::new("bottom", Kind::Text("1|2|3|4|lowest"), "The side that is the bottom: 1 to 4, in the order they were drawn, or the lowest on the screen. Default: the one that distorts the corners least."),
         Param::flag("reverse-shaper", "Run the bottom side the other way (right to left): the result is mirrored."),
         Param::flag("base-as-drawn", "Take the base's anchors in the order they were drawn."),
         Param::flag("target-as-drawn", "Take the target's anchors in the order they were drawn."),
@@ -111,7 +111,7 @@ impl Deformation for Entry {
         };
         let shaper = Shaper {
             cage,
-            bottom: s.number_if("bottom")?.map(|n| n as usize),
+            bottom: bottom(s)?,
             reverse: s.flag("reverse-shaper")?,
             base: s.path_if("base")?,
             base_as_drawn: s.flag("base-as-drawn")?,
@@ -120,5 +120,16 @@ impl Deformation for Entry {
             frame: Some(s.frame().rect),
         };
         shaper.build()
+    }
+}
+
+fn bottom(s: &Settings<'_>) -> Result<Bottom, Error> {
+    match s.texts("bottom").last() {
+        None => Ok(Bottom::LeastDistorting),
+        Some(&"lowest") => Ok(Bottom::Lowest),
+        Some(text) => match text.trim().parse::<i32>() {
+            Ok(side) => within("bottom", f64::from(side), 1.0, 4.0).map(|_| Bottom::Side(side.unsigned_abs() as usize)),
+            Err(_) => Err(Error::usage("bottom", *text, "is neither a side, 1 to 4, nor the word lowest")),
+        },
     }
 }

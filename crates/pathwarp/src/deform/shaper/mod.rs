@@ -6,6 +6,7 @@
 //! to the target: direct similitudes for two anchors, projective maps for four.
 
 mod entry;
+mod laying;
 mod net;
 #[cfg(test)]
 mod tests;
@@ -13,7 +14,8 @@ mod tests;
 pub(super) use entry::Entry;
 pub(super) use net::rows_path;
 
-use super::built::{Built, Role};
+use self::net::Bottom;
+use super::built::{Built, Explanation, Role};
 use crate::anchors::{self, Anchors};
 use crate::error::{Error, GeometryError, within};
 use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net};
@@ -38,7 +40,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shaper {
     cage: Cage,
-    bottom: Option<usize>,
+    bottom: Bottom,
     reverse: bool,
     base: Option<NamedPath>,
     base_as_drawn: bool,
@@ -56,8 +58,9 @@ enum Cage {
 }
 
 impl Shaper {
-    /// Creates a shaper from a closed path of four lines, curves or arcs. Its bottom is the side that lies lowest on the
-    /// screen, run left to right.
+    /// Creates a shaper from a closed path of four lines, curves or arcs. Of the eight ways to lay the base's corners on its
+    /// own, the one that is nearest to a similitude is chosen; among near ties the paper's: the bottom is the side that lies
+    /// lowest on the screen, run left to right.
     #[must_use]
     pub fn new(cage: &Outline) -> Self {
         Self::with(Cage::Path(NamedPath { name: "shaper".into(), outline: cage.clone() }))
@@ -72,7 +75,7 @@ impl Shaper {
     fn with(cage: Cage) -> Self {
         Self {
             cage,
-            bottom: None,
+            bottom: Bottom::LeastDistorting,
             reverse: false,
             base: None,
             base_as_drawn: false,
@@ -85,7 +88,13 @@ impl Shaper {
     /// Sets the bottom side of the closed path: 1 to 4, in the order they were drawn.
     #[must_use]
     pub fn bottom(self, side: usize) -> Self {
-        Self { bottom: Some(side), ..self }
+        Self { bottom: Bottom::Side(side), ..self }
+    }
+
+    /// Takes the side that lies lowest on the screen for the bottom, however much that distorts.
+    #[must_use]
+    pub fn lowest_bottom(self) -> Self {
+        Self { bottom: Bottom::Lowest, ..self }
     }
 
     /// Runs the bottom side the other way, so that the result is mirrored.
@@ -124,11 +133,18 @@ impl Shaper {
     /// [`Error::Geometry`] if the path does not close or has other than four sides, or if anchors coincide or three of them
     /// lie on a line; [`Error::Missing`] without base and frame; [`Error::Usage`] for a bottom side out of range.
     pub fn build(&self) -> Result<Built, Error> {
-        let mut notes = Vec::new();
-        let bottom = self.bottom.map(|n| within("bottom", n as f64, 1.0, 4.0).map(|_| n)).transpose()?;
+        let mut explanation = Explanation::default();
+        if let Bottom::Side(n) = self.bottom {
+            within("bottom", n as f64, 1.0, 4.0)?;
+        }
+        let base = self.base_anchors();
         let (net, path, name) = match &self.cage {
             Cage::Path(path) => {
-                let net = net::from_cage(path, bottom, self.reverse, &mut notes)?;
+                let corners = match &base {
+                    Ok(Anchors::Four(corners)) if self.target.is_none() => Some(corners),
+                    _ => None,
+                };
+                let net = net::from_cage(path, self.bottom, self.reverse, corners, &mut explanation)?;
                 (net, net::sides_path(&net), &path.name)
             }
             Cage::Net(net, name) => (**net, rows_path(net), name),
@@ -137,9 +153,10 @@ impl Shaper {
         if matches!(self.cage, Cage::Net(..)) {
             anchors::general(name, &corners)?;
         }
+        let notes = &mut explanation.notes;
         notes.push(format!("corners of {name}: {} (bottom left, bottom right, top right, top left)", list(&corners)));
 
-        let base = self.base_anchors()?;
+        let base = base?;
         let target = self.target.as_ref().map(|t| anchors::of_path(t, self.target_as_drawn)).transpose()?;
         notes.push(format!("base: {} ({})", list(base.points()), wrapper(&base)));
         let after = match &target {
@@ -159,7 +176,8 @@ impl Shaper {
         };
 
         let mut built = Built::new(map);
-        built.explanation.notes = notes;
+        built.explanation.notes = explanation.notes;
+        built.explanation.warnings = explanation.warnings;
         built.overlay(Role::Cage, path);
         built.overlay(Role::Base, base.outline().to_bez_path(0.0));
         if let Some(t) = target {

@@ -2,19 +2,33 @@
 //!
 //! The net is numbered p\[r\]\[s\]: row 0 is the bottom side run left to right, column 0 the left side run upwards.
 
+use super::laying::Way;
 use crate::anchors::{self, Arrangement};
+use crate::deform::built::Explanation;
 use crate::error::{Error, GeometryError};
 use crate::map::{Net, complete_net};
 use crate::outline::Seg;
 use crate::param::NamedPath;
 use kurbo::{BezPath, CubicBez, Point};
 
-/// Makes the net of a closed path with four sides. Its bottom is the side `bottom`, 1 to 4, or chosen by the paper's rule.
+/// The choice of a cage's bottom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Bottom {
+    /// The way of laying the base's corners on the cage's that distorts least.
+    LeastDistorting,
+    /// The paper's rule.
+    Lowest,
+    /// 1 to 4, as drawn.
+    Side(usize),
+}
+
+/// Makes the net of a closed path with four sides. `base` are the four corners that it is laid onto, if there are four.
 pub(super) fn from_cage(
     path: &NamedPath,
-    bottom: Option<usize>,
+    bottom: Bottom,
     reverse: bool,
-    notes: &mut Vec<String>,
+    base: Option<&[Point; 4]>,
+    explanation: &mut Explanation,
 ) -> Result<Net, Error> {
     const EXPECTED: &str = "exactly four, in one closed path";
     let sub = anchors::closed_subpath(path, EXPECTED, |lines| lines == 3)?;
@@ -28,24 +42,60 @@ pub(super) fn from_cage(
     anchors::general(&path.name, &corners)?;
     let sides: [CubicBez; 4] = std::array::from_fn(|i| sub.segs[i].to_cubic());
 
-    let mut arrangement = match bottom {
-        Some(n) => Arrangement::from_bottom(&corners, n - 1),
-        None => {
-            // The mean height of a cubic over its parameter is the mean of its control points' heights.
-            let heights = sides.map(|c| (c.p0.y + c.p1.y + c.p2.y + c.p3.y) / 4.0);
-            Arrangement::by_rule(&corners, &heights)
-        }
+    // The mean height of a cubic over its parameter is the mean of its control points' heights.
+    let heights = sides.map(|c| (c.p0.y + c.p1.y + c.p2.y + c.p3.y) / 4.0);
+    let lowest = Arrangement::by_rule(&corners, &heights);
+    let (mut arrangement, why) = match (bottom, base) {
+        (Bottom::Side(n), _) => (Arrangement::from_bottom(&corners, n - 1), "as given".to_owned()),
+        (Bottom::LeastDistorting, Some(base)) => least_distorting(&path.name, base, &corners, lowest, explanation),
+        _ => (lowest, "the lowest on the screen".to_owned()),
     };
     if reverse {
         arrangement.reversed = !arrangement.reversed;
     }
-    notes.push(format!(
-        "bottom side of {}: side {} as drawn, {}",
+    explanation.notes.push(format!(
+        "bottom side of {}: side {} as drawn, {}: {why}",
         path.name,
         arrangement.bottom + 1,
         if arrangement.reversed { "run backwards" } else { "run forwards" }
     ));
     Ok(complete_net(outer_net(&sides, &arrangement)))
+}
+
+/// Chooses the way of laying `base` on the corners that distorts least, and says why. A way that turns the artwork on its side is
+/// a warning.
+fn least_distorting(
+    name: &str,
+    base: &[Point; 4],
+    corners: &[Point; 4],
+    lowest: Arrangement,
+    explanation: &mut Explanation,
+) -> (Arrangement, String) {
+    /// Turns beyond this, in degrees, leave the artwork on its side.
+    const ON_ITS_SIDE: f64 = 60.0;
+    let percent = |distortion: f64| (100.0 * distortion).round();
+    let by_rule = Way::new(base, corners, lowest);
+    let rule_distortion = percent(by_rule.distortion);
+    let way = Way::least(base, corners, by_rule.arrangement);
+    let chosen = percent(way.distortion);
+    let is_rule = way.arrangement == lowest;
+    if is_rule {
+        return (lowest, format!("the lowest on the screen, and no side distorts the corners much less ({chosen} %)"));
+    }
+    if way.turn.abs() > ON_ITS_SIDE {
+        explanation.warnings.push(format!(
+            "the artwork is turned by {:.0}° to fit {name}, as upright it would be distorted more ({rule_distortion} % instead of \
+             {chosen} %); `bottom lowest` keeps its lowest side at the bottom",
+            way.turn
+        ));
+    }
+    let side = lowest.bottom + 1;
+    (
+        way.arrangement,
+        format!(
+            "it distorts the corners least ({chosen} %; side {side}, the lowest on the screen, {rule_distortion} %)"
+        ),
+    )
 }
 
 /// Arranges the outer twelve points; the inner four are still to be completed.

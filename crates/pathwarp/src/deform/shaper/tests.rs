@@ -89,6 +89,35 @@ fn the_lowest_side_is_the_bottom_and_can_be_overruled() {
     assert!(near(m(&[("bottom", "1")]), (10.0, 20.0)));
 }
 
+/// A box of 4 by 1 in a cage of the same shape, tilted: the result is the similar image, at every angle at which the paper's rule
+/// would take a short side for the bottom.
+#[test]
+fn a_tilted_cage_does_not_turn_wide_artwork_on_its_side() {
+    for degrees in [-80.0, -45.0, -15.0, 0.0, 10.0, 20.0, 45.0, 80.0_f64] {
+        let turn = kurbo::Affine::translate((300.0, 100.0)) * kurbo::Affine::rotate(degrees.to_radians());
+        let corners = [(0.0, 0.0), (200.0, 0.0), (200.0, 50.0), (0.0, 50.0)].map(|(x, y)| turn * Point::new(x, y));
+        let cage: Vec<String> = corners.iter().map(|p| format!("{},{}", p.x, p.y)).collect();
+        let build = |extra: &[(&str, &str)]| {
+            let path = format!("M {} Z", cage.join(" L "));
+            let mut pairs = vec![("shaper", path.as_str())];
+            pairs.extend(extra);
+            let args = Args::from_pairs(&pairs);
+            Entry.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, 80.0, 20.0))).unwrap()
+        };
+        let built = build(&[]);
+        for p in [(0.0, 20.0), (80.0, 0.0), (30.0, 5.0)] {
+            let (p, scaled) = (Point::from(p), Point::new(p.0 * 2.5, p.1 * 2.5));
+            let q = built.map.point(p);
+            assert!(q.distance(turn * scaled) < 1e-9, "{degrees}°: {p:?} goes to {q:?}, not {:?}", turn * scaled);
+        }
+        // The paper's rule, on its own: the side with the lowest middle.
+        let lowest = (0..4).map(|i| corners[i].y + corners[(i + 1) % 4].y).fold(f64::MIN, f64::max);
+        let bottom = build(&[("bottom", "lowest")]).map.point(Point::new(40.0, 20.0));
+        assert!((2.0 * bottom.y - lowest).abs() < 1e-9, "{degrees}°");
+        assert!(built.explanation.warnings.is_empty() == (degrees.abs() < 60.0), "{:?}", built.explanation.warnings);
+    }
+}
+
 #[test]
 fn every_fault_is_named() {
     let fault = |pairs: &[(&str, &str)]| build(pairs).err().unwrap().to_string();

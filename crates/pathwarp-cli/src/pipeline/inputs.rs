@@ -1,0 +1,58 @@
+//! The inputs: files as given, and with `--recursive` the SVG files in folders.
+
+use super::naming::fixed_folder;
+use crate::failure::Failure;
+use crate::options::CommonOptions;
+use std::path::{Path, PathBuf};
+use walkdir::{DirEntry, WalkDir};
+
+/// An input file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct InputFile {
+    pub(super) path: PathBuf,
+    /// The folder of a file found in a folder, relative to it; else empty.
+    pub(super) below: PathBuf,
+}
+
+/// The inputs that the options name, in order; folders are replaced by the files in them, sorted by name.
+pub(super) fn inputs(options: &CommonOptions) -> Result<Vec<InputFile>, Failure> {
+    if options.inputs.is_empty() {
+        return Ok(vec![InputFile { path: "-".into(), below: PathBuf::new() }]);
+    }
+    let mut out = Vec::with_capacity(options.inputs.len());
+    for input in &options.inputs {
+        if !input.is_dir() {
+            out.push(InputFile { path: input.clone(), below: PathBuf::new() });
+        } else if options.recursive {
+            let before = out.len();
+            drawings_in(input, options, &mut out)?;
+            if out.len() == before {
+                return Err(Failure::file(input, "the folder holds no SVG files (.svg, .svgz)"));
+            }
+        } else {
+            return Err(Failure::file(input, "is a folder; -r warps the SVG files in it"));
+        }
+    }
+    Ok(out)
+}
+
+/// Adds the SVG files below `folder`, except hidden ones and the results of an earlier run.
+fn drawings_in(folder: &Path, options: &CommonOptions, out: &mut Vec<InputFile>) -> Result<(), Failure> {
+    let results = options.out_dir.as_deref().and_then(|dir| fixed_folder(dir).canonicalize().ok());
+    let is_wanted = |entry: &DirEntry| {
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        let is_results = || entry.path().canonicalize().ok() == results;
+        entry.depth() == 0 || !(hidden || entry.file_type().is_dir() && results.is_some() && is_results())
+    };
+    for entry in WalkDir::new(folder).sort_by_file_name().into_iter().filter_entry(is_wanted) {
+        let entry = entry.map_err(|e| Failure::file(e.path().unwrap_or(folder), format!("cannot be read: {e}")))?;
+        let path = entry.path();
+        let is_drawing =
+            path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
+        if is_drawing && path.is_file() {
+            let below = path.strip_prefix(folder).ok().and_then(Path::parent).unwrap_or(Path::new(""));
+            out.push(InputFile { path: path.to_owned(), below: below.to_owned() });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! The plan of a run: which output each input gets, checked before anything is read or written.
+
+use super::inputs::InputFile;
+use super::naming::{by_pattern, in_folder, is_pattern};
+use crate::failure::Failure;
+use crate::options::CommonOptions;
+use crate::output::is_device;
+use crate::references::{files_read, files_written};
+use crate::sources::Files;
+use pathwarp::deform::Registry;
+use pathwarp::recipe::Recipe;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// One input with the files it gives.
+pub(super) struct Job {
+    pub(super) input: PathBuf,
+    /// `None`: standard output, or the copy that `--into` names.
+    pub(super) target: Option<PathBuf>,
+    pub(super) preview: Option<PathBuf>,
+}
+
+/// Plans the jobs of a recipe, which was read from the file `from` if there is one, and checks that no source and no output is overwritten.
+pub(super) fn plan(
+    registry: &Registry,
+    recipe: &Recipe,
+    options: &CommonOptions,
+    inputs: &[InputFile],
+    from: Option<&Path>,
+) -> Result<Vec<Job>, Failure> {
+    if inputs.len() > 1 {
+        check_several(registry, recipe, options)?;
+    }
+    let jobs: Vec<Job> = inputs.iter().map(|i| job(options, i)).collect::<Result<_, _>>()?;
+    let mut files = Files::default();
+    files_read(registry, recipe).iter().for_each(|f| files.read(f));
+    from.iter().for_each(|f| files.read(f));
+    jobs.iter().for_each(|j| files.read_artwork(&j.input));
+    if options.in_place {
+        files.allow_in_place();
+    }
+    for job in &jobs {
+        if options.into.is_none() {
+            files.write(job.target.as_deref().unwrap_or(Path::new("-")), "")?;
+        }
+        if let Some(preview) = &job.preview {
+            files.write(preview, "preview")?;
+        }
+    }
+    let others = [("into", &options.into), ("report", &options.report), ("write-recipe", &options.write_recipe)];
+    for (option, file) in others {
+        if let Some(file) = file {
+            files.write(file, option)?;
+        }
+    }
+    for (option, file) in files_written(registry, recipe) {
+        files.write(file, option)?;
+    }
+    Ok(jobs)
+}
+
+/// Checks that the options give every one of several inputs its own output.
+fn check_several(registry: &Registry, recipe: &Recipe, options: &CommonOptions) -> Result<(), Failure> {
+    let own_name = options.out.as_deref().is_some_and(is_pattern);
+    if options.into.is_some() {
+        return Err(Failure::usage("--into writes one file; give one XCF"));
+    }
+    if !(options.out_dir.is_some() || own_name || options.in_place && options.out.is_none()) {
+        return Err(Failure::usage(
+            "several inputs need --out-dir DIR, or -o with {stem} in the name; their results cannot share one file",
+        ));
+    }
+    if options.preview.as_deref().is_some_and(|p| !is_pattern(p)) {
+        return Err(Failure::usage("--preview draws one input; give one, or a name with {stem}"));
+    }
+    if let Some((option, _)) = files_written(registry, recipe).next() {
+        return Err(Failure::usage(format!("--{option} writes one file; give one input")));
+    }
+    Ok(())
+}
+
+fn job(options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
+    let InputFile { path, below } = input;
+    let unnamed = |option: &str| Failure::usage(format!("{option} needs named inputs"));
+    let expanded = |pattern: &PathBuf, option: &str| -> Result<PathBuf, Failure> {
+        if is_pattern(pattern) {
+            by_pattern(pattern, path, below).ok_or_else(|| unnamed(option))
+        } else {
+            Ok(pattern.clone())
+        }
+    };
+    let target = match (&options.out_dir, &options.out) {
+        (Some(dir), _) => Some(in_folder(dir, path, below).ok_or_else(|| unnamed("--out-dir"))?),
+        (None, Some(out)) => Some(expanded(out, "{stem}")?),
+        (None, None) if options.in_place && options.into.is_none() => {
+            Some(path.clone()).filter(|p| p.as_os_str() != "-").ok_or_else(|| unnamed("--in-place")).map(Some)?
+        }
+        (None, None) => None,
+    };
+    let preview = options.preview.as_ref().map(|p| expanded(p, "--preview")).transpose()?;
+    Ok(Job { input: path.clone(), target, preview })
+}
+
+/// The list that `--dry-run` prints: every input with its output.
+pub(super) fn listing(options: &CommonOptions, jobs: &[Job]) -> String {
+    let mut out = String::new();
+    for job in jobs {
+        let target = job.target.as_ref().or(options.into.as_ref());
+        for to in target.into_iter().chain(&job.preview) {
+            let state = if job.input == *to {
+                "  (in place)"
+            } else if to.is_file() && !is_device(to) {
+                "  (replaces a file)"
+            } else {
+                ""
+            };
+            let _ = writeln!(out, "{} -> {}{state}", job.input.display(), to.display());
+        }
+        if target.is_none() {
+            let _ = writeln!(out, "{} -> standard output", job.input.display());
+        }
+    }
+    out
+}

@@ -1,0 +1,116 @@
+//! The session: collects what the inputs of a run give, in order, and ends the run.
+
+use super::file_run::FileRun;
+use super::messages;
+use super::report_file::ReportFile;
+use crate::advice::Flags;
+use crate::failure::Failure;
+use crate::input::display;
+use crate::options::CommonOptions;
+use crate::output::PendingFile;
+use crate::report::FileReport;
+use crate::status::Status;
+use crate::terminal;
+use std::path::Path;
+
+/// Most failures that are listed on the terminal; the report holds the rest.
+const LISTED: usize = 50;
+
+/// The results of the inputs so far.
+pub(super) struct Session<'a> {
+    pub(super) options: &'a CommonOptions,
+    pub(super) flags: &'a Flags,
+    pub(super) report: Option<ReportFile>,
+    /// Number of inputs of the whole run.
+    pub(super) inputs: usize,
+    /// Outputs that appear at the end.
+    pub(super) pending: Vec<PendingFile>,
+    partial: bool,
+    done: usize,
+    failed: usize,
+    failures: Vec<String>,
+    past_page: messages::PastPage,
+}
+
+impl<'a> Session<'a> {
+    pub(super) fn new(options: &'a CommonOptions, flags: &'a Flags, report: Option<ReportFile>, inputs: usize) -> Self {
+        Self {
+            options,
+            flags,
+            report,
+            inputs,
+            pending: Vec::new(),
+            partial: false,
+            done: 0,
+            failed: 0,
+            failures: Vec::new(),
+            past_page: messages::PastPage::default(),
+        }
+    }
+
+    /// Returns `true` if no input has been warped yet.
+    pub(super) fn is_untried(&self) -> bool {
+        self.done == 0
+    }
+
+    /// Adds an input that was warped: prints its notes and warnings.
+    pub(super) fn done(&mut self, run: FileRun) -> Result<(), Failure> {
+        let several = self.inputs > 1;
+        for note in &run.notes {
+            terminal::note(&if several { format!("{}: {note}", run.report.file) } else { note.clone() });
+        }
+        if !self.options.quiet {
+            let counted = several && self.past_page.count(&run);
+            messages::warn(
+                &run.report,
+                if counted { run.report.warnings.len() - 1 } else { run.report.warnings.len() },
+            );
+        }
+        self.done += 1;
+        self.partial |= run.partial;
+        self.pending.extend(run.files);
+        self.report.as_mut().map_or(Ok(()), |r| r.add(&run.report))
+    }
+
+    /// Adds an input that was not warped. The message is printed at the end.
+    pub(super) fn failed(&mut self, input: &Path, failure: &Failure) -> Result<(), Failure> {
+        let message = failure.message(self.flags);
+        self.failed += 1;
+        if self.failures.len() < LISTED {
+            self.failures.push(message.clone());
+        }
+        self.report.as_mut().map_or(Ok(()), |r| r.add(&FileReport::failed(display(input), message)))
+    }
+
+    /// Puts the last outputs in place, and prints the summary.
+    pub(super) fn finish(mut self) -> Result<Status, Failure> {
+        if let Some(report) = self.report.take() {
+            self.pending.push(report.finish()?);
+        }
+        PendingFile::commit_all(std::mem::take(&mut self.pending))?;
+        if !self.options.quiet {
+            self.past_page.warn(self.inputs);
+        }
+        self.summarise();
+        Ok(Status::partial_if(self.partial || self.failed > 0))
+    }
+
+    /// Lists the failures and counts them.
+    fn summarise(&self) {
+        if self.failed == 0 {
+            return;
+        }
+        self.failures.iter().for_each(|f| terminal::error(f));
+        let more = self.failed - self.failures.len();
+        if more > 0 {
+            let advice = if self.options.report.is_some() { "the report lists" } else { "--report FILE lists" };
+            terminal::error(&format!("and {more} more; {advice} them all"));
+        }
+        let written = match self.done {
+            0 => "nothing was written".to_owned(),
+            1 => "the result of the other one is written".to_owned(),
+            n => format!("the results of the other {n} are written"),
+        };
+        terminal::error(&format!("{} of {} inputs failed; {written}", self.failed, self.inputs));
+    }
+}

@@ -1,0 +1,111 @@
+//! Temporary files: removed when they are dropped, and when the program is interrupted.
+//!
+//! Ctrl-C and SIGTERM run a handler on a thread of its own. It waits for commits under way, so that files that belong together
+//! appear together, removes all temporary files and exits.
+
+use crate::terminal;
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError, RwLock, RwLockReadGuard};
+use tempfile::{Builder, TempPath};
+
+/// The exit code after an interruption: a shell's for SIGINT.
+const INTERRUPTED: i32 = 130;
+
+/// Every temporary file there is.
+static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// Held for reading while files are created or put in place, and for writing, to the end, by the handler.
+static GATE: RwLock<()> = RwLock::new(());
+/// Number of inputs of a batch whose results are in place.
+static FINISHED: AtomicUsize = AtomicUsize::new(0);
+
+/// A temporary file.
+#[derive(Debug)]
+pub(crate) struct Temporary(Option<TempPath>);
+
+impl Temporary {
+    /// Creates an empty file in `folder`.
+    pub(crate) fn create_in(folder: &Path) -> io::Result<(Self, File)> {
+        let mut builder = builder();
+        #[cfg(unix)]
+        {
+            // The permissions of any newly created file; the umask applies.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let _gate = hold();
+        let (file, path) = builder.tempfile_in(folder)?.into_parts();
+        Ok((Self::registered(path), file))
+    }
+
+    /// A second name for `file`, or a copy of it where there are no hard links.
+    pub(crate) fn backup(file: &Path, folder: &Path) -> io::Result<Self> {
+        let linked = builder().make_in(folder, |path| std::fs::hard_link(file, path));
+        let made = linked.or_else(|_| builder().make_in(folder, |path| std::fs::copy(file, path).map(drop)))?;
+        Ok(Self::registered(made.into_temp_path()))
+    }
+
+    fn registered(path: TempPath) -> Self {
+        on_interruption_remove_all();
+        live().insert(path.to_path_buf());
+        Self(Some(path))
+    }
+
+    /// Renames the file, over an existing one.
+    pub(crate) fn rename(mut self, to: &Path) -> io::Result<()> {
+        let Some(path) = self.0.take() else { return Ok(()) };
+        live().remove(&*path);
+        path.persist(to).map_err(|e| e.error)
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if let Some(path) = &self.0 {
+            live().remove(&**path);
+        }
+    }
+}
+
+/// Keeps the handler waiting until the guard is dropped.
+pub(crate) fn hold() -> RwLockReadGuard<'static, ()> {
+    GATE.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Counts an input of a batch as finished.
+pub(crate) fn count_finished() {
+    FINISHED.fetch_add(1, Ordering::Relaxed);
+}
+
+fn builder() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(".pathwarp-");
+    builder
+}
+
+fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Installs the handler, once.
+fn on_interruption_remove_all() {
+    static INSTALL: Once = Once::new();
+    INSTALL.call_once(|| {
+        // A program around this library may have a handler already; it then answers for interruptions.
+        let _ = ctrlc::set_handler(|| {
+            let _gate = GATE.write().unwrap_or_else(PoisonError::into_inner);
+            for path in live().iter() {
+                let _ = std::fs::remove_file(path);
+            }
+            terminal::error(&match FINISHED.load(Ordering::Relaxed) {
+                0 => "interrupted; no output was written".to_owned(),
+                1 => "interrupted; the result of 1 input is written".to_owned(),
+                n => format!("interrupted; the results of {n} inputs are written"),
+            });
+            std::process::exit(INTERRUPTED);
+        });
+    });
+}
