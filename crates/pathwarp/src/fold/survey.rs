@@ -110,3 +110,64 @@ impl<'a> Survey<'a> {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{BicubicNet, Formula, Net, Real};
+
+    /// A net over the unit square that pulls its middle by `by`.
+    fn net(by: f64) -> BicubicNet {
+        let mut net: Net = std::array::from_fn(|r| std::array::from_fn(|s| Point::new(s as f64 / 3.0, r as f64 / 3.0)));
+        for row in &mut net[1..3] {
+            row[1].x += by;
+        }
+        BicubicNet::new(&net, Affine::IDENTITY)
+    }
+
+    /// The same map, without its algebra.
+    struct Hidden(BicubicNet);
+    impl Map for Hidden {
+        fn jet(&self, p: Point) -> Jet {
+            self.0.jet(p)
+        }
+    }
+
+    #[test]
+    fn a_proof_and_samples_agree() {
+        let shape = Outline::from_svg("M0.1,0.1 H0.9 V0.9 H0.1 Z").unwrap();
+        let bounds = shape.bounding_box();
+        for (by, proves) in [(0.1, true), (1.2, false)] {
+            let (known, hidden) = (net(by), Hidden(net(by)));
+            let (survey, sampled) = (Survey::new(&known, bounds, 4), Survey::new(&hidden, bounds, 4));
+            assert_eq!((survey.samples(), sampled.samples()), (!proves, true));
+            let (a, b) = (survey.orientation(&shape, true), sampled.orientation(&shape, true));
+            assert_eq!(a.folded_against(&a), b.folded_against(&b), "{by}");
+            assert_eq!((a.negative > 0, a.first_positive), (b.negative > 0, b.first_positive), "{by}");
+        }
+    }
+
+    #[test]
+    fn copies_are_all_counted() {
+        let shape = Outline::from_svg("M0,0 H0.1 V0.1 H0 Z").unwrap();
+        let places = [Affine::translate((0.2, 0.2)), Affine::translate((0.5, 0.5))];
+        let (known, hidden) = (net(0.1), Hidden(net(0.1)));
+        let all = Some(Rect::new(0.2, 0.2, 0.6, 0.6));
+        let proven = Survey::new(&known, all, 8).orientation_of_copies(&shape, &places, false);
+        assert_eq!(proven, Survey::new(&hidden, all, 8).orientation_of_copies(&shape, &places, false));
+        assert_eq!(proven.positive, 2 * 4 * (PER_SEGMENT + 1));
+    }
+
+    #[test]
+    fn a_mirrored_drawing_does_not_fold() {
+        struct Mirror;
+        impl Formula for Mirror {
+            fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+                (-x + (y * 0.1).sin(), y)
+            }
+        }
+        let shape = Outline::from_svg("M0,0 H10 V10 H0 Z").unwrap();
+        let o = Survey::new(&Mirror, shape.bounding_box(), 4).orientation(&shape, true);
+        assert!(o.positive == 0 && o.negative > 500 && o.folded_against(&o).is_none(), "{o:?}");
+    }
+}

@@ -16,6 +16,7 @@ use crate::formula::{Calculator, FormulaError};
 use crate::map::{Net, complete_net};
 use kurbo::{Point, Vec2};
 use serde::Deserialize;
+use std::sync::OnceLock;
 use thiserror::Error;
 
 /// A warp style: rules for a net of sixteen points over a box.
@@ -144,14 +145,13 @@ impl Style {
     /// Returns the built-in styles.
     #[must_use]
     pub fn builtin() -> Vec<Self> {
-        // The text is part of this crate; a test reads every style.
-        serde_json::from_str(include_str!("styles.json")).unwrap_or_default()
+        presets().to_vec()
     }
 
     /// Returns the built-in style of this name, also as Photoshop spells it (`warpArc`).
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        Self::builtin().into_iter().find(|style| style.is_called(name))
+        presets().iter().find(|style| style.is_called(name)).cloned()
     }
 
     /// Reads a style from JSON.
@@ -287,6 +287,13 @@ impl Style {
         let of = |f: &Option<String>| f.as_ref().map_or(Ok(0.0), |f| names.value(f));
         Ok(Vec2::new(of(&shift.x)?, of(&shift.y)?))
     }
+}
+
+/// The built-in styles, read once: a batch of small drawings would spend a fifth of its time on them.
+fn presets() -> &'static [Style] {
+    static PRESETS: OnceLock<Vec<Style>> = OnceLock::new();
+    // The text is part of this crate; a test reads every style.
+    PRESETS.get_or_init(|| serde_json::from_str(include_str!("styles.json")).unwrap_or_default())
 }
 
 /// Returns the points that `j,c` selects.
