@@ -23,6 +23,9 @@ const MOST_NODES: u32 = 4_000_000;
 /// The attributes that distinguish GIMP's exports from other SVG files.
 const ATTRIBUTES: [(&str, &str); 3] = [("fill", "none"), ("stroke", "black"), ("stroke-width", "1")];
 
+/// Our own attribute for GIMP's visibility switch, on paths that are switched off. GIMP ignores it.
+const VISIBLE: &str = "data-gimp-visible";
+
 /// Returns `true` if a file with these first bytes can be an export from GIMP.
 pub(crate) fn may_be_export(head: &[u8]) -> bool {
     head.windows(DOCTYPE.len()).any(|w| w == DOCTYPE.as_bytes())
@@ -49,7 +52,7 @@ pub(crate) fn is_export(text: &str) -> bool {
                 && ATTRIBUTES.iter().all(|(name, value)| p.attribute(*name) == Some(value))
                 && p.attributes().all(|a| {
                     a.namespace() == Some(INKSCAPE)
-                        || matches!(a.name(), "id" | "d" | "fill" | "stroke" | "stroke-width")
+                        || matches!(a.name(), "id" | "d" | "fill" | "stroke" | "stroke-width" | VISIBLE)
                 })
         })
 }
@@ -83,8 +86,9 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
         let strokes =
             outline.subpaths.iter().map(|s| single_anchor_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
         let name = p.attribute("id").unwrap_or_default().to_owned();
-        // The format has no visibility; GIMP imports paths as invisible.
-        paths.push(GimpPath { name, visible: false, strokes });
+        // GIMP's own exports do not tell.
+        let visible = p.attribute(VISIBLE) != Some("false");
+        paths.push(GimpPath { name, visible, strokes });
     }
     Ok(PathFile { kind: FileKind::Svg, size, paths })
 }
@@ -103,7 +107,7 @@ fn single_anchor_loop(s: &Subpath) -> Option<Stroke> {
 }
 
 /// Writes paths as SVG that GIMP imports without scaling: sizes in pixels, a matching viewBox, and one `path` each with its name
-/// as id. `decimals` rounds coordinates; without it they keep the single precision of GIMP.
+/// as id. Paths that are not visible in GIMP are marked for [`read`](crate::read). `decimals` rounds coordinates; without it they keep the single precision of GIMP.
 ///
 /// The outer handles at the ends of open strokes carry no geometry and are lost.
 #[must_use]
@@ -125,6 +129,9 @@ pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> Strin
         }
         for (name, value) in ATTRIBUTES {
             let _ = write!(out, " {name}=\"{value}\"");
+        }
+        if !p.visible {
+            let _ = write!(out, " {VISIBLE}=\"false\"");
         }
         let strokes: Vec<String> = p.strokes.iter().map(|s| data(s, decimals)).collect();
         let _ = writeln!(out, "\n        d=\"{}\" />", strokes.join("\n           "));

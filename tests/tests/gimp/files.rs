@@ -186,3 +186,26 @@ fn hostile_files_cost_nothing() {
     let e = String::from_utf8_lossy(&out.stderr).into_owned();
     assert!(out.status.code() == Some(3) && e.contains("268435456 paths"), "{e}");
 }
+
+/// Paths keep GIMP's visibility switch on their way through SVG, warped or not; GIMP's own exports do not tell, and are visible.
+#[test]
+fn visibility_survives_svg() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name).display().to_string();
+    fs::write(at("in.xcf"), new_xcf([640, 400], &paths())).unwrap();
+    let switches =
+        |file: &str| -> Vec<bool> { read(&fs::read(file).unwrap()).unwrap().iter().map(|p| p.visible).collect() };
+    let wanted = switches(&at("in.xcf"));
+    assert!(wanted.contains(&true) && wanted.contains(&false));
+    expect_code(0, &["convert", &at("in.xcf"), "-o", &at("a.svg")]);
+    expect_code(0, &["wave", &at("in.xcf"), "-o", &at("b.svg"), "-q"]);
+    expect_code(0, &["wave", &at("a.svg"), "-o", &at("c.svg"), "-q"]);
+    for name in ["a", "b", "c"] {
+        expect_code(0, &["convert", &at(&format!("{name}.svg")), "-o", &at(&format!("{name}.xcf"))]);
+        assert_eq!(switches(&at(&format!("{name}.xcf"))), wanted, "{name}");
+    }
+    let plain = fs::read_to_string(at("a.svg")).unwrap().replace(" data-gimp-visible=\"false\"", "");
+    fs::write(at("plain.svg"), plain).unwrap();
+    expect_code(0, &["convert", &at("plain.svg"), "-o", &at("plain.xcf")]);
+    assert!(switches(&at("plain.xcf")).iter().all(|v| *v));
+}

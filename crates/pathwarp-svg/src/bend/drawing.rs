@@ -12,9 +12,11 @@ use crate::scene::affine::is_invertible;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::source::parallel::map_parallel;
+use crate::source::tags::ElementId;
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{Class, Map};
 use pathwarp::{Error, GeometryError};
+use std::collections::HashMap;
 
 /// The image of a drawing.
 pub(crate) struct BentDrawing {
@@ -43,7 +45,8 @@ pub(crate) fn bend(
     let slots = slots::place(drawing, map, &selected, &options.selection);
     let results = warp_parts(drawing, map, options, &selected, &slots);
     let mut outcomes = Vec::with_capacity(scene.parts.len());
-    let mut last = None;
+    // Index of each element's report: tiles and markers may come between the parts of an element.
+    let mut reports: HashMap<ElementId, usize> = HashMap::new();
     for (i, r) in results.into_iter().enumerate() {
         let part = &scene.parts[i];
         outcomes.push(match r {
@@ -54,9 +57,9 @@ pub(crate) fn bend(
                     out.warnings.push(format!("a gradient of {id} only follows the best affine fit: {why}"));
                 }
                 let element = part.element();
-                let continues = element.is_some() && element == last;
-                out.report(id.clone(), &warped, options.copies.len().max(1), continues);
-                last = element;
+                let known = element.and_then(|e| reports.get(&e).copied());
+                let report = out.report(id.clone(), &warped, options.copies.len().max(1), known);
+                reports.extend(element.map(|e| (e, report)));
                 PartOutcome::Warped(Box::new(warped))
             }
             // Tiles extend past their shape, possibly out of the map's domain. The pattern then follows as a whole.

@@ -34,7 +34,7 @@ pub struct ShapeReport {
     pub copies: usize,
     /// Number of segments before, with closing lines and copies.
     pub segments_in: usize,
-    /// Number of segments after.
+    /// Number of segments written, with those of outlined strokes, tiles and letters.
     pub segments_out: usize,
     /// Largest distance between exact image and output, rounding included, in root user units.
     pub max_error: f64,
@@ -69,14 +69,13 @@ pub struct Overhang {
 }
 
 impl WarpedDocument {
-    /// Adds a part's report to that of its shape. `continues` is `true` if the part belongs to the same element as the
-    /// previous one.
-    pub(super) fn report(&mut self, id: String, part: &WarpedPart, copies: usize, continues: bool) {
+    /// Adds a part's report to that of its shape, `known` if the shape has one. Returns the index of the report.
+    pub(super) fn report(&mut self, id: String, part: &WarpedPart, copies: usize, known: Option<usize>) -> usize {
         let r = &part.report;
         let error = r.max_error + part.rounding;
         let pictures = usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some());
-        match self.shapes.last_mut() {
-            Some(last) if continues => {
+        match known.and_then(|i| Some((i, self.shapes.get_mut(i)?))) {
+            Some((i, last)) => {
                 last.segments_in += r.segments_in;
                 last.segments_out += r.segments_out;
                 last.max_error = last.max_error.max(error);
@@ -84,8 +83,9 @@ impl WarpedDocument {
                 last.over_budget.extend(&r.over_budget);
                 last.pictures += pictures;
                 last.paint_residual = [last.paint_residual, part.residual].into_iter().flatten().reduce(f64::max);
+                return i;
             }
-            _ => self.shapes.push(ShapeReport {
+            None => self.shapes.push(ShapeReport {
                 id,
                 copies,
                 segments_in: r.segments_in,
@@ -97,6 +97,7 @@ impl WarpedDocument {
                 pictures,
             }),
         }
+        self.shapes.len() - 1
     }
 }
 

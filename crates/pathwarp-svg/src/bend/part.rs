@@ -15,6 +15,7 @@ use crate::scene::model::{Part, PartRole};
 use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Rect, Shape as _};
 use pathwarp::map::Class;
 use pathwarp::outline::Subpath;
+use pathwarp::refit::PathReport;
 use pathwarp::{GeometryError, Outline, Seg};
 use usvg::Paint;
 
@@ -23,11 +24,16 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
     let (path, report) = t.bend(&t.outline)?;
     let fit = paint_fit(t, &path);
-    let (path, fill) = filled(t, path)?;
+    let centre = report.segments_in;
+    let Filled { path, fill, report } = filled(t, path, report)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
     let expands = matches!(t.options().strokes, Strokes::Auto | Strokes::Outline) && !p.fixed_width;
     let stroke_shading = p.stroke.as_ref().filter(|_| expands).and_then(|s| shading(t, s.paint(), fit));
-    let stroke = stroke::stroke(t, &path, stroke_shading.is_some())?;
+    let (stroke, expanded) = stroke::stroke(t, &path, stroke_shading.is_some())?;
+    // Count what is written: the path is not if only its expanded stroke is painted.
+    let mut written = written(p, &stroke, report, fill.is_some());
+    written.extend(expanded);
+    let report = combined(centre, written);
     let fill_shading = p.fill.as_ref().and_then(|f| shading(t, f.paint(), fit));
     let mut out = WarpedPart {
         path,
@@ -72,18 +78,54 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
     }
 }
 
-/// Bends the filled area if it differs from the path. Returns the path, and the filled outline if that is separate.
-fn filled(t: &PartTask<'_>, path: BezPath) -> Result<(BezPath, Option<BezPath>), GeometryError> {
+/// The bent path of a part and its fill.
+struct Filled {
+    path: BezPath,
+    /// The filled outline if it is separate.
+    fill: Option<BezPath>,
+    /// Reports of both; of the path, then of the fill.
+    report: [Option<PathReport>; 2],
+}
+
+/// Reports of what is written of a path and its fill.
+fn written(p: &Part, stroke: &StrokeOutcome, reports: [Option<PathReport>; 2], separate: bool) -> Vec<PathReport> {
+    let [path, fill] = reports;
+    let hidden = stroke.outline().is_some() && !p.in_tile && (p.fill.is_none() || separate);
+    path.filter(|_| !hidden).into_iter().chain(fill).collect()
+}
+
+/// One report for several outlines of a source with `segments_in` segments.
+fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
+    let mut none = PathReport::default();
+    none.segments_in = segments_in;
+    all.into_iter().fold(none, |mut sum, r| {
+        sum.segments_out += r.segments_out;
+        sum.max_error = sum.max_error.max(r.max_error);
+        sum.assurance = sum.assurance.min(r.assurance);
+        sum.over_budget.extend(r.over_budget);
+        sum
+    })
+}
+
+/// Bends the filled area if it differs from the path.
+fn filled(t: &PartTask<'_>, path: BezPath, report: PathReport) -> Result<Filled, GeometryError> {
     let stroked = t.part.stroke.is_some() && t.part.role != PartRole::Clip;
     // With `Strokes::Keep`, each centre line is to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
     let tolerance = t.options().refit.tolerance;
     let area = filled_area(t, tolerance).filter(|a| closes || a.is_empty());
+    let report = Some(report);
     Ok(match area {
-        None => (path, None),
-        Some(area) if area.is_empty() => (path, Some(BezPath::new())),
-        Some(area) if stroked => (path, Some(t.bend(&area)?.0)),
-        Some(area) => (t.bend(&area)?.0, None),
+        None => Filled { path, fill: None, report: [report, None] },
+        Some(area) if area.is_empty() => Filled { path, fill: Some(BezPath::new()), report: [report, None] },
+        Some(area) => {
+            let (fill, closed) = t.bend(&area)?;
+            if stroked {
+                Filled { path, fill: Some(fill), report: [report, Some(closed)] }
+            } else {
+                Filled { path: fill, fill: None, report: [Some(closed), None] }
+            }
+        }
     })
 }
 

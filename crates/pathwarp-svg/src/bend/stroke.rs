@@ -8,7 +8,8 @@ use crate::scene::expand::stroke_outline;
 use crate::scene::regular::is_point;
 use pathwarp::kurbo::{Affine, BezPath, Vec2};
 use pathwarp::map::{AffineMap, Chain, Map};
-use pathwarp::{GeometryError, Outline, refit};
+use pathwarp::refit::{self, PathReport};
+use pathwarp::{GeometryError, Outline};
 use std::sync::Arc;
 use usvg::{LineCap, Stroke};
 
@@ -20,23 +21,27 @@ const WIDTH_ERROR: f64 = 0.02;
 const EXPANSION: f64 = 0.5;
 
 /// Warps the stroke of a part whose path is bent to `path`. A stroke with a picture (`pictured`) is always expanded.
-pub(super) fn stroke(t: &PartTask<'_>, path: &BezPath, pictured: bool) -> Result<StrokeOutcome, GeometryError> {
+/// An expanded stroke has a report.
+pub(super) fn stroke(
+    t: &PartTask<'_>,
+    path: &BezPath,
+    pictured: bool,
+) -> Result<(StrokeOutcome, Option<PathReport>), GeometryError> {
     let p = t.part;
+    let scaled = |scale: f64| (StrokeOutcome::Scaled(scale), None);
+    let expanded = |(path, report): (BezPath, PathReport)| (StrokeOutcome::Outlined(path), Some(report));
     if p.in_tile && p.stroke.is_some() {
-        return Ok(StrokeOutcome::Outlined(path.clone()));
+        return Ok((StrokeOutcome::Outlined(path.clone()), None));
     }
-    let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(StrokeOutcome::Scaled(1.0)) };
+    let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(scaled(1.0)) };
     Ok(match t.options().strokes {
-        Strokes::Keep => StrokeOutcome::Scaled(1.0),
-        Strokes::Scale => StrokeOutcome::Scaled(part_width(t, s).map_or(1.0, |w| w.scale)),
-        Strokes::Outline => StrokeOutcome::Outlined(outlined(t, s)?),
+        Strokes::Keep => scaled(1.0),
+        Strokes::Scale => scaled(part_width(t, s).map_or(1.0, |w| w.scale)),
+        Strokes::Outline => expanded(outlined(t, s)?),
         Strokes::Auto => match part_width(t, s).filter(|_| p.stroke_tiles.is_none() && !pictured) {
-            Some(w) if w.error <= WIDTH_ERROR => StrokeOutcome::Scaled(w.scale),
+            Some(w) if w.error <= WIDTH_ERROR => scaled(w.scale),
             // The outline may reach outside of the map's domain; then scale the width.
-            w => match outlined(t, s) {
-                Ok(path) => StrokeOutcome::Outlined(path),
-                Err(_) => StrokeOutcome::Scaled(w.map_or(1.0, |w| w.scale)),
-            },
+            w => outlined(t, s).map_or_else(|_| scaled(w.map_or(1.0, |w| w.scale)), expanded),
         },
     })
 }
@@ -56,7 +61,7 @@ fn part_width(t: &PartTask<'_>, s: &Stroke) -> Option<StrokeWidth> {
 }
 
 /// Expands a part's stroke and bends the outline.
-fn outlined(t: &PartTask<'_>, s: &Stroke) -> Result<BezPath, GeometryError> {
+fn outlined(t: &PartTask<'_>, s: &Stroke) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
     let fine = (options.refit.tolerance / stretch(p.frame) * EXPANSION).max(1e-9);
     let expanded = |local: &Outline, places: &[Affine]| {
@@ -69,7 +74,7 @@ fn outlined(t: &PartTask<'_>, s: &Stroke) -> Result<BezPath, GeometryError> {
     };
     let refit = options.refit.clone().with_tolerance(options.refit.tolerance * (1.0 - EXPANSION));
     let warped = refit::warp_path(&Outline { subpaths }, t.map, &refit)?;
-    Ok(t.to_local(warped.path))
+    Ok((t.to_local(warped.path), warped.report))
 }
 
 /// Change of a stroke's width along a path.
