@@ -54,7 +54,7 @@ pub(crate) fn build(registry: &Registry) -> Command {
     for e in registry.entries() {
         c = c.subcommand(deformation::command(e.info()));
     }
-    c.subcommand(run::command())
+    c.subcommand(run::command(registry))
         .subcommand(list::command())
         .subcommand(map::command(registry))
         .subcommand(unwarp::command())
@@ -88,7 +88,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
     match name {
         run::NAME => run::run(registry, m),
-        list::NAME => list::run(registry),
+        list::NAME => list::run(registry, m),
         map::NAME => map::run(registry, m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
@@ -100,7 +100,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         compare::NAME => compare::run(m),
         install::NAME => install::run(m),
         completions::NAME => completions::run(build(registry), m),
-        man::NAME => man::run(build(registry)),
+        man::NAME => man::run(build(registry), m),
         other => Err(Failure::usage(format!("there is no command {other}"))),
     }
 }
