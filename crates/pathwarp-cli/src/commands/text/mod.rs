@@ -40,7 +40,9 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         chosen.push(Font::new(&file.bytes, file.index).map_err(|e| Failure::Input(format!("{name}: {e}")))?);
     }
     chosen.push(Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))?);
-    let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, weight)?;
+    let first = names.first().copied().unwrap_or("the bundled font");
+    fonts::check_style(&chosen[0], first, weight, m.get_flag("italic"))?;
+    let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, weight, m.get_flag("italic"))?;
 
     let set = layout(&text, &chosen, &style).map_err(|e| failure(&e))?;
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
