@@ -80,7 +80,7 @@ pub fn installed_styles(family: &str) -> Vec<(u16, bool)> {
     let db = database(true, &[]);
     let of_family = |f: &&fontdb::FaceInfo| f.families.iter().any(|(n, _)| n.eq_ignore_ascii_case(family));
     let styles = db.faces().filter(of_family).map(|f| (f.weight.0, f.style != fontdb::Style::Normal));
-    styles.collect::<std::collections::BTreeSet<_>>().into_iter().collect()
+    styles.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// Lists families with names similar to `family`: each word of `family` resembles a word of the name.

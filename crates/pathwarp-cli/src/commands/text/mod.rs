@@ -29,6 +29,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
     let target = file_args::target(m, read.chain(names.iter().map(Path::new)))?;
+    file_args::check_extension(target, &["svg"])?;
     let text = words::words(m)?;
     let em = Em::given(m)?;
     let style = style::style(m, &em)?;
