@@ -2,6 +2,8 @@
 
 use crate::advice::{self, Flags};
 use crate::terminal;
+use pathwarp::GeometryError;
+use pathwarp::kurbo::Point;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -54,6 +56,17 @@ impl Failure {
         match self {
             Self::Library { error, of_recipe, .. } => *of_recipe && !matches!(**error, pathwarp::Error::Geometry(_)),
             _ => false,
+        }
+    }
+
+    /// The shape and the point at which the map is infinite or undefined.
+    pub(crate) fn infinity(&self) -> Option<(&str, Point)> {
+        match self {
+            Self::Library { error, .. } => match &**error {
+                pathwarp::Error::Geometry(GeometryError::Infinity { shape, at }) => Some((shape, *at)),
+                _ => None,
+            },
+            _ => None,
         }
     }
 

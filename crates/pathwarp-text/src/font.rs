@@ -94,6 +94,18 @@ impl<'a> Font<'a> {
         Ok(self)
     }
 
+    /// Returns the weight of the font as it was designed, such as 400 for a regular and 700 for a bold one.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        f64::from(self.font.attributes().weight.value())
+    }
+
+    /// Returns `true` if the font is italic or oblique.
+    #[must_use]
+    pub fn is_italic(&self) -> bool {
+        self.font.attributes().style != skrifa::attribute::Style::Normal
+    }
+
     /// Returns the axes of a variable font; empty for other fonts.
     #[must_use]
     pub fn axes(&self) -> Vec<FontAxis> {

@@ -1,7 +1,7 @@
 //! Further subcommands, and programs with deformations of their own.
 
 use crate::common::{CAGE, SQUARE, text};
-use crate::support::{self, expect_code, pathwarp_in, root};
+use crate::support::{self, expect_code, pathwarp_in, root, sample};
 use serde_json::Value;
 use std::fs;
 
@@ -137,4 +137,61 @@ fn a_crate_of_one_file_adds_its_deformation() {
     assert!(done.status.success(), "{}", text(&done.stderr));
     assert!(fs::read_to_string(out).unwrap().contains('C'), "straight lines have become curves");
     assert!(run(&["shaper", "samples/grid.svg", "--shaper", CAGE, "-o", "-"]).status.success());
+}
+
+#[test]
+fn a_recipes_values_are_overridden_on_the_command_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |args: &[&str], code: i32| {
+        let out = pathwarp_in(dir.path(), args, SQUARE.as_bytes());
+        assert_eq!(out.status.code(), Some(code), "{args:?}: {}", text(&out.stderr));
+        (out.stdout, text(&out.stderr))
+    };
+    let chain = ["warp", "--style", "flag", "--bend", "40%", "-q", "+", "affine", "--rotate", "10"];
+    run(&[&chain[..], &["--write-recipe", "r.toml"]].concat(), 0);
+    let bent = |bend: &str, turn: &str| {
+        run(&["warp", "--style", "flag", "--bend", bend, "-q", "+", "affine", "--rotate", turn], 0).0
+    };
+    assert_eq!(run(&["run", "r.toml", "-q"], 0).0, bent("40%", "10"));
+    assert_eq!(run(&["run", "r.toml", "-q", "--bend", "-10%"], 0).0, bent("-10%", "10"));
+    assert_eq!(run(&["run", "r.toml", "-", "--bend=10%", "--rotate", "-30", "-q"], 0).0, bent("10%", "-30"));
+    assert!(run(&["run", "r.toml", "--shaper", "x.svg"], 2).1.contains("no step of the recipe has --shaper"));
+    run(&["warp", "--style", "flag", "+", "warp", "--style", "arc", "--write-recipe", "two.toml", "-q"], 0);
+    assert!(run(&["run", "two.toml", "--bend", "10%"], 2).1.contains("2 steps"));
+    // A flag.
+    let cage = sample("cages.svg").display().to_string() + "#flag";
+    run(&["shaper", "--shaper", &cage, "--write-recipe", "cage.toml", "-q"], 0);
+    let mirrored = run(&["shaper", "--shaper", &cage, "--reverse-shaper", "-q"], 0).0;
+    assert_eq!(run(&["run", "cage.toml", "--reverse-shaper", "-q"], 0).0, mirrored);
+}
+
+#[test]
+fn list_prints_json_and_man_prints_one_command() {
+    let (list, _) = expect_code(0, &["list", "--json"]);
+    let list: Value = serde_json::from_str(&list).unwrap();
+    let (registry, all) = (pathwarp::deform::Registry::builtin(), list["deformations"].as_array().unwrap().clone());
+    assert_eq!(all.len(), registry.entries().len());
+    for (e, shown) in registry.entries().iter().zip(all) {
+        assert_eq!(shown["name"], e.info().name);
+        assert_eq!(shown["parameters"].as_array().unwrap().len(), e.info().params.len());
+    }
+    let (man, _) = expect_code(0, &["man", "warp"]);
+    assert!(man.contains("pathwarp-warp") && man.contains("bend") && !man.contains("anamorph"), "{man}");
+    let (_, said) = expect_code(2, &["man", "wrap"]);
+    assert!(said.contains("did you mean `warp`"), "{said}");
+}
+
+#[test]
+fn pages_of_different_proportions_are_compared_by_their_paths() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("a.svg"), SQUARE).unwrap();
+    let wide = SQUARE.replace("viewBox='0 0 100 100'", "viewBox='0 0 200 100'").replace("M0,0H100", "M0,3H100");
+    std::fs::write(dir.path().join("b.svg"), wide).unwrap();
+    let out = pathwarp_in(dir.path(), &["compare", "a.svg", "b.svg"], b"");
+    let said = text(&out.stdout);
+    assert!(out.status.success() && said.contains("largest distance: 3.000000"), "{said}{}", text(&out.stderr));
+    assert!(said.contains("not compared"), "{said}");
+    let out = pathwarp_in(dir.path(), &["compare", "a.svg", "b.svg", "--json", "--max-pixels", "0.5"], b"");
+    let json: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert!(json["pixels"].is_null() && out.status.code() == Some(1), "{json}");
 }

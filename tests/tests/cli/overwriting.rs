@@ -150,7 +150,7 @@ fn an_output_that_cannot_be_written_is_5() {
     drawings(dir.path());
     fs::create_dir(dir.path().join("folder")).unwrap();
     for to in ["folder", "nowhere/o.svg", "a.svg/o.svg"] {
-        for args in [&["swirl", "b.svg", "-o", to][..], &["render", "b.svg", "-o", to]] {
+        for args in [&["swirl", "b.svg", "-o", to][..], &["text", "b", "-o", to]] {
             let out = pathwarp_in(dir.path(), args, b"");
             assert_eq!(out.status.code(), Some(5), "{args:?}: {}", text(&out.stderr));
         }

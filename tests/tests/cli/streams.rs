@@ -26,6 +26,35 @@ fn a_drawing_is_not_written_under_a_pictures_name() {
     assert!(!dir.path().join("out.png").exists());
 }
 
+/// The extension says the format; one that cannot be written is an error.
+#[test]
+fn unknown_extensions_are_errors() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("a.svg"), SQUARE).unwrap();
+    fs::write(dir.path().join("a.drawing"), SQUARE).unwrap();
+    for (args, part) in [
+        (&["affine", "a.svg", "-o", "o.pdf"][..], ".svg or .svgz"),
+        (&["affine", "a.svg", "-o", "o.svg", "--preview", "o.bmp"], ".png"),
+        (&["render", "a.svg", "-o", "o.tiff"], ".png"),
+        (&["gallery", "a.svg", "-o", "o.pdf"], ".svg or .png"),
+        (&["text", "a", "-o", "o.pdf"], ".svg"),
+        (&["convert", "a.svg", "-o", "o.pdf"], ".svg, .json or .xcf"),
+    ] {
+        let out = pathwarp_in(dir.path(), args, b"");
+        assert_eq!(out.status.code(), Some(2), "{args:?}: {}", text(&out.stderr));
+        assert!(text(&out.stderr).contains(part), "{args:?}: {}", text(&out.stderr));
+    }
+    for args in [
+        &["affine", "a.svg", "-o", "plain"][..],
+        &["affine", "a.svg", "-o", "o.SVG"],
+        &["affine", "a.drawing", "--out-dir", "out"],
+    ] {
+        let out = pathwarp_in(dir.path(), args, b"");
+        assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 5);
+}
+
 /// Renaming a file over a device such as `/dev/null` would replace the device.
 #[cfg(unix)]
 #[test]

@@ -1,28 +1,44 @@
 //! Parameters in messages as flags: the libraries write `bottom`, the command line `--bottom`.
 
+use super::names::likely;
 use pathwarp::deform::Registry;
-use std::collections::BTreeSet;
+use pathwarp::param::Kind;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The parameters that messages may name.
-pub(crate) struct Flags(BTreeSet<&'static str>);
+pub(crate) struct Flags {
+    params: BTreeSet<&'static str>,
+    /// The names that a parameter's value may have.
+    names: BTreeMap<&'static str, &'static [&'static str]>,
+}
 
 impl Flags {
     /// The parameters of all deformations.
     pub(crate) fn of(registry: &Registry) -> Self {
-        Self(registry.entries().iter().flat_map(|e| e.info().params).map(|p| p.name).collect())
+        let params = || registry.entries().iter().flat_map(|e| e.info().params);
+        let names = params().filter_map(|p| match p.kind {
+            Kind::NameOrFile(names) | Kind::Choice(names) => Some((p.name, names)),
+            _ => None,
+        });
+        Self { params: params().map(|p| p.name).collect(), names: names.collect() }
+    }
+
+    /// The name that a wrong value of the parameter `param` most likely means.
+    pub(super) fn likely(&self, param: &str, value: &str) -> Option<&'static str> {
+        likely(&value.to_lowercase(), self.names.get(param)?.iter().copied())
     }
 
     /// Puts dashes before a message that begins with a parameter: `base: …`, `base file.svg has …`.
     pub(super) fn in_front(&self, message: &str) -> String {
         let name = message.split([' ', ':']).next().unwrap_or_default();
-        if self.0.contains(name) { format!("--{message}") } else { message.to_owned() }
+        if self.params.contains(name) { format!("--{message}") } else { message.to_owned() }
     }
 
     /// Replaces `` `name` `` and `` `name value` `` by `--name` and `--name value` where `name` is a parameter.
     pub(crate) fn in_text(&self, message: &str) -> String {
         let is_param = |span: &str| {
             let mut words = span.split(' ');
-            let known = words.next().is_some_and(|w| w.len() > 1 && self.0.contains(w));
+            let known = words.next().is_some_and(|w| w.len() > 1 && self.params.contains(w));
             known && words.count() < 2 && !span.ends_with(' ')
         };
         let parts: Vec<&str> = message.split('`').collect();

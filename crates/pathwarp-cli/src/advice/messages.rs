@@ -10,7 +10,12 @@ pub(crate) fn error(e: &Error, flags: &Flags) -> String {
     match e {
         // The value is quoted as the user typed it, so only the problem is searched for parameters.
         Error::Usage { param, value, problem } => {
-            Error::usage(&format!("--{param}"), value, flags.in_text(problem)).to_string()
+            // A likely name says more than the list of all.
+            let problem = match (flags.likely(param, value), problem.split_once("; ")) {
+                (Some(name), Some((fault, _))) => format!("{fault}; did you mean {name}?"),
+                _ => flags.in_text(problem),
+            };
+            Error::usage(&format!("--{param}"), value, problem).to_string()
         }
         Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
         Error::Input { place, problem } => Error::input(place, flags.in_text(problem)).to_string(),

@@ -2,13 +2,18 @@
 
 /// Returns the message that there is no `what` called `name`, with the known name that is most like it.
 pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    match likely(name, known) {
+        Some(likely) => format!("there is no {what} `{name}`; did you mean `{likely}`?"),
+        None => format!("there is no {what} `{name}`"),
+    }
+}
+
+/// Returns the known name that is most like `name`, if any is like it.
+pub(super) fn likely<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     /// Names below this similarity are not suggested.
     const LIKELY: f64 = 0.8;
     let likeness = known.map(|k| (strsim::jaro_winkler(name, k), k)).filter(|(l, _)| *l >= LIKELY);
-    match likeness.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((_, likely)) => format!("there is no {what} `{name}`; did you mean `{likely}`?"),
-        None => format!("there is no {what} `{name}`"),
-    }
+    likeness.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, likely)| likely)
 }
 
 #[cfg(test)]

@@ -51,7 +51,8 @@ struct Comparison {
     only_in_a: Vec<String>,
     only_in_b: Vec<String>,
     max_distance: f64,
-    pixels: Pixels,
+    /// `None` if the pages have different proportions.
+    pixels: Option<Pixels>,
 }
 
 #[derive(Serialize)]
@@ -84,7 +85,9 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     };
     output::to_stdout(text.as_bytes())?;
     let over = |name: &str, value: f64| m.get_one::<f64>(name).is_some_and(|most| value > *most);
-    let apart = over("max-distance", result.max_distance) || over("max-pixels", result.pixels.visible_share);
+    // Pages of different proportions differ everywhere.
+    let differing = result.pixels.as_ref().map_or(f64::INFINITY, |p| p.visible_share);
+    let apart = over("max-distance", result.max_distance) || over("max-pixels", differing);
     Ok(Status::partial_if(apart))
 }
 
@@ -111,19 +114,23 @@ fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure
     let unpaired = paths_b.iter().enumerate().filter(|(i, p)| !paired.contains(i) && !repeated(p));
     let only_in_b = unpaired.map(|(_, p)| p.id.clone()).collect();
     let render = |d: &Document| RenderOptions { size, background: Some(Color::WHITE) }.render(usvg_tree::tree(d));
-    let difference = pathwarp_raster::compare(&render(a)?, &render(b)?)?;
-    Ok(Comparison {
-        max_distance: pairs.iter().filter_map(|p| p.distance).fold(0.0, f64::max),
-        only_in_a,
-        only_in_b,
-        paths: pairs,
-        pixels: Pixels {
+    let pixels = match pathwarp_raster::compare(&render(a)?, &render(b)?) {
+        Ok(difference) => Some(Pixels {
             width: difference.width,
             height: difference.height,
             max_channel: difference.max_channel,
             mean: difference.mean_abs,
             visible_share: difference.share_over(VISIBLE),
-        },
+        }),
+        Err(pathwarp_raster::Error::SizesDiffer { .. }) => None,
+        Err(e) => return Err(e.into()),
+    };
+    Ok(Comparison {
+        max_distance: pairs.iter().filter_map(|p| p.distance).fold(0.0, f64::max),
+        only_in_a,
+        only_in_b,
+        paths: pairs,
+        pixels,
     })
 }
 
@@ -171,7 +178,10 @@ fn table(c: &Comparison) -> String {
         }
     }
     let _ = writeln!(out, "largest distance: {:.6}", c.max_distance);
-    let p = &c.pixels;
+    let Some(p) = &c.pixels else {
+        out.push_str("pixels: not compared, as the pages have different proportions\n");
+        return out;
+    };
     let _ = writeln!(
         out,
         "pixels ({} x {}): {:.4} % differ visibly, mean {:.4}/255, largest {}/255",

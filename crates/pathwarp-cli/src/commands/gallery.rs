@@ -107,6 +107,7 @@ fn cell(text: &str) -> Result<(f64, f64), String> {
 pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "INPUT")?;
     let target = file_args::target(m, [file])?;
+    file_args::check_extension(target, &["svg", "png"])?;
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));

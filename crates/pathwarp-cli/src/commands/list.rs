@@ -1,20 +1,55 @@
-//! `pathwarp list`: the deformations, by group.
+//! `pathwarp list`: the deformations, by group; as JSON with their parameters.
 
 use crate::failure::Failure;
 use crate::output;
 use crate::status::Status;
-use clap::Command;
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::deform::{Info, Registry};
+use pathwarp::param::{Kind, Param};
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::IsTerminal;
 
 pub(super) const NAME: &str = "list";
 
 pub(super) fn command() -> Command {
-    Command::new(NAME).about("List the deformations")
+    Command::new(NAME)
+        .about("List the deformations")
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON, with every parameter"))
 }
 
-pub(super) fn run(registry: &Registry) -> Result<Status, Failure> {
+/// The deformations with their parameters.
+fn json(registry: &Registry) -> Value {
+    let param = |p: &Param| {
+        let mut v = json!({ "name": p.name, "help": p.help, "needed": p.needed, "repeat": p.repeat });
+        match p.kind {
+            Kind::Flag => v["flag"] = json!(true),
+            Kind::Choice(words) => v["choices"] = json!(words),
+            Kind::NameOrFile(names) => v["names"] = json!(names),
+            _ => v["value"] = json!(p.value_name()),
+        }
+        if let Some(default) = p.default {
+            v["default"] = json!(default);
+        }
+        v
+    };
+    let deformation = |i: &Info| {
+        let params: Vec<Value> = i.params.iter().map(param).collect();
+        let examples: Vec<&str> = i.examples.iter().map(|e| e.command).collect();
+        json!({
+            "name": i.name, "title": i.title, "group": i.group, "about": i.about, "source": i.source,
+            "parameters": params, "examples": examples,
+        })
+    };
+    json!({ "deformations": registry.entries().iter().map(|e| deformation(e.info())).collect::<Vec<_>>() })
+}
+
+pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
+    if m.get_flag("json") {
+        let text = serde_json::to_string_pretty(&json(registry)).map_err(|e| Failure::Output(e.to_string()))?;
+        output::to_stdout((text + "\n").as_bytes())?;
+        return Ok(Status::Complete);
+    }
     let infos: Vec<&Info> = registry.entries().iter().map(|e| e.info()).collect();
     let width = infos.iter().map(|i| i.name.len()).max().unwrap_or(0);
     let mut groups: Vec<&str> = Vec::new();

@@ -18,9 +18,11 @@ mod schema;
 mod text;
 mod unwarp;
 
+use crate::advice;
 use crate::failure::Failure;
 use crate::status::Status;
 use clap::Command;
+use clap::error::ErrorKind;
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
 
@@ -74,7 +76,7 @@ type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
 const OTHERS: [(&str, Declare); 14] = [
-    (run::NAME, |_| run::command()),
+    (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
     (unwarp::NAME, |_| unwarp::command()),
@@ -96,7 +98,8 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
-    let matches = build_for(registry, first.get(1)).try_get_matches_from(first)?;
+    let matches =
+        build_for(registry, first.get(1)).try_get_matches_from(first).map_err(|e| suggested(registry, first, e))?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
@@ -108,7 +111,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
     match name {
         run::NAME => run::run(registry, m),
-        list::NAME => list::run(registry),
+        list::NAME => list::run(registry, m),
         map::NAME => map::run(registry, m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
@@ -120,7 +123,20 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         compare::NAME => compare::run(m),
         install::NAME => install::run(m),
         completions::NAME => completions::run(build(registry), m),
-        man::NAME => man::run(build(registry)),
+        man::NAME => man::run(build(registry), m),
         other => Err(Failure::usage(format!("there is no command {other}"))),
+    }
+}
+
+/// Suggests a command to `pathwarp help NAME`, for which clap does not.
+fn suggested(registry: &Registry, args: &[OsString], error: clap::Error) -> Failure {
+    let wanted = args.get(2).map(|name| name.to_string_lossy());
+    match wanted {
+        Some(name) if error.kind() == ErrorKind::InvalidSubcommand && args[1] == "help" => {
+            let whole = build(registry);
+            let known = whole.get_subcommands().map(Command::get_name);
+            Failure::usage(advice::unknown("command", &name, known))
+        }
+        _ => error.into(),
     }
 }

@@ -43,6 +43,7 @@ pub(super) fn command() -> Command {
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "INPUT")?;
     let target = file_args::target(m, [file])?;
+    file_args::check_extension(target, &["png"])?;
     let size = if let Some(&w) = m.get_one::<u32>("width") {
         Size::Width(w)
     } else if let Some(&h) = m.get_one::<u32>("height") {

@@ -33,7 +33,13 @@ pub(crate) fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
 
 /// Reads an SVG document. Linked images are looked up relative to its folder.
 pub(crate) fn document(input: &Path) -> Result<Document, Failure> {
-    Ok(Document::read(&bytes(input)?, &display(input), &read_options(input))?)
+    let bytes = bytes(input)?;
+    if bytes.starts_with(XCF_MAGIC) {
+        let advice =
+            "an XCF holds paths, not a drawing; `pathwarp paths` lists them, `pathwarp convert` copies them to an SVG";
+        return Err(Failure::file(input, advice));
+    }
+    Ok(Document::read(&bytes, &display(input), &read_options(input))?)
 }
 
 /// Options for reading `input` as SVG: linked images are looked up relative to its folder.

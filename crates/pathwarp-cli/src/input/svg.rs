@@ -53,6 +53,9 @@ impl SvgArtwork {
             let advice = "a drawing is written as SVG; --preview and `pathwarp render` make pictures of it";
             return Err(Failure::usage(format!("{}: {advice}", t.display())));
         }
+        if let Some(t) = target {
+            check_extension(t, input)?;
+        }
         let (name, read) = (display(input), read_options(input));
         let doc = Document::read(bytes, &name, &read)?;
         let selection =
@@ -140,6 +143,17 @@ impl SvgArtwork {
         }
         (shapes, warnings)
     }
+}
+
+/// Checks that the target's extension is that of a drawing, or the input's own; a name without one is taken as it is.
+fn check_extension(target: &Path, input: &Path) -> Result<(), Failure> {
+    let Some(extension) = target.extension() else { return Ok(()) };
+    let known = ["svg", "svgz"].iter().any(|e| extension.eq_ignore_ascii_case(e));
+    if known || input.extension() == Some(extension) {
+        return Ok(());
+    }
+    let problem = "a drawing is written as .svg or .svgz";
+    Err(Failure::usage(format!("{}: {problem}, not as .{}", target.display(), extension.to_string_lossy())))
 }
 
 fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ReportedShape {

@@ -35,7 +35,7 @@ fn arg(option: &CommonOption) -> Arg {
         OptionValue::Switch(_) => arg.action(ArgAction::SetTrue),
         OptionValue::Choice(_) => {
             let words = option.words();
-            arg.value_name(words.join("|")).value_parser(words).hide_possible_values(true)
+            arg.value_name(words.join("|")).value_parser(words).ignore_case(true).hide_possible_values(true)
         }
         OptionValue::Whole { name, range, .. } => {
             let (least, most) = (i64::from(*range.start()), i64::from(*range.end()));

@@ -34,6 +34,9 @@ impl Given {
             }
             let typed = match option.value {
                 OptionValue::Switch(_) => vec!["true".into()],
+                OptionValue::Choice(_) => {
+                    m.get_raw(option.name).into_iter().flatten().map(OsStr::to_ascii_lowercase).collect()
+                }
                 _ => m.get_raw(option.name).into_iter().flatten().map(OsStr::to_owned).collect(),
             };
             values.push((option, typed));

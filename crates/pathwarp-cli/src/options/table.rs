@@ -183,10 +183,10 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Choice(&[
                 ("none", |o| o.page = PageFit::None),
                 ("grow", |o| o.page = PageFit::Grow),
-                ("page", |o| o.page = PageFit::Page),
+                ("page", |o| o.page = PageFit::PageWithMargin),
             ]),
             "Page: leave it unchanged, grow it to hold the warped artwork, or make it the bounding box of the \
-             artwork; artwork that extends past the page causes a warning",
+             artwork with the margin of the original; artwork that extends past the page causes a warning",
         )
     },
     CommonOption {

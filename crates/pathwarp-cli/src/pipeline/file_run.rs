@@ -53,7 +53,7 @@ impl Batch<'_> {
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
         let request = WarpRequest { built: &built, options, bounds, tolerance, target, embedded_recipe };
-        let warped = artwork.warp(&request)?;
+        let warped = artwork.warp(&request).map_err(|f| explained(f, &built))?;
 
         let mut files = Vec::new();
         match (warped.result, target) {
@@ -112,6 +112,22 @@ impl Batch<'_> {
     ) -> impl Iterator<Item = String> {
         built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| self.flags.in_text(m))
     }
+}
+
+/// Adds to an error where the map is undefined which operation is, if a step can say so.
+fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
+    let Some((shape, at)) = failure.infinity() else { return failure };
+    let mut p = at;
+    for step in &built.steps {
+        if let Some(why) = step.undefined.as_ref().and_then(|why| why(p)) {
+            let place = format!("{shape} cannot be warped: at {:.4},{:.4} {why}", at.x, at.y);
+            return Failure::Geometry(format!(
+                "{place}; change the formula, or leave this shape out (--on-error skip)"
+            ));
+        }
+        p = step.map.point(p);
+    }
+    failure
 }
 
 /// The baseline of a recipe's first step.

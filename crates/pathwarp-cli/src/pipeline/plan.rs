@@ -56,6 +56,12 @@ pub(super) fn plan(
     for (option, file) in files_written(registry, recipe) {
         files.write(file, option)?;
     }
+    if let Some(extension) = options.preview.as_ref().and_then(|p| p.extension())
+        && !extension.eq_ignore_ascii_case("png")
+    {
+        let extension = extension.to_string_lossy();
+        return Err(Failure::usage(format!("--preview: a preview is written as .png, not as .{extension}")));
+    }
     Ok(jobs)
 }
 

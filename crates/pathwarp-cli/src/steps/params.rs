@@ -51,9 +51,16 @@ pub(crate) fn step(registry: &Registry, name: &str, m: &ArgMatches) -> Step {
             }
         } else {
             for v in m.get_many::<String>(p.name).into_iter().flatten() {
-                args.push(p.name, v.clone());
+                args.push(p.name, in_lower_case(p, v));
             }
         }
     }
     Step { inverse: m.get_flag(INVERSE), ..Step::new(name, args) }
+}
+
+/// A name that differs from a known one only in case, as that one.
+fn in_lower_case(p: &Param, value: &str) -> String {
+    let (Kind::NameOrFile(names) | Kind::Choice(names)) = p.kind else { return value.to_owned() };
+    let same = names.iter().find(|n| n.eq_ignore_ascii_case(value));
+    same.map_or_else(|| value.to_owned(), |n| (*n).to_owned())
 }

@@ -107,6 +107,9 @@ pub enum PageFit {
     Grow,
     /// Set it to the bounding box of the warped artwork.
     Page,
+    /// Set it to the bounding box of the warped artwork and the margin of the original around it: the least distance between
+    /// the original artwork and the edge of its page.
+    PageWithMargin,
 }
 
 /// Treatment of patterns.

@@ -74,6 +74,15 @@ pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, 
     })
 }
 
+/// The installed fonts of a family: weight, and `true` for italic and oblique ones; sorted, without repetitions.
+#[must_use]
+pub fn installed_styles(family: &str) -> Vec<(u16, bool)> {
+    let db = database(true, &[]);
+    let of_family = |f: &&fontdb::FaceInfo| f.families.iter().any(|(n, _)| n.eq_ignore_ascii_case(family));
+    let styles = db.faces().filter(of_family).map(|f| (f.weight.0, f.style != fontdb::Style::Normal));
+    styles.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
 /// Lists families with names similar to `family`: each word of `family` resembles a word of the name.
 fn similar(family: &str, db: &Database) -> String {
     /// Jaro–Winkler similarity (1 is equal) of words that differ by a letter or two; unrelated words rarely reach it.

@@ -194,13 +194,15 @@ impl SourceText {
         self.attr_in(e, Namespace::Inkscape, "label")
     }
 
-    /// The id, or else the element's name and position, such as `path at 12:5`.
+    /// The id, or else the element's name and position, such as `path at 12:5`, with the letter of a glyph: `path “G” at 12:5`.
     pub(crate) fn display_name(&self, e: ElementId) -> String {
         match self.attr(e, "id") {
             Some(id) if !id.is_empty() => id.into_owned(),
             _ => {
                 let (line, column) = self.line_column(self.elements[e].range.start);
-                format!("{} at {line}:{column}", self.elements[e].tag)
+                let letter = self.attr(e, "data-glyph").and_then(|_| self.attr(e, "aria-label"));
+                let letter = letter.map_or_else(String::new, |l| format!(" “{l}”"));
+                format!("{}{letter} at {line}:{column}", self.elements[e].tag)
             }
         }
     }

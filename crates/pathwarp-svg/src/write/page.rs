@@ -38,6 +38,10 @@ pub(super) fn attributes(input: &WriteInput<'_>) -> Option<Vec<(&'static str, St
         PageFit::None => return None,
         PageFit::Grow => page.union(artwork(input, Some(page), true)?),
         PageFit::Page => artwork(input, None, true)?,
+        PageFit::PageWithMargin => {
+            let margin = margin(input, page);
+            artwork(input, None, true)?.inflate(margin, margin)
+        }
     };
     if !(shown.width() > 0.0 && shown.height() > 0.0 && shown.is_finite()) || shown == page {
         return None;
@@ -73,12 +77,7 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     if !is_visible(&after) {
         return None;
     }
-    let (outcomes, images): (Vec<_>, Vec<_>) = (
-        input.outcomes.iter().map(|_| PartOutcome::Kept).collect(),
-        input.images.iter().map(|_| EmbeddedImage::Placed).collect(),
-    );
-    let original = WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input };
-    let before = artwork(&original, Some(page), false).map_or([0.0; 4], beyond);
+    let before = original(input, Some(page), false).map_or([0.0; 4], beyond);
     let mut out = Overhang::default();
     for i in 0..4 {
         if after[i] > before[i].max(0.0) + VISIBLE * sides[i] {
@@ -87,6 +86,22 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
         }
     }
     (out.share > 0.0).then_some(out)
+}
+
+/// The least distance between the original artwork and the edge of its page; 0 if it has no page or extends past it.
+fn margin(input: &WriteInput<'_>, page: Rect) -> f64 {
+    let Some(b) = original(input, None, true).filter(|_| has_page(input)) else { return 0.0 };
+    let sides = [b.x0 - page.x0, b.y0 - page.y0, page.x1 - b.x1, page.y1 - b.y1];
+    sides.into_iter().fold(f64::INFINITY, f64::min).max(0.0)
+}
+
+/// Bounding box of the artwork before the warp.
+fn original(input: &WriteInput<'_>, room: Option<Rect>, filters: bool) -> Option<Rect> {
+    let (outcomes, images): (Vec<_>, Vec<_>) = (
+        input.outcomes.iter().map(|_| PartOutcome::Kept).collect(),
+        input.images.iter().map(|_| EmbeddedImage::Placed).collect(),
+    );
+    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input }, room, filters)
 }
 
 /// Returns `true` if the file specifies the size of its page.

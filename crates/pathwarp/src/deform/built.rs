@@ -21,7 +21,12 @@ pub struct Built {
     pub saves: Vec<SavedFile>,
     /// The surface in space that the artwork lies on, for deformations onto surfaces.
     pub space: Option<InSpace>,
+    /// Says why the map is undefined at a point, where it can.
+    pub undefined: Option<Undefined>,
 }
+
+/// The reason why a map is undefined at a point of its source plane; `None` if it is defined there.
+pub type Undefined = Arc<dyn Fn(Point) -> Option<String> + Send + Sync>;
 
 impl Built {
     /// Wraps a map that needs no explanation.
@@ -34,6 +39,7 @@ impl Built {
             seam: None,
             saves: Vec::new(),
             space: None,
+            undefined: None,
         }
     }
 

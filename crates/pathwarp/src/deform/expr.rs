@@ -94,7 +94,10 @@ impl Expr {
             parse(text, &names, &mut program).map_err(|e| Error::usage(param, text, e.show(text)))
         };
         let (x, y) = (read("x", &self.x)?, read("y", &self.y)?);
-        Ok(Built::new(Arc::new(ExprMap { program: Arc::new(program), x, y })))
+        let program = Arc::new(program);
+        let mut built = Built::new(Arc::new(ExprMap { program: Arc::clone(&program), x, y }));
+        built.undefined = Some(Arc::new(move |p| program.undefined_at(p.x, p.y)));
+        Ok(built)
     }
 }
 

@@ -3,7 +3,8 @@
 //!
 //! Equal operations are stored once, constants are folded.
 
-use crate::map::Real;
+use crate::decimal::trimmed;
+use crate::map::{Dual, Real};
 use std::array::from_fn;
 
 /// Size limit, so that no formula makes a single point expensive.
@@ -129,6 +130,23 @@ impl Program {
             out.push(value);
         }
         out
+    }
+
+    /// Describes the first operation that has no finite value at a point, or no derivative: `sqrt(-300)`.
+    pub(crate) fn undefined_at(&self, x: f64, y: f64) -> Option<String> {
+        let values = self.run([Dual { v: x, x: 1.0, y: 0.0 }], [Dual { v: y, x: 0.0, y: 1.0 }]);
+        let i = values.iter().position(|[d]| !(d.v.is_finite() && d.x.is_finite() && d.y.is_finite()))?;
+        let at = |i: u32| trimmed(values[i as usize][0].v, 6);
+        let operation = match self.ops[i] {
+            Op::One(f, a) => format!("{}({})", format!("{f:?}").to_lowercase(), at(a)),
+            Op::Two(Binary::Div, a, b) => format!("{} / {}", at(a), at(b)),
+            Op::Two(f, a, b) => format!("{}({}, {})", format!("{f:?}").to_lowercase(), at(a), at(b)),
+            Op::Powi(a, n) => format!("({})^{n}", at(a)),
+            Op::Powf(a, n) => format!("({})^{n}", at(a)),
+            Op::Const(_) | Op::X | Op::Y | Op::Same(_) => return None,
+        };
+        let what = if values[i][0].v.is_finite() { "has no finite derivative" } else { "has no finite value" };
+        Some(format!("{operation} {what}"))
     }
 
     /// Returns the kinks of the values `of` and of everything they depend on.

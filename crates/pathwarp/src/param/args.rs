@@ -43,6 +43,11 @@ impl Args {
         self.typed.entry(name.to_owned()).or_default().push(value.into());
     }
 
+    /// Replaces the values given for `name`.
+    pub fn set(&mut self, name: &str, values: Vec<String>) {
+        self.typed.insert(name.to_owned(), values);
+    }
+
     /// Values from pairs of name and value.
     #[must_use]
     pub fn from_pairs(pairs: &[(&str, &str)]) -> Self {

@@ -89,7 +89,10 @@ impl<'a> Settings<'a> {
         let value = value.map_err(|e| usage(name, text, &e))?;
         let (least, most) = param.range;
         if value < least || value > most {
-            return Err(Error::usage(name, text, format!("is out of range: {least} to {most}")));
+            let percent = param.kind == Kind::Number && !text.contains('%');
+            let meant = percent && (least..=most).contains(&(value / 100.0));
+            let advice = if meant { format!("; for {text} per cent write {text}%") } else { String::new() };
+            return Err(Error::usage(name, text, format!("is out of range: {least} to {most}{advice}")));
         }
         Ok(Some(value))
     }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::input;
 use clap::ArgMatches;
-use pathwarp_svg::{FontFile, system_font};
+use pathwarp_svg::{FontFile, installed_styles, system_font};
 use pathwarp_text::{Font, Variation, variations};
 use std::path::Path;
 
@@ -46,6 +46,7 @@ pub(super) fn with_variations<'a>(
     fonts: Vec<Font<'a>>,
     positions: &[Variation],
     weight: Option<u16>,
+    italic: bool,
 ) -> Result<Vec<Font<'a>>, Failure> {
     let mut out = Vec::with_capacity(fonts.len());
     for (i, font) in fonts.into_iter().enumerate() {
@@ -54,6 +55,12 @@ pub(super) fn with_variations<'a>(
             && let Some(axis) = font.axes().iter().find(|a| a.tag == "wght")
         {
             own.extend(Variation::new("wght", f64::from(w).clamp(axis.min, axis.max)).ok());
+        }
+        let slant = font.axes().into_iter().find(|a| italic && matches!(a.tag.as_str(), "ital" | "slnt"));
+        if let Some(axis) = slant {
+            // An italic axis runs from 0 to 1, a slant axis counts degrees counterclockwise.
+            let end = if axis.tag == "ital" { axis.max } else { axis.min };
+            own.extend(Variation::new(&axis.tag, end).ok());
         }
         if i == 0 {
             own.extend_from_slice(positions);
@@ -66,6 +73,27 @@ pub(super) fn with_variations<'a>(
         out.push(font);
     }
     Ok(out)
+}
+
+/// Checks that the first font has the weight and the slant asked for, by itself or by an axis.
+pub(super) fn check_style(font: &Font<'_>, name: &str, weight: Option<u16>, italic: bool) -> Result<(), Failure> {
+    /// Weights this far apart look alike: neighbouring names.
+    const NEAR: f64 = 150.0;
+    let has_axis = |tags: &[&str]| font.axes().iter().any(|a| tags.contains(&a.tag.as_str()));
+    let light = weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(&["wght"]));
+    let upright = italic && !font.is_italic() && !has_axis(&["ital", "slnt"]);
+    let wanted = match (light, upright) {
+        (Some(w), _) => format!("--weight: {name} has no weight near {w}"),
+        (None, true) => format!("--italic: {name} has no italic"),
+        (None, false) => return Ok(()),
+    };
+    let mut styles = installed_styles(name);
+    if styles.is_empty() {
+        styles.push((font.weight().round() as u16, font.is_italic()));
+    }
+    let shown = styles.iter().map(|(w, italic)| format!("{w}{}", if *italic { " italic" } else { "" }));
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    Err(Failure::usage(format!("{wanted}, only {shown}; name a font that has it with --font")))
 }
 
 /// Finds a font by its file or by its family.

@@ -29,6 +29,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
     let target = file_args::target(m, read.chain(names.iter().map(Path::new)))?;
+    file_args::check_extension(target, &["svg"])?;
     let text = words::words(m)?;
     let em = Em::given(m)?;
     let style = style::style(m, &em)?;
@@ -40,7 +41,9 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         chosen.push(Font::new(&file.bytes, file.index).map_err(|e| Failure::Input(format!("{name}: {e}")))?);
     }
     chosen.push(Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))?);
-    let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, weight)?;
+    let first = names.first().copied().unwrap_or("the bundled font");
+    fonts::check_style(&chosen[0], first, weight, m.get_flag("italic"))?;
+    let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, weight, m.get_flag("italic"))?;
 
     let set = layout(&text, &chosen, &style).map_err(|e| failure(&e))?;
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();

@@ -263,6 +263,11 @@ impl Anamorph {
                 return Err(Error::usage(name, "", "moves control points, but `onto` has the surface already"));
             }
             (Some(onto), None) => onto.surface(&scene, distance)?,
+            // Without control points, the sheet in front of the eye is the drawing itself.
+            (None, None) if self.look == Look::Unrolled => {
+                let hint = "the surface in front of the eye, such as cylinder:radius=40mm; or bend a sheet there, with `push` or `at`";
+                return Err(Error::missing("onto", hint));
+            }
             (None, net) => {
                 let dilation = net.clone().unwrap_or_default().dilation(&scene, distance, self.local)?;
                 let flat = net::flat(&dilation, foot, distance);

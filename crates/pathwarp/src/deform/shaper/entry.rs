@@ -49,7 +49,7 @@ corners of the artwork's box.",
         },
         Example {
             what: "The paper's example: Base, Target and Shaper are paths of the document itself",
-            command: "shaper samples/paper-two-anchors.svg --base #Base --target #Target --shaper #Shaper -o out.svg --preview out.png",
+            command: "shaper samples/paper-two-anchors.svg --base '#Base' --target '#Target' --shaper '#Shaper' -o out.svg --preview out.png",
         },
         Example {
             what: "A cage typed in place, explained",

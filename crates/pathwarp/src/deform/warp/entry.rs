@@ -43,7 +43,7 @@ moves = [{ at = \"0,1\", y = \"-b*h/2\" }, { at = \"0,2\", y = \"-b*h/2\" }]")
 transformation from 16 control points, equation (7)")
     .params(&[
         Param::new("style", Kind::NameOrFile(NAMES), "The style: a name, or a file of your own.").default("arc"),
-        Param::number("bend", "Amount and direction of the bend.").default("50%").slider(-1.0, 1.0),
+        Param::number("bend", "Amount and direction of the bend.").default("50%").within(-10.0, 10.0).slider(-1.0, 1.0),
         Param::new(
             "axis",
             Kind::Choice(&["horizontal", "vertical"]),
