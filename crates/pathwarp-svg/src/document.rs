@@ -7,6 +7,7 @@ use crate::bend::outcome::WarpedDocument;
 use crate::bend::tiles;
 use crate::scene::drawing::Drawing;
 use crate::scene::lettering::selected::{Lettering, lettering};
+use crate::scene::seen;
 use crate::scene::shape::{NamedPath, Shape, named_path};
 use crate::source::read::ReadOptions;
 use crate::source::select::{Selection, candidates, is_named, matches_any};
@@ -89,6 +90,15 @@ impl Document {
     pub fn artwork_box(&self, selection: &Selection) -> Option<Rect> {
         let boxes = self.selected(selection).filter_map(|s| s.outline.bounding_box());
         boxes.filter(Rect::is_finite).reduce(|a, b| a.union(b))
+    }
+
+    /// Bounding box of what is seen of the selected shapes, without stroke widths: not what clip paths, masks and zero opacity
+    /// hide, nor what lies off the page. If nothing is seen, the same as [`Document::artwork_box`].
+    #[must_use]
+    pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
+        let selected = self.drawing.selected_parts(selection);
+        let seen = seen::seen_box(self.drawing.scene(), self.drawing.visible_area(), &|i| selected[i]);
+        seen.or_else(|| self.artwork_box(selection))
     }
 
     /// The selected painted shapes, in painting order.

@@ -112,7 +112,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
     let doc = input::document(file)?;
-    let frame = doc.artwork_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
+    let frame = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
 
     let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
     let presets: Vec<Preset<'_>> =

@@ -187,7 +187,7 @@ impl Artwork for SvgArtwork {
     }
 
     fn bounding_box(&self) -> Option<Rect> {
-        self.doc.artwork_box(&self.selection)
+        self.doc.seen_box(&self.selection)
     }
 
     fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure> {

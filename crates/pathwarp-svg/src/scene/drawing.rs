@@ -14,7 +14,9 @@ use crate::source::text::SourceText;
 use crate::source::tree::{self, Missed};
 use pathwarp::Error;
 use pathwarp::kurbo::{Affine, Rect, Size};
+use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
+use svgtypes::{Length, LengthUnit};
 
 #[derive(Debug)]
 pub(crate) struct Drawing {
@@ -115,6 +117,17 @@ impl Drawing {
 
     pub(crate) fn reader(&self) -> GeometryReader<'_> {
         GeometryReader { source: &self.source, dpi: self.dpi, page: self.page }
+    }
+
+    /// The visible area in root user units, if the file specifies the size of its page. It differs from the viewBox if the page
+    /// has another aspect ratio.
+    pub(crate) fn visible_area(&self) -> Option<Rect> {
+        let length = |name| {
+            let text = self.source.attr(0, name);
+            text.and_then(|t| Length::from_str(t.trim()).ok()).is_some_and(|l| l.unit != LengthUnit::Percent)
+        };
+        let specified = self.source.attr(0, "viewBox").is_some() || length("width") && length("height");
+        specified.then(|| self.scene().to_px.inverse().transform_rect_bbox(self.page.to_rect()))
     }
 
     /// The visible page in root user units.

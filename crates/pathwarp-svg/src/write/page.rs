@@ -5,12 +5,14 @@ use super::values::stroke_scale;
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::options::PageFit;
 use crate::bend::outcome::{Overhang, PartOutcome, StrokeOutcome, WarpedPart};
+use crate::scene::affine::stretch;
 use crate::scene::expand::stroke_outline;
 use crate::scene::model::{Group, Node, Part, PartRole};
+use crate::scene::seen::{is_seen, overlap};
 use crate::source::number::short;
 use crate::source::select::Selection;
 use pathwarp::Outline;
-use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
+use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
 use std::borrow::Cow;
 use std::str::FromStr;
 use svgtypes::{Length, LengthUnit};
@@ -27,6 +29,8 @@ struct Measure<'a> {
     counts: &'a [bool],
     /// Parts certain to be inside this area need no exact measurement.
     room: Option<Rect>,
+    /// The visible area before the warp, if only what comes from there counts.
+    page: Option<Rect>,
     /// Count the whole region of a filter, regardless of its content.
     filters: bool,
 }
@@ -66,7 +70,7 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     let moved = input.outcomes.iter().any(|o| o.warped().is_some())
         || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
         || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)));
-    if input.options.page != PageFit::None || !moved || !has_page(input) {
+    if input.options.page != PageFit::None || !moved || input.drawing.visible_area().is_none() {
         return None;
     }
     let page = visible_area(input);
@@ -90,7 +94,7 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
 
 /// The least distance between the original artwork and the edge of its page; 0 if it has no page or extends past it.
 fn margin(input: &WriteInput<'_>, page: Rect) -> f64 {
-    let Some(b) = original(input, None, true).filter(|_| has_page(input)) else { return 0.0 };
+    let Some(b) = original(input, None, true).filter(|_| input.drawing.visible_area().is_some()) else { return 0.0 };
     let sides = [b.x0 - page.x0, b.y0 - page.y0, page.x1 - b.x1, page.y1 - b.y1];
     sides.into_iter().fold(f64::INFINITY, f64::min).max(0.0)
 }
@@ -104,16 +108,6 @@ fn original(input: &WriteInput<'_>, room: Option<Rect>, filters: bool) -> Option
     artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input }, room, filters)
 }
 
-/// Returns `true` if the file specifies the size of its page.
-fn has_page(input: &WriteInput<'_>) -> bool {
-    let source = input.source;
-    let length = |name| {
-        let text = source.attr(0, name);
-        text.and_then(|t| Length::from_str(t.trim()).ok()).is_some_and(|l| l.unit != LengthUnit::Percent)
-    };
-    source.attr(0, "viewBox").is_some() || length("width") && length("height")
-}
-
 /// The visible area. It differs from the viewBox if the page has another aspect ratio.
 fn visible_area(input: &WriteInput<'_>) -> Rect {
     input.scene.to_px.inverse().transform_rect_bbox(input.drawing.page.to_rect())
@@ -123,21 +117,58 @@ fn visible_area(input: &WriteInput<'_>) -> Rect {
 fn artwork(input: &WriteInput<'_>, room: Option<Rect>, filters: bool) -> Option<Rect> {
     let guides = Selection { guides: input.options.selection.guides.clone(), ..Selection::default() };
     let counts = guides.resolve(input.source);
-    group_box(input, &input.scene.root, Measure { counts: &counts, room, filters })
+    group_box(input, &input.scene.root, Measure { counts: &counts, room, page: input.drawing.visible_area(), filters })
+}
+
+/// Bounds the image of what the page showed of a part; unbounded if it showed all. `None` if it showed nothing.
+fn from_page(input: &WriteInput<'_>, p: &Part, page: Rect) -> Option<Rect> {
+    let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
+    let Some(all) = p.outline().bounding_box() else { return Some(everything) };
+    let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()) * stretch(p.frame));
+    let shown = overlap(all.inflate(reach, reach), page)?;
+    // Letters placed one by one do not go through the whole map.
+    if page.union(all) == page || !input.options.letters.places.is_empty() {
+        return Some(everything);
+    }
+    image_box(input, shown)
+}
+
+/// Bounding box of the image of an area of root user space.
+fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
+    /// Samples along a side. Between them, the image bulges by less than is noticed.
+    const N: u32 = 64;
+    let at = |k: u32| f64::from(k) / f64::from(N);
+    let point =
+        |k: u32| Point::new(area.x0 + at(k % (N + 1)) * area.width(), area.y0 + at(k / (N + 1)) * area.height());
+    let copies = |q: Point| {
+        let all = &input.options.copies;
+        let first = all.is_empty().then_some(Affine::IDENTITY);
+        all.iter().copied().chain(first).map(move |c| c * q)
+    };
+    let images = (0..(N + 1) * (N + 1)).flat_map(|k| copies(point(k))).map(|q| input.map.point(q));
+    images.filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
 }
 
 fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> {
     let scene = input.scene;
+    if g.opacity <= 0.0 {
+        return None;
+    }
     let one = |n: &Node, m: Measure<'_>| match n {
         Node::Group(g) => group_box(input, g, m),
         Node::Text { content, .. } => group_box(input, content, m),
         Node::Part(i) => {
             let p = &scene.parts[*i];
-            let seen = p.painted() && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| m.counts[e]);
+            let seen = is_seen(p) && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| m.counts[e]);
             let frame = input.written(p.slot, p.frame);
             let warped = input.warped(*i);
             let near = |r: Rect| Some(bound(p, warped, frame)).filter(|b| r.union(*b) == r);
-            seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, warped, frame)))
+            let all = seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, warped, frame)))?;
+            match (m.page, warped) {
+                (Some(page), Some(_)) => overlap(all, from_page(input, p, page)?),
+                (Some(page), None) => overlap(all, page),
+                (None, _) => Some(all),
+            }
         }
         Node::Image(i) => {
             let b = &scene.bitmaps[*i];
@@ -167,15 +198,41 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
             all = all.union(frame.transform_rect_bbox(region));
         }
     }
-    if let Some(c) = g.clip.map(|i| &scene.clips[i]) {
-        let boxes = c.parts.clone().map(|i| {
+    if let Some(i) = g.clip {
+        all = overlap(all, clip_box(input, i)?)?;
+    }
+    if let Some(m) = g.mask.map(|i| &scene.masks[i]) {
+        let boxes = m.parts.clone().map(|i| {
             let p = &scene.parts[i];
-            let frame = input.written(p.slot, p.frame);
-            box_under(frame, &path(p, input.warped(i)))
+            painted_box(p, input.warped(i), input.written(p.slot, p.frame))
         });
-        all = all.intersect(boxes.reduce(|a, b| a.union(b))?);
+        all = overlap(all, boxes.reduce(|a, b| a.union(b))?)?;
+        let region = m.frame.transform_rect_bbox(m.rect);
+        all = overlap(all, if input.changes(m.parts.clone()) { image_box(input, region)? } else { region })?;
     }
     (all.width() >= 0.0 && all.height() >= 0.0).then_some(all)
+}
+
+/// Bounding box of a clip path; `None` if it hides everything.
+fn clip_box(input: &WriteInput<'_>, i: usize) -> Option<Rect> {
+    fn content(input: &WriteInput<'_>, g: &Group) -> Option<Rect> {
+        let boxes = g.children.iter().filter_map(|n| match n {
+            Node::Group(g) => content(input, g),
+            Node::Text { content: text, .. } => content(input, text),
+            Node::Part(i) => {
+                let p = input.part(*i);
+                Some(box_under(input.written(p.slot, p.frame), &path(p, input.warped(*i))))
+            }
+            Node::Image(_) => None,
+        });
+        boxes.reduce(|a, b| a.union(b))
+    }
+    let clip = &input.scene.clips[i];
+    let own = content(input, &clip.root)?;
+    match clip.clip {
+        Some(next) => overlap(own, clip_box(input, next)?),
+        None => Some(own),
+    }
 }
 
 /// Approximates the path that is written for a part.

@@ -61,7 +61,7 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
             .filter(|_| is_shape(tag) || tag == "text")
             .find_map(|(name, values)| Some((name, unknown(e, values)?)))?;
         Some(if warped.contains(&e) {
-            format!("its {name}, {kind}, cannot be warped and is unchanged")
+            format!("only its outline is; its {name}, {kind}, is unchanged")
         } else {
             format!("its {name} is {kind}; such shapes cannot be warped")
         })

@@ -1,0 +1,81 @@
+//! The part of a drawing that is seen: not what clip paths, masks and zero opacity hide, nor what lies off the page.
+
+use super::model::{Group, Node, Part, PartRole, Scene};
+use pathwarp::kurbo::Rect;
+
+/// Bounding box, without stroke widths, of what is seen of the parts that count. `page` is the visible area, if there is one.
+pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counts: &dyn Fn(usize) -> bool) -> Option<Rect> {
+    in_group(scene, &scene.root, page, counts)
+}
+
+fn in_group(scene: &Scene, g: &Group, room: Option<Rect>, counts: &dyn Fn(usize) -> bool) -> Option<Rect> {
+    let room = room_in(scene, g, room)?;
+    let one = |n: &Node| match n {
+        Node::Group(g) => in_group(scene, g, room, counts),
+        Node::Text { content, .. } => in_group(scene, content, room, counts),
+        Node::Part(i) => {
+            let p = &scene.parts[*i];
+            let seen = is_seen(p) && p.role == PartRole::Paint && counts(*i);
+            let all = p.outline().bounding_box().filter(|b| seen && b.is_finite())?;
+            room.map_or(Some(all), |room| overlap(all, room))
+        }
+        Node::Image(_) => None,
+    };
+    g.children.iter().filter_map(one).reduce(|a, b| a.union(b))
+}
+
+/// Returns `true` if a part is visible and has a paint that is not transparent.
+pub(crate) fn is_seen(p: &Part) -> bool {
+    let fill = p.fill.as_ref().is_some_and(|f| f.opacity().get() > 0.0);
+    let stroke = p.stroke.as_ref().is_some_and(|s| s.opacity().get() > 0.0);
+    p.visible && (fill || stroke)
+}
+
+/// The room that a group leaves its content: `Some(None)` if it is unbounded, `None` if the group hides everything.
+fn room_in(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>> {
+    if g.opacity <= 0.0 {
+        return None;
+    }
+    let mut room = room;
+    let clip = match g.clip {
+        Some(i) => Some(clip_box(scene, i)?),
+        None => None,
+    };
+    let mask = g.mask.map(|i| mask_box(scene, i));
+    for bound in clip.into_iter().chain(mask) {
+        room = Some(room.map_or(Some(bound), |room| overlap(room, bound))?);
+    }
+    Some(room)
+}
+
+/// Bounding box of a clip path in root user space; `None` if it hides everything.
+fn clip_box(scene: &Scene, i: usize) -> Option<Rect> {
+    fn content(scene: &Scene, g: &Group) -> Option<Rect> {
+        let own = g.children.iter().filter_map(|n| match n {
+            Node::Group(g) => content(scene, g),
+            Node::Text { content: text, .. } => content(scene, text),
+            Node::Part(i) => scene.parts[*i].outline().bounding_box(),
+            Node::Image(_) => None,
+        });
+        own.reduce(|a, b| a.union(b))
+    }
+    let clip = &scene.clips[i];
+    let own = content(scene, &clip.root)?;
+    match clip.clip {
+        Some(next) => overlap(own, clip_box(scene, next)?),
+        None => Some(own),
+    }
+}
+
+/// Bounding box of a mask in root user space, whatever its brightness.
+fn mask_box(scene: &Scene, i: usize) -> Rect {
+    let m = &scene.masks[i];
+    m.frame.transform_rect_bbox(overlap(m.rect, m.content).unwrap_or_default())
+}
+
+/// The common part of two areas, which may be lines or points.
+pub(crate) fn overlap(a: Rect, b: Rect) -> Option<Rect> {
+    let (x0, x1) = (a.x0.max(b.x0), a.x1.min(b.x1));
+    let (y0, y1) = (a.y0.max(b.y0), a.y1.min(b.y1));
+    (x0 <= x1 && y0 <= y1).then(|| Rect::new(x0, y0, x1, y1))
+}
