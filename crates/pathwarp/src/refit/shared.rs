@@ -8,8 +8,8 @@ use crate::outline::{Outline, Seg};
 use kurbo::Point;
 use std::collections::{HashMap, HashSet};
 
-/// The coordinates of a segment in its canonical direction, bit by bit.
-type Key = Vec<u64>;
+/// The coordinates of a segment in its canonical direction, bit by bit, and their number.
+type Key = ([u64; 8], usize);
 
 /// The segments that occur more than once in a drawing, in either direction.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -36,21 +36,25 @@ impl SharedEdges {
 
 fn key(seg: &Seg) -> Key {
     let (canonical, _) = split::canonical(seg);
-    let mut numbers = Vec::with_capacity(8);
-    let mut point = |p: Point| numbers.extend([p.x.to_bits(), p.y.to_bits()]);
     match canonical {
-        Seg::Line(s) => [s.p0, s.p1].into_iter().for_each(point),
-        Seg::Quad(s) => [s.p0, s.p1, s.p2].into_iter().for_each(point),
-        Seg::Cubic(s) => [s.p0, s.p1, s.p2, s.p3].into_iter().for_each(point),
+        Seg::Line(s) => bits(&[s.p0, s.p1]),
+        Seg::Quad(s) => bits(&[s.p0, s.p1, s.p2]),
+        Seg::Cubic(s) => bits(&[s.p0, s.p1, s.p2, s.p3]),
         Seg::Arc(s) => {
             // The middle distinguishes arcs between the same ends. It is rounded, since the two directions compute it
             // differently.
             let m = s.eval(0.5);
-            [s.p0, s.p1].into_iter().for_each(&mut point);
-            point(Point::new(f64::from(m.x as f32), f64::from(m.y as f32)));
+            bits(&[s.p0, s.p1, Point::new(f64::from(m.x as f32), f64::from(m.y as f32))])
         }
     }
-    numbers
+}
+
+fn bits(points: &[Point]) -> Key {
+    let mut out = [0; 8];
+    for (pair, p) in out.chunks_exact_mut(2).zip(points) {
+        pair.copy_from_slice(&[p.x.to_bits(), p.y.to_bits()]);
+    }
+    (out, points.len())
 }
 
 #[cfg(test)]
