@@ -49,7 +49,7 @@ impl PendingFile {
 
     /// Puts all outputs in place. If one cannot be, the files before it are put back as they were.
     pub(crate) fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
-        // What is printed cannot be taken back, so it goes first: nothing is in place yet if it fails.
+        // Print first: printing cannot be undone, and if it fails, no file is in place yet.
         let (files, streams): (Vec<Self>, Vec<Self>) =
             all.into_iter().partition(|p| matches!(p.content, Content::File(_)));
         for stream in streams {

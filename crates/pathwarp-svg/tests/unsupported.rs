@@ -1,4 +1,4 @@
-//! What cannot be warped is reported, and small faults of a file are mended.
+//! Reports content that cannot be warped, and repairs small faults of a file.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
 mod common;
@@ -45,7 +45,7 @@ fn what_the_renderer_does_not_know_is_reported() {
             assert_eq!(s.why.contains("left out"), structure == Structure::Flatten);
             assert!(!w.svg.contains("M10 10h50"), "{}", w.svg);
         }
-        // What is not selected need not be warped.
+        // Content that is not selected is not reported.
         let only = Selection { select: vec!["#p".into()], ..Selection::default() };
         let w = read(&drawing(&body)).warp(&Bend, &warp_options().with_selection(only)).unwrap();
         assert!(w.skipped.is_empty(), "{:?}", w.skipped);

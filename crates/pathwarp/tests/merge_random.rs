@@ -109,7 +109,7 @@ fn holds(segs: &[Seg], map: &dyn Map, tolerance: f64, certify: bool) -> Result<(
         prop_assert!(w.report.max_error <= tolerance);
         let out = support::cubics(&w.path);
         let distance = |samples| support::distance_of_run(segs, map, &out, samples, 0.9 * tolerance);
-        // Where the image hardly moves, few samples put the nearest point between the wrong neighbours.
+        // Few samples can put the nearest point between the wrong neighbours if the image hardly moves.
         let mut e = distance(400);
         if e > tolerance {
             e = distance(4000);

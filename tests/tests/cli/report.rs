@@ -109,7 +109,7 @@ fn explain_prints_the_corners() {
     }
 }
 
-/// Where a map folds, two points of the source have one image, and undoing it cannot bring both back.
+/// A map that folds gives two points of the source one image, and undoing it cannot bring both back.
 #[test]
 fn undoing_a_fold_is_warned_of_with_the_place() {
     let dir = tempfile::tempdir().unwrap();

@@ -21,7 +21,7 @@ pub struct Survey<'a> {
     knowledge: Knowledge,
 }
 
-/// What is known before any shape is sampled.
+/// Signs known before any shape is sampled.
 enum Knowledge {
     /// The map is affine and folds nothing.
     Affine,

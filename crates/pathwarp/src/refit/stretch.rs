@@ -19,7 +19,7 @@ use super::straight::straight;
 use crate::map::RationalDegree;
 use kurbo::{Line, Point};
 
-/// How closely a piece is examined before it is accepted.
+/// The test that a piece must pass before it is accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Scrutiny {
     /// By its sixteen samples alone: for searches, whose result is examined again.

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 use wait4::Wait4 as _;
 
-/// What one run took.
+/// Time and memory of one run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Usage {
     /// User and system time in seconds.

@@ -3,11 +3,11 @@
 use crate::bend::bitmap::EmbeddedImage;
 use crate::write::input::WriteInput;
 
-/// For every element of the source:
+/// Flags for every element of the source.
 pub(super) struct Warped {
-    /// Whether it is warped.
+    /// `true` if the element is warped.
     pub(super) own: Vec<bool>,
-    /// Whether it is warped or contains anything warped.
+    /// `true` if it is warped or contains anything warped.
     pub(super) within: Vec<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! How far one cubic reaches along a run: few fits, each remembered.
+//! Finds the furthest place that one cubic reaches along a run, by few fits, each remembered.
 
 use super::run::SegmentRun;
 use crate::refit::limits::{
