@@ -97,7 +97,7 @@ impl Document {
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
         let selected = self.drawing.selected_parts(selection);
-        let seen = seen::seen_box(self.drawing.scene(), self.drawing.visible_area(), &|i| selected[i]);
+        let seen = seen::seen_box(self.drawing.scene(), self.drawing.specified_area(), &|i| selected[i]);
         seen.or_else(|| self.artwork_box(selection))
     }
 

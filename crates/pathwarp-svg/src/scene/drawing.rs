@@ -119,15 +119,19 @@ impl Drawing {
         GeometryReader { source: &self.source, dpi: self.dpi, page: self.page }
     }
 
-    /// The visible area in root user units, if the file specifies the size of its page. It differs from the viewBox if the page
-    /// has another aspect ratio.
-    pub(crate) fn visible_area(&self) -> Option<Rect> {
+    /// The visible area in root user units. It differs from the viewBox if the page has another aspect ratio.
+    pub(crate) fn visible_area(&self) -> Rect {
+        self.scene().to_px.inverse().transform_rect_bbox(self.page.to_rect())
+    }
+
+    /// The visible area, if the file specifies the size of its page.
+    pub(crate) fn specified_area(&self) -> Option<Rect> {
         let length = |name| {
             let text = self.source.attr(0, name);
             text.and_then(|t| Length::from_str(t.trim()).ok()).is_some_and(|l| l.unit != LengthUnit::Percent)
         };
         let specified = self.source.attr(0, "viewBox").is_some() || length("width") && length("height");
-        specified.then(|| self.scene().to_px.inverse().transform_rect_bbox(self.page.to_rect()))
+        specified.then(|| self.visible_area())
     }
 
     /// The visible page in root user units.

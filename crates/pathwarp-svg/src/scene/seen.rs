@@ -38,7 +38,7 @@ fn room_in(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>>
     }
     let mut room = room;
     let clip = match g.clip {
-        Some(i) => Some(clip_box(scene, i)?),
+        Some(i) => Some(clip_box(scene, i, &|i| scene.parts[i].outline().bounding_box())?),
         None => None,
     };
     let mask = g.mask.map(|i| mask_box(scene, i));
@@ -48,21 +48,21 @@ fn room_in(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>>
     Some(room)
 }
 
-/// Bounding box of a clip path in root user space; `None` if it hides everything.
-fn clip_box(scene: &Scene, i: usize) -> Option<Rect> {
-    fn content(scene: &Scene, g: &Group) -> Option<Rect> {
+/// Bounding box of a clip path, given the boxes of parts; `None` if it hides everything.
+pub(crate) fn clip_box(scene: &Scene, i: usize, part_box: &dyn Fn(usize) -> Option<Rect>) -> Option<Rect> {
+    fn content(g: &Group, part_box: &dyn Fn(usize) -> Option<Rect>) -> Option<Rect> {
         let own = g.children.iter().filter_map(|n| match n {
-            Node::Group(g) => content(scene, g),
-            Node::Text { content: text, .. } => content(scene, text),
-            Node::Part(i) => scene.parts[*i].outline().bounding_box(),
+            Node::Group(g) => content(g, part_box),
+            Node::Text { content: text, .. } => content(text, part_box),
+            Node::Part(i) => part_box(*i),
             Node::Image(_) => None,
         });
         own.reduce(|a, b| a.union(b))
     }
     let clip = &scene.clips[i];
-    let own = content(scene, &clip.root)?;
+    let own = content(&clip.root, part_box)?;
     match clip.clip {
-        Some(next) => overlap(own, clip_box(scene, next)?),
+        Some(next) => overlap(own, clip_box(scene, next, part_box)?),
         None => Some(own),
     }
 }

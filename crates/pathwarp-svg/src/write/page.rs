@@ -8,7 +8,7 @@ use crate::bend::outcome::{Overhang, PartOutcome, StrokeOutcome, WarpedPart};
 use crate::scene::affine::stretch;
 use crate::scene::expand::stroke_outline;
 use crate::scene::model::{Group, Node, Part, PartRole};
-use crate::scene::seen::{is_seen, overlap};
+use crate::scene::seen::{clip_box, is_seen, overlap};
 use crate::source::number::short;
 use crate::source::select::Selection;
 use pathwarp::Outline;
@@ -37,7 +37,7 @@ struct Measure<'a> {
 
 /// Returns new attributes of the root, if the page is to be adapted and changes.
 pub(super) fn attributes(input: &WriteInput<'_>) -> Option<Vec<(&'static str, String)>> {
-    let page = visible_area(input);
+    let page = input.drawing.visible_area();
     let shown = match input.options.page {
         PageFit::None => return None,
         PageFit::Grow => page.union(artwork(input, Some(page), true)?),
@@ -70,10 +70,10 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     let moved = input.outcomes.iter().any(|o| o.warped().is_some())
         || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
         || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)));
-    if input.options.page != PageFit::None || !moved || input.drawing.visible_area().is_none() {
+    if input.options.page != PageFit::None || !moved || input.drawing.specified_area().is_none() {
         return None;
     }
-    let page = visible_area(input);
+    let page = input.drawing.visible_area();
     let sides = [page.width(), page.height(), page.width(), page.height()];
     let beyond = |b: Rect| [page.x0 - b.x0, page.y0 - b.y0, b.x1 - page.x1, b.y1 - page.y1];
     let is_visible = |by: &[f64; 4]| by.iter().zip(sides).any(|(by, side)| *by > VISIBLE * side);
@@ -94,7 +94,7 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
 
 /// The least distance between the original artwork and the edge of its page; 0 if it has no page or extends past it.
 fn margin(input: &WriteInput<'_>, page: Rect) -> f64 {
-    let Some(b) = original(input, None, true).filter(|_| input.drawing.visible_area().is_some()) else { return 0.0 };
+    let Some(b) = original(input, None, true).filter(|_| input.drawing.specified_area().is_some()) else { return 0.0 };
     let sides = [b.x0 - page.x0, b.y0 - page.y0, page.x1 - b.x1, page.y1 - b.y1];
     sides.into_iter().fold(f64::INFINITY, f64::min).max(0.0)
 }
@@ -108,16 +108,15 @@ fn original(input: &WriteInput<'_>, room: Option<Rect>, filters: bool) -> Option
     artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input }, room, filters)
 }
 
-/// The visible area. It differs from the viewBox if the page has another aspect ratio.
-fn visible_area(input: &WriteInput<'_>) -> Rect {
-    input.scene.to_px.inverse().transform_rect_bbox(input.drawing.page.to_rect())
-}
-
 /// Bounding box of everything painted, strokes included, in root user space. Guides do not count.
 fn artwork(input: &WriteInput<'_>, room: Option<Rect>, filters: bool) -> Option<Rect> {
     let guides = Selection { guides: input.options.selection.guides.clone(), ..Selection::default() };
     let counts = guides.resolve(input.source);
-    group_box(input, &input.scene.root, Measure { counts: &counts, room, page: input.drawing.visible_area(), filters })
+    group_box(
+        input,
+        &input.scene.root,
+        Measure { counts: &counts, room, page: input.drawing.specified_area(), filters },
+    )
 }
 
 /// Bounds the image of what the page showed of a part; unbounded if it showed all. `None` if it showed nothing.
@@ -199,7 +198,11 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         }
     }
     if let Some(i) = g.clip {
-        all = overlap(all, clip_box(input, i)?)?;
+        let part_box = |i| {
+            let p = input.part(i);
+            Some(box_under(input.written(p.slot, p.frame), &path(p, input.warped(i))))
+        };
+        all = overlap(all, clip_box(scene, i, &part_box)?)?;
     }
     if let Some(m) = g.mask.map(|i| &scene.masks[i]) {
         let boxes = m.parts.clone().map(|i| {
@@ -211,28 +214,6 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         all = overlap(all, if input.changes(m.parts.clone()) { image_box(input, region)? } else { region })?;
     }
     (all.width() >= 0.0 && all.height() >= 0.0).then_some(all)
-}
-
-/// Bounding box of a clip path; `None` if it hides everything.
-fn clip_box(input: &WriteInput<'_>, i: usize) -> Option<Rect> {
-    fn content(input: &WriteInput<'_>, g: &Group) -> Option<Rect> {
-        let boxes = g.children.iter().filter_map(|n| match n {
-            Node::Group(g) => content(input, g),
-            Node::Text { content: text, .. } => content(input, text),
-            Node::Part(i) => {
-                let p = input.part(*i);
-                Some(box_under(input.written(p.slot, p.frame), &path(p, input.warped(*i))))
-            }
-            Node::Image(_) => None,
-        });
-        boxes.reduce(|a, b| a.union(b))
-    }
-    let clip = &input.scene.clips[i];
-    let own = content(input, &clip.root)?;
-    match clip.clip {
-        Some(next) => overlap(own, clip_box(input, next)?),
-        None => Some(own),
-    }
 }
 
 /// Approximates the path that is written for a part.
