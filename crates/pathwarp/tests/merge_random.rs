@@ -3,16 +3,18 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "refit_random/maps.rs"]
+mod maps;
 #[path = "../benches/support/mod.rs"]
 mod support;
 
 use kurbo::{CubicBez, ParamCurve, Point, Vec2};
-use pathwarp::map::{Formula, Map, Real};
+use maps::{Waves, map};
+use pathwarp::map::Map;
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use support::Bicubic;
 
 /// A knot: its place, direction, and the lengths of the handles before and after it.
 type Knot = (Point, f64, [f64; 2]);
@@ -74,29 +76,13 @@ fn cut(c: CubicBez, mut at: Vec<f64>, out: &mut Vec<Seg>) {
     }
 }
 
-fn map() -> impl Strategy<Value = Bicubic> {
-    (prop::array::uniform32(-1.0..1.0f64), prop_oneof![Just(0.0), Just(30.0), Just(150.0), Just(500.0)])
-        .prop_map(|(d, size)| Bicubic::moved(|i, j| (size * d[2 * (4 * i + j)], size * d[2 * (4 * i + j) + 1])))
-}
-
-/// Waves in both directions: a map that declares nothing about itself.
-#[derive(Debug, Clone)]
-struct Waves {
-    length: [f64; 2],
-    height: [f64; 2],
-}
-
-impl Formula for Waves {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let wave = |i: usize, t: S| (t * (TAU / self.length[i])).sin() * self.height[i];
-        (x + wave(0, y), y + wave(1, x))
-    }
-}
-
 /// The steepest have a slope of one.
 fn waves() -> impl Strategy<Value = Waves> {
-    (prop::array::uniform2(60.0..1500.0f64), prop::array::uniform2(0.0..0.16f64))
-        .prop_map(|(length, steep)| Waves { length, height: [length[0] * steep[0], length[1] * steep[1]] })
+    (prop::array::uniform2(60.0..1500.0f64), prop::array::uniform2(0.0..0.16f64)).prop_map(|(length, steep)| Waves {
+        length,
+        height: [length[0] * steep[0], length[1] * steep[1]],
+        phase: [0.0; 2],
+    })
 }
 
 fn holds(segs: &[Seg], map: &dyn Map, tolerance: f64, certify: bool) -> Result<(), TestCaseError> {
@@ -145,4 +131,30 @@ proptest! {
     fn merged_blobs_under_opaque_maps(segs in blob(), map in waves(), tolerance in tolerance()) {
         holds(&segs, &map, tolerance, false)?;
     }
+}
+
+/// A cubic with a tiny first handle that hooks out by 1.4 times the tolerance and back, between two foot points at which it has
+/// nearly the same direction. A random case found it.
+#[test]
+fn a_hook_between_foot_points_is_seen() {
+    let nodes = [
+        (906.2947177104015, 158.46013478253118),
+        (878.0763265530343, 100.38425711229135),
+        (825.2628014581667, 142.74720907236122),
+        (761.872827663316, 221.99632968472025),
+        (663.8376406582586, 344.55833585248564),
+        (540.505822642014, 555.344265218107),
+        (443.732477984591, 619.2728806918548),
+        (440.8582485377445, 621.1716009411263),
+        (438.6146785285674, 622.8348501421646),
+        (436.9653992743005, 624.2754174666549),
+        (385.48315949274104, 669.2427158965696),
+        (913.0634289275505, 497.2341904127797),
+        (913.5479082038427, 497.2341904127797),
+    ];
+    let cubic = |p: &[(f64, f64)]| Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3]));
+    let segs: Vec<Seg> = (0..4).map(|k| cubic(&nodes[3 * k..3 * k + 4])).collect();
+    let length = [516.0377735616894, 738.5403916174691];
+    let map = Waves { length, height: [13.347173153783134, 78.58217220427429], phase: [0.0; 2] };
+    holds(&segs, &map, 3.0, false).unwrap();
 }

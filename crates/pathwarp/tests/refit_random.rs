@@ -5,17 +5,19 @@
 
 #[path = "refit_random/cases.rs"]
 mod cases;
+#[path = "refit_random/maps.rs"]
+mod maps;
 #[path = "../benches/support/mod.rs"]
 mod support;
 
 use kurbo::{CubicBez, Line, Point, QuadBez};
-use pathwarp::map::{Formula, Map, Real};
+use maps::{Waves, map};
+use pathwarp::map::Map;
 use pathwarp::outline::EllipticArc;
 use pathwarp::refit::{Assurance, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use support::Bicubic;
 
 /// Coordinates on a coarse grid, which often coincide or line up; some are off it by a hair.
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -43,27 +45,6 @@ fn seg() -> impl Strategy<Value = Seg> {
             Seg::Arc(EllipticArc::new(c, (a, a * 0.3).into(), (-b * 0.3, b).into(), start, sweep))
         }),
     ]
-}
-
-/// Control nets from the identity to folded over.
-fn map() -> impl Strategy<Value = Bicubic> {
-    (prop::array::uniform32(-1.0..1.0f64), prop_oneof![Just(0.0), Just(30.0), Just(150.0), Just(500.0)])
-        .prop_map(|(d, size)| Bicubic::moved(|i, j| (size * d[2 * (4 * i + j)], size * d[2 * (4 * i + j) + 1])))
-}
-
-/// Waves in both directions: a map that declares nothing about itself.
-#[derive(Debug, Clone)]
-struct Waves {
-    length: [f64; 2],
-    height: [f64; 2],
-    phase: [f64; 2],
-}
-
-impl Formula for Waves {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let wave = |i: usize, t: S| (t * (TAU / self.length[i]) + self.phase[i]).sin() * self.height[i];
-        (x + wave(0, y), y + wave(1, x))
-    }
 }
 
 /// The steepest fold over.

@@ -8,11 +8,11 @@ use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
 use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::Evenly;
-use kurbo::Point;
+use kurbo::{Point, Vec2};
 
 /// The distance between the candidate and the image, by the samples of each smooth part and closer ones where it may exceed
-/// `enough` between them. `None` if the foot points do not advance along the cubic or see it turn by more than 60° from one to
-/// the next, so that the samples may have missed something.
+/// `enough` between them. `None` if the foot points do not advance along the cubic or it may turn by more than 60° from one to the
+/// next, so that the samples may have missed something.
 pub(in crate::refit) fn joined(
     source: &impl ImageCurve,
     c: &Candidate,
@@ -20,8 +20,8 @@ pub(in crate::refit) fn joined(
     parts: &[PartSamples],
     enough: f64,
 ) -> Result<Option<f64>, Point> {
-    let [c1, c2, c3] = c.frame.power(c.a, c.b);
-    let (mut last, mut slope) = (0.0, c.frame.t0);
+    let power = c.frame.power(c.a, c.b);
+    let mut last = 0.0;
     let mut worst = 0.0f64;
     // Signed distances at the ends of the intervals between samples, and their places on the piece.
     let (mut errors, mut taus) = ([0.0; 17], [0.0; 17]);
@@ -35,11 +35,10 @@ pub(in crate::refit) fn joined(
             errors[8 * batch + 1..=8 * batch + 8].copy_from_slice(&signed);
             taus[8 * batch + 1..=8 * batch + 8].copy_from_slice(&tau);
             for s in p.s {
-                let next = c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
-                if s < last - FOOT_ROUNDING || !turns_little(slope, next) {
+                if s < last - FOOT_ROUNDING || !turns_little_between(&power, [last, s]) {
                     return Ok(None);
                 }
-                (last, slope) = (s, next);
+                last = s;
             }
         }
         if worst > enough {
@@ -57,7 +56,15 @@ pub(in crate::refit) fn joined(
             }
         }
     }
-    Ok(turns_little(slope, c.frame.t1).then_some(worst))
+    Ok(turns_little_between(&power, [last, 1.0]).then_some(worst))
+}
+
+/// Returns `true` if the cubic C(s) = ((c₃s + c₂)s + c₁)s turns little between two parameters: if the three control vectors of its
+/// derivative there are pairwise less than 60° apart. The slopes at both ends alone would not see a hook between them.
+fn turns_little_between([c1, c2, c3]: &[Vec2; 3], [s, t]: [f64; 2]) -> bool {
+    let control = |u: f64, v: f64| *c1 + *c2 * (u + v) + *c3 * (3.0 * u * v);
+    let (first, middle, last) = (control(s, s), control(s, t), control(t, t));
+    turns_little(first, middle) && turns_little(middle, last) && turns_little(first, last)
 }
 
 /// The largest distance between two places, by eight samples and the parabolas through them.
