@@ -133,6 +133,11 @@ proptest! {
     }
 }
 
+fn spline_through(nodes: &[(f64, f64)]) -> Vec<Seg> {
+    let cubic = |p: &[(f64, f64)]| Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3]));
+    (0..nodes.len() / 3).map(|k| cubic(&nodes[3 * k..3 * k + 4])).collect()
+}
+
 /// A cubic with a tiny first handle that hooks out by 1.4 times the tolerance and back, between two foot points at which it has
 /// nearly the same direction. A random case found it.
 #[test]
@@ -152,9 +157,31 @@ fn a_hook_between_foot_points_is_seen() {
         (913.0634289275505, 497.2341904127797),
         (913.5479082038427, 497.2341904127797),
     ];
-    let cubic = |p: &[(f64, f64)]| Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3]));
-    let segs: Vec<Seg> = (0..4).map(|k| cubic(&nodes[3 * k..3 * k + 4])).collect();
+    let segs = spline_through(&nodes);
     let length = [516.0377735616894, 738.5403916174691];
     let map = Waves { length, height: [13.347173153783134, 78.58217220427429], phase: [0.0; 2] };
+    holds(&segs, &map, 3.0, false).unwrap();
+}
+
+/// Fourteen waves of two thirds of the tolerance along one segment. A random case found it.
+#[test]
+fn waves_shorter_than_a_segment_are_seen() {
+    let segs = spline_through(&[
+        (812.2902312908761, 292.2047613572373),
+        (800.5841879929887, 279.7447288715023),
+        (783.6246967232674, 299.7491207787742),
+        (765.7296613535289, 339.26361290423057),
+        (716.7064158918042, 447.5131137706784),
+        (660.66210111629, 702.1819720445887),
+        (686.3698329764892, 836.9382460806147),
+        (696.4368996888201, 889.7083779616817),
+        (719.040486584921, 924.0901441143051),
+        (759.511475051048, 924.0901441143051),
+        (779.511475051048, 924.0901441143051),
+        (-20.0, 0.0),
+        (0.0, 0.0),
+    ]);
+    let length = [68.18738559725955, 1402.9835832014232];
+    let map = Waves { length, height: [2.065685345520703, 72.44428460875682], phase: [0.0; 2] };
     holds(&segs, &map, 3.0, false).unwrap();
 }

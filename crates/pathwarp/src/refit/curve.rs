@@ -5,7 +5,7 @@ use super::source::{BreakPoint, SourceCurve};
 use kurbo::{Point, Vec2};
 
 /// Parameters of the samples of a smooth part.
-pub(super) type PartSamples = [Lane; 2];
+pub(super) type PartSamples = Vec<Lane>;
 
 /// A curve that can be fitted: the image of one segment, or of several in a row.
 pub(super) trait ImageCurve {
@@ -26,8 +26,8 @@ pub(super) trait ImageCurve {
     /// The break point at `t`. `Err`: the source point, if the map is not finite there.
     fn end(&self, t: f64) -> Result<BreakPoint, Point>;
 
-    /// If the curve consists of several segments: for each of its smooth parts between t0 and t1, sixteen samples evenly spaced
-    /// in the segment's parameter, the last one at the part's end.
+    /// If the curve consists of several segments: for each of its smooth parts between t0 and t1, samples evenly spaced in the
+    /// segment's parameter, the last one at the part's end.
     fn parts(&self, _t0: f64, _t1: f64) -> Option<Vec<PartSamples>> {
         None
     }

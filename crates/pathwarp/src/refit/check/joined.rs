@@ -24,16 +24,17 @@ pub(in crate::refit) fn joined(
     let mut last = 0.0;
     let mut worst = 0.0f64;
     // Signed distances at the ends of the intervals between samples, and their places on the piece.
-    let (mut errors, mut taus) = ([0.0; 17], [0.0; 17]);
+    let (mut errors, mut taus) = (vec![0.0], vec![0.0]);
     for part in parts {
-        (errors[0], taus[0]) = (errors[16], taus[16]);
-        for (batch, t) in part.iter().enumerate() {
+        errors.drain(..errors.len() - 1);
+        taus.drain(..taus.len() - 1);
+        for t in part {
             let tau = t.map(|t| c.tau(t));
             let p = probe(source, c, feet, &tau, 3)?;
             worst = worst.max(largest(&p.squares).sqrt());
             let signed = c.frame.signed_distances(&p.g, c.a, c.b, &p.s, &p.squares);
-            errors[8 * batch + 1..=8 * batch + 8].copy_from_slice(&signed);
-            taus[8 * batch + 1..=8 * batch + 8].copy_from_slice(&tau);
+            errors.extend(signed);
+            taus.extend(tau);
             for s in p.s {
                 if s < last - FOOT_ROUNDING || !turns_little_between(&power, [last, s]) {
                     return Ok(None);
@@ -44,12 +45,15 @@ pub(in crate::refit) fn joined(
         if worst > enough {
             return Ok(Some(worst));
         }
-        for i in 0..17 {
-            let (before, after) = (i.max(1) - 1, (i + 1).min(16));
-            let peak = match i {
-                0 => predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR),
-                16 => predicted_end_peak([errors[16], errors[15], errors[14]], PEAK_FACTOR),
-                _ => predicted_peak([errors[before], errors[i], errors[after]], PEAK_FACTOR),
+        let end = errors.len() - 1;
+        for i in 0..=end {
+            let (before, after) = (i.max(1) - 1, (i + 1).min(end));
+            let peak = if i == 0 {
+                predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR)
+            } else if i == end {
+                predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], PEAK_FACTOR)
+            } else {
+                predicted_peak([errors[before], errors[i], errors[after]], PEAK_FACTOR)
             };
             if peak > enough {
                 worst = worst.max(closely(source, c, feet, [taus[before], taus[after]])?);

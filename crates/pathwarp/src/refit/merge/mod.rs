@@ -68,7 +68,7 @@ impl Merger<'_> {
         let mut i = 0;
         while i < segs.len() {
             let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
-            let run = if joined > 0 { self.run(&segs[i..=i + joined])? } else { SegmentRun::default() };
+            let run = self.run(if joined > 0 { &segs[i..=i + joined] } else { &[] })?;
             // A segment that cannot be in a run keeps its pieces.
             let end = i + run.segments.len().max(1);
             let own = &pieces[bounds[i]..bounds[end]];
@@ -91,7 +91,7 @@ impl Merger<'_> {
     where
         Self: 's,
     {
-        let mut run = SegmentRun::default();
+        let mut run = SegmentRun::new(self.degree.is_some());
         for seg in segs {
             if self.options.shared.contains(seg) {
                 break;

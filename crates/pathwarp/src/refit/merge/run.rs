@@ -2,7 +2,7 @@
 
 use crate::refit::curve::{ImageCurve, PartSamples};
 use crate::refit::lanes::{Lane, Lanes};
-use crate::refit::limits::{LENGTH_TABLE, MERGE_GRID};
+use crate::refit::limits::{LENGTH_TABLE, MERGE_GRID, OPAQUE_BATCHES, RATIONAL_BATCHES};
 use crate::refit::proof::RationalForm;
 use crate::refit::source::{BreakPoint, SourceCurve};
 use crate::refit::split;
@@ -97,14 +97,21 @@ impl<'a> RunSegment<'a> {
 }
 
 /// Smoothly joined segments as one curve. Its parameter is approximately the length of the image.
-#[derive(Default)]
 pub(super) struct SegmentRun<'a> {
+    /// Batches of eight samples that a check takes in each segment.
+    batches: usize,
     pub(super) segments: Vec<RunSegment<'a>>,
     /// Parameters at which the segments begin, and the end of the last.
     pub(super) starts: Vec<f64>,
 }
 
 impl<'a> SegmentRun<'a> {
+    /// A run without segments, under a map that is a quotient of polynomials or any other.
+    pub(super) fn new(rational: bool) -> Self {
+        let batches = if rational { RATIONAL_BATCHES } else { OPAQUE_BATCHES };
+        Self { batches, segments: Vec::new(), starts: Vec::new() }
+    }
+
     pub(super) fn push(&mut self, segment: RunSegment<'a>) {
         let at = self.starts.last().copied().unwrap_or_default();
         if self.starts.is_empty() {
@@ -207,8 +214,10 @@ impl ImageCurve for SegmentRun<'_> {
         let samples = inside.map(|(segment, w)| {
             let (start, from, to) = (w[0], t0.max(w[0]), t1.min(w[1]));
             let (s0, s1) = (segment.param(from - start).0, segment.param(to - start).0);
-            let at = |i: usize| start + segment.length_to(s0 + (s1 - s0) * (i + 1) as f64 / 16.0);
-            [std::array::from_fn(at), std::array::from_fn(|i| if i < 7 { at(8 + i) } else { to })]
+            let n = 8 * self.batches;
+            let at = |i: usize| start + segment.length_to(s0 + (s1 - s0) * i as f64 / n as f64);
+            let lane = |k: usize| std::array::from_fn(|i| if 8 * k + i + 1 < n { at(8 * k + i + 1) } else { to });
+            (0..self.batches).map(lane).collect()
         });
         Some(samples.collect())
     }
