@@ -191,3 +191,37 @@ fn a_page_of_odd_size_is_no_group() {
     assert!((b.x0 - (5.0 + 20.0 * cos - 50.0 * sin)).abs() < 1e-9, "{b:?}");
     assert!((b.y1 - (70.0 * sin + 50.0 * cos)).abs() < 1e-9, "{b:?}");
 }
+
+/// Names and drawings with filters whose regions are larger than what they paint, or painted in full.
+const FILTERS: &[(&str, &str)] = &[
+    (
+        "a shadow in a generous region",
+        "<filter id='f' x='-.5' y='-.5' width='2' height='2'><feOffset dx='2' dy='9'/><feGaussianBlur stdDeviation='.4'/>\
+         <feColorMatrix values='0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 .5 0'/><feMerge><feMergeNode/><feMergeNode \
+         in='SourceGraphic'/></feMerge></filter><rect x='30' y='20' width='40' height='30' filter='url(#f)'/>",
+    ),
+    (
+        "a flood over a region",
+        "<filter id='f' x='-.1' y='-.2' width='1.1' height='1.3'><feFlood flood-color='red' result='r'/><feComposite \
+         in='SourceGraphic' in2='r'/></filter><rect x='30' y='20' width='40' height='30' filter='url(#f)'/>",
+    ),
+];
+
+/// The whole region of a filter does not count, only what the filter paints, up to the invisible end of a blur.
+#[test]
+fn the_page_follows_what_filters_paint() {
+    for (name, body) in FILTERS {
+        for map in [Affine::translate((40.0, -30.0)) * Affine::scale(1.3), Affine::translate((45.0, 5.0))] {
+            let d = fitted(&common::drawing(body), map, PageFit::Page);
+            let (page, marks) = (d.view_box(), marks(&d));
+            assert!(
+                page.inflate(0.1, 0.1).union(marks) == page.inflate(0.1, 0.1),
+                "{name}: {page:?} lacks of {marks:?}"
+            );
+            assert!(
+                marks.inflate(0.5, 0.5).union(page) == marks.inflate(0.5, 0.5),
+                "{name}: {page:?} is more than {marks:?}"
+            );
+        }
+    }
+}

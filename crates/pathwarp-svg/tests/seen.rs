@@ -71,3 +71,28 @@ fn the_page_holds_what_is_seen() {
         assert!(off < 0.1, "{name}: {view:?}");
     }
 }
+
+/// Artwork beside the page that the warp moves onto it is reported, unless it stays hidden.
+#[test]
+fn what_comes_onto_the_page_is_reported() {
+    let came = |body: &str| {
+        let all =
+            read(&drawing(body)).warp(&Hidden(Affine::translate((0.0, -40.0))), &warp_options()).unwrap().warnings;
+        all.into_iter().filter(|w| w.contains("lay off the page")).collect::<Vec<_>>()
+    };
+    let note = "<rect id='n' x='20' y='110' width='50' height='10'/>";
+    assert_eq!(came(note), ["artwork that lay off the page has moved onto it: n"]);
+    let text =
+        "<text id='t' x='20' y='125' font-size='12'>note</text><rect id='far' x='20' y='190' width='9' height='9'/>";
+    assert_eq!(came(text), ["artwork that lay off the page has moved onto it: t"]);
+    // On the page before, still off the page, invisible, or clipped away.
+    for hidden in [
+        "<rect x='20' y='60' width='50' height='60'/>",
+        "<rect x='20' y='150' width='50' height='10'/>",
+        "<rect x='20' y='110' width='50' height='10' fill='none'/>",
+        "<clipPath id='c'><rect y='200' width='99' height='9'/></clipPath><rect x='20' y='110' width='50' height='99' \
+         clip-path='url(#c)'/>",
+    ] {
+        assert!(came(hidden).is_empty(), "{hidden}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Writes a warped document: patched in place, or flattened.
 
 use super::input::WriteInput;
-use super::{flat, keep, page, unsupported};
+use super::{arrivals, flat, keep, page, unsupported};
 use crate::bend::options::{Structure, WarpOptions};
 use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
 use crate::scene::drawing::Drawing;
@@ -40,6 +40,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
             flat::write(input, &mut out.skipped, &mut notes)
         }
     };
+    arrivals::note(input, &mut notes);
     out.warnings.extend(notes.lines());
     out.overhang = page::overhang(input);
     Ok(())

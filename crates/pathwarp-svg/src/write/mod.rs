@@ -1,5 +1,6 @@
 //! The result as text: the source patched in place, or flattened to a new file.
 
+mod arrivals;
 mod bitmaps;
 mod defs;
 pub(crate) mod document;

@@ -7,6 +7,7 @@ use crate::bend::options::PageFit;
 use crate::bend::outcome::{Overhang, PartOutcome, StrokeOutcome, WarpedPart};
 use crate::scene::affine::stretch;
 use crate::scene::expand::stroke_outline;
+use crate::scene::filter_area;
 use crate::scene::model::{Group, Node, Part, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};
 use crate::source::number::short;
@@ -31,25 +32,31 @@ struct Measure<'a> {
     room: Option<Rect>,
     /// The visible area before the warp, if only what comes from there counts.
     page: Option<Rect>,
-    /// Count the whole region of a filter, regardless of its content.
-    filters: bool,
+}
+
+/// The visible area of the result, if the page is to be adapted and changes.
+fn adapted(input: &WriteInput<'_>) -> Option<Rect> {
+    let page = input.drawing.visible_area();
+    let shown = match input.options.page {
+        PageFit::None => return None,
+        PageFit::Grow => page.union(artwork(input, Some(page))?),
+        PageFit::Page => artwork(input, None)?,
+        PageFit::PageWithMargin => {
+            let margin = margin(input, page);
+            artwork(input, None)?.inflate(margin, margin)
+        }
+    };
+    (shown.width() > 0.0 && shown.height() > 0.0 && shown.is_finite() && shown != page).then_some(shown)
+}
+
+/// The visible area of the result.
+pub(super) fn shown(input: &WriteInput<'_>) -> Rect {
+    adapted(input).unwrap_or_else(|| input.drawing.visible_area())
 }
 
 /// Returns new attributes of the root, if the page is to be adapted and changes.
 pub(super) fn attributes(input: &WriteInput<'_>) -> Option<Vec<(&'static str, String)>> {
-    let page = input.drawing.visible_area();
-    let shown = match input.options.page {
-        PageFit::None => return None,
-        PageFit::Grow => page.union(artwork(input, Some(page), true)?),
-        PageFit::Page => artwork(input, None, true)?,
-        PageFit::PageWithMargin => {
-            let margin = margin(input, page);
-            artwork(input, None, true)?.inflate(margin, margin)
-        }
-    };
-    if !(shown.width() > 0.0 && shown.height() > 0.0 && shown.is_finite()) || shown == page {
-        return None;
-    }
+    let (page, shown) = (input.drawing.visible_area(), adapted(input)?);
     let view = [shown.x0, shown.y0, shown.width(), shown.height()].map(short).join(" ");
     let mut out = vec![("viewBox", view)];
     let sides = [("width", shown.width() / page.width()), ("height", shown.height() / page.height())];
@@ -77,11 +84,11 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     let sides = [page.width(), page.height(), page.width(), page.height()];
     let beyond = |b: Rect| [page.x0 - b.x0, page.y0 - b.y0, b.x1 - page.x1, b.y1 - page.y1];
     let is_visible = |by: &[f64; 4]| by.iter().zip(sides).any(|(by, side)| *by > VISIBLE * side);
-    let after = beyond(artwork(input, Some(page), false)?);
+    let after = beyond(artwork(input, Some(page))?);
     if !is_visible(&after) {
         return None;
     }
-    let before = original(input, Some(page), false).map_or([0.0; 4], beyond);
+    let before = original(input, Some(page)).map_or([0.0; 4], beyond);
     let mut out = Overhang::default();
     for i in 0..4 {
         if after[i] > before[i].max(0.0) + VISIBLE * sides[i] {
@@ -94,29 +101,25 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
 
 /// The least distance between the original artwork and the edge of its page; 0 if it has no page or extends past it.
 fn margin(input: &WriteInput<'_>, page: Rect) -> f64 {
-    let Some(b) = original(input, None, true).filter(|_| input.drawing.specified_area().is_some()) else { return 0.0 };
+    let Some(b) = original(input, None).filter(|_| input.drawing.specified_area().is_some()) else { return 0.0 };
     let sides = [b.x0 - page.x0, b.y0 - page.y0, page.x1 - b.x1, page.y1 - b.y1];
     sides.into_iter().fold(f64::INFINITY, f64::min).max(0.0)
 }
 
 /// Bounding box of the artwork before the warp.
-fn original(input: &WriteInput<'_>, room: Option<Rect>, filters: bool) -> Option<Rect> {
+fn original(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
     let (outcomes, images): (Vec<_>, Vec<_>) = (
         input.outcomes.iter().map(|_| PartOutcome::Kept).collect(),
         input.images.iter().map(|_| EmbeddedImage::Placed).collect(),
     );
-    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input }, room, filters)
+    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], ..*input }, room)
 }
 
 /// Bounding box of everything painted, strokes included, in root user space. Guides do not count.
-fn artwork(input: &WriteInput<'_>, room: Option<Rect>, filters: bool) -> Option<Rect> {
+fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
     let guides = Selection { guides: input.options.selection.guides.clone(), ..Selection::default() };
     let counts = guides.resolve(input.source);
-    group_box(
-        input,
-        &input.scene.root,
-        Measure { counts: &counts, room, page: input.drawing.specified_area(), filters },
-    )
+    group_box(input, &input.scene.root, Measure { counts: &counts, room, page: input.drawing.specified_area() })
 }
 
 /// Bounds the image of what the page showed of a part; unbounded if it showed all. `None` if it showed nothing.
@@ -188,13 +191,10 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         }
     }
     let mut all = all?;
-    for f in g.filters.iter().filter(|_| m.filters) {
-        // The area a filter may paint, from its region before the warp.
-        let r = f.rect();
-        let region = Rect::new(r.left().into(), r.top().into(), r.right().into(), r.bottom().into());
+    for f in &g.filters {
         if let Some(s) = g.slot {
             let frame = input.written(g.slot, scene.slots[s].frame);
-            all = all.union(frame.transform_rect_bbox(region));
+            all = frame.transform_rect_bbox(filter_area::painted(f, frame.inverse().transform_rect_bbox(all))?);
         }
     }
     if let Some(i) = g.clip {
@@ -231,7 +231,7 @@ fn box_under(frame: Affine, path: &BezPath) -> Rect {
 }
 
 /// A cheap bounding box of everything a part paints; it may be too large.
-fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
+pub(super) fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
     let path = match warped {
         Some(d) => d.path.control_box(),
         None => p.local.bounding_box().unwrap_or(Rect::ZERO),
@@ -249,7 +249,7 @@ fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
     frame.transform_rect_bbox(all)
 }
 
-fn painted_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
+pub(super) fn painted_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
     let path = path(p, warped);
     let inside = box_under(frame, &path);
     match (&p.stroke, warped.map(|d| &d.stroke)) {
