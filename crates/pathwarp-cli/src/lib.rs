@@ -19,6 +19,7 @@ mod commands;
 mod decimals;
 mod failure;
 mod input;
+mod leftovers;
 mod options;
 mod output;
 mod pipeline;

@@ -3,7 +3,7 @@
 //! Ctrl-C and SIGTERM run a handler on a thread of its own. It waits for commits under way, so that files that belong together
 //! appear together, removes all temporary files and exits.
 
-use crate::terminal;
+use crate::{leftovers, terminal};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io;
@@ -29,6 +29,7 @@ pub(crate) struct Temporary(Option<TempPath>);
 impl Temporary {
     /// Creates an empty file in `folder`.
     pub(crate) fn create_in(folder: &Path) -> io::Result<(Self, File)> {
+        leftovers::remove_from(folder);
         let mut builder = builder();
         #[cfg(unix)]
         {
@@ -82,7 +83,7 @@ pub(crate) fn count_finished() {
 
 fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
-    builder.prefix(".pathwarp-");
+    builder.prefix(leftovers::OWN_PREFIX.as_str());
     builder
 }
 

@@ -7,6 +7,7 @@ mod common;
 mod documentation;
 mod encodings;
 mod exit_codes;
+mod faults;
 mod overwriting;
 mod report;
 mod selection;
