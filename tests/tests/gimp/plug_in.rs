@@ -18,7 +18,7 @@ fn the_plug_in_is_installed_and_removed() {
     expect_code(0, &["install", "gimp", "--dir", d]);
     let home = plug_ins.join("pathwarp-gimp");
     let script = fs::read(home.join("pathwarp-gimp.py")).unwrap();
-    assert_eq!(script, fs::read(root().join("integrations/gimp/pathwarp-gimp.py")).unwrap());
+    assert_eq!(script, fs::read(root().join("crates/pathwarp-cli/plug-ins/gimp/pathwarp-gimp.py")).unwrap());
     let own = home.join("bin").join("pathwarp").with_extension(std::env::consts::EXE_EXTENSION);
     assert!(Command::new(own).arg("list").stdout(Stdio::null()).status().unwrap().success());
     fs::write(home.join("notes.txt"), "mine").unwrap();

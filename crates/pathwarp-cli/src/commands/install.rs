@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The plug-in's source. GIMP 3 looks for `plug-ins/NAME/NAME.py`.
-const PLUG_IN: &str = include_str!("../../../../integrations/gimp/pathwarp-gimp.py");
+const PLUG_IN: &str = include_str!("../../plug-ins/gimp/pathwarp-gimp.py");
 const PLUG_IN_NAME: &str = "pathwarp-gimp";
 
 pub(super) const NAME: &str = "install";
