@@ -14,6 +14,7 @@ use crate::source::select::{Selection, candidates, is_named, matches_any};
 use crate::source::tags::{ElementId, is_shape};
 use crate::write;
 use crate::write::input::WriteInput;
+use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::Map;
 use pathwarp::{Error, Outline, refit};
@@ -72,6 +73,12 @@ impl Document {
     #[must_use]
     pub fn size_px(&self) -> Size {
         self.drawing.page
+    }
+
+    /// The limits on the work that the drawing causes, and what is used of them.
+    #[must_use]
+    pub fn budget(&self) -> &Arc<Budget> {
+        &self.drawing.budget
     }
 
     #[cfg(feature = "usvg")]

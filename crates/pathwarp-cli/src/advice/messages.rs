@@ -2,6 +2,7 @@
 
 use super::flags::Flags;
 use crate::decimals::three_figures;
+use pathwarp::budget::Exceeded;
 use pathwarp::{Error, GeometryError};
 use pathwarp_svg::{LetteringFrameError, Overhang};
 
@@ -19,6 +20,7 @@ pub(crate) fn error(e: &Error, flags: &Flags) -> String {
         }
         Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
         Error::Input { place, problem } => Error::input(place, flags.in_text(problem)).to_string(),
+        Error::Limit { exceeded, .. } => format!("{e}; {}", raise(exceeded)),
         Error::Geometry(g) => geometry(g, flags),
         _ => flags.in_text(&e.to_string()),
     }
@@ -27,9 +29,27 @@ pub(crate) fn error(e: &Error, flags: &Flags) -> String {
 fn geometry(e: &GeometryError, flags: &Flags) -> String {
     let message = flags.in_text(&flags.in_front(&e.to_string()));
     match e {
+        GeometryError::Limit(exceeded) => format!("{message}; allow a larger --tolerance, or {}", raise(exceeded)),
         GeometryError::Infinity { .. } => format!("{message} (--on-error skip)"),
         GeometryError::FlatFrame { .. } => format!("{message} (--frame X,Y,W,H, or --base where there is one)"),
         _ => message,
+    }
+}
+
+/// How to raise a limit.
+pub(crate) fn raise(exceeded: &Exceeded) -> String {
+    let enough = exceeded.enough();
+    let value = if enough.is_finite() { format!("{enough:.0}") } else { "none".to_owned() };
+    format!("if you trust the file, raise the limit with --limit {}={value}", exceeded.limit)
+}
+
+/// The message of an error about a picture, with advice.
+pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
+    match e {
+        pathwarp_raster::Error::TooLarge { exceeded, .. } | pathwarp_raster::Error::TooMuch(exceeded) => {
+            format!("{e}; {}", raise(exceeded))
+        }
+        _ => e.to_string(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::file_args;
 use crate::failure::Failure;
+use crate::options::{self, Given};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
@@ -37,6 +38,7 @@ pub(super) fn command() -> Command {
                 .default_value("none")
                 .help("Colour behind the drawing"),
         )
+        .args(options::access_args())
         .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
 }
 
@@ -56,8 +58,11 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         Some("black") => Some(Color::BLACK),
         _ => None,
     };
-    let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
-    let png = encode_png(&RenderOptions { size, background }.render(&tree)?)?;
+    let access = Given::access(m)?;
+    let bytes = input::bytes(file)?;
+    let tree = usvg_tree::parse_tree(&bytes, &input::display(file), &input::read_options(file, &access))?;
+    let limits = access.limits.for_input(bytes.len());
+    let png = encode_png(&RenderOptions { size, background }.render_within(&tree, &limits)?)?;
     output::write(target, &png)?;
     Ok(Status::Complete)
 }

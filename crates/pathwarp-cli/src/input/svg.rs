@@ -56,7 +56,7 @@ impl SvgArtwork {
         if let Some(t) = target {
             check_extension(t, input)?;
         }
-        let (name, read) = (display(input), read_options(input));
+        let (name, read) = (display(input), read_options(input, &options.access));
         let doc = Document::read(bytes, &name, &read)?;
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
@@ -66,7 +66,8 @@ impl SvgArtwork {
 
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
         let WarpRequest { built, options, tolerance, .. } = request;
-        let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), options.image_dpi));
+        let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_limits(*self.doc.budget().limits());
+        let bender = Arc::new(bender);
         let gradients = match options.gradients {
             GradientChoice::Fit => Gradients::Fit,
             GradientChoice::Auto => Gradients::Auto(bender.clone()),
@@ -75,6 +76,7 @@ impl SvgArtwork {
         };
         let letters = LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
+        let refit = refit.with_budget(self.doc.budget().clone());
         WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)

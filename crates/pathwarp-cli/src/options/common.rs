@@ -1,5 +1,6 @@
 //! The common options as typed values.
 
+use super::access::Access;
 use super::typed_box::TypedBox;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length};
@@ -95,6 +96,7 @@ pub(crate) struct CommonOptions {
     pub(crate) explain: bool,
     /// Number of threads; `None`: one per core.
     pub(crate) jobs: Option<usize>,
+    pub(crate) access: Access,
     pub(crate) quiet: bool,
 }
 

@@ -4,6 +4,7 @@ pub(crate) mod affine;
 mod basic_shapes;
 pub(crate) mod drawing;
 pub(crate) mod expand;
+pub(crate) mod far;
 pub(crate) mod geometry;
 pub(crate) mod lettering;
 pub(crate) mod letters;

@@ -5,7 +5,7 @@ use super::{flat, keep, page, unsupported};
 use crate::bend::options::{Structure, WarpOptions};
 use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
 use crate::scene::drawing::Drawing;
-use crate::source::tree::DATA;
+use crate::source::images::DATA;
 use pathwarp::Error;
 
 /// Writes the document to `out`, with warnings and everything skipped.
