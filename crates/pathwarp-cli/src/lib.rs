@@ -43,6 +43,7 @@ use std::process::ExitCode;
 #[must_use]
 #[expect(clippy::needless_pass_by_value, reason = "a program hands over its registry here, once")]
 pub fn main_with(registry: Registry) -> ExitCode {
+    watch::allow();
     run(&registry, std::env::args_os())
 }
 

@@ -9,6 +9,7 @@ use crate::terminal;
 use cpu_time::ProcessTime;
 use memory_stats::memory_stats;
 use pathwarp::budget::{Exceeded, Limit, Limits};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -31,8 +32,19 @@ struct Watched {
 
 static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
 
-/// Begins to watch the process. Further calls only change the limits.
+/// A program that calls this library with others beside it must not be ended, so watching is for `main_with` to allow.
+static ALLOWED: AtomicBool = AtomicBool::new(false);
+
+/// Allows to end the program.
+pub(crate) fn allow() {
+    ALLOWED.store(true, Ordering::Relaxed);
+}
+
+/// Begins to watch the process, if that is allowed. Further calls only change the limits.
 pub(crate) fn begin(limits: Limits) {
+    if !ALLOWED.load(Ordering::Relaxed) {
+        return;
+    }
     let mut watched = lock();
     if let Some(watched) = watched.as_mut() {
         watched.limits = limits;

@@ -52,7 +52,7 @@ pub(crate) fn check(
     [width, height]: [f32; 2],
     limits: &Limits,
 ) -> Result<(), Error> {
-    let mut load = Load { limits, work: 0.0, sizes: HashMap::new() };
+    let mut load = Load { limits: *limits, work: 0.0, sizes: HashMap::new() };
     let canvas = f64::from(width) * f64::from(height);
     load.group(tree.root(), transform, &Canvas { width, height, held: canvas })
 }
@@ -87,14 +87,14 @@ impl Canvas {
 }
 
 /// The sum of the work.
-struct Load<'a> {
-    limits: &'a Limits,
+struct Load {
+    limits: Limits,
     work: f64,
     /// Sizes of pictures, by the address of their data.
     sizes: HashMap<usize, f64>,
 }
 
-impl Load<'_> {
+impl Load {
     fn add(&mut self, work: f64) -> Result<(), Error> {
         self.work += work;
         Ok(self.limits.check(Limit::Painting, self.work)?)
@@ -192,6 +192,8 @@ impl Load<'_> {
             }
             ImageKind::JPEG(d) | ImageKind::PNG(d) | ImageKind::GIF(d) | ImageKind::WEBP(d) => d,
         };
+        // A large picture has a large file, wherever it is.
+        self.limits = self.limits.for_input(data.len());
         let known = Arc::as_ptr(data) as usize;
         let pixels = *self.sizes.entry(known).or_insert_with(|| {
             // The renderer skips what it cannot decode.

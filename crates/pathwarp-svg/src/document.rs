@@ -8,6 +8,7 @@ use crate::bend::tiles;
 use crate::scene::drawing::Drawing;
 use crate::scene::lettering::selected::{Lettering, lettering};
 use crate::scene::seen;
+use crate::scene::unread::UnreadImages;
 use crate::scene::shape::{NamedPath, Shape, named_path};
 use crate::source::read::ReadOptions;
 use crate::source::select::{Selection, candidates, is_named, matches_any};
@@ -73,6 +74,12 @@ impl Document {
     #[must_use]
     pub fn size_px(&self) -> Size {
         self.drawing.page
+    }
+
+    /// The images that the drawing links to and that were not read.
+    #[must_use]
+    pub fn unread_images(&self) -> UnreadImages {
+        UnreadImages::of(&self.drawing.missed)
     }
 
     /// The limits on the work that the drawing causes, and what is used of them.

@@ -80,7 +80,7 @@ impl Origin {
         let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
         let source = bytes_unpacked(&bytes, budget.left(Limit::Bytes)).map_err(|e| damaged(&e))?;
         let source = source.ok_or_else(|| damaged(&"it is not compressed"))?;
-        let counted = budget.spend(Limit::Bytes, source.len() as u64);
+        let counted = budget.spend_cut(Limit::Bytes, source.len() as u64);
         counted.map_err(|e| Error::limit("the embedded source", "it takes", e))?;
         Ok(Some(Self { recipe: text("recipe"), source }))
     }

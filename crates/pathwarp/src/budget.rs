@@ -21,7 +21,7 @@ pub enum Limit {
     Segments,
     /// Letters of text.
     Letters,
-    /// Pixels of one picture.
+    /// Pixels held at the same time: pictures with their copies, and layers painted on each other.
     Pixels,
     /// Pixels painted in total, by layers, masks, filters and pictures.
     Painting,
@@ -86,7 +86,7 @@ impl Limit {
             Self::Comparisons => "comparisons of names",
             Self::Segments => "segments",
             Self::Letters => "letters",
-            Self::Pixels => "pixels",
+            Self::Pixels => "pixels at once",
             Self::Painting => "pixels to paint",
             Self::ImageBytes => "bytes of pictures",
             Self::Evaluations => "evaluations of the map",
@@ -101,13 +101,13 @@ impl Limit {
         match self {
             Self::Bytes => 16e6,
             Self::Elements => 40e3,
-            Self::Comparisons => 50e6,
+            Self::Comparisons => 15e6,
             Self::Segments => 1e6,
             Self::Letters => 30e3,
-            Self::Pixels => 24e6,
+            Self::Pixels => 80e6,
             Self::Painting => 400e6,
             Self::ImageBytes => 64e6,
-            Self::Evaluations => 60e6,
+            Self::Evaluations => 30e6,
             Self::Seconds => 4.5,
             Self::Memory => 450e6,
         }
@@ -156,10 +156,10 @@ impl Limits {
         self
     }
 
-    /// The limits for an input of `bytes`: those that were not set grow in proportion above a mebibyte.
+    /// The limits for an input of `bytes`: those that were not set grow in proportion above a mebibyte. They never shrink.
     #[must_use]
     pub fn for_input(self, bytes: usize) -> Self {
-        Self { scale: (bytes as f64 / BASE_SIZE).max(1.0), ..self }
+        Self { scale: (bytes as f64 / BASE_SIZE).max(self.scale), ..self }
     }
 
     /// The value of a limit. Where other limits are raised, time and memory grow alike, unless they are set themselves.
@@ -185,13 +185,13 @@ impl Limits {
     pub fn check(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
         let most = self.of(limit);
         // An amount that is not a number exceeds every limit.
-        if amount <= most { Ok(()) } else { Err(Exceeded { limit, most, needed: amount }) }
+        if amount <= most { Ok(()) } else { Err(Exceeded { limit, most, needed: amount, cut: false }) }
     }
 }
 
 /// More work than a limit allows.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{} {}, and the limit `{limit}` is {}", rounded(*.needed), .limit.things(), rounded(*.most))]
+#[error("{}{} {}, and the limit `{limit}` is {}", if *.cut { "at least " } else { "" }, rounded(*.needed), .limit.things(), rounded(*.most))]
 pub struct Exceeded {
     /// The limit.
     pub limit: Limit,
@@ -199,12 +199,17 @@ pub struct Exceeded {
     pub most: f64,
     /// The amount that is needed, or was counted when work stopped.
     pub needed: f64,
+    /// The count was cut short at the limit.
+    pub cut: bool,
 }
 
 impl Exceeded {
-    /// A value of the limit that allows the amount, in two figures.
+    /// A value of the limit that allows the amount, in two figures; ten times the limit if the amount is not known.
     #[must_use]
     pub fn enough(&self) -> f64 {
+        if self.cut {
+            return 10.0 * self.most;
+        }
         let unit = 10_f64.powf(self.needed.max(1.0).log10().floor() - 1.0);
         (self.needed / unit).ceil() * unit
     }
@@ -242,6 +247,14 @@ impl Budget {
     pub fn spend(&self, limit: Limit, amount: u64) -> Result<(), Exceeded> {
         let before = self.used[limit as usize].fetch_add(amount, Ordering::Relaxed);
         self.limits.check(limit, before.saturating_add(amount) as f64)
+    }
+
+    /// Counts an amount whose count was cut short if it exceeds the limit.
+    ///
+    /// # Errors
+    /// The sum of all amounts exceeds the limit.
+    pub fn spend_cut(&self, limit: Limit, amount: u64) -> Result<(), Exceeded> {
+        self.spend(limit, amount).map_err(|e| Exceeded { cut: true, ..e })
     }
 
     /// Checks a single amount, which is not counted.

@@ -43,7 +43,8 @@ pub fn program(package: &str, name: &str) -> PathBuf {
     profile.join(name).with_extension(std::env::consts::EXE_EXTENSION)
 }
 
-fn pathwarp_program() -> &'static Path {
+/// The program.
+pub fn pathwarp_program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| program("pathwarp-cli", "pathwarp"))
 }

@@ -4,7 +4,7 @@ use super::flags::Flags;
 use crate::decimals::three_figures;
 use pathwarp::budget::Exceeded;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, Overhang};
+use pathwarp_svg::{LetteringFrameError, Overhang, UnreadImages};
 
 /// The message of an error of the libraries: parameters as flags, with the options that help.
 pub(crate) fn error(e: &Error, flags: &Flags) -> String {
@@ -72,6 +72,20 @@ pub(crate) fn overhang(o: Overhang) -> String {
         three_figures(100.0 * o.share),
         sides.join(", ")
     )
+}
+
+/// Describes images that were not read because they lie outside of the drawing's folder.
+pub(crate) fn outside(unread: &UnreadImages) -> Option<String> {
+    let n = unread.outside.len();
+    let what = if n == 1 { "1 linked image lies".to_owned() } else { format!("{n} linked images lie") };
+    (n > 0).then(|| format!("{what} outside of the drawing's folder; --allow-external reads images from anywhere"))
+}
+
+/// Lists the images that were not read.
+pub(crate) fn unread(unread: &UnreadImages) -> Vec<String> {
+    let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
+    let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
+    unreadable.chain(outside_links).chain(outside(unread)).collect()
 }
 
 /// Describes inputs of a batch whose artwork extends past the page; `file` is the one with the largest `share` of its page.

@@ -4,7 +4,7 @@ use super::file_args;
 use crate::failure::Failure;
 use crate::options::{self, Given};
 use crate::status::Status;
-use crate::{input, output};
+use crate::{advice, input, output, terminal};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp_raster::{Color, RenderOptions, Size, encode_png};
 use pathwarp_svg::usvg_tree;
@@ -60,9 +60,12 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     };
     let access = Given::access(m)?;
     let bytes = input::bytes(file)?;
-    let tree = usvg_tree::parse_tree(&bytes, &input::display(file), &input::read_options(file, &access))?;
+    let name = input::display(file);
+    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &access))?;
     let limits = access.limits.for_input(bytes.len());
-    let png = encode_png(&RenderOptions { size, background }.render_within(&tree, &limits)?)?;
+    let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
+    let png = encode_png(&drawn.map_err(|e| Failure::from(e).about(&name))?)?;
+    advice::unread(&read.unread).iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
     output::write(target, &png)?;
-    Ok(Status::Complete)
+    Ok(Status::partial_if(!read.unread.is_empty()))
 }

@@ -242,6 +242,7 @@ impl Artwork for SvgArtwork {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
         }
         warnings.extend(folds);
+        warnings.extend(advice::outside(&self.doc.unread_images()));
         let surfaces = surface::files(&self.doc, built, &options)?;
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;

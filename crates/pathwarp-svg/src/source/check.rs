@@ -2,7 +2,7 @@
 
 use super::{selectors, unfold};
 use pathwarp::Error;
-use pathwarp::budget::Budget;
+use pathwarp::budget::{Budget, Exceeded, Limit};
 use usvg::roxmltree;
 
 /// Features of a drawing that decide about fonts, images and limits.
@@ -40,10 +40,31 @@ impl Features {
 pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<Features, Error> {
     let features = Features::of(xml);
     selectors::count(xml, budget).map_err(|e| Error::limit(name, "its style sheet takes", e))?;
+    if features.text {
+        spans(xml, budget).map_err(|e| Error::limit(name, "its texts take", e))?;
+    }
     if unfold::may_be_large(xml, features.markers, features.references) {
         unfold::check(xml, name, budget)?;
     } else {
         unfold::count_plain(xml, name, budget)?;
     }
     Ok(features)
+}
+
+/// Counts the letters that are compared with every span of their text.
+fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
+    for text in texts {
+        let (mut spans, mut letters) = (0, 0);
+        for n in text.descendants() {
+            if n.is_element() {
+                spans += 1;
+            } else {
+                letters += n.text().map_or(0, str::len) as u64;
+            }
+        }
+        // The text itself is no span.
+        budget.spend(Limit::Comparisons, (spans - 1) * letters)?;
+    }
+    Ok(())
 }

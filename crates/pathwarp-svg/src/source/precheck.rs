@@ -1,5 +1,5 @@
 //! Work of the XML parser that grows faster than the text, counted before it is done: entities that expand to entities, and
-//! elements with very many attributes, which the parser compares with each other.
+//! elements with very many attributes or declarations, which the parsers compare with each other.
 
 use memchr::{memchr, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -72,7 +72,7 @@ fn expanded(text: &str, index: &HashMap<&str, usize>, sizes: &[f64]) -> f64 {
     text.len() as f64 + inner.sum::<f64>()
 }
 
-/// Comparisons of the names of attributes with each other, and of prefixes with namespaces.
+/// Comparisons of the names of attributes with each other, and of the declarations in style attributes.
 fn attributes(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     let bytes = text.as_bytes();
     let mut at = 0;
@@ -80,9 +80,10 @@ fn attributes(text: &str, budget: &Budget) -> Result<(), Exceeded> {
         let to = bytes.get(from..).and_then(|b| memchr(b'>', b)).map_or(bytes.len(), |i| from + i);
         at = to + 1;
         if to - from >= LONG_TAG {
-            let quotes = bytes[from..to].iter().filter(|b| matches!(b, b'"' | b'\'')).count() as u64;
-            let attributes = quotes / 2;
-            budget.spend(Limit::Comparisons, attributes * attributes / 2)?;
+            let count = |is: fn(&u8) -> bool| bytes[from..to].iter().filter(|b| is(b)).count() as u64;
+            let attributes = count(|b| matches!(b, b'"' | b'\'')) / 2;
+            let declarations = count(|b| *b == b';');
+            budget.spend(Limit::Comparisons, (attributes * attributes + declarations * declarations) / 2)?;
         }
     }
     Ok(())

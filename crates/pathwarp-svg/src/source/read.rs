@@ -125,7 +125,10 @@ pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, E
     if let Some(out) = unpacked {
         bytes = Cow::Owned(out);
     }
-    let counted = budget.spend(Limit::Bytes, bytes.len() as u64);
+    let size = bytes.len() as u64;
+    // What is packed is unpacked no further than the limit.
+    let counted =
+        if bytes.len() == data.len() { budget.spend(Limit::Bytes, size) } else { budget.spend_cut(Limit::Bytes, size) };
     counted.map_err(|e| Error::limit(name, "its text takes", e))?;
     decoded(bytes).map_err(|(at, problem)| Error::input(format!("{name}: byte {at}"), problem))
 }

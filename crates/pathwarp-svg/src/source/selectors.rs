@@ -35,9 +35,11 @@ pub(crate) fn count(doc: &roxmltree::Document<'_>, budget: &Budget) -> Result<()
     for node in doc.descendants().filter(Node::is_element) {
         for rule in &sheet.rules {
             steps.set(steps.get() + 1);
-            let _ = rule.selector.matches(&Counted { node, steps: &steps, most });
+            if rule.selector.matches(&Counted { node, steps: &steps, most }) {
+                steps.set(steps.get() + rule.declarations.len() as u64);
+            }
             if steps.get() > most {
-                return budget.spend(Limit::Comparisons, steps.get());
+                return budget.spend_cut(Limit::Comparisons, steps.get());
             }
         }
     }

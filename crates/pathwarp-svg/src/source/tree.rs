@@ -2,7 +2,7 @@
 
 use super::check::{self, Features};
 use super::fonts::{self, Missing};
-use super::images::{self, Rejected};
+use super::images::{self, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::{fontface, range, xml};
@@ -15,8 +15,10 @@ use usvg::roxmltree;
 pub(crate) struct Missed {
     /// Font families.
     pub(crate) fonts: Vec<String>,
-    /// Links to images; of `data:` URLs only the type.
+    /// Links to images.
     pub(crate) images: Vec<String>,
+    /// Those of them that lead out of the folder of the drawing.
+    pub(crate) outside: Vec<String>,
     /// Numbers out of range were replaced.
     pub(crate) range: bool,
 }
@@ -53,7 +55,7 @@ fn resolve(
     name: &str,
     options: &ReadOptions,
 ) -> Result<(usvg::Tree, Missed), Error> {
-    let (missing, unread) = (Missing::default(), Missing::default());
+    let (missing, unread) = (Missing::default(), Unread::default());
     // Reading the installed fonts takes longer than most drawings do.
     let base = if features.text {
         let fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), xml.input_text());
@@ -83,14 +85,16 @@ fn resolve(
     if let Some(e) = rejected.lock().ok().and_then(|mut r| r.take()) {
         return Err(e);
     }
-    let [fonts, images] = [missing, unread].map(|m| m.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default());
-    Ok((tree, Missed { fonts, images, range: false }))
+    let listed = |m: Missing| m.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
+    let [fonts, images, outside] = [missing, unread.images, unread.outside].map(listed);
+    Ok((tree, Missed { fonts, images, outside, range: false }))
 }
 
 /// Reads SVG or svgz data into usvg's tree.
-pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<Arc<usvg::Tree>, Error> {
+pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let options = &options.begin(data.len());
     let text = read::text(data, name, &options.budget)?;
     let xml = xml::parse(&text, name, &options.budget)?;
-    with_stack(name, || Ok(Arc::new(tree(&xml, name, options)?.0)))
+    let (tree, missed) = with_stack(name, || tree(&xml, name, options))?;
+    Ok((Arc::new(tree), missed))
 }

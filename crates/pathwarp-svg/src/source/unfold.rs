@@ -13,9 +13,9 @@ use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, PseudoClas
 use std::collections::HashMap;
 use usvg::roxmltree::{self, Node, NodeId};
 
-/// Deepest nesting of references and elements after expansion. The stack of 256 MiB allows several times as much, but
+/// Deepest nesting of references and elements after expansion. The stack of 128 MiB allows several times as much, but
 /// usvg needs quadratic time for markers on markers.
-const DEEPEST: usize = 4_000;
+const DEEPEST: usize = 2_000;
 /// Drawings with at most this many references cannot expand to much.
 const FEW: usize = 16;
 /// Below this many bytes, vertices times one marker stays small.

@@ -12,11 +12,8 @@ use crate::map::{Class, CreaseKind, Creases, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{Affine, Line, Point};
 
-/// Evaluations of the map that a piece takes, on average over attempts: sixteen samples, and the same for attempts that fail.
-const EVALUATIONS_PER_PIECE: u64 = 32;
-
-/// Number of pieces after which they are counted in the budget.
-const COUNTED_TOGETHER: usize = 256;
+/// Number of evaluations of the map after which they are counted in the budget.
+const COUNTED_TOGETHER: usize = 10_000;
 
 /// Moves control points. Only arcs are approximated, after the map, so that the tolerance holds in the image.
 pub(super) fn affine(
@@ -74,7 +71,7 @@ pub(super) fn subpath(
     // Joints of the image that may be smooth, by the index of the segment that begins there.
     let mut smooth = Vec::with_capacity(bounds.capacity());
     let fitter = SegmentFitter { map, degree: map.rational_degree(), creases, options };
-    let mut counted = 0;
+    let mut counted = out.report.evaluations;
     for (i, seg) in sub.segs.iter().enumerate() {
         finite(seg)?;
         if let Some(at) = creases.first_undefined(seg) {
@@ -101,10 +98,11 @@ pub(super) fn subpath(
         if options.merge {
             bounds.push(pieces.len());
         }
-        if pieces.len() >= counted + COUNTED_TOGETHER || i + 1 == sub.segs.len() {
-            let new = (pieces.len() - counted) as u64;
-            options.budget.spend(Limit::Evaluations, new * EVALUATIONS_PER_PIECE).map_err(GeometryError::Limit)?;
-            counted = pieces.len();
+        let evaluations = out.report.evaluations;
+        if evaluations >= counted + COUNTED_TOGETHER || i + 1 == sub.segs.len() {
+            let new = (evaluations - counted) as u64;
+            options.budget.spend(Limit::Evaluations, new).map_err(GeometryError::Limit)?;
+            counted = evaluations;
         }
     }
     // Across other creases than the domain's edge the image has corners.
