@@ -79,7 +79,7 @@ impl Failure {
             Self::Geometry(_) => 4,
             Self::Output(_) => 5,
             Self::Library { error, .. } => match **error {
-                pathwarp::Error::Input { .. } => 3,
+                pathwarp::Error::Input { .. } | pathwarp::Error::Limit { .. } => 3,
                 pathwarp::Error::Geometry(_) => 4,
                 _ => 2,
             },
@@ -119,7 +119,7 @@ impl Failure {
             Self::Geometry(m) => Self::Geometry(prefixed(name, &m)),
             Self::Library { error, of_recipe, .. } => {
                 let concerns_input = match *error {
-                    pathwarp::Error::Input { .. } => !of_recipe,
+                    pathwarp::Error::Input { .. } | pathwarp::Error::Limit { .. } => !of_recipe,
                     pathwarp::Error::Geometry(_) => true,
                     _ => false,
                 };
@@ -149,6 +149,6 @@ impl From<pathwarp::Error> for Failure {
 
 impl From<pathwarp_raster::Error> for Failure {
     fn from(e: pathwarp_raster::Error) -> Self {
-        Self::Input(e.to_string())
+        Self::Input(advice::picture(&e))
     }
 }

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Exit codes: 0 success; 1 done, but something was left unchanged or, of several inputs, left out (the messages and the report
-//! say why); 2 wrong usage; 3 unreadable input; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
+//! say why); 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
 //! On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.
 
 mod advice;
@@ -31,6 +31,7 @@ mod status;
 mod steps;
 mod temporaries;
 mod terminal;
+mod watch;
 
 pub use bitmap::Bender;
 
@@ -43,6 +44,7 @@ use std::process::ExitCode;
 #[must_use]
 #[expect(clippy::needless_pass_by_value, reason = "a program hands over its registry here, once")]
 pub fn main_with(registry: Registry) -> ExitCode {
+    watch::allow();
     run(&registry, std::env::args_os())
 }
 

@@ -14,12 +14,13 @@
 
 use crate::advice;
 use crate::failure::Failure;
+use crate::input::split_reference;
 use crate::options::Given;
 use pathwarp::deform::Registry;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 use toml::Value;
 
 /// The version of the format.
@@ -45,13 +46,21 @@ pub(crate) struct SavedRecipe {
     pub(crate) options: Given,
 }
 
-/// Reads a recipe file. Relative paths in it refer to the file's folder.
-pub(crate) fn read(registry: &Registry, file: &Path) -> Result<SavedRecipe, Failure> {
+/// Reads a recipe file. Relative paths in it refer to the file's folder; absolute ones are allowed only if `external`.
+pub(crate) fn read(registry: &Registry, file: &Path, external: bool) -> Result<SavedRecipe, Failure> {
     let text = std::fs::read_to_string(file).map_err(|e| Failure::file(file, format!("cannot be read: {e}")))?;
-    parse(registry, &text, file.parent().unwrap_or(Path::new(""))).map_err(|e| Failure::file(file, e))
+    let place = Folder { path: file.parent().unwrap_or(Path::new("")), external };
+    parse(registry, &text, &place).map_err(|e| Failure::file(file, e))
 }
 
-fn parse(registry: &Registry, text: &str, folder: &Path) -> Result<SavedRecipe, String> {
+/// The folder of a recipe.
+struct Folder<'a> {
+    path: &'a Path,
+    /// Files anywhere may be named.
+    external: bool,
+}
+
+fn parse(registry: &Registry, text: &str, folder: &Folder<'_>) -> Result<SavedRecipe, String> {
     let file: RecipeFile = toml::from_str(text).map_err(|e| e.to_string())?;
     if file.pathwarp != VERSION {
         return Err(format!("has version {}; this program reads version {VERSION}", file.pathwarp));
@@ -73,7 +82,7 @@ fn parse(registry: &Registry, text: &str, folder: &Path) -> Result<SavedRecipe, 
     Ok(SavedRecipe { recipe: Recipe { steps: steps? }, options })
 }
 
-fn step(registry: &Registry, table: &toml::Table, folder: &Path) -> Result<Step, String> {
+fn step(registry: &Registry, table: &toml::Table, folder: &Folder<'_>) -> Result<Step, String> {
     let name = table.get(DEFORMATION).and_then(Value::as_str).ok_or("has no `deformation = \"NAME\"`")?;
     let known = registry.entries().iter().map(|e| e.info().name);
     let entry = registry.get(name).ok_or_else(|| advice::unknown("deformation", name, known))?;
@@ -92,7 +101,12 @@ fn step(registry: &Registry, table: &toml::Table, folder: &Path) -> Result<Step,
                     if param.kind == Kind::Flag && v == "false" {
                         continue;
                     }
-                    step.args.push(key, from_folder(param, v, folder));
+                    if param.kind == Kind::Save {
+                        return Err(format!(
+                            "{key} is not for recipes, which write no files; give it on the command line"
+                        ));
+                    }
+                    step.args.push(key, from_folder(param, v, folder).map_err(|e| format!("{key}: {e}"))?);
                 }
             }
         }
@@ -125,12 +139,25 @@ fn names_file(param: &Param, value: &str) -> bool {
     }
 }
 
-fn from_folder(param: &Param, value: String, folder: &Path) -> String {
-    if names_file(param, &value) && !Path::new(&value).is_absolute() {
-        folder.join(value).display().to_string()
-    } else {
-        value
+/// A value with its path relative to the current folder. A path must lead to a regular file, and be relative unless the user
+/// allows others.
+fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<String, String> {
+    if !names_file(param, &value) {
+        return Ok(value);
     }
+    let path = Path::new(&value);
+    if (path.is_absolute() || path.has_root()) && !folder.external {
+        return Err(format!(
+            "`{value}` is absolute; name it relative to the recipe, or allow it with --allow-external"
+        ));
+    }
+    let placed = folder.path.join(path);
+    let file = if placed.exists() { placed.clone() } else { split_reference(&placed.to_string_lossy()).0 };
+    // A file that does not exist gets its error where it is read.
+    if file.exists() && !file.is_file() {
+        return Err(format!("`{value}` is not a regular file"));
+    }
+    Ok(placed.display().to_string())
 }
 
 /// The text of a recipe file in `folder` with these steps and the options that recipes store.
@@ -151,8 +178,13 @@ pub(crate) fn write(registry: &Registry, recipe: &Recipe, given: &Given, folder:
         let params = registry.get(&s.deformation).map_or(&[][..], |e| e.info().params);
         for (name, values) in s.args.iter() {
             let param = params.iter().find(|p| p.name == name);
+            if param.is_some_and(|p| p.kind == Kind::Save) {
+                continue;
+            }
             let placed = values.iter().map(|v| match param {
-                Some(p) if !same_place && names_file(p, v) => here.join(v).display().to_string(),
+                Some(p) if (!same_place || Path::new(v).is_absolute()) && names_file(p, v) => {
+                    relative(&here.join(v), &here.join(folder))
+                }
                 _ => v.clone(),
             });
             t.insert(name.to_owned(), value(placed.collect()));
@@ -160,6 +192,24 @@ pub(crate) fn write(registry: &Registry, recipe: &Recipe, given: &Given, folder:
         file.step.push(t);
     }
     toml::to_string(&file).map_err(|e| Failure::Input(e.to_string()))
+}
+
+/// The path of a file relative to a folder, as recipes name files; the absolute path where there is none, on another drive. A
+/// reference `FILE#NAME` keeps its name.
+fn relative(file: &Path, folder: &Path) -> String {
+    let (path, name) = if file.exists() {
+        (file.to_owned(), None)
+    } else {
+        let text = file.to_string_lossy();
+        let (path, name) = split_reference(&text);
+        (path, name.map(ToOwned::to_owned))
+    };
+    let (path, folder) = (path.canonicalize().unwrap_or(path), folder.canonicalize().unwrap_or(folder.to_owned()));
+    let common = path.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(common).map(|_| Component::ParentDir);
+    let relative: PathBuf = up.chain(path.components().skip(common)).collect();
+    let shown = if common == 0 { path.display().to_string() } else { relative.display().to_string() };
+    name.map_or_else(|| shown.clone(), |n| format!("{shown}#{n}"))
 }
 
 /// Typed values as TOML: a single one as a string or `true`, several as a list.

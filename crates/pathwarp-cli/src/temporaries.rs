@@ -97,16 +97,23 @@ fn on_interruption_remove_all() {
     INSTALL.call_once(|| {
         // A program around this library may have a handler already; it then answers for interruptions.
         let _ = ctrlc::set_handler(|| {
-            let _gate = GATE.write().unwrap_or_else(PoisonError::into_inner);
-            for path in live().iter() {
-                let _ = std::fs::remove_file(path);
-            }
-            terminal::error(&match FINISHED.load(Ordering::Relaxed) {
-                0 => "interrupted; no output was written".to_owned(),
-                1 => "interrupted; the result of 1 input is written".to_owned(),
-                n => format!("interrupted; the results of {n} inputs are written"),
-            });
-            std::process::exit(INTERRUPTED);
+            remove_all_and(|| {
+                terminal::error(&match FINISHED.load(Ordering::Relaxed) {
+                    0 => "interrupted; no output was written".to_owned(),
+                    1 => "interrupted; the result of 1 input is written".to_owned(),
+                    n => format!("interrupted; the results of {n} inputs are written"),
+                });
+                std::process::exit(INTERRUPTED);
+            })
         });
     });
+}
+
+/// Waits for commits under way, removes all temporary files, and calls `end`, which ends the program.
+pub(crate) fn remove_all_and(end: impl FnOnce()) {
+    let _gate = GATE.write().unwrap_or_else(PoisonError::into_inner);
+    for path in live().iter() {
+        let _ = std::fs::remove_file(path);
+    }
+    end();
 }

@@ -32,6 +32,9 @@ pub(crate) fn may_be_export(head: &[u8]) -> bool {
 }
 
 fn parse(text: &str) -> Result<Document<'_>, Error> {
+    if !is_plain(text) {
+        return Err(Error::damaged(0, "it declares entities or has very many attributes, which GIMP does not write"));
+    }
     let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|e| {
         let pos = e.pos();
@@ -39,6 +42,15 @@ fn parse(text: &str) -> Result<Document<'_>, Error> {
         let at = lines.map(str::len).sum::<usize>() + (pos.col as usize).saturating_sub(1);
         Error::damaged(at as u64, format!("not valid XML: {e}"))
     })
+}
+
+/// Returns `true` if parsing takes time and memory in proportion to the text: without entities, which may expand to entities,
+/// and without elements of very many attributes, which the parser compares with each other.
+fn is_plain(text: &str) -> bool {
+    /// GIMP writes six attributes.
+    const MOST: usize = 1000;
+    let many = |tag: &str| tag.len() > MOST && tag.bytes().filter(|b| matches!(b, b'"' | b'\'')).count() / 2 > MOST;
+    !text.contains("<!ENTITY") && !text.split('<').any(|tag| many(tag.split('>').next().unwrap_or_default()))
 }
 
 /// Returns `true` if an SVG is as GIMP exports it: one or more paths, each with a name and GIMP's stroke and nothing else.

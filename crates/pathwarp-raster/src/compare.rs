@@ -6,6 +6,7 @@
 
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
+use pathwarp::budget::Limits;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 /// The difference of two pictures of the same size.
@@ -64,7 +65,8 @@ pub fn compare(a: &Pixmap, b: &Pixmap) -> Result<Difference, Error> {
 /// [`Error::SizesDiffer`].
 pub fn diff_image(a: &Pixmap, b: &Pixmap) -> Result<Pixmap, Error> {
     check_sizes(a, b)?;
-    let mut picture = new_pixmap(f64::from(a.width()), f64::from(a.height()))?;
+    let limits = Limits::default().for_input(a.data().len());
+    let mut picture = new_pixmap(f64::from(a.width()), f64::from(a.height()), &limits)?;
     for ((a, b), out) in a.pixels().iter().zip(b.pixels()).zip(picture.pixels_mut()) {
         let difference = largest(channel_differences(*a, *b));
         *out = if difference == 0 { pale(*a) } else { red(difference) }.premultiply();

@@ -1,6 +1,6 @@
 //! Errors of making, reading and comparing pictures.
 
-use crate::limit::MAX_PIXELS;
+use pathwarp::budget::Exceeded;
 use thiserror::Error;
 
 /// The reason why a picture cannot be made, read or compared.
@@ -16,16 +16,31 @@ pub enum Error {
         height: u32,
     },
     /// The size of the picture exceeds the limit.
-    #[error(
-        "a picture of {width:.0} x {height:.0} pixels is too large: the limit is {MAX_PIXELS} pixels \
-         (such as 16384 x 16384); choose a smaller width, height or scale"
-    )]
+    #[error("a picture of {width:.0} x {height:.0} pixels is too large: it takes {exceeded}; choose a smaller one")]
     TooLarge {
         /// Requested width in pixels.
         width: f64,
         /// Requested height in pixels.
         height: f64,
+        /// The limit.
+        exceeded: Exceeded,
     },
+    /// Drawing the picture takes more work or memory than a limit allows.
+    #[error("drawing it takes {0}; draw it smaller, or simplify its masks, filters and patterns")]
+    TooMuch(#[from] Exceeded),
+    /// Geometry reaches farther than the renderer can compute with.
+    #[error(
+        "a shape or a stroke extends more than {:.0e} pixels from the picture, or has coordinates that are not finite, which \
+         cannot be drawn; remove it, or draw the picture smaller",
+        crate::load::FARTHEST
+    )]
+    TooFar,
+    /// A turbulence filter has more octaves than have any effect.
+    #[error("a turbulence filter has {0} octaves, which cannot be drawn; more than 24 change nothing")]
+    Octaves(u32),
+    /// The renderer failed.
+    #[error("the renderer failed on this drawing; please report it")]
+    Renderer,
     /// The scale is not a positive number.
     #[error("invalid scale {0}: the scale must be a positive number")]
     BadScale(f32),

@@ -1,6 +1,6 @@
 //! Bitmaps for [pathwarp](https://github.com/pathwarp/pathwarp): renders drawings, warps photographs, compares pictures.
 //!
-//! * [`render()`] draws a resolved SVG tree at a chosen [`Size`], at most [`MAX_PIXELS`].
+//! * [`render()`] draws a resolved SVG tree at a chosen [`Size`], within [limits](pathwarp::budget).
 //! * [`encode_png`] and [`decode_png`] convert pictures to and from PNG.
 //! * [`compare()`] measures the difference of two pictures; [`diff_image`] visualises it.
 //! * [`Picture`] reads and writes photographs with orientation and colour profile.
@@ -29,8 +29,9 @@
 //! ```
 
 mod compare;
+mod draw;
 mod error;
-mod limit;
+mod load;
 mod parallel;
 mod picture;
 mod pixmap;
@@ -41,8 +42,7 @@ mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
 pub use error::Error;
-pub use limit::MAX_PIXELS;
-pub use picture::{Picture, PictureFormat};
+pub use picture::{Picture, PictureFormat, header_size};
 pub use png::{decode_png, encode_png};
 pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};
 pub use render::{RenderOptions, Size, render};

@@ -1,13 +1,16 @@
 //! Photographs: bitmap files with orientation and colour profile.
 
 use crate::error::Error;
-use crate::limit::MAX_PIXELS;
 use crate::pixmap::new_pixmap;
 use image::codecs::{jpeg, png};
 use image::metadata::Orientation;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageReader};
+use pathwarp::budget::{Limit, Limits};
 use std::io::Cursor;
 use tiny_skia::{ColorU8, Pixmap};
+
+/// Pixels held for each pixel of a picture that is warped: decoded, reduced for sampling, the result, and its file.
+const COPIES: f64 = 4.0;
 
 /// A bitmap with its colour profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,10 +47,22 @@ impl Picture {
     /// Reads a PNG or JPEG and applies its EXIF orientation.
     ///
     /// # Errors
-    /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above [`MAX_PIXELS`] pixels, before any memory is
-    /// allocated for them.
+    /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the default limits, before any memory is
+    /// allocated for the pixels.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
-        if Self::sniff(bytes) { Self::decode(bytes, true) } else { Err(undecodable("neither a PNG nor a JPEG")) }
+        Self::read_within(bytes, &Limits::default().for_input(bytes.len()))
+    }
+
+    /// Reads a PNG or JPEG like [`Picture::read`], within limits.
+    ///
+    /// # Errors
+    /// As for [`Picture::read`].
+    pub fn read_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
+        if Self::sniff(bytes) {
+            Self::decode(bytes, true, limits)
+        } else {
+            Err(undecodable("neither a PNG nor a JPEG"))
+        }
     }
 
     /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) without applying its orientation, as SVG renderers do. Takes the
@@ -56,24 +71,29 @@ impl Picture {
     /// # Errors
     /// As for [`Picture::read`].
     pub fn read_stored(bytes: &[u8]) -> Result<Self, Error> {
-        Self::decode(bytes, false)
+        Self::read_stored_within(bytes, &Limits::default().for_input(bytes.len()))
     }
 
-    fn decode(bytes: &[u8], upright: bool) -> Result<Self, Error> {
-        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(undecodable)?;
-        // The number of pixels is limited below instead.
-        reader.no_limits();
-        let mut decoder = reader.into_decoder().map_err(undecodable)?;
+    /// Reads an image of a drawing like [`Picture::read_stored`], within limits.
+    ///
+    /// # Errors
+    /// As for [`Picture::read`].
+    pub fn read_stored_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
+        Self::decode(bytes, false, limits)
+    }
+
+    fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
+        let mut decoder = decoder(bytes)?;
         let (width, height) = decoder.dimensions();
-        if u64::from(width) * u64::from(height) > u64::from(MAX_PIXELS) {
-            return Err(Error::TooLarge { width: f64::from(width), height: f64::from(height) });
-        }
+        let (w, h) = (f64::from(width), f64::from(height));
+        let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
+        limits.check(Limit::Pixels, COPIES * w * h).map_err(too_large)?;
         let profile = decoder.icc_profile().ok().flatten();
         let orientation = decoder.orientation().ok().filter(|_| upright).unwrap_or(Orientation::NoTransforms);
         let mut image = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
         image.apply_orientation(orientation);
         let image = image.into_rgba8();
-        let mut pixmap = new_pixmap(f64::from(image.width()), f64::from(image.height()))?;
+        let mut pixmap = new_pixmap(f64::from(image.width()), f64::from(image.height()), limits)?;
         for (to, from) in pixmap.pixels_mut().iter_mut().zip(image.pixels()) {
             let [r, g, b, a] = from.0;
             *to = ColorU8::from_rgba(r, g, b, a).premultiply();
@@ -124,6 +144,21 @@ impl Picture {
         }
         encoder.write_image(pixels, self.pixmap.width(), self.pixmap.height(), kind).map_err(wrong)
     }
+}
+
+/// Width and height that the header of a picture announces.
+///
+/// # Errors
+/// [`Error::Decode`] for other and damaged files.
+pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
+    decoder(bytes).map(|d| d.dimensions())
+}
+
+fn decoder(bytes: &[u8]) -> Result<impl ImageDecoder, Error> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(undecodable)?;
+    // The number of pixels is limited by the caller instead.
+    reader.no_limits();
+    reader.into_decoder().map_err(undecodable)
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "for map_err")]

@@ -18,8 +18,8 @@ pub fn encode_png(pixmap: &Pixmap) -> Result<Vec<u8>, Error> {
 /// Decodes a PNG of any colour type to 8 bits per channel.
 ///
 /// # Errors
-/// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above [`MAX_PIXELS`](crate::MAX_PIXELS) pixels, before
-/// any memory is allocated for them.
+/// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the default limits, before any
+/// memory is allocated for the pixels.
 pub fn decode_png(bytes: &[u8]) -> Result<Pixmap, Error> {
     if !bytes.starts_with(Picture::PNG_SIGNATURE) {
         return Err(Error::Decode("not a PNG file".to_owned()));

@@ -1,7 +1,9 @@
 //! Renders a resolved SVG tree at a chosen size.
 
+use crate::draw::draw;
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
+use pathwarp::budget::Limits;
 use tiny_skia::{Color, Pixmap, Transform};
 
 /// Excess over a whole number of pixels that does not start another row.
@@ -34,18 +36,27 @@ pub struct RenderOptions {
 }
 
 impl RenderOptions {
+    /// Renders `tree` with these options and the default limits.
+    ///
+    /// # Errors
+    /// As for [`RenderOptions::render_within`].
+    pub fn render(&self, tree: &usvg::Tree) -> Result<Pixmap, Error> {
+        self.render_within(tree, &Limits::default())
+    }
+
     /// Renders `tree` with these options.
     ///
     /// # Errors
-    /// The size is zero, not a positive number, or exceeds [`MAX_PIXELS`](crate::MAX_PIXELS).
-    pub fn render(&self, tree: &usvg::Tree) -> Result<Pixmap, Error> {
+    /// The size is zero or not a positive number, the picture or the work to draw it exceeds the limits, or a shape reaches
+    /// farther than the renderer can compute with.
+    pub fn render_within(&self, tree: &usvg::Tree, limits: &Limits) -> Result<Pixmap, Error> {
         let native = (f64::from(tree.size().width()), f64::from(tree.size().height()));
         let (width, height, scale) = self.size.resolve(native)?;
-        let mut pixmap = new_pixmap(width, height)?;
+        let mut pixmap = new_pixmap(width, height, limits)?;
         if let Some(color) = self.background {
             pixmap.fill(color);
         }
-        resvg::render(tree, Transform::from_scale(scale, scale), &mut pixmap.as_mut());
+        draw(tree, Transform::from_scale(scale, scale), &mut pixmap, limits)?;
         Ok(pixmap)
     }
 }

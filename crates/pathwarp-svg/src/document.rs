@@ -9,11 +9,13 @@ use crate::scene::drawing::Drawing;
 use crate::scene::lettering::selected::{Lettering, lettering};
 use crate::scene::seen;
 use crate::scene::shape::{NamedPath, Shape, named_path};
+use crate::scene::unread::UnreadImages;
 use crate::source::read::ReadOptions;
 use crate::source::select::{Selection, candidates, is_named, matches_any};
 use crate::source::tags::{ElementId, is_shape};
 use crate::write;
 use crate::write::input::WriteInput;
+use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::Map;
 use pathwarp::{Error, Outline, refit};
@@ -72,6 +74,18 @@ impl Document {
     #[must_use]
     pub fn size_px(&self) -> Size {
         self.drawing.page
+    }
+
+    /// The images that the drawing links to and that were not read.
+    #[must_use]
+    pub fn unread_images(&self) -> UnreadImages {
+        UnreadImages::of(&self.drawing.missed)
+    }
+
+    /// The limits on the work that the drawing causes, and what is used of them.
+    #[must_use]
+    pub fn budget(&self) -> &Arc<Budget> {
+        &self.drawing.budget
     }
 
     #[cfg(feature = "usvg")]

@@ -1,16 +1,16 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
-use crate::source::xml::escape_content;
+use crate::source::read::bytes_unpacked;
+use crate::source::xml::{self, escape_content};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
-use std::io::{Read as _, Write as _};
+use pathwarp::budget::{Budget, Limit, Limits};
+use std::io::Write as _;
 use usvg::roxmltree;
 
 /// Namespace of the embedded elements.
 const NAMESPACE: &str = "https://github.com/pathwarp/pathwarp/ns/1";
-/// Largest source to unpack, in bytes.
-const LARGEST: u64 = 1 << 29;
 
 /// The origin of a drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,6 +59,16 @@ impl Origin {
     /// # Errors
     /// Returns [`Error::Input`] if `svg` is not XML, or the origin is damaged.
     pub fn read(svg: &str) -> Result<Option<Self>, Error> {
+        Self::read_within(svg, &Limits::default().for_input(svg.len()))
+    }
+
+    /// Reads the origin embedded in `svg` like [`Origin::read`], within limits.
+    ///
+    /// # Errors
+    /// As for [`Origin::read`]; also [`Error::Limit`] if the source unpacks to more than the limit.
+    pub fn read_within(svg: &str, limits: &Limits) -> Result<Option<Self>, Error> {
+        let budget = Budget::new(*limits);
+        xml::check(svg, "the drawing", &budget)?;
         let doc = parse(svg)?;
         let Some(metadata) = metadata(&doc) else { return Ok(None) };
         let text = |name: &str| {
@@ -68,8 +78,10 @@ impl Origin {
         let damaged = |e: &dyn std::fmt::Display| Error::input("the embedded source", format!("is damaged: {e}"));
         let packed: String = text("source").split_ascii_whitespace().collect();
         let bytes = STANDARD.decode(packed).map_err(|e| damaged(&e))?;
-        let mut source = Vec::new();
-        flate2::read::GzDecoder::new(&bytes[..]).take(LARGEST).read_to_end(&mut source).map_err(|e| damaged(&e))?;
+        let source = bytes_unpacked(&bytes, budget.left(Limit::Bytes)).map_err(|e| damaged(&e))?;
+        let source = source.ok_or_else(|| damaged(&"it is not compressed"))?;
+        let counted = budget.spend_cut(Limit::Bytes, source.len() as u64);
+        counted.map_err(|e| Error::limit("the embedded source", "it takes", e))?;
         Ok(Some(Self { recipe: text("recipe"), source }))
     }
 

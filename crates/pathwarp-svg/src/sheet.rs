@@ -61,7 +61,7 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     let height = GAP + TITLE + rows as f64 * (h + GAP);
     let mut drawn = Vec::with_capacity(cells.len());
     for (k, c) in cells.iter().enumerate() {
-        let tree = tree::parse(c.svg.as_bytes(), &c.label, read)?;
+        let tree = tree::parse(c.svg.as_bytes(), &c.label, read)?.0;
         let b = tree.root().abs_layer_bounding_box();
         let (x, y) = (f64::from(b.x()), f64::from(b.y()));
         let seen = Rect::new(x, y, x + f64::from(b.width()), y + f64::from(b.height()));
@@ -107,7 +107,7 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     }
     labels.push_str("</svg>\n");
     let bundled = ReadOptions { system_fonts: false, ..ReadOptions::default() };
-    let outlines = tree::parse(labels.as_bytes(), "labels", &bundled)?;
+    let outlines = tree::parse(labels.as_bytes(), "labels", &bundled)?.0;
     let own = WriteOptions { id_prefix: Some("label-".into()), ..WriteOptions::default() };
     let _ = write!(out, "<g id=\"labels\">{}</g>\n</svg>\n", inside(&outlines.to_string(&own)));
     Ok(out)
@@ -146,7 +146,7 @@ mod tests {
         for k in 0..3 {
             assert!(svg.contains(&format!("url(#s{k}-")), "{k}");
         }
-        let tree = tree::parse(svg.as_bytes(), "sheet", &ReadOptions::default()).unwrap();
+        let tree = tree::parse(svg.as_bytes(), "sheet", &ReadOptions::default()).unwrap().0;
         assert_eq!((tree.size().width(), tree.size().height()), (296.0, 274.0));
         let gradients: Vec<usvg::Rect> = filled(tree.root());
         // 124 − 24 = 100 wide: the largest fits exactly; the half one has half the width and is centred.

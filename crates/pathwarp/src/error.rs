@@ -4,6 +4,7 @@
 //! [`Error::Geometry`] (the drawing does not allow the deformation). Messages call parameters by their bare names; the command
 //! line adds its dashes.
 
+use crate::budget::Exceeded;
 use kurbo::Point;
 use thiserror::Error;
 
@@ -36,6 +37,16 @@ pub enum Error {
         place: String,
         /// The problem and a remedy.
         problem: String,
+    },
+    /// Reading or drawing a file takes more work than a limit allows.
+    #[error("{place}: {what} {exceeded}")]
+    Limit {
+        /// File, and place in it if there is one.
+        place: String,
+        /// The cause, and a verb: `its text takes`.
+        what: String,
+        /// The limit, and the amount.
+        exceeded: Exceeded,
     },
     /// The geometry forbids the deformation.
     #[error(transparent)]
@@ -156,6 +167,9 @@ pub enum GeometryError {
         /// The point in the source drawing.
         at: Point,
     },
+    /// Warping takes more work than a limit allows.
+    #[error("warping takes {0}")]
+    Limit(Exceeded),
     /// A map has no inverse.
     #[error("{what} has no inverse: {why}")]
     NoInverse {
@@ -186,6 +200,11 @@ impl Error {
     /// Creates an [`Error::Missing`].
     pub fn missing(param: &str, hint: impl Into<String>) -> Self {
         Self::Missing { param: param.to_owned(), hint: hint.into() }
+    }
+
+    /// Creates an [`Error::Limit`].
+    pub fn limit(place: impl Into<String>, what: impl Into<String>, exceeded: Exceeded) -> Self {
+        Self::Limit { place: place.into(), what: what.into(), exceeded }
     }
 
     /// Creates an [`Error::Input`].

@@ -33,6 +33,7 @@
 
 mod ambiguity;
 pub(crate) mod anchors;
+pub mod budget;
 pub mod check;
 pub mod decimal;
 pub mod deform;

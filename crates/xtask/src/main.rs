@@ -4,6 +4,7 @@ mod chore;
 mod corpus;
 mod docs;
 mod files;
+mod hostile;
 mod new_deformation;
 mod outputs;
 mod parallel;
@@ -16,8 +17,15 @@ use clap::Command;
 use std::process::ExitCode;
 
 /// Every chore, declared with its options in a separate file.
-const CHORES: [Chore; 6] =
-    [new_deformation::CHORE, corpus::CHORE, refit_report::CHORE, outputs::CHORE, speed::CHORE, docs::CHORE];
+const CHORES: [Chore; 7] = [
+    new_deformation::CHORE,
+    corpus::CHORE,
+    refit_report::CHORE,
+    outputs::CHORE,
+    speed::CHORE,
+    hostile::CHORE,
+    docs::CHORE,
+];
 
 fn main() -> ExitCode {
     let matches = Command::new("cargo xtask")

@@ -5,7 +5,7 @@
 #![cfg(unix)]
 
 use crate::common::{files_below, text};
-use crate::support::{pathwarp_in, program_path, sample, start_in};
+use crate::support::{pathwarp_in, pathwarp_program, sample, start_in};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -139,7 +139,7 @@ fn a_write_that_fails_leaves_nothing_of_its_file() {
         let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
         let end = Command::new("sh")
             .args(["-c", &script, "sh"])
-            .arg(program_path())
+            .arg(pathwarp_program())
             .args(BATCH)
             .current_dir(dir.path())
             .output();
@@ -166,7 +166,7 @@ fn full_and_read_only_file_systems() {
                   mount -o remount,ro none out || exit 77; \"$@\" 2>ro; echo $? $code; exit 0";
     let unshared = Command::new("unshare")
         .args(["--user", "--map-root-user", "--mount", "sh", "-c", script, "sh"])
-        .arg(program_path())
+        .arg(pathwarp_program())
         .args(BATCH)
         .current_dir(dir.path())
         .output();

@@ -43,21 +43,21 @@ pub fn program(package: &str, name: &str) -> PathBuf {
     profile.join(name).with_extension(std::env::consts::EXE_EXTENSION)
 }
 
-/// The program that tests run.
-pub fn program_path() -> &'static Path {
+/// The program.
+pub fn pathwarp_program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| program("pathwarp-cli", "pathwarp"))
 }
 
 /// Runs `pathwarp` from the project's root.
 pub fn pathwarp<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> Output {
-    Command::new(program_path()).args(args).current_dir(root()).stdin(Stdio::null()).output().unwrap()
+    Command::new(pathwarp_program()).args(args).current_dir(root()).stdin(Stdio::null()).output().unwrap()
 }
 
 /// Runs `pathwarp` in a folder, with standard input.
 pub fn pathwarp_in(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
     use std::io::Write;
-    let mut child = Command::new(program_path())
+    let mut child = Command::new(pathwarp_program())
         .args(args)
         .current_dir(folder)
         .stdin(Stdio::piped())
@@ -72,7 +72,7 @@ pub fn pathwarp_in(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
 
 /// Starts `pathwarp` in a folder, without standard input.
 pub fn start_in(folder: &Path, args: &[&str]) -> std::process::Child {
-    let mut command = Command::new(program_path());
+    let mut command = Command::new(pathwarp_program());
     command.args(args).current_dir(folder);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }

@@ -2,8 +2,9 @@
 
 use super::flags::Flags;
 use crate::decimals::three_figures;
+use pathwarp::budget::Exceeded;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, Overhang};
+use pathwarp_svg::{LetteringFrameError, Overhang, UnreadImages};
 
 /// The message of an error of the libraries: parameters as flags, with the options that help.
 pub(crate) fn error(e: &Error, flags: &Flags) -> String {
@@ -19,6 +20,7 @@ pub(crate) fn error(e: &Error, flags: &Flags) -> String {
         }
         Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
         Error::Input { place, problem } => Error::input(place, flags.in_text(problem)).to_string(),
+        Error::Limit { exceeded, .. } => format!("{e}; {}", raise(exceeded)),
         Error::Geometry(g) => geometry(g, flags),
         _ => flags.in_text(&e.to_string()),
     }
@@ -27,9 +29,27 @@ pub(crate) fn error(e: &Error, flags: &Flags) -> String {
 fn geometry(e: &GeometryError, flags: &Flags) -> String {
     let message = flags.in_text(&flags.in_front(&e.to_string()));
     match e {
+        GeometryError::Limit(exceeded) => format!("{message}; allow a larger --tolerance, or {}", raise(exceeded)),
         GeometryError::Infinity { .. } => format!("{message} (--on-error skip)"),
         GeometryError::FlatFrame { .. } => format!("{message} (--frame X,Y,W,H, or --base where there is one)"),
         _ => message,
+    }
+}
+
+/// How to raise a limit.
+pub(crate) fn raise(exceeded: &Exceeded) -> String {
+    let enough = exceeded.enough();
+    let value = if enough.is_finite() { format!("{enough:.0}") } else { "none".to_owned() };
+    format!("if you trust the file, raise the limit with --limit {}={value}", exceeded.limit)
+}
+
+/// The message of an error about a picture, with advice.
+pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
+    match e {
+        pathwarp_raster::Error::TooLarge { exceeded, .. } | pathwarp_raster::Error::TooMuch(exceeded) => {
+            format!("{e}; {}", raise(exceeded))
+        }
+        _ => e.to_string(),
     }
 }
 
@@ -52,6 +72,20 @@ pub(crate) fn overhang(o: Overhang) -> String {
         three_figures(100.0 * o.share),
         sides.join(", ")
     )
+}
+
+/// Describes images that were not read because they lie outside of the drawing's folder.
+pub(crate) fn outside(unread: &UnreadImages) -> Option<String> {
+    let n = unread.outside.len();
+    let what = if n == 1 { "1 linked image lies".to_owned() } else { format!("{n} linked images lie") };
+    (n > 0).then(|| format!("{what} outside of the drawing's folder; --allow-external reads images from anywhere"))
+}
+
+/// Lists the images that were not read.
+pub(crate) fn unread(unread: &UnreadImages) -> Vec<String> {
+    let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
+    let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
+    unreadable.chain(outside_links).chain(outside(unread)).collect()
 }
 
 /// Describes inputs of a batch whose artwork extends past the page; `file` is the one with the largest `share` of its page.

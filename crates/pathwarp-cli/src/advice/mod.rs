@@ -5,5 +5,5 @@ mod messages;
 mod names;
 
 pub(crate) use flags::Flags;
-pub(crate) use messages::{error, lettering_frame, overhang, overhangs, surface};
+pub(crate) use messages::{error, lettering_frame, outside, overhang, overhangs, picture, raise, surface, unread};
 pub(crate) use names::unknown;

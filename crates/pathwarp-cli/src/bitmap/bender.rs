@@ -1,6 +1,7 @@
 //! [`Bender`]: warps the bitmaps in drawings and paints bent gradients.
 
 use super::inverse::{ROUNDING, inverse};
+use pathwarp::budget::Limits;
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp_raster::{ImageWarp, Picture, PictureFormat, Shade, extent, shade, shown, warp_image};
@@ -15,13 +16,20 @@ pub struct Bender {
     map: Arc<dyn Map>,
     /// Pixels per inch; `None`: as many as keep every detail.
     dpi: Option<f64>,
+    limits: Limits,
 }
 
 impl Bender {
     /// Creates a bender for `map` at `dpi` pixels per inch of the drawing; `None` uses as many as keep every detail.
     #[must_use]
     pub fn new(map: Arc<dyn Map>, dpi: Option<f64>) -> Self {
-        Self { map, dpi }
+        Self { map, dpi, limits: Limits::default() }
+    }
+
+    /// Sets limits on the bitmaps.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Self {
+        Self { limits, ..self }
     }
 }
 
@@ -31,7 +39,8 @@ impl ImageWarper for Bender {
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
-        let picture = Picture::read_stored(r.data).map_err(|e| e.to_string())?;
+        let picture =
+            Picture::read_stored_within(r.data, &self.limits.for_input(r.data.len())).map_err(|e| e.to_string())?;
         let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;

@@ -2,6 +2,7 @@
 
 use super::file_args;
 use crate::failure::Failure;
+use crate::options::{self, Given};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -38,6 +39,7 @@ pub(super) fn command() -> Command {
         .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more than this, in user units"))
         .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this fraction of the pixels differs visibly (0 to 1)"))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
+        .args(options::access_args())
         .after_help(
             "Paths with the same id are compared; paths without an id are matched by their order within the closest ancestor that \
              has one. The distance is the largest from a point of either path to the other path. A pixel differs visibly if a \
@@ -74,7 +76,8 @@ struct Pixels {
 }
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
-    let document = |name: &str| input::document(file_args::given(m, name)?);
+    let access = Given::access(m)?;
+    let document = |name: &str| input::document(file_args::given(m, name)?, &access);
     let (a, b) = (document("A")?, document("B")?);
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
     let result = compare(&a, &b, size)?;
@@ -113,7 +116,8 @@ fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure
     let repeated = |p: &NamedPath| p.group.is_none() && paired_ids.contains(p.id.as_str());
     let unpaired = paths_b.iter().enumerate().filter(|(i, p)| !paired.contains(i) && !repeated(p));
     let only_in_b = unpaired.map(|(_, p)| p.id.clone()).collect();
-    let render = |d: &Document| RenderOptions { size, background: Some(Color::WHITE) }.render(usvg_tree::tree(d));
+    let options = RenderOptions { size, background: Some(Color::WHITE) };
+    let render = |d: &Document| options.render_within(usvg_tree::tree(d), d.budget().limits());
     let pixels = match pathwarp_raster::compare(&render(a)?, &render(b)?) {
         Ok(difference) => Some(Pixels {
             width: difference.width,

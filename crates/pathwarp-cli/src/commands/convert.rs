@@ -3,6 +3,7 @@
 use super::file_args;
 use crate::failure::Failure;
 use crate::input::{self, GimpFile};
+use crate::options::{self, Access, Given};
 use crate::output::{self, PendingFile};
 use crate::sources::Files;
 use crate::status::Status;
@@ -35,6 +36,7 @@ pub(super) fn command() -> Command {
                 .action(ArgAction::SetTrue)
                 .help("Copy the paths before the damage in a damaged file"),
         )
+        .args(options::access_args())
         .after_help(
             "The SVG has its size in px and a matching viewBox, so that GIMP imports it without scaling; path names become ids. \
              Coordinates are written with the precision that GIMP stores.\n\nExamples:\n  pathwarp convert \
@@ -51,7 +53,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let damage = gimp.as_ref().and_then(|g| g.damage.clone());
     let (size, paths) = match &gimp {
         Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
-        None => drawing(file)?,
+        None => drawing(file, &Given::access(m)?)?,
     };
     if let Some(d) = &damage {
         terminal::warning(&format!("{}: {d}", input::display(file)));
@@ -74,8 +76,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
 }
 
 /// The size of an SVG's viewBox and its paths as GIMP would store them, in units of the viewBox.
-fn drawing(file: &Path) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
-    let doc = input::document(file)?;
+fn drawing(file: &Path, access: &Access) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
+    let doc = input::document(file, access)?;
     let page = doc.view_box();
     let to_page = pathwarp::kurbo::Affine::translate(-page.origin().to_vec2());
     let path = |p: pathwarp_svg::NamedPath| {
@@ -96,13 +98,17 @@ fn bytes(to: &Path, size: [f64; 2], paths: &[GimpPath]) -> Result<Vec<u8>, Failu
     }
 }
 
+/// Longest part of a file name that comes from a path's name, in characters of at most four bytes.
+const LONGEST_NAME: usize = 40;
+
 /// A file name for every path, distinct even on file systems that ignore case.
 fn names(out: &Path, paths: &[GimpPath]) -> Vec<PathBuf> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let extension = out.extension().unwrap_or_default().to_string_lossy();
     let mut taken = HashSet::new();
     let mut unique = |p: &GimpPath| {
-        let name = input::file_name(&p.name);
+        // File systems allow 255 bytes; the rest is for the stem, a number and the extension.
+        let name: String = input::file_name(&p.name).chars().take(LONGEST_NAME).collect();
         let numbered = (2..).map(|n| format!("{name}-{n}"));
         let mut tries = std::iter::once(name.clone()).chain(numbered).filter(|n| !n.is_empty());
         tries.find(|n| taken.insert(n.to_lowercase())).unwrap_or(name)

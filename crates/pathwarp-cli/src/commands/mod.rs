@@ -20,7 +20,9 @@ mod unwarp;
 
 use crate::advice;
 use crate::failure::Failure;
+use crate::options::Given;
 use crate::status::Status;
+use crate::watch;
 use clap::Command;
 use clap::error::ErrorKind;
 use pathwarp::deform::Registry;
@@ -39,7 +41,7 @@ Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
 All steps are composed before any curve is fitted. Name the inputs in the first part; common options may be in any part.
 
 Exit codes: 0 success; 1 done, but something was left unchanged or missed the tolerance, or some of several inputs failed;
-2 wrong usage; 3 unreadable input; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
+2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
 On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.";
 
 /// The whole command line.
@@ -103,6 +105,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
+    watch::begin(Given::access(m)?.limits);
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
     }

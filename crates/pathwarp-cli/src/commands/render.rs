@@ -2,8 +2,9 @@
 
 use super::file_args;
 use crate::failure::Failure;
+use crate::options::{self, Given};
 use crate::status::Status;
-use crate::{input, output};
+use crate::{advice, input, output, terminal};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp_raster::{Color, RenderOptions, Size, encode_png};
 use pathwarp_svg::usvg_tree;
@@ -37,6 +38,7 @@ pub(super) fn command() -> Command {
                 .default_value("none")
                 .help("Colour behind the drawing"),
         )
+        .args(options::access_args())
         .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
 }
 
@@ -56,8 +58,14 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         Some("black") => Some(Color::BLACK),
         _ => None,
     };
-    let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
-    let png = encode_png(&RenderOptions { size, background }.render(&tree)?)?;
+    let access = Given::access(m)?;
+    let bytes = input::bytes(file)?;
+    let name = input::display(file);
+    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &access))?;
+    let limits = access.limits.for_input(bytes.len());
+    let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
+    let png = encode_png(&drawn.map_err(|e| Failure::from(e).about(&name))?)?;
+    advice::unread(&read.unread).iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
     output::write(target, &png)?;
-    Ok(Status::Complete)
+    Ok(Status::partial_if(!read.unread.is_empty()))
 }

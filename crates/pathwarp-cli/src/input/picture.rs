@@ -3,9 +3,11 @@
 use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::read::display;
 use super::reference_name::no_document;
+use crate::advice;
 use crate::bitmap::{ROUNDING, inverse};
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
+use pathwarp::budget::{Limit, Limits};
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
@@ -20,6 +22,7 @@ pub(crate) struct PictureArtwork {
     name: String,
     picture: Picture,
     format: PictureFormat,
+    limits: Limits,
     /// The picture's rectangle as an outline.
     outline: Outline,
 }
@@ -43,10 +46,11 @@ impl PictureArtwork {
                 return Err(Failure::usage(format!("--{option} is for SVG files; {name} is a picture")));
             }
         }
-        let picture = Picture::read(bytes)?;
+        let limits = options.access.limits.for_input(bytes.len());
+        let picture = Picture::read_within(bytes, &limits)?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
-        Ok(Self { name, picture, format, outline: Outline::from_points(&corners, true) })
+        Ok(Self { name, picture, format, limits, outline: Outline::from_points(&corners, true) })
     }
 
     fn area(&self) -> Rect {
@@ -103,7 +107,7 @@ impl Artwork for PictureArtwork {
             }
             warnings.push(undefined_at(p));
         }
-        let (visible, size) = size(bounds, options.image_size)?;
+        let (visible, size) = size(bounds, options.image_size, &self.limits)?;
         let inverse = inverse(&map, area);
         let warp = ImageWarp {
             source: &self.picture.pixmap,
@@ -143,7 +147,7 @@ fn format(target: Option<&Path>) -> Result<PictureFormat, Failure> {
 }
 
 /// The part of the plane that the result shows, and its size in pixels: by default one pixel per unit of the plane.
-fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>) -> Result<(Rect, (u32, u32)), Failure> {
+fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>, limits: &Limits) -> Result<(Rect, (u32, u32)), Failure> {
     let shown = match wanted {
         None => Rect::new(
             (bounds.x0 + ROUNDING).floor(),
@@ -161,10 +165,11 @@ fn size(bounds: Rect, wanted: Option<(u32, Option<u32>)>) -> Result<(Rect, (u32,
         Some((w, Some(h))) => (f64::from(w), f64::from(h)),
         Some((w, None)) => (f64::from(w), (f64::from(w) * shown.height() / shown.width()).round().max(1.0)),
     };
-    if width * height > f64::from(pathwarp_raster::MAX_PIXELS) {
+    // The result is held twice: as pixels and as a file.
+    if let Err(e) = limits.check(Limit::Pixels, 2.0 * width * height) {
+        let advice = advice::raise(&e);
         return Err(Failure::Geometry(format!(
-            "the warped picture would have {width:.0} x {height:.0} pixels, more than {}; give --image-size",
-            pathwarp_raster::MAX_PIXELS
+            "the warped picture would have {width:.0} x {height:.0} pixels, which takes {e}; give --image-size, or {advice}"
         )));
     }
     Ok((shown, (width as u32, height as u32)))

@@ -1,6 +1,8 @@
 //! Reads input files, and standard input for `-`.
 
 use crate::failure::Failure;
+use crate::options::Access;
+use crate::watch;
 use pathwarp_svg::{Document, ReadOptions};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -21,10 +23,13 @@ pub(crate) fn display(input: &Path) -> String {
 /// Reads all bytes of a file or of standard input.
 pub(crate) fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
     if !is_stdin(input) {
-        return std::fs::read(input).map_err(|e| Failure::file(input, format!("cannot be read: {e}")));
+        let bytes = std::fs::read(input).map_err(|e| Failure::file(input, format!("cannot be read: {e}")))?;
+        watch::count_input(bytes.len());
+        return Ok(bytes);
     }
     let mut bytes = Vec::new();
     std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::Input(format!("standard input: {e}")))?;
+    watch::count_input(bytes.len());
     if bytes.starts_with(XCF_MAGIC) {
         return Err(Failure::Input("standard input: reading an XCF requires seeking; name the file instead".into()));
     }
@@ -32,21 +37,21 @@ pub(crate) fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// Reads an SVG document. Linked images are looked up relative to its folder.
-pub(crate) fn document(input: &Path) -> Result<Document, Failure> {
+pub(crate) fn document(input: &Path, access: &Access) -> Result<Document, Failure> {
     let bytes = bytes(input)?;
     if bytes.starts_with(XCF_MAGIC) {
         let advice =
             "an XCF holds paths, not a drawing; `pathwarp paths` lists them, `pathwarp convert` copies them to an SVG";
         return Err(Failure::file(input, advice));
     }
-    Ok(Document::read(&bytes, &display(input), &read_options(input))?)
+    Ok(Document::read(&bytes, &display(input), &read_options(input, access))?)
 }
 
 /// Options for reading `input` as SVG: linked images are looked up relative to its folder.
-pub(crate) fn read_options(input: &Path) -> ReadOptions {
+pub(crate) fn read_options(input: &Path, access: &Access) -> ReadOptions {
     let folder = match input.parent() {
         Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
         other => other.map(Path::to_path_buf),
     };
-    ReadOptions::default().with_base_dir(folder)
+    ReadOptions::default().with_base_dir(folder).with_limits(access.limits).with_external(access.external)
 }

@@ -56,7 +56,7 @@ impl SvgArtwork {
         if let Some(t) = target {
             check_extension(t, input)?;
         }
-        let (name, read) = (display(input), read_options(input));
+        let (name, read) = (display(input), read_options(input, &options.access));
         let doc = Document::read(bytes, &name, &read)?;
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
@@ -66,7 +66,9 @@ impl SvgArtwork {
 
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
         let WarpRequest { built, options, tolerance, .. } = request;
-        let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), options.image_dpi));
+        let bender =
+            Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_limits(*self.doc.budget().limits());
+        let bender = Arc::new(bender);
         let gradients = match options.gradients {
             GradientChoice::Fit => Gradients::Fit,
             GradientChoice::Auto => Gradients::Auto(bender.clone()),
@@ -75,6 +77,7 @@ impl SvgArtwork {
         };
         let letters = LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
+        let refit = refit.with_budget(self.doc.budget().clone());
         WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)
@@ -240,6 +243,7 @@ impl Artwork for SvgArtwork {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
         }
         warnings.extend(folds);
+        warnings.extend(advice::outside(&self.doc.unread_images()));
         let surfaces = surface::files(&self.doc, built, &options)?;
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;

@@ -1,7 +1,7 @@
 //! The table of common options as clap arguments.
 
 use super::definition::{CommonOption, LeadingMinus, OptionValue};
-use super::table::OPTIONS;
+use super::table::{ALLOW_EXTERNAL, LIMIT, OPTIONS};
 use clap::{Arg, ArgAction, value_parser};
 use std::path::PathBuf;
 
@@ -20,6 +20,11 @@ pub(crate) fn args() -> impl Iterator<Item = Arg> {
 /// The common options, without the inputs.
 pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
     OPTIONS.iter().map(arg)
+}
+
+/// The options for access to files and work alone.
+pub(crate) fn access_args() -> impl Iterator<Item = Arg> {
+    OPTIONS.iter().filter(|o| [LIMIT, ALLOW_EXTERNAL].contains(&o.name)).map(arg)
 }
 
 fn arg(option: &CommonOption) -> Arg {

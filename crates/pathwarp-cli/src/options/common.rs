@@ -1,6 +1,8 @@
 //! The common options as typed values.
 
+use super::access::Access;
 use super::typed_box::TypedBox;
+use crate::failure::Failure;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length};
 use pathwarp_svg::{LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
@@ -9,6 +11,10 @@ use std::path::PathBuf;
 /// Default tolerance as a fraction of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
 /// plotter draws.
 const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
+
+/// Finest tolerance as a fraction of the largest coordinate: some hundreds of roundings in double precision, below which a fit
+/// chases noise.
+const RESOLUTION: f64 = 1e-13;
 
 /// The box that percentages refer to.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -95,14 +101,24 @@ pub(crate) struct CommonOptions {
     pub(crate) explain: bool,
     /// Number of threads; `None`: one per core.
     pub(crate) jobs: Option<usize>,
+    pub(crate) access: Access,
     pub(crate) quiet: bool,
 }
 
 impl CommonOptions {
     /// Returns the tolerance given, or the default for artwork with this bounding box, in user units.
-    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> f64 {
+    ///
+    /// # Errors
+    /// The tolerance given is finer than numbers of the artwork's size can be.
+    pub(crate) fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> Result<f64, Failure> {
         let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
         let given = self.tolerance.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0);
-        given.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL })
+        let largest = artwork.map_or(0.0, |r| r.x0.abs().max(r.x1.abs()).max(r.y0.abs()).max(r.y1.abs()));
+        let finest = RESOLUTION * largest;
+        if given.is_some_and(|d| d < finest) {
+            let problem = "is finer than the numbers it would be measured with; use at least";
+            return Err(Failure::usage(format!("--tolerance: {:e} {problem} {finest:.0e}", given.unwrap_or(0.0))));
+        }
+        Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * TOLERANCE_OF_DIAGONAL } else { TOLERANCE_OF_DIAGONAL }))
     }
 }

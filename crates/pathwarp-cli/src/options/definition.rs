@@ -33,7 +33,7 @@ pub(crate) enum OptionValue {
     /// Text with its own syntax. The error names the fault without the option.
     Text { name: &'static str, minus: LeadingMinus, set: fn(&mut CommonOptions, &str) -> Result<(), String> },
     /// Text; may be given several times.
-    List { name: &'static str, push: fn(&mut CommonOptions, &str) },
+    List { name: &'static str, push: fn(&mut CommonOptions, &str) -> Result<(), String> },
     /// A file or folder.
     File { name: &'static str, set: fn(&mut CommonOptions, PathBuf) },
 }

@@ -1,5 +1,6 @@
 //! The common options that a command line or a recipe gives, before and after they are read.
 
+use super::access::Access;
 use super::args::INPUT;
 use super::common::CommonOptions;
 use super::definition::{CommonOption, OptionValue};
@@ -25,11 +26,13 @@ impl Given {
         Self { inputs, ..Self::options(m) }
     }
 
-    /// The options of a parsed command line without inputs.
+    /// The options of a parsed command line without inputs. The command may declare only some of them.
     pub(crate) fn options(m: &ArgMatches) -> Self {
         let mut values = Vec::new();
         for option in OPTIONS {
-            if m.value_source(option.name) != Some(ValueSource::CommandLine) {
+            if !matches!(m.try_contains_id(option.name), Ok(true))
+                || m.value_source(option.name) != Some(ValueSource::CommandLine)
+            {
                 continue;
             }
             let typed = match option.value {
@@ -44,9 +47,19 @@ impl Given {
         Self { inputs: Vec::new(), values }
     }
 
+    /// The access that a parsed command line gives.
+    pub(crate) fn access(m: &ArgMatches) -> Result<Access, Failure> {
+        Ok(Self::options(m).read()?.access)
+    }
+
     /// Adds the value of an option named in a recipe. Of several values for an option that does not repeat, the last wins.
     pub(crate) fn push(&mut self, name: &str, value: &str) -> Result<(), String> {
         let option = OPTIONS.iter().find(|o| o.name == name).ok_or_else(|| unknown(name))?;
+        if !option.stored {
+            return Err(format!(
+                "{name} is not for recipes, which describe the deformation only; give it on the command line"
+            ));
+        }
         option.check(value).map_err(|e| format!("{name}: {e}"))?;
         let mut all = std::mem::take(self);
         all.values.push((option, vec![value.into()]));
@@ -154,7 +167,7 @@ fn apply(option: &CommonOption, value: &OsStr, options: &mut CommonOptions) -> R
             }
         }
         OptionValue::Text { set, .. } => set(options, &text)?,
-        OptionValue::List { push, .. } => push(options, &text),
+        OptionValue::List { push, .. } => push(options, &text)?,
         OptionValue::File { set, .. } => set(options, value.into()),
     }
     Ok(())
@@ -210,9 +223,16 @@ mod tests {
     #[test]
     fn wrong_values_and_conflicts_are_found() {
         let mut given = Given::default();
-        for (name, value) in
-            [("wobble", "1"), ("merge", "maybe"), ("precision", "16"), ("jobs", "0"), ("certify", "yes")]
-        {
+        for (name, value) in [
+            ("wobble", "1"),
+            ("merge", "maybe"),
+            ("precision", "16"),
+            ("jobs", "2"),
+            ("certify", "yes"),
+            ("out", "a.svg"),
+            ("limit", "bytes=1e99"),
+            ("allow-external", "true"),
+        ] {
             assert!(given.push(name, value).is_err(), "{name} {value}");
         }
         given.push("tolerance", "-1").unwrap();

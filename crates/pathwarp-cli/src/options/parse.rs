@@ -2,6 +2,7 @@
 
 use super::common::FrameChoice;
 use super::typed_box::TypedBox;
+use pathwarp::budget::{Limit, Limits};
 use pathwarp::param::{Length, LengthUnit};
 use pathwarp_svg::LetteringFrame;
 
@@ -11,6 +12,16 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
         Ok(v) if v > 0.0 && v.is_finite() => Ok(v),
         _ => Err(format!("`{text}` is not a positive number")),
     }
+}
+
+/// Parses a limit, `NAME=N` or `NAME=none`.
+pub(super) fn limit(text: &str, limits: &mut Limits) -> Result<(), String> {
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=N, such as segments=5e6"))?;
+    let limit = Limit::named(name.trim())
+        .ok_or_else(|| crate::advice::unknown("limit", name.trim(), Limit::ALL.into_iter().map(Limit::name)))?;
+    let most = if value.trim() == "none" { f64::INFINITY } else { positive(value.trim())? };
+    *limits = limits.with(limit, most);
+    Ok(())
 }
 
 /// Parses a positive length.

@@ -15,6 +15,10 @@ const fn of_the_run(name: &'static str, value: OptionValue, help: &'static str) 
     CommonOption { stored: false, ..stored(name, value, help) }
 }
 
+/// The options for access to files and work, which commands without other common options have, too.
+pub(super) const LIMIT: &str = "limit";
+pub(super) const ALLOW_EXTERNAL: &str = "allow-external";
+
 /// All common options, in the order of help.
 pub(crate) static OPTIONS: &[CommonOption] = &[
     CommonOption {
@@ -110,12 +114,12 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     },
     stored(
         "select",
-        OptionValue::List { name: "SEL", push: |o, text| o.select.push(text.to_owned()) },
+        OptionValue::List { name: "SEL", push: |o, text| Ok(o.select.push(text.to_owned())) },
         "Warp only these: #id, .class, an element's tag, or a label; may be given several times",
     ),
     stored(
         "exclude",
-        OptionValue::List { name: "SEL", push: |o, text| o.exclude.push(text.to_owned()) },
+        OptionValue::List { name: "SEL", push: |o, text| Ok(o.exclude.push(text.to_owned())) },
         "Leave these unchanged; takes the same values as --select",
     ),
     CommonOption {
@@ -281,6 +285,20 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "Number of threads; the output does not depend on it",
         )
     },
+    of_the_run(
+        LIMIT,
+        OptionValue::List { name: "NAME=N", push: |o, text| parse::limit(text, &mut o.access.limits) },
+        "Raise or lower a limit on the work that an input may cause, such as segments=5e6, or memory=none; may be given \
+         several times. The limits are bytes, elements, comparisons, segments, letters, pixels, painting, image-bytes, \
+         evaluations, seconds (of processor time) and memory (in bytes); without this option they grow with the size of \
+         the input",
+    ),
+    of_the_run(
+        ALLOW_EXTERNAL,
+        OptionValue::Switch(|o| o.access.external = true),
+        "Read linked pictures and drawings from anywhere, not only beside the input or in folders below it, and let a \
+         recipe name files by absolute paths",
+    ),
     CommonOption {
         short: Some('q'),
         ..of_the_run("quiet", OptionValue::Switch(|o| o.quiet = true), "Print no warnings and no progress")

@@ -47,7 +47,7 @@ impl Batch<'_> {
         let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
         let frame = frame.with_units_per_px(artwork.units_per_px());
         let baseline = frame.baseline;
-        let tolerance = options.tolerance_for(bounds, &frame);
+        let tolerance = options.tolerance_for(bounds, &frame)?;
         let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
 
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));

@@ -17,7 +17,7 @@ use crate::input::display;
 use crate::options::{Given, OnFailure};
 use crate::output::{self, Draft, PendingFile};
 use crate::status::Status;
-use crate::{recipe_file, references, temporaries};
+use crate::{recipe_file, references, temporaries, watch};
 use file_run::{Batch, FileRun};
 use folders::Folders;
 use indicatif::ProgressBar;
@@ -35,10 +35,14 @@ use std::time::Instant;
 /// hold in memory.
 const CHUNK_PER_THREAD: usize = 64;
 
+/// More threads than this per core only take memory.
+const MOST_THREADS_PER_CORE: usize = 4;
+
 /// Warps all inputs by a recipe, which was read from the file `from` if there is one.
 pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Option<&Path>) -> Result<Status, Failure> {
     let started = Instant::now();
     let options = given.read()?;
+    watch::begin(options.access.limits);
     let inputs = inputs::inputs(&options)?;
     let jobs = plan::plan(registry, recipe, &options, &inputs, from)?;
     drop(inputs);
@@ -68,7 +72,9 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
 /// The only input fails, any fails and the options say to stop, or the recipe is at fault.
 fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Session<'_>) -> Result<(), Failure> {
     // A single input starts threads only when it has work for them.
-    let threads = (jobs.len() > 1 || batch.options.jobs.is_some()).then(|| batch.options.jobs.unwrap_or(0));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = (jobs.len() > 1 || batch.options.jobs.is_some())
+        .then(|| batch.options.jobs.map_or(0, |n| n.min(cores * MOST_THREADS_PER_CORE)));
     let pool = threads
         .map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build())
         .transpose()
@@ -102,6 +108,7 @@ fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Session<'_>) -> Resul
 /// Runs one job, and puts its files in place unless they have to wait for the others.
 fn one(batch: &Batch<'_>, job: &Job, files_wait: bool, bar: &ProgressBar) -> Result<FileRun, Failure> {
     let name = display(&job.input);
+    let _watched = watch::InBatch::begin();
     let run = catch_unwind(AssertUnwindSafe(|| batch.run(job))).unwrap_or_else(|_| {
         Err(Failure::Input("the program failed on this input (see the message above); please report it".into()))
     });

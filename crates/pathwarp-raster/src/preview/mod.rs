@@ -9,9 +9,11 @@ mod skia;
 
 pub use overlay::{OverlayKind, PreviewOverlay};
 
+use crate::draw::draw;
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
 use kurbo::{Affine, Rect};
+use pathwarp::budget::Limits;
 use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, PixmapPaint, Transform};
 
 /// Default length of the longer side of a panel, in pixels.
@@ -110,13 +112,21 @@ impl<'a> Preview<'a> {
     /// # Errors
     /// [`Error::NoView`] if there is nothing to show; [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes.
     pub fn render(&self) -> Result<Pixmap, Error> {
+        self.render_within(&Limits::default())
+    }
+
+    /// Draws the preview, within limits.
+    ///
+    /// # Errors
+    /// As for [`Preview::render`]; also if drawing takes more than the limits allow.
+    pub fn render_within(&self, limits: &Limits) -> Result<Pixmap, Error> {
         let view = self.view.unwrap_or_else(|| self.before.bounds().union(self.after.bounds())).abs();
         let layout = PanelLayout::new(view, self.panel_size)?;
-        let mut picture = new_pixmap(2.0 * layout.width + layout.gap, layout.height)?;
+        let mut picture = new_pixmap(2.0 * layout.width + layout.gap, layout.height, limits)?;
         picture.fill(Color::from_rgba8(0xc4, 0xc8, 0xcf, 0xff));
         let second = layout.width + layout.gap;
         for (panel, left) in [(&self.before, 0.0), (&self.after, second)] {
-            let drawn = layout.draw(panel)?;
+            let drawn = layout.draw(panel, limits)?;
             #[expect(clippy::cast_possible_truncation, reason = "within the picture")]
             let left = left as i32;
             picture.draw_pixmap(left, 0, drawn.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
@@ -160,16 +170,16 @@ impl PanelLayout {
         Ok(Self { width, height, gap: (GAP * nominal).round().max(1.0), to_panel, unit })
     }
 
-    fn draw(&self, panel: &Panel<'_>) -> Result<Pixmap, Error> {
+    fn draw(&self, panel: &Panel<'_>, limits: &Limits) -> Result<Pixmap, Error> {
         let determinant = panel.user_to_px.determinant();
         if !determinant.is_finite() || determinant == 0.0 {
             return Err(Error::NoView("the map from user units to pixels is singular"));
         }
-        let mut picture = new_pixmap(self.width, self.height)?;
+        let mut picture = new_pixmap(self.width, self.height, limits)?;
         picture.fill(Color::from_rgba8(0xec, 0xee, 0xf1, 0xff));
         self.draw_page(panel.page, &mut picture);
         let tree_to_panel = skia::transform(self.to_panel * panel.user_to_px.inverse());
-        resvg::render(panel.tree, tree_to_panel, &mut picture.as_mut());
+        draw(panel.tree, tree_to_panel, &mut picture, limits)?;
         for overlay in &panel.overlays {
             overlay.draw(self.to_panel, self.unit, &mut picture);
         }

@@ -13,6 +13,7 @@ use crate::error::Error;
 use crate::parallel::for_each_chunk;
 use crate::pixmap::new_pixmap;
 use kurbo::{Affine, Point, Vec2};
+use pathwarp::budget::Limits;
 use pathwarp::map::Jet;
 use tiny_skia::Pixmap;
 
@@ -22,7 +23,9 @@ use tiny_skia::Pixmap;
 /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result.
 pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let (width, height) = warp.size;
-    let mut out = new_pixmap(f64::from(width), f64::from(height))?;
+    // The result may be as large in proportion to its source as any result to its input.
+    let limits = Limits::default().for_input(warp.source.data().len());
+    let mut out = new_pixmap(f64::from(width), f64::from(height), &limits)?;
     let reach = Reach::new(warp, warp.shown.inverse(), TILE);
     let painter = ImagePainter {
         warp,

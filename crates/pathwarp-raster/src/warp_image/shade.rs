@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::parallel::for_each_chunk_pair;
 use crate::pixmap::new_pixmap;
 use kurbo::{Affine, Point};
+use pathwarp::budget::Limits;
 use pathwarp::map::Map;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
@@ -34,7 +35,7 @@ pub struct Shade<'a> {
 /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result.
 pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let (width, height) = shade.size;
-    let mut out = new_pixmap(f64::from(width), f64::from(height))?;
+    let mut out = new_pixmap(f64::from(width), f64::from(height), &Limits::default())?;
     // In this unit the tolerance of a trace is a fraction of a pixel, unless the map compresses.
     let unit = shade.shown.determinant().abs().sqrt();
     let painter = ShadePainter { shade, basis: ChebyshevBasis::new(), to_pixels: Affine::scale(1.0 / unit) };

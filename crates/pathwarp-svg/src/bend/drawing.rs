@@ -63,11 +63,12 @@ pub(crate) fn bend(
                 PartOutcome::Warped(Box::new(warped))
             }
             // Tiles extend past their shape, possibly out of the map's domain. The pattern then follows as a whole.
-            Some(Err(_)) if part.in_tile => PartOutcome::Kept,
+            Some(Err(e)) if part.in_tile && !matches!(e, GeometryError::Limit(_)) => PartOutcome::Kept,
             Some(Err(e)) => {
                 let id = &drawing.shapes()[i].id;
                 let e = e.on_shape(id);
-                if options.on_error == OnError::Stop && part.painted() {
+                let limited = matches!(e, GeometryError::Limit(_));
+                if limited || options.on_error == OnError::Stop && part.painted() {
                     return Err(Error::Geometry(e));
                 }
                 out.skipped.push(Skipped { id: id.clone(), why: e.to_string() });
@@ -75,6 +76,7 @@ pub(crate) fn bend(
             }
         });
     }
+    out.skipped.extend(drawing.far().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
     warn(drawing, options, &outcomes, &slots, out);
     let elements = options.selection.resolve(&drawing.source);
     let is_selected = |b: &Bitmap| b.owner.map_or(options.selection.is_everything(), |e| elements[e]);
@@ -151,9 +153,10 @@ pub(crate) fn bent_parts(drawing: &Drawing, options: &WarpOptions) -> Vec<bool> 
         let any = all || referrers.iter().any(|r| r.owner.or(r.element).is_some_and(|e| elements[e]));
         selected[parts.clone()].fill(any);
     }
-    for (s, p) in selected.iter_mut().zip(&scene.parts) {
+    let far = drawing.far();
+    for (i, (s, p)) in selected.iter_mut().zip(&scene.parts).enumerate() {
         let text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
-        *s &= p.role != PartRole::Pattern && !(text && options.text == TextMode::Skip);
+        *s &= !far.holds(i) && p.role != PartRole::Pattern && !(text && options.text == TextMode::Skip);
     }
     selected
 }

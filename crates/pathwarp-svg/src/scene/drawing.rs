@@ -1,9 +1,10 @@
 //! A drawing: its source text, usvg's tree, and the scene resolved from both.
 
+use super::far::Far;
 use super::geometry::GeometryReader;
 use super::lettering::{self, line::TextLine};
 use super::letters;
-use super::model::Scene;
+use super::model::{Part, Scene};
 use super::resolve::{self, Tiling};
 use super::shape::{self, Shape};
 use crate::source::read::{self, ReadOptions};
@@ -13,6 +14,7 @@ use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::tree::{self, Missed};
 use pathwarp::Error;
+use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect, Size};
 use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
@@ -26,6 +28,7 @@ pub(crate) struct Drawing {
     scene: OnceLock<Scene>,
     shapes: OnceLock<Vec<Shape>>,
     lines: OnceLock<Vec<TextLine>>,
+    far: OnceLock<Far>,
     pub(crate) missed: Missed,
     /// Size in px.
     pub(crate) page: Size,
@@ -34,14 +37,17 @@ pub(crate) struct Drawing {
     pub(crate) tree: Arc<usvg::Tree>,
     letters: Arc<letters::Owners>,
     dpi: f64,
+    /// Counts the work that the drawing causes.
+    pub(crate) budget: Arc<Budget>,
 }
 
 impl Drawing {
     /// Reads an SVG or svgz file. `name` identifies it in errors.
     pub(crate) fn read(data: &[u8], name: &str, options: &ReadOptions) -> Result<Self, Error> {
-        let text = read::text(data, name, options)?;
+        let options = &options.begin(data.len());
+        let text = read::text(data, name, &options.budget)?;
         let dpi = f64::from(options.dpi);
-        let (source, read) = SourceText::read(text, name, |source, xml| {
+        let (source, read) = SourceText::read(text, name, &options.budget, |source, xml| {
             let shallow = is_shallow(source);
             let resolve = || {
                 let (tree, missed) = tree::tree(xml, name, options)?;
@@ -61,12 +67,14 @@ impl Drawing {
             scene,
             shapes: OnceLock::new(),
             lines: OnceLock::new(),
+            far: OnceLock::new(),
             missed,
             page: Size::new(f64::from(tree.size().width()), f64::from(tree.size().height())),
             shallow,
             tree: Arc::new(tree),
             letters: Arc::new(letters),
             dpi,
+            budget: options.budget.clone(),
         })
     }
 
@@ -80,12 +88,14 @@ impl Drawing {
             scene: scene.into(),
             shapes: OnceLock::new(),
             lines: OnceLock::new(),
+            far: OnceLock::new(),
             missed: self.missed.clone(),
             page: self.page,
             shallow: self.shallow,
             tree: self.tree.clone(),
             letters: self.letters.clone(),
             dpi: self.dpi,
+            budget: self.budget.clone(),
         })
     }
 
@@ -149,6 +159,18 @@ impl Drawing {
         let elements = selection.resolve(&self.source);
         let all = selection.is_everything();
         let parts = self.scene().parts.iter();
-        parts.map(|p| p.element().map_or(all, |e| elements[e])).collect()
+        let far = self.far();
+        let selected = |p: &Part| p.element().map_or(all, |e| elements[e]);
+        parts.enumerate().map(|(i, p)| selected(p) && !far.holds(i)).collect()
+    }
+
+    /// The parts whose coordinates are out of range.
+    pub(crate) fn far(&self) -> &Far {
+        if let Some(far) = self.far.get() {
+            return far;
+        }
+        // As for the shapes.
+        let far = Far::of(self);
+        self.far.get_or_init(|| far)
     }
 }

@@ -3,9 +3,11 @@
 use super::encoding::decoded;
 use super::fonts::GenericFamilies;
 use pathwarp::Error;
+use pathwarp::budget::{Budget, Limit, Limits};
 use std::borrow::Cow;
 use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Options for reading a file.
 ///
@@ -31,8 +33,12 @@ pub struct ReadOptions {
     pub generic_families: GenericFamilies,
     /// Resolution in px per inch.
     pub dpi: f32,
-    /// Largest text, in bytes, before and after decompression.
-    pub max_size: usize,
+    /// Limits on the work to read and warp the drawing; those that are not set grow with the size of the file.
+    pub limits: Limits,
+    /// Follow links out of [`base_dir`](Self::base_dir): absolute ones, `..`, and symbolic links.
+    pub external: bool,
+    /// The budget of the file that is being read.
+    pub(crate) budget: Arc<Budget>,
 }
 
 impl Default for ReadOptions {
@@ -43,12 +49,24 @@ impl Default for ReadOptions {
             fonts: Vec::new(),
             generic_families: GenericFamilies::default(),
             dpi: 96.0,
-            max_size: 1 << 29,
+            limits: Limits::default(),
+            external: false,
+            budget: Arc::default(),
         }
     }
 }
 
 impl ReadOptions {
+    /// The options for a file of `bytes`, with a budget of which nothing is used.
+    pub(crate) fn begin(&self, bytes: usize) -> Self {
+        Self { budget: Arc::new(Budget::new(self.limits.for_input(bytes))), ..self.clone() }
+    }
+
+    /// The same options with a budget of which nothing is used.
+    pub(crate) fn begin_again(&self) -> Self {
+        Self { budget: Arc::new(Budget::new(*self.budget.limits())), ..self.clone() }
+    }
+
     /// Sets [`base_dir`](Self::base_dir).
     #[must_use]
     pub fn with_base_dir(self, base_dir: Option<PathBuf>) -> Self {
@@ -79,29 +97,52 @@ impl ReadOptions {
         Self { dpi, ..self }
     }
 
-    /// Sets [`max_size`](Self::max_size).
+    /// Sets [`limits`](Self::limits).
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Self {
+        Self { limits, ..self }
+    }
+
+    /// Sets the limit on the text, in bytes, before and after decompression.
     #[must_use]
     pub fn with_max_size(self, max_size: usize) -> Self {
-        Self { max_size, ..self }
+        let limits = self.limits.with(Limit::Bytes, max_size as f64);
+        Self { limits, ..self }
+    }
+
+    /// Sets [`external`](Self::external).
+    #[must_use]
+    pub fn with_external(self, external: bool) -> Self {
+        Self { external, ..self }
     }
 }
 
 /// Decodes an SVG or svgz file. `name` identifies it in errors.
-pub(crate) fn text(data: &[u8], name: &str, options: &ReadOptions) -> Result<String, Error> {
+pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, Error> {
     let mut bytes = Cow::Borrowed(data);
-    if data.starts_with(&[0x1f, 0x8b]) {
-        let mut out = Vec::new();
-        let limit = options.max_size as u64 + 1;
-        flate2::read::GzDecoder::new(data)
-            .take(limit)
-            .read_to_end(&mut out)
-            .map_err(|e| Error::input(name, format!("the compressed data is damaged: {e}")))?;
+    let unpacked = bytes_unpacked(data, budget.left(Limit::Bytes))
+        .map_err(|e| Error::input(name, format!("the compressed data is damaged: {e}")))?;
+    if let Some(out) = unpacked {
         bytes = Cow::Owned(out);
     }
-    if bytes.len() > options.max_size {
-        return Err(Error::input(name, format!("the text is longer than the limit of {} bytes", options.max_size)));
-    }
+    let size = bytes.len() as u64;
+    // What is packed is unpacked no further than the limit.
+    let counted =
+        if bytes.len() == data.len() { budget.spend(Limit::Bytes, size) } else { budget.spend_cut(Limit::Bytes, size) };
+    counted.map_err(|e| Error::limit(name, "its text takes", e))?;
     decoded(bytes).map_err(|(at, problem)| Error::input(format!("{name}: byte {at}"), problem))
+}
+
+/// Unpacks gzip data up to one byte more than `most`. Returns `None` for other data.
+pub(crate) fn bytes_unpacked(data: &[u8], most: f64) -> std::io::Result<Option<Vec<u8>>> {
+    if !data.starts_with(&[0x1f, 0x8b]) {
+        return Ok(None);
+    }
+    let mut out = Vec::new();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    let limit = (most as u64).saturating_add(1);
+    flate2::read::GzDecoder::new(data).take(limit).read_to_end(&mut out)?;
+    Ok(Some(out))
 }
 
 /// Compresses an SVG file to an svgz file: gzip without time and name, so that equal texts give equal files.

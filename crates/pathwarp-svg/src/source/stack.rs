@@ -24,7 +24,7 @@ pub(crate) fn is_shallow(source: &SourceText) -> bool {
 /// Runs `f` with a stack for the deepest nesting that the parsers accept (1024 elements). A panic inside, which no known file
 /// causes, becomes an error.
 pub(crate) fn with_stack<T: Send>(name: &str, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
-    const STACK: usize = 256 << 20;
+    const STACK: usize = 128 << 20;
     let failed = |why: &str| Error::input(name, format!("this drawing cannot be read: {why}"));
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, f);

@@ -9,6 +9,7 @@ use super::tags::{ElementId, Namespace, is_animation, is_tracked};
 use super::unpatchable::Unpatchable;
 use super::xml;
 use pathwarp::Error;
+use pathwarp::budget::Budget;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -45,8 +46,10 @@ impl SourceText {
     pub(crate) fn read<T>(
         text: String,
         name: &str,
+        budget: &Budget,
         then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
     ) -> Result<(Self, T), Error> {
+        xml::check(&text, name, budget)?;
         let mut text = text;
         let mut undeclared = Vec::new();
         while let Some(marked) = marks::mark(&text) {
@@ -75,13 +78,13 @@ impl SourceText {
         source.marks = marks;
         // Without reliable positions, ids cannot be inserted.
         let marked = if source.unpatchable.is_none() { marked } else { source.text.clone() };
-        let result = then(&source, &xml::parse(&marked, name)?)?;
+        let result = then(&source, &xml::parse_checked(&marked, name)?)?;
         Ok((source, result))
     }
 
-    /// Parses `text` without temporary ids. `name` identifies it in errors.
+    /// Parses `text`, which is known to be within the budget, without temporary ids. `name` identifies it in errors.
     pub(crate) fn parse(text: String, name: &str) -> Result<Self, Error> {
-        let doc = xml::parse(&text, name)?;
+        let doc = xml::parse_checked(&text, name)?;
         let root = doc.root_element();
         let Some(table) = Table::of(&doc, &[]) else {
             let at = doc.text_pos_at(root.range().start);
@@ -310,7 +313,8 @@ mod tests {
             let marked = marks::mark(d).unwrap();
             assert_eq!(marked.text, wanted);
             assert_eq!(marked.marks.elements, marks.elements);
-            let (source, n) = SourceText::read(d.to_owned(), "t", |_, doc| Ok(doc.input_text().len())).unwrap();
+            let (source, n) =
+                SourceText::read(d.to_owned(), "t", &Budget::default(), |_, doc| Ok(doc.input_text().len())).unwrap();
             assert_eq!((n, &source.text), (wanted.len(), &direct.text));
             assert_eq!(format!("{:?}", source.elements), format!("{:?}", direct.elements));
             for e in &source.elements {
@@ -320,8 +324,10 @@ mod tests {
             }
         }
         let (text, ids) = {
-            let (s, text) =
-                SourceText::read(drawings[0].to_owned(), "t", |_, doc| Ok(doc.input_text().to_owned())).unwrap();
+            let (s, text) = SourceText::read(drawings[0].to_owned(), "t", &Budget::default(), |_, doc| {
+                Ok(doc.input_text().to_owned())
+            })
+            .unwrap();
             (text, s.by_tree_id().clone())
         };
         assert_eq!(

@@ -8,20 +8,20 @@
 
 use super::tags::is_shape;
 use pathwarp::Error;
+use pathwarp::budget::{Budget, Exceeded, Limit};
 use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, PseudoClass, StyleSheet};
 use std::collections::HashMap;
 use usvg::roxmltree::{self, Node, NodeId};
 
-/// Largest number of elements after expansion, equal to usvg's own limit for a file. None of two thousand drawings of all
-/// kinds exceeds two thousand.
-const MOST: u64 = 1_000_000;
-/// Deepest nesting of references and elements after expansion. The stack of 256 MiB allows several times as much, but
+/// Deepest nesting of references and elements after expansion. The stack of 128 MiB allows several times as much, but
 /// usvg needs quadratic time for markers on markers.
-const DEEPEST: usize = 4_000;
+const DEEPEST: usize = 2_000;
 /// Drawings with at most this many references cannot expand to much.
 const FEW: usize = 16;
 /// Below this many bytes, vertices times one marker stays small.
 const SMALL: usize = 4096;
+/// Below this many bytes times references, a drawing cannot expand to much.
+const LARGE: usize = 1 << 22;
 
 /// Returns `true` if a drawing could expand to a large number of elements: it has more than a few references, and either
 /// markers, which are drawn at every vertex, or other elements that show what they refer to (`referring`).
@@ -29,30 +29,97 @@ pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referr
     let text = doc.input_text();
     // Entities may contain references.
     let references = || text.bytes().filter(|b| matches!(b, b'#' | b'&')).count();
-    markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && references() > FEW
+    let large = |references: usize| references > FEW || references.saturating_mul(text.len()) > LARGE;
+    markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && large(references())
 }
 
-/// Rejects a drawing that expands to too many elements. `name` identifies the drawing in the error.
+/// Counts a drawing that cannot expand to much.
 ///
 /// # Errors
-/// Returns [`Error::Input`] that names the element.
-pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str) -> Result<(), Error> {
-    Unfolding::of(doc).count().map(|_| ()).map_err(|(node, why)| {
+/// Returns [`Error::Limit`] if it exceeds the budget as it is.
+pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
+    let sizes = doc.descendants().filter(Node::is_element).map(Size::of);
+    let sum = sizes.fold(Size::default(), Size::plus);
+    sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
+    sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))
+}
+
+/// Rejects a drawing that expands to too much. `name` identifies the drawing in the error.
+///
+/// # Errors
+/// Returns [`Error::Limit`] or [`Error::Input`] that names the element.
+pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
+    let counted = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
-        let problem = match why {
-            TooMuch::Elements => format!("{which} expands to more than {MOST} elements"),
-            TooMuch::Depth => format!("the content of {which} nests deeper than {DEEPEST} levels"),
-        };
-        let advice = "through references to references; replace some of them by plain shapes";
-        Error::input(format!("{name}:{line}"), format!("{problem}, {advice}"))
-    })
+        let place = format!("{name}:{line}");
+        match why {
+            TooMuch::Work(e) => Error::limit(place, format!("{which}, with all that its references show, takes"), e),
+            TooMuch::Depth => {
+                let problem =
+                    format!("the content of {which} nests deeper than {DEEPEST} levels, through references to");
+                Error::input(place, format!("{problem} references; replace some of them by plain shapes"))
+            }
+        }
+    })?;
+    counted.0.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))
 }
 
 enum TooMuch {
-    Elements,
+    Work(Exceeded),
     Depth,
+}
+
+/// The size of a part of a drawing.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Size {
+    elements: u64,
+    segments: u64,
+    letters: u64,
+}
+
+impl Size {
+    /// The size of an element without its children.
+    fn of(node: Node<'_, '_>) -> Self {
+        let tag = node.tag_name().name();
+        let is_text = is_painted(tag) && !is_shape(tag);
+        let letters = |n: Node<'_, '_>| n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count());
+        Self {
+            elements: 1,
+            segments: if is_shape(tag) { vertices(node) } else { 0 },
+            letters: if is_text { node.children().map(letters).sum::<usize>() as u64 } else { 0 },
+        }
+    }
+
+    fn plus(self, o: Self) -> Self {
+        Self {
+            elements: self.elements.saturating_add(o.elements),
+            segments: self.segments.saturating_add(o.segments),
+            letters: self.letters.saturating_add(o.letters),
+        }
+    }
+
+    fn times(self, n: u64) -> Self {
+        Self {
+            elements: self.elements.saturating_mul(n),
+            segments: self.segments.saturating_mul(n),
+            letters: self.letters.saturating_mul(n),
+        }
+    }
+
+    fn amounts(self) -> [(Limit, u64); 3] {
+        [(Limit::Elements, self.elements), (Limit::Segments, self.segments), (Limit::Letters, self.letters)]
+    }
+
+    /// Compares with the limits, whatever is used of them.
+    fn exceeded(self, budget: &Budget) -> Result<(), Exceeded> {
+        self.amounts().into_iter().try_for_each(|(limit, n)| budget.check(limit, n as f64))
+    }
+
+    fn spend(self, budget: &Budget) -> Result<(), Exceeded> {
+        self.amounts().into_iter().try_for_each(|(limit, n)| budget.spend(limit, n))
+    }
 }
 
 /// Properties that may refer to an element to be shown.
@@ -89,7 +156,7 @@ struct Body {
 
 /// Content of a body.
 struct Inside {
-    elements: u64,
+    size: Size,
     depth: usize,
     /// Bodies shown inside: how many times, at which depth.
     shown: Vec<(Body, u64, usize)>,
@@ -100,7 +167,7 @@ struct Unfolding<'a, 'i> {
     by_id: HashMap<&'a str, Node<'a, 'i>>,
     sheet: StyleSheet<'a>,
     /// Number of elements and depth by body; `None` while the body is being counted.
-    known: HashMap<Body, Option<(u64, usize)>>,
+    known: HashMap<Body, Option<(Size, usize)>>,
 }
 
 impl<'a, 'i> Unfolding<'a, 'i> {
@@ -123,21 +190,21 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         Self { doc, by_id, sheet, known: HashMap::new() }
     }
 
-    /// Counts all elements with repetitions, and the deepest nesting.
-    fn count(&mut self) -> Result<(u64, usize), (Node<'a, 'i>, TooMuch)> {
+    /// Sums up everything with repetitions, and finds the deepest nesting.
+    fn count(&mut self, budget: &Budget) -> Result<(Size, usize), (Node<'a, 'i>, TooMuch)> {
         let root = Body { node: self.doc.root_element().id(), inherited: None, context: [None; PAINTS] };
         let first = self.inside(root);
         // Visiting elements takes time, too, so it is bounded as well.
-        let mut visited = first.elements;
+        let mut visited = first.size;
         let mut open = vec![(root, first)];
         self.known.insert(root, None);
-        let mut last = (0, 0);
+        let mut last = (Size::default(), 0);
         while let Some((body, inside)) = open.last_mut() {
             if let Some(next) = inside.shown.pop() {
                 let (other, times, at) = next;
                 match self.known.get(&other) {
-                    Some(Some((elements, depth))) => {
-                        inside.elements = inside.elements.saturating_add(elements.saturating_mul(times));
+                    Some(Some((size, depth))) => {
+                        inside.size = inside.size.plus(size.times(times));
                         inside.depth = inside.depth.max(at + depth);
                     }
                     // A cycle: usvg cuts it here.
@@ -145,7 +212,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                     None => {
                         inside.shown.push(next);
                         let new = self.inside(other);
-                        visited += new.elements + new.shown.len() as u64;
+                        visited.elements += new.size.elements + new.shown.len() as u64;
                         self.known.insert(other, None);
                         open.push((other, new));
                     }
@@ -153,12 +220,11 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 continue;
             }
             let node = self.doc.get_node(body.node).unwrap_or(self.doc.root_element());
-            last = (inside.elements, inside.depth);
+            last = (inside.size, inside.depth);
             self.known.insert(*body, Some(last));
             open.pop();
-            if last.0.max(visited) > MOST {
-                return Err((node, TooMuch::Elements));
-            }
+            let counted = last.0.exceeded(budget).and_then(|()| visited.exceeded(budget));
+            counted.map_err(|e| (node, TooMuch::Work(e)))?;
             if last.1.max(open.len()) > DEEPEST {
                 return Err((node, TooMuch::Depth));
             }
@@ -168,12 +234,12 @@ impl<'a, 'i> Unfolding<'a, 'i> {
 
     /// Examines a body without the bodies shown inside.
     fn inside(&self, body: Body) -> Inside {
-        let mut out = Inside { elements: 0, depth: 0, shown: Vec::new() };
+        let mut out = Inside { size: Size::default(), depth: 0, shown: Vec::new() };
         let Some(top) = self.doc.get_node(body.node) else { return out };
         let placed = |node: NodeId| Body { node, inherited: None, context: [None; PAINTS] };
         let mut todo = vec![(top, body.inherited.unwrap_or_else(|| self.place(top)), 1)];
         while let Some((node, mut inherited, depth)) = todo.pop() {
-            out.elements += 1;
+            out.size = out.size.plus(Size::of(node));
             out.depth = out.depth.max(depth);
             let tag = node.tag_name().name();
             if node != top && is_defined(tag) {
@@ -346,12 +412,14 @@ impl simplecss::Element for Element<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pathwarp::budget::Limits;
 
     fn count(body: &str) -> Result<(u64, usize), String> {
         let svg =
             format!("<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink'>{body}</svg>");
         let doc = roxmltree::Document::parse(&svg).unwrap();
-        let counted = Unfolding::of(&doc).count();
+        let budget = Budget::new(Limits::default().with(Limit::Elements, 1e6));
+        let counted = Unfolding::of(&doc).count(&budget).map(|(size, depth)| (size.elements, depth));
         counted.map_err(|(node, _)| node.attribute("id").unwrap_or("").to_owned())
     }
 

@@ -1,20 +1,33 @@
 //! XML text: parsing it, and the escapes for writing it.
 
+use super::precheck;
 use memchr::memchr3;
 use pathwarp::Error;
+use pathwarp::budget::Budget;
 use usvg::roxmltree;
 
 /// Limit on elements, text and comment nodes together. usvg accepts at most a million elements.
 const MOST: u32 = 4_000_000;
 
-/// Parses XML.
-pub(crate) fn document(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error> {
+/// Parses XML that is known to be within the budget.
+pub(super) fn document(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error> {
     let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MOST, ..Default::default() };
     roxmltree::Document::parse_with_options(text, options)
 }
 
 /// Parses XML. `name` identifies the text in errors.
-pub(crate) fn parse<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
+pub(crate) fn parse<'a>(text: &'a str, name: &str, budget: &Budget) -> Result<roxmltree::Document<'a>, Error> {
+    check(text, name, budget)?;
+    parse_checked(text, name)
+}
+
+/// Counts the work of parsing.
+pub(crate) fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
+    precheck::count(text, budget).map_err(|e| Error::limit(name, "its entities and attributes take", e))
+}
+
+/// Parses XML that is known to be within the budget. `name` identifies the text in errors.
+pub(crate) fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
     document(text).map_err(|e| {
         if matches!(e, roxmltree::Error::NodesLimitReached) {
             return Error::input(name, format!("it has more than {MOST} elements, texts and comments"));

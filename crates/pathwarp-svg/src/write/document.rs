@@ -5,7 +5,7 @@ use super::{arrivals, flat, keep, page, unsupported};
 use crate::bend::options::{Structure, WarpOptions};
 use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
 use crate::scene::drawing::Drawing;
-use crate::source::tree::DATA;
+use crate::source::images::{is_same_link, shown};
 use pathwarp::Error;
 
 /// Writes the document to `out`, with warnings and everything skipped.
@@ -54,9 +54,14 @@ fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item
     let images = selected.into_iter().enumerate().filter(|(e, s)| *s && source.elements[*e].tag == "image");
     images.filter_map(|(e, _)| {
         let own = source.link(e)?;
-        let is_own = |link: &&String| **link == *own || link.starts_with(DATA) && own.starts_with(link.as_str());
-        let link = missed.iter().find(is_own)?;
-        let reason = if link.contains("://") { "is not a file on this machine" } else { "cannot be read" };
-        Some(Skipped { id: source.display_name(e), why: format!("its image, {link}, {reason}") })
+        let link = missed.iter().find(|link| is_same_link(&own, link))?;
+        let reason = if link.contains("://") {
+            "is not a file on this machine"
+        } else if drawing.missed.outside.contains(link) {
+            "lies outside of the drawing's folder, and was not read"
+        } else {
+            "cannot be read"
+        };
+        Some(Skipped { id: source.display_name(e), why: format!("its image, {}, {reason}", shown(link)) })
     })
 }

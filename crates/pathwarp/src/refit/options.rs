@@ -1,6 +1,7 @@
 //! Options of a refit.
 
 use super::shared::SharedEdges;
+use crate::budget::Budget;
 use std::sync::Arc;
 
 /// Options of [`warp_path`](super::warp_path).
@@ -22,13 +23,15 @@ pub struct Options {
     pub merge: bool,
     /// Edges that merging leaves alone, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
+    /// Counts evaluations of the map and segments.
+    pub budget: Arc<Budget>,
 }
 
 impl Options {
     /// Checked by dense sampling against `tolerance`; no merging.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, certify: false, merge: false, shared: Arc::default() }
+        Self { tolerance, certify: false, merge: false, shared: Arc::default(), budget: Arc::default() }
     }
 
     /// Sets [`Options::tolerance`].
@@ -53,5 +56,11 @@ impl Options {
     #[must_use]
     pub fn with_shared(self, shared: Arc<SharedEdges>) -> Self {
         Self { shared, ..self }
+    }
+
+    /// Sets [`Options::budget`].
+    #[must_use]
+    pub fn with_budget(self, budget: Arc<Budget>) -> Self {
+        Self { budget, ..self }
     }
 }

@@ -6,10 +6,14 @@ use super::piece::{FittedPiece, PathWriter, reverse};
 use super::report::Assurance;
 use super::segment::SegmentFitter;
 use super::split;
+use crate::budget::Limit;
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{Affine, Line, Point};
+
+/// Number of evaluations of the map after which they are counted in the budget.
+const COUNTED_TOGETHER: usize = 10_000;
 
 /// Moves control points. Only arcs are approximated, after the map, so that the tolerance holds in the image.
 pub(super) fn affine(
@@ -67,6 +71,7 @@ pub(super) fn subpath(
     // Joints of the image that may be smooth, by the index of the segment that begins there.
     let mut smooth = Vec::with_capacity(bounds.capacity());
     let fitter = SegmentFitter { map, degree: map.rational_degree(), creases, options };
+    let mut counted = out.report.evaluations;
     for (i, seg) in sub.segs.iter().enumerate() {
         finite(seg)?;
         if let Some(at) = creases.first_undefined(seg) {
@@ -92,6 +97,12 @@ pub(super) fn subpath(
         }
         if options.merge {
             bounds.push(pieces.len());
+        }
+        let evaluations = out.report.evaluations;
+        if evaluations >= counted + COUNTED_TOGETHER || i + 1 == sub.segs.len() {
+            let new = (evaluations - counted) as u64;
+            options.budget.spend(Limit::Evaluations, new).map_err(GeometryError::Limit)?;
+            counted = evaluations;
         }
     }
     // Across other creases than the domain's edge the image has corners.

@@ -27,11 +27,20 @@ pub struct PathReport {
     pub assurance: Assurance,
     /// Places in the source at which the work budget ran out before the tolerance was met.
     pub over_budget: Vec<Point>,
+    /// Estimated number of evaluations of the map.
+    pub evaluations: usize,
 }
 
 impl Default for PathReport {
     fn default() -> Self {
-        Self { segments_in: 0, segments_out: 0, max_error: 0.0, assurance: Assurance::Exact, over_budget: Vec::new() }
+        Self {
+            segments_in: 0,
+            segments_out: 0,
+            max_error: 0.0,
+            assurance: Assurance::Exact,
+            over_budget: Vec::new(),
+            evaluations: 0,
+        }
     }
 }
 

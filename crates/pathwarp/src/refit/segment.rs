@@ -12,6 +12,14 @@ use crate::map::{Class, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::{CubicBez, Line, Point};
 
+/// Evaluations of the map for an attempt at a piece with its usual checks.
+const EVALUATIONS: usize = 32;
+
+/// The same with the thorough check, which most attempts need where the map oscillates faster than samples can tell. A part with
+/// more attempts than [`HARD`] is such a place.
+const EVALUATIONS_HARD: usize = 800;
+const HARD: usize = 64;
+
 /// Fits the images of single segments.
 pub(super) struct SegmentFitter<'a> {
     pub(super) map: &'a dyn Map,
@@ -121,8 +129,12 @@ impl SegmentFitter<'_> {
         let form = form.map(|f| f.with_blur(blur));
         let degree = degree.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        StretchFitter { source, slow, tolerance, form, degree, scrutiny: Scrutiny::Sufficient, attempts: 0 }
-            .cover(from, to, pieces, report)
+        let scrutiny = Scrutiny::Sufficient;
+        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, scrutiny, attempts: 0 };
+        let covered = fitter.cover(from, to, pieces, report);
+        let each = if fitter.attempts > HARD { EVALUATIONS_HARD } else { EVALUATIONS };
+        report.evaluations += fitter.attempts * each;
+        covered
     }
 
     /// Splits a segment at the map's creases and covers each part under the branch of the map that holds there.

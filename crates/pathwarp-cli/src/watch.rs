@@ -1,0 +1,121 @@
+//! The last resort: a thread that ends the program when it takes too much processor time or memory.
+//!
+//! All known work is counted before it is done (`pathwarp::budget`). Libraries below this program may still meet a file that
+//! they take forever to read, and nothing can interrupt them, so a thread looks at the process from time to time. Ending it so
+//! is like an interruption: temporary files are removed, and no output is half written.
+
+use crate::temporaries;
+use crate::terminal;
+use cpu_time::ProcessTime;
+use memory_stats::memory_stats;
+use pathwarp::budget::{Exceeded, Limit, Limits};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// Time between two looks. Memory grows by at most about ten megabytes in between.
+const INTERVAL: Duration = Duration::from_millis(4);
+
+/// The exit code: as for an input that cannot be read.
+const TOO_MUCH: i32 = 3;
+
+/// What is watched.
+struct Watched {
+    limits: Limits,
+    /// Size of the inputs that are being worked on.
+    bytes: usize,
+    /// Number of these inputs beyond the first.
+    more: usize,
+    /// Processor time when the last input was finished.
+    since: Duration,
+}
+
+static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
+
+/// A program that calls this library with others beside it must not be ended, so watching is for `main_with` to allow.
+static ALLOWED: AtomicBool = AtomicBool::new(false);
+
+/// Allows to end the program.
+pub(crate) fn allow() {
+    ALLOWED.store(true, Ordering::Relaxed);
+}
+
+/// Begins to watch the process, if that is allowed. Further calls only change the limits.
+pub(crate) fn begin(limits: Limits) {
+    if !ALLOWED.load(Ordering::Relaxed) {
+        return;
+    }
+    let mut watched = lock();
+    if let Some(watched) = watched.as_mut() {
+        watched.limits = limits;
+        return;
+    }
+    *watched = Some(Watched { limits, bytes: 0, more: 0, since: Duration::ZERO });
+    drop(watched);
+    // Without a thread, work is still counted.
+    let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
+}
+
+/// Adds the size of a file that is read: larger ones may take longer.
+pub(crate) fn count_input(bytes: usize) {
+    if let Some(watched) = lock().as_mut() {
+        watched.bytes = watched.bytes.saturating_add(bytes);
+    }
+}
+
+/// An input of a batch while it is worked on. Each has the whole allowance.
+pub(crate) struct InBatch(());
+
+impl InBatch {
+    pub(crate) fn begin() -> Self {
+        if let Some(watched) = lock().as_mut() {
+            watched.more += 1;
+        }
+        Self(())
+    }
+}
+
+impl Drop for InBatch {
+    fn drop(&mut self) {
+        if let Some(watched) = lock().as_mut() {
+            watched.more = watched.more.saturating_sub(1);
+            watched.since = used();
+            if watched.more == 0 {
+                watched.bytes = 0;
+            }
+        }
+    }
+}
+
+fn lock() -> MutexGuard<'static, Option<Watched>> {
+    WATCHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Processor time of all threads.
+fn used() -> Duration {
+    ProcessTime::now().as_duration()
+}
+
+fn watch() {
+    loop {
+        std::thread::sleep(INTERVAL);
+        let Some(exceeded) = lock().as_ref().and_then(Watched::exceeded) else { continue };
+        temporaries::remove_all_and(|| {
+            let raise = crate::advice::raise(&exceeded);
+            terminal::error(&format!("the run takes {exceeded}; no further output was written; {raise}"));
+            std::process::exit(TOO_MUCH);
+        });
+    }
+}
+
+impl Watched {
+    /// The limit that is exceeded, if one is.
+    fn exceeded(&self) -> Option<Exceeded> {
+        let inputs = self.more.max(1);
+        let limits = self.limits.for_input(self.bytes / inputs);
+        let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err();
+        let memory = || memory_stats().map_or(0, |m| m.physical_mem);
+        check(Limit::Seconds, used().saturating_sub(self.since).as_secs_f64())
+            .or_else(|| check(Limit::Memory, memory() as f64))
+    }
+}

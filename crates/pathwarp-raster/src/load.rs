@@ -1,0 +1,294 @@
+//! The work that rendering a drawing takes, estimated before it is done: pixels painted, pixels held, and how far geometry
+//! reaches.
+//!
+//! The renderer has no limits of its own. It paints every isolated group, mask and filter on layers that may be larger than
+//! the picture, evaluates filters at any size, decodes pictures whatever size they announce, and aborts on coordinates that
+//! its fixed-point numbers cannot hold.
+//!
+//! A unit of work is about five nanoseconds, which is a pixel composited with a little arithmetic.
+
+use crate::error::Error;
+use crate::picture::header_size;
+use pathwarp::budget::{Limit, Limits};
+use std::collections::HashMap;
+use std::sync::Arc;
+use tiny_skia::{Rect, Transform};
+use usvg::filter::Kind;
+use usvg::{Group, ImageKind, Node, Paint};
+
+/// Farthest that geometry may reach from the picture's origin, in pixels, with stroke widths. The renderer's edges hold 16 bits
+/// before the point after clipping, and its clipping loses its footing from about 1e9 on.
+pub(crate) const FARTHEST: f32 = 1e8;
+
+/// The renderer's layers extend up to twice the picture's size past it on every side.
+const LAYER_REACH: f32 = 2.0;
+
+/// Work for a pixel, by what is done with it.
+const LAYER: f64 = 4.0;
+const GRADIENT: f64 = 2.0;
+const BICUBIC: f64 = 8.0;
+const DECODED: f64 = 4.0;
+const PRIMITIVE: f64 = 6.0;
+const BLURRED: f64 = 20.0;
+const LIT: f64 = 20.0;
+const OCTAVE: f64 = 24.0;
+const WINDOW: f64 = 0.4;
+/// Work for a segment on a scan line, for a segment, for a path, and for a dash.
+const CROSSING: f64 = 0.5;
+const SEGMENT: f64 = 10.0;
+const PATH: f64 = 50.0;
+const DASH: f64 = 200.0;
+
+/// Octaves of turbulence beyond these change no colour of eight bits, and overflow in the renderer.
+const MOST_OCTAVES: u32 = 24;
+
+/// Checks what rendering `tree` takes with `transform` to a picture of `width` × `height` pixels.
+///
+/// # Errors
+/// It exceeds the limits, or geometry reaches too far.
+pub(crate) fn check(
+    tree: &usvg::Tree,
+    transform: Transform,
+    [width, height]: [f32; 2],
+    limits: &Limits,
+) -> Result<(), Error> {
+    let mut load = Load { limits: *limits, work: 0.0, sizes: HashMap::new() };
+    let canvas = f64::from(width) * f64::from(height);
+    load.group(tree.root(), transform, &Canvas { width, height, held: canvas })
+}
+
+/// The surface that is painted on.
+#[derive(Clone, Copy)]
+struct Canvas {
+    width: f32,
+    height: f32,
+    /// Pixels held, with all surfaces below this one.
+    held: f64,
+}
+
+impl Canvas {
+    /// Area of a box on the canvas, in pixels.
+    fn seen(&self, r: Rect) -> [f64; 2] {
+        self.within(r, 0.0)
+    }
+
+    /// Width and height of a layer for a box: it may extend past the canvas.
+    fn layer(&self, r: Rect) -> [f64; 2] {
+        self.within(r, LAYER_REACH)
+    }
+
+    fn within(&self, r: Rect, reach: f32) -> [f64; 2] {
+        let side = |from: f32, to: f32, size: f32| {
+            let (least, most) = (-reach * size, (1.0 + reach) * size);
+            f64::from(to.min(most) - from.max(least)).max(0.0)
+        };
+        [side(r.left(), r.right(), self.width), side(r.top(), r.bottom(), self.height)]
+    }
+}
+
+/// The sum of the work.
+struct Load {
+    limits: Limits,
+    work: f64,
+    /// Sizes of pictures, by the address of their data.
+    sizes: HashMap<usize, f64>,
+}
+
+impl Load {
+    fn add(&mut self, work: f64) -> Result<(), Error> {
+        self.work += work;
+        Ok(self.limits.check(Limit::Painting, self.work)?)
+    }
+
+    /// The canvas with another surface of `area` pixels.
+    fn hold(&self, canvas: &Canvas, area: f64) -> Result<Canvas, Error> {
+        let held = canvas.held + area;
+        self.limits.check(Limit::Pixels, held)?;
+        Ok(Canvas { held, ..*canvas })
+    }
+
+    fn group(&mut self, g: &Group, outer: Transform, canvas: &Canvas) -> Result<(), Error> {
+        let transform = outer.pre_concat(g.transform());
+        if !g.should_isolate() {
+            return g.children().iter().try_for_each(|n| self.node(n, transform, canvas));
+        }
+        let Some(bounds) = g.layer_bounding_box().to_rect().transform(transform) else { return Ok(()) };
+        let [w, h] = canvas.layer(bounds);
+        let area = w * h;
+        self.add(LAYER * area)?;
+        let layer = self.hold(canvas, area)?;
+        let layer = Canvas { held: layer.held, ..*canvas };
+        g.children().iter().try_for_each(|n| self.node(n, transform, &layer))?;
+        for f in g.filters() {
+            self.filter(f, transform, area, &layer)?;
+        }
+        if let Some(clip) = g.clip_path() {
+            self.clip(clip, transform, area, &layer)?;
+        }
+        if let Some(mask) = g.mask() {
+            self.mask(mask, transform, area, &layer)?;
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, n: &Node, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
+        match n {
+            Node::Group(g) => self.group(g, transform, canvas),
+            Node::Text(t) => self.group(t.flattened(), transform, canvas),
+            Node::Path(p) => self.path(p, transform, canvas),
+            Node::Image(i) if i.is_visible() => self.image(i.kind(), i.bounding_box(), transform, canvas),
+            Node::Image(_) => Ok(()),
+        }
+    }
+
+    fn path(&mut self, p: &usvg::Path, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
+        if !p.is_visible() {
+            return Ok(());
+        }
+        let bounds = p.stroke_bounding_box().transform(transform).filter(is_near).ok_or(Error::TooFar)?;
+        let [w, h] = canvas.seen(bounds);
+        let segments = p.data().len() as f64;
+        let mut edges = 0.0;
+        if let Some(fill) = p.fill() {
+            self.add(w * h * paint_work(fill.paint()))?;
+            edges += segments;
+            self.pattern(fill.paint(), transform, canvas)?;
+        }
+        if let Some(stroke) = p.stroke() {
+            let scale = f64::from(transform.sx.hypot(transform.ky).max(transform.kx.hypot(transform.sy)));
+            let width = f64::from(stroke.width().get()) * scale;
+            if width > f64::from(FARTHEST) {
+                return Err(Error::TooFar);
+            }
+            self.add(w * h * paint_work(stroke.paint()))?;
+            edges += 4.0 * segments;
+            if let Some(dashes) = stroke.dasharray() {
+                self.add(DASH * dashes_along(p.data(), dashes))?;
+            }
+            self.pattern(stroke.paint(), transform, canvas)?;
+        }
+        self.add(PATH + edges * (SEGMENT + CROSSING * h))
+    }
+
+    /// The tile of a pattern, which the renderer paints for every shape.
+    fn pattern(&mut self, paint: &Paint, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
+        let Paint::Pattern(pattern) = paint else { return Ok(()) };
+        let (sx, sy) = transform.pre_concat(pattern.transform()).get_scale();
+        let rect = pattern.rect();
+        let (width, height) = (rect.width() * sx, rect.height() * sy);
+        let area = f64::from(width) * f64::from(height);
+        self.add(LAYER * area)?;
+        let held = self.hold(canvas, area)?.held;
+        self.group(pattern.root(), Transform::from_scale(sx, sy), &Canvas { width, height, held })
+    }
+
+    fn image(&mut self, kind: &ImageKind, bounds: Rect, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
+        let data = match kind {
+            ImageKind::SVG(tree) => {
+                let area = f64::from(canvas.width) * f64::from(canvas.height);
+                self.add(2.0 * LAYER * area)?;
+                let inner = self.hold(canvas, area)?;
+                return self.group(tree.root(), transform, &inner);
+            }
+            ImageKind::JPEG(d) | ImageKind::PNG(d) | ImageKind::GIF(d) | ImageKind::WEBP(d) => d,
+        };
+        // A large picture has a large file, wherever it is.
+        self.limits = self.limits.for_input(data.len());
+        let known = Arc::as_ptr(data) as usize;
+        let pixels = *self.sizes.entry(known).or_insert_with(|| {
+            // The renderer skips what it cannot decode.
+            header_size(data).map_or(0.0, |(w, h)| f64::from(w) * f64::from(h))
+        });
+        // The decoder's buffer becomes the picture, or is copied to it.
+        self.hold(canvas, 2.0 * pixels)?;
+        let [w, h] = bounds.transform(transform).map_or([0.0; 2], |b| canvas.seen(b));
+        self.add(DECODED * pixels + BICUBIC * w * h)
+    }
+
+    fn clip(&mut self, c: &usvg::ClipPath, transform: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
+        self.add(LAYER * area)?;
+        let inner = self.hold(canvas, 1.25 * area)?;
+        self.clipped(c.root(), transform.pre_concat(c.transform()), area, &inner)?;
+        c.clip_path().map_or(Ok(()), |c| self.clip(c, transform, area, &inner))
+    }
+
+    /// The content of a clip path, in which groups are not isolated, but may be clipped in turn.
+    fn clipped(&mut self, g: &Group, outer: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
+        let transform = outer.pre_concat(g.transform());
+        let mut surface = *canvas;
+        if let Some(c) = g.clip_path() {
+            self.add(LAYER * area)?;
+            surface = self.hold(canvas, area)?;
+            self.clip(c, transform, area, &surface)?;
+        }
+        g.children().iter().try_for_each(|n| match n {
+            Node::Group(g) => self.clipped(g, transform, area, &surface),
+            Node::Text(t) => self.clipped(t.flattened(), transform, area, &surface),
+            Node::Path(p) => self.path(p, transform, &surface),
+            Node::Image(_) => Ok(()),
+        })
+    }
+
+    fn mask(&mut self, m: &usvg::Mask, transform: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
+        self.add(2.0 * LAYER * area)?;
+        let inner = self.hold(canvas, 1.25 * area)?;
+        self.group(m.root(), transform, &inner)?;
+        m.mask().map_or(Ok(()), |m| self.mask(m, transform, area, &inner))
+    }
+
+    /// A filter on a layer of `area` pixels. The results of all primitives are held until its end.
+    fn filter(
+        &mut self,
+        f: &usvg::filter::Filter,
+        transform: Transform,
+        area: f64,
+        canvas: &Canvas,
+    ) -> Result<(), Error> {
+        let (sx, sy) = transform.get_scale();
+        let mut layer = *canvas;
+        for p in f.primitives() {
+            layer = self.hold(&layer, 2.0 * area)?;
+            let more = match p.kind() {
+                Kind::Turbulence(t) if t.num_octaves() > MOST_OCTAVES => return Err(Error::Octaves(t.num_octaves())),
+                Kind::Turbulence(t) => OCTAVE * f64::from(t.num_octaves()),
+                Kind::Morphology(m) => {
+                    let side = |radius: f32, scale: f32| 2.0 * f64::from(radius * scale) + 1.0;
+                    let window = side(m.radius_x().get(), sx) * side(m.radius_y().get(), sy);
+                    WINDOW * window.min(area)
+                }
+                Kind::ConvolveMatrix(c) => f64::from(c.matrix().columns()) * f64::from(c.matrix().rows()),
+                Kind::GaussianBlur(_) | Kind::DropShadow(_) => BLURRED,
+                Kind::DiffuseLighting(_) | Kind::SpecularLighting(_) => LIT,
+                Kind::Image(i) => {
+                    self.group(i.root(), transform, &layer)?;
+                    0.0
+                }
+                _ => 0.0,
+            };
+            self.add((PRIMITIVE + more) * area)?;
+        }
+        Ok(())
+    }
+}
+
+/// Work for a pixel of a paint.
+fn paint_work(paint: &Paint) -> f64 {
+    match paint {
+        Paint::Color(_) => 1.0,
+        Paint::LinearGradient(_) | Paint::RadialGradient(_) => GRADIENT,
+        Paint::Pattern(_) => BICUBIC,
+    }
+}
+
+/// Returns `true` if the renderer stands these coordinates.
+fn is_near(r: &Rect) -> bool {
+    [r.left(), r.top(), r.right(), r.bottom()].iter().all(|v| v.abs() <= FARTHEST)
+}
+
+/// Number of dashes along a path.
+fn dashes_along(path: &tiny_skia::Path, dashes: &[f32]) -> f64 {
+    let period: f64 = dashes.iter().map(|d| f64::from(*d)).sum();
+    let legs = path.points().windows(2).map(|p| f64::from(p[0].distance(p[1])));
+    let length: f64 = legs.sum();
+    if period > 0.0 { length / period * dashes.len() as f64 } else { 0.0 }
+}

@@ -1,0 +1,194 @@
+//! Images in a drawing: embedded and linked ones, bitmaps and drawings. All of them share the budget of the drawing, and links
+//! are followed only where the user allows it.
+
+use super::fonts::Missing;
+use super::read::{self, ReadOptions};
+use super::{check, range, xml};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use pathwarp::Error;
+use pathwarp::budget::Limit;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+/// Scheme of embedded data.
+const DATA: &str = "data:";
+const BASE64: &str = ";base64,";
+
+/// Pixels held for each pixel of a picture that is warped: decoded, reduced, the result, and its file.
+const COPIES: f64 = 4.0;
+
+/// The links that were not followed.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Unread {
+    pub(super) images: Missing,
+    /// Those of them that lead out of the folder.
+    pub(super) outside: Missing,
+}
+
+/// Media type of data whose format is detected from its content.
+const ANY: &str = "text/plain";
+
+/// The error of the first image that exceeds the limits.
+pub(super) type Rejected = Arc<Mutex<Option<Error>>>;
+
+/// Resolves images, within the limits of the drawing itself.
+pub(super) fn resolver<'a>(
+    name: &'a str,
+    options: &'a ReadOptions,
+    rejected: &Rejected,
+    unread: &Unread,
+) -> usvg::ImageHrefResolver<'a> {
+    let [unread_data, unread_files] = [unread.clone(), unread.clone()];
+    let record = |unread: &Missing, link: String| {
+        if let Ok(mut u) = unread.lock() {
+            u.insert(link);
+        }
+    };
+    let rejected = rejected.clone();
+    let decode = usvg::ImageHrefResolver::default_data_resolver();
+    let load = Arc::new(move |mime: &str, data: Arc<Vec<u8>>, what: &str, usvg: &usvg::Options<'_>| {
+        match checked(mime, data, &format!("{name}: {what}"), options) {
+            Ok(data) => decode(mime, data?, usvg),
+            Err(e) => {
+                if let Ok(mut r) = rejected.lock() {
+                    r.get_or_insert(e);
+                }
+                None
+            }
+        }
+    });
+    let load_file = load.clone();
+    usvg::ImageHrefResolver {
+        resolve_data: Box::new(move |mime, data, usvg| {
+            let image = load(mime, data.clone(), "the picture in an image", usvg);
+            if image.is_none() {
+                record(&unread_data.images, embedded(mime, &data));
+            }
+            image
+        }),
+        resolve_string: Box::new(move |link, usvg| {
+            let found = allowed(Path::new(link), options);
+            if matches!(found, Place::Outside) {
+                record(&unread_files.outside, link.to_owned());
+            }
+            let data = if let Place::Inside(file) = found { linked(&file, options) } else { None };
+            let image = data.and_then(|data| load_file(ANY, Arc::new(data), link, usvg));
+            if image.is_none() {
+                record(&unread_files.images, link.to_owned());
+            }
+            image
+        }),
+    }
+}
+
+/// Media type of drawings.
+const SVG: &str = "image/svg+xml";
+
+/// Counts an image in the budget. A drawing among them is returned as usvg may read it: unpacked, with numbers in range. Returns
+/// `None` for damaged images.
+fn checked(mime: &str, data: Arc<Vec<u8>>, place: &str, options: &ReadOptions) -> Result<Option<Arc<Vec<u8>>>, Error> {
+    let budget = &options.budget;
+    let counted = budget.spend(Limit::ImageBytes, data.len() as u64);
+    counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))?;
+    if mime != SVG {
+        match imagesize::blob_size(&data) {
+            Ok(_) if is_png_without_header(&data) => return Ok(None),
+            Ok(size) => {
+                let pixels = COPIES * size.width as f64 * size.height as f64;
+                let limits = budget.limits().for_input(data.len());
+                let what = format!("a picture of {} x {} pixels takes", size.width, size.height);
+                limits.check(Limit::Pixels, pixels).map_err(|e| Error::limit(place, what, e))?;
+                return Ok(Some(data));
+            }
+            Err(_) if mime != ANY => return Ok(None),
+            Err(_) => {}
+        }
+    }
+    let text = match read::text(&data, place, budget) {
+        Ok(text) => text,
+        Err(e @ Error::Limit { .. }) => return Err(e),
+        Err(_) => return Ok(None),
+    };
+    match xml::parse(&text, place, budget) {
+        Ok(xml) => {
+            check::drawing(&xml, place, budget)?;
+            let text = range::replaced(&xml, place)?.unwrap_or(text);
+            Ok(Some(Arc::new(text.into_bytes())))
+        }
+        Err(e @ Error::Limit { .. }) => Err(e),
+        Err(_) => Ok(None),
+    }
+}
+
+/// Returns `true` for a PNG that does not begin with its header, where a size would be read from other bytes.
+fn is_png_without_header(data: &[u8]) -> bool {
+    data.starts_with(b"\x89PNG") && data.get(12..16) != Some(b"IHDR")
+}
+
+/// Reads a linked image. A link may name anything in the file system, so only plain files up to a limit are read.
+fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
+    let size = std::fs::metadata(file).ok().filter(std::fs::Metadata::is_file)?.len();
+    // Larger files are recorded as unread.
+    options.budget.check(Limit::ImageBytes, size as f64).ok()?;
+    let mut data = Vec::new();
+    File::open(file).ok()?.take(size).read_to_end(&mut data).ok()?;
+    Some(data)
+}
+
+/// Where a link leads.
+enum Place {
+    Inside(PathBuf),
+    /// To a file that must not be read.
+    Outside,
+    Nowhere,
+}
+
+/// Finds the file that a link names. It must be in the base folder or below it, symbolic links followed. Without a base folder,
+/// links are not followed at all.
+fn allowed(link: &Path, options: &ReadOptions) -> Place {
+    let Some(base) = &options.base_dir else { return Place::Nowhere };
+    let file = base.join(link);
+    if options.external {
+        return Place::Inside(file);
+    }
+    // Whether a file exists elsewhere is not looked up, either.
+    if link.has_root() || link.is_absolute() || leaves(link) {
+        return Place::Outside;
+    }
+    match (file.canonicalize(), base.canonicalize()) {
+        (Ok(file), Ok(base)) if file.starts_with(&base) => Place::Inside(file),
+        (Ok(_), Ok(_)) => Place::Outside,
+        _ => Place::Nowhere,
+    }
+}
+
+/// Returns `true` if a relative link goes above the folder where it starts.
+fn leaves(link: &Path) -> bool {
+    let mut depth = 0_i32;
+    link.components().any(|c| {
+        depth += match c {
+            Component::ParentDir => -1,
+            Component::Normal(_) => 1,
+            _ => 0,
+        };
+        depth < 0
+    })
+}
+
+/// The link that embeds these data.
+fn embedded(mime: &str, data: &[u8]) -> String {
+    format!("{DATA}{mime}{BASE64}{}", STANDARD.encode(data))
+}
+
+/// Returns `true` if a link of the source is the one that was recorded: embedded data may hold spaces.
+pub(crate) fn is_same_link(own: &str, recorded: &str) -> bool {
+    own == recorded || recorded.contains(BASE64) && own.split_ascii_whitespace().collect::<String>() == recorded
+}
+
+/// A link as it is shown: of embedded data only the type.
+pub(crate) fn shown(link: &str) -> &str {
+    link.split_once(BASE64).filter(|_| link.starts_with(DATA)).map_or(link, |(head, _)| head)
+}

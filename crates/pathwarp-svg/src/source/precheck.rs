@@ -1,0 +1,130 @@
+//! Work of the XML parser that grows faster than the text, counted before it is done: entities that expand to entities, and
+//! elements with very many attributes or declarations, which the parsers compare with each other.
+
+use memchr::{memchr, memmem};
+use pathwarp::budget::{Budget, Exceeded, Limit};
+use std::collections::HashMap;
+
+/// Shorter tags have so few attributes that comparing them takes no time.
+const LONG_TAG: usize = 4096;
+
+/// Counts the bytes that the entities of a text expand to, and the comparisons of attributes.
+///
+/// # Errors
+/// They exceed the limits.
+pub(crate) fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    entities(text, budget)?;
+    attributes(text, budget)
+}
+
+/// Declarations of entities, and what they expand to.
+fn entities(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    let declared: Vec<(&str, &str)> =
+        memmem::find_iter(text.as_bytes(), "<!ENTITY").filter_map(|at| declaration(&text[at..])).collect();
+    if declared.is_empty() {
+        return Ok(());
+    }
+    // The parser takes the first of several, and searches them in order.
+    let mut index: HashMap<&str, usize> = HashMap::new();
+    for (i, (name, _)) in declared.iter().enumerate() {
+        index.entry(name).or_insert(i);
+    }
+    // An entity may refer to later ones. Values grow with every round until none does; the parser allows ten levels.
+    let mut sizes: Vec<f64> = declared.iter().map(|(_, value)| value.len() as f64).collect();
+    for _ in 0..=LEVELS {
+        let next: Vec<f64> = declared.iter().map(|(_, value)| expanded(value, &index, &sizes)).collect();
+        if next == sizes {
+            break;
+        }
+        sizes = next;
+    }
+    let total = expanded(text, &index, &sizes) - text.len() as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    budget.spend(Limit::Bytes, total.max(0.0) as u64)?;
+    let lookups: u64 = references(text).filter_map(|name| index.get(name)).map(|&i| i as u64 + 1).sum();
+    budget.spend(Limit::Comparisons, lookups)
+}
+
+/// Levels of entities in entities that the parser follows.
+const LEVELS: usize = 10;
+
+/// Name and value of the declaration that a text begins with.
+fn declaration(text: &str) -> Option<(&str, &str)> {
+    let rest = text.strip_prefix("<!ENTITY")?.trim_start();
+    let (name, rest) = rest.split_once(|c: char| c.is_ascii_whitespace())?;
+    let rest = rest.trim_start();
+    let quote = rest.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+    let rest = &rest[1..];
+    Some((name, &rest[..rest.find(quote)?]))
+}
+
+/// The names of the entities that a text refers to.
+fn references(text: &str) -> impl Iterator<Item = &str> {
+    text.split('&').skip(1).filter_map(|rest| {
+        // Names are short; a lone ampersand is no reference.
+        let end = memchr(b';', rest.as_bytes())?;
+        rest.get(..end)
+    })
+}
+
+/// Size of a text with its references expanded.
+fn expanded(text: &str, index: &HashMap<&str, usize>, sizes: &[f64]) -> f64 {
+    let inner = references(text).filter_map(|name| index.get(name)).map(|&i| sizes[i]);
+    text.len() as f64 + inner.sum::<f64>()
+}
+
+/// Comparisons of the names of attributes with each other, and of the declarations in style attributes.
+fn attributes(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(from) = bytes.get(at..).and_then(|b| memchr(b'<', b)).map(|i| at + i) {
+        let to = bytes.get(from..).and_then(|b| memchr(b'>', b)).map_or(bytes.len(), |i| from + i);
+        at = to + 1;
+        if to - from >= LONG_TAG {
+            let count = |is: fn(&u8) -> bool| bytes[from..to].iter().filter(|b| is(b)).count() as u64;
+            let attributes = count(|b| matches!(b, b'"' | b'\'')) / 2;
+            let declarations = count(|b| *b == b';');
+            budget.spend(Limit::Comparisons, (attributes * attributes + declarations * declarations) / 2)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::budget::Limits;
+
+    fn spent(text: &str, limit: Limit) -> f64 {
+        let budget = Budget::new(Limits::none().with(limit, 1e300));
+        count(text, &budget).unwrap();
+        1e300_f64.min(budget.left(limit))
+    }
+
+    /// The expected sizes are counted by hand.
+    #[test]
+    fn expansions_are_counted_before_they_happen() {
+        let within = |text: &str, bytes: f64| {
+            let budget = Budget::new(Limits::default().with(Limit::Bytes, bytes));
+            count(text, &budget).is_ok()
+        };
+        // 10 bytes in four references, less the references themselves.
+        let flat = "<!DOCTYPE s [<!ENTITY a \"aaaaaaaaaa\">]><s>&a;&a;&a;&a;</s>";
+        assert!(within(flat, 40.0) && !within(flat, 39.0));
+        let mut nested = "<!DOCTYPE s [<!ENTITY a0 'ten bytes.'>".to_owned();
+        for i in 1..10 {
+            nested += &format!("<!ENTITY a{i} '{}'>", format!("&a{};", i - 1).repeat(10));
+        }
+        nested += "]><s>&a9;</s>";
+        assert!(!within(&nested, 1e10) && within(&nested, 1e12));
+        assert!(within("<s>a & b; &lt; &amp;</s>", 1.0));
+        assert!(spent("<s/>", Limit::Bytes) >= 1e300);
+    }
+
+    #[test]
+    fn many_attributes_are_many_comparisons() {
+        let tag = |n: usize| format!("<s {}/>", (0..n).map(|i| format!("a{i}=''")).collect::<Vec<_>>().join(" "));
+        let within = |text: &str| count(text, &Budget::default()).is_ok();
+        assert!(within(&tag(1000)) && !within(&tag(100_000)));
+    }
+}

@@ -1,0 +1,100 @@
+//! The work of matching style sheets, measured by doing it once with a counter. A selector of many descendants tries every
+//! way to choose them among an element's ancestors, so a few kilobytes can ask for any amount.
+
+use pathwarp::budget::{Budget, Exceeded, Limit};
+use simplecss::{AttributeOperator, PseudoClass, StyleSheet};
+use std::cell::Cell;
+use usvg::roxmltree::{self, Node};
+
+/// Below this product of the lengths of text and style sheets, matching is fast, unless selectors are deep.
+const SMALL: usize = 1 << 28;
+
+/// Selectors of at most this many parts are tried in few ways.
+const PLAIN: usize = 3;
+
+/// Counts the comparisons that matching a document's style sheets takes.
+///
+/// # Errors
+/// They exceed the limit.
+pub(crate) fn count(doc: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    let mut sheet = StyleSheet::new();
+    let mut length = 0;
+    for node in doc.descendants().filter(|n| n.tag_name().name() == "style") {
+        for text in node.children().filter_map(|c| c.text()) {
+            length += text.len();
+            sheet.parse_more(text);
+        }
+    }
+    let deep = || sheet.rules.iter().any(|r| r.selector.to_string().split([' ', '>', '+']).count() > PLAIN);
+    if length == 0 || length.saturating_mul(doc.input_text().len()) < SMALL && !deep() {
+        return Ok(());
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    let most = budget.left(Limit::Comparisons) as u64;
+    let steps = Cell::new(0);
+    for node in doc.descendants().filter(Node::is_element) {
+        for rule in &sheet.rules {
+            steps.set(steps.get() + 1);
+            if rule.selector.matches(&Counted { node, steps: &steps, most }) {
+                steps.set(steps.get() + rule.declarations.len() as u64);
+            }
+            if steps.get() > most {
+                return budget.spend_cut(Limit::Comparisons, steps.get());
+            }
+        }
+    }
+    budget.spend(Limit::Comparisons, steps.get())
+}
+
+/// An element that counts where a selector goes from it, and has no neighbours once the limit is exceeded.
+struct Counted<'a, 'b, 'i> {
+    node: Node<'b, 'i>,
+    steps: &'a Cell<u64>,
+    most: u64,
+}
+
+impl<'a, 'b, 'i> Counted<'a, 'b, 'i> {
+    fn go(&self, to: Option<Node<'b, 'i>>) -> Option<Self> {
+        self.steps.set(self.steps.get() + 1);
+        let node = to.filter(|_| self.steps.get() <= self.most)?;
+        Some(Self { node, steps: self.steps, most: self.most })
+    }
+}
+
+impl simplecss::Element for Counted<'_, '_, '_> {
+    fn parent_element(&self) -> Option<Self> {
+        self.go(self.node.parent_element())
+    }
+
+    fn prev_sibling_element(&self) -> Option<Self> {
+        self.go(self.node.prev_sibling_element())
+    }
+
+    fn has_local_name(&self, name: &str) -> bool {
+        self.node.tag_name().name() == name
+    }
+
+    fn attribute_matches(&self, name: &str, operator: AttributeOperator<'_>) -> bool {
+        self.node.attribute(name).is_some_and(|v| operator.matches(v))
+    }
+
+    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
+        matches!(class, PseudoClass::FirstChild) && self.node.prev_sibling_element().is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn deep_selectors_end_by_the_limit() {
+        let ends = |parts: usize| {
+            let (open, close) = ("<g>".repeat(60), "</g>".repeat(60));
+            let css = "* ".repeat(parts) + "x";
+            let svg = format!("<svg><style>{css} rect{{fill:red}}</style>{open}<rect/>{close}</svg>");
+            count(&roxmltree::Document::parse(&svg).unwrap(), &Budget::default()).is_err()
+        };
+        assert!(!ends(2) && ends(20));
+    }
+}

@@ -1,0 +1,99 @@
+//! Runs the program under limits of the operating system, and measures it.
+
+use crate::support::pathwarp_program;
+use rustix::process::{Pid, Resource, Rlimit, prlimit};
+use std::fs;
+use std::io::Read as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+use wait4::Wait4 as _;
+
+/// The promise: seconds of processor time, and bytes of memory in use.
+const SECONDS: u64 = 5;
+const MEMORY: u64 = 500_000_000;
+/// Address space may be reserved without being used, for the stacks of threads.
+const ADDRESSES: u64 = 2 * MEMORY;
+
+/// A folder with files.
+pub struct Folder(TempDir);
+
+impl Folder {
+    pub fn with(files: &[(&str, &[u8])]) -> Self {
+        let dir = tempfile::tempdir().unwrap();
+        for (name, content) in files {
+            let path = dir.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, content).unwrap();
+        }
+        Self(dir)
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// Runs the program here. It must end by itself, within the promise.
+    #[track_caller]
+    pub fn run(&self, args: &[&str]) -> (i32, String) {
+        let mut command = Command::new(pathwarp_program());
+        command.args(args).current_dir(self.path());
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let pid = Pid::from_raw(i32::try_from(child.id()).unwrap());
+        let limit = |n| Rlimit { current: Some(n), maximum: Some(n) };
+        // A child that has ended has no limits to set.
+        let _ = prlimit(pid, Resource::As, limit(ADDRESSES));
+        let _ = prlimit(pid, Resource::Cpu, limit(SECONDS));
+        let mut said = String::new();
+        let _ = child.stderr.take().unwrap().read_to_string(&mut said);
+        let done = child.wait4().unwrap();
+        let (time, memory) = (done.rusage.utime + done.rusage.stime, done.rusage.maxrss);
+        let code = done.status.code().unwrap_or_else(|| panic!("{args:?} was killed after {time:?}: {said}"));
+        assert!(time.as_secs() < SECONDS, "{args:?} took {time:?}: {said}");
+        assert!(memory < MEMORY, "{args:?} took {memory} bytes: {said}");
+        assert!([0, 1, 2, 3, 4, 5].contains(&code), "{args:?} ended with {code}: {said}");
+        assert!(!said.contains("panicked"), "{args:?}: {said}");
+        (code, said)
+    }
+
+    /// Runs commands that warp, flatten and render `file`, and returns the code and message of each.
+    #[track_caller]
+    pub fn run_all(&self, file: &str) -> Vec<(i32, String)> {
+        let flat = ["wave", file, "-o", "flat.svg", "--structure", "flatten", "--strokes", "outline", "--fit", "page"];
+        let commands: [&[&str]; 6] = [
+            &["swirl", file, "-o", "out.svg"],
+            &flat,
+            &["mls", file, "--pair", "10,10:20,20", "--pin", "50,50", "--gradients", "exact", "-o", "exact.svg"],
+            &["render", file, "-o", "out.png"],
+            &["paths", file],
+            &["convert", file, "-o", "copy.json"],
+        ];
+        commands.into_iter().map(|c| self.run(c)).collect()
+    }
+
+    /// Asserts that warping and rendering `file` end with these codes and the words, after all commands kept the promise.
+    #[track_caller]
+    pub fn expect(&self, file: &str, [warp, render]: [i32; 2], words: &str) {
+        let all = self.run_all(file);
+        assert_eq!([all[0].0, all[3].0], [warp, render], "{file}: {all:#?}");
+        let ended = all.iter().filter(|(code, _)| *code != 0);
+        for (_, said) in ended.take(1) {
+            assert!(said.contains(words), "{file} does not say `{words}`: {said}");
+        }
+    }
+}
+
+/// A drawing of 100 × 100 units.
+pub fn svg(body: &str) -> Vec<u8> {
+    let names = "xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink'";
+    format!("<svg {names} viewBox='0 0 100 100' width='100' height='100'>{body}</svg>").into()
+}
+
+/// Runs all commands on a drawing.
+#[track_caller]
+pub fn expect(body: &str, codes: [i32; 2], words: &str) {
+    Folder::with(&[("a.svg", &svg(body))]).expect("a.svg", codes, words);
+}
+
+pub const RECT: &str = "<rect x='10' y='10' width='50' height='30'/>";

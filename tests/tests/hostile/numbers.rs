@@ -1,0 +1,55 @@
+//! Numbers beyond what programs compute with.
+
+use crate::bounded::{Folder, RECT, expect, svg};
+
+#[test]
+fn shapes_out_of_range_stay_and_are_reported() {
+    for body in [
+        "<path d='M0 0 L1e308 1e308 L50 10 Z'/>",
+        "<path d='M19.598 3.4e38h.143c.06 0 .1.01.12.03a.107.107 0 0 1 .034.083z'/>",
+        "<path d='M0 0L50 10' stroke='red' stroke-width='1e20' stroke-dasharray='1e20 1e20'/>",
+        "<path d='M0 0L50 10' style='stroke:red;stroke-width:1e20'/>",
+        "<style>path{stroke:red;stroke-width:1e12}</style><path d='M0 0L50 10'/>",
+        "<text y='20' font-size='1e30'>Abc</text>",
+        "<rect width='12345678901' height='5'/>",
+        "<g transform='scale(1e8)'><rect width='50' height='30'/></g>",
+        "<circle r='9' transform='matrix(1e30 0 0 1 0 0)'/>",
+        "<polygon points='0,0 1e12,0 5,5'/>",
+    ] {
+        let folder = Folder::with(&[("a.svg", &svg(&format!("{body}{RECT}")))]);
+        let all = folder.run_all("a.svg");
+        let (code, said) = &all[0];
+        assert_eq!(*code, 1, "{body}: {said}");
+        assert!(said.contains("is out of range") || said.contains("beyond the range"), "{body}: {said}");
+        // The rest of the drawing is warped, and what is out of range keeps its text.
+        let out = std::fs::read_to_string(folder.path().join("out.svg")).unwrap();
+        assert!(!out.contains(RECT) && out.contains(&body[body.len() - 20..]), "{body}: {out}");
+    }
+}
+
+/// Below the bound, the renderer stands every size.
+#[test]
+fn the_renderer_stands_what_it_is_given() {
+    for size in ["1e4", "1e5", "1e6", "1e7", "4e7"] {
+        for (body, strokes) in [
+            (format!("<path d='M0 0L{size} {size}L-{size} 50Z'/>"), ""),
+            (format!("<circle r='{size}'/><ellipse cx='{size}' rx='{size}' ry='.001'/>"), ""),
+            (
+                format!("<path d='M0 0L50 10L20 30C{size} 0 0 {size} 9 9' fill='none'/>"),
+                "stroke='red' stroke-width='3'",
+            ),
+            (
+                "<path d='M0 0L50 10L20 30' fill='none'/>".into(),
+                &*format!("stroke='red' stroke-width='{size}' stroke-dasharray='{size}'"),
+            ),
+            (
+                "<path d='M0 0L50 .001L0 0'/>".into(),
+                "stroke='red' stroke-linejoin='round' stroke-width='30' stroke-miterlimit='1e6'",
+            ),
+        ] {
+            let all = Folder::with(&[("a.svg", &svg(&format!("<g {strokes}>{body}</g>")))]).run_all("a.svg");
+            assert!([0, 3].contains(&all[3].0), "{size} {body}: {}", all[3].1);
+        }
+    }
+    expect("<path d='M0 0L1e8 9L5 5Z'/><path d='M0 0L9e8 9L5 5Z'/>", [0, 3], "");
+}

@@ -1,0 +1,90 @@
+//! Pictures, links, layers, masks and filters.
+
+use crate::bounded::{Folder, RECT, expect, svg};
+
+/// The checksum of a chunk (PNG specification, annex D).
+fn crc(chunk: &[u8]) -> u32 {
+    !chunk.iter().fold(!0, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })
+    })
+}
+
+/// A PNG whose header announces a size, with a few bytes of pixels.
+fn announcing(width: u32, height: u32) -> Vec<u8> {
+    let chunk = |kind: &[u8], data: &[u8]| {
+        let content = [kind, data].concat();
+        [&u32::try_from(data.len()).unwrap().to_be_bytes()[..], &content, &crc(&content).to_be_bytes()].concat()
+    };
+    let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
+    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), chunk(b"IDAT", &[120, 156, 3, 0]), chunk(b"IEND", b"")]
+        .concat()
+}
+
+const IMAGE: &str = "<image width='80' height='80' href='p.png'/>";
+
+#[test]
+fn sizes_are_refused_before_decoding() {
+    for (width, height) in [(60_000, 60_000), (1 << 28, 1), (1, 1 << 28), (u32::MAX >> 1, u32::MAX >> 1)] {
+        let png = announcing(width, height);
+        let folder = Folder::with(&[("p.png", &png), ("a.svg", &svg(IMAGE))]);
+        folder.expect("a.svg", [3, 3], "pixels");
+        let (code, said) = folder.run(&["swirl", "p.png", "-o", "o.png"]);
+        assert_eq!((code, said.contains("pixels")), (3, true), "{said}");
+    }
+}
+
+#[test]
+fn damaged_bitmaps_are_reported() {
+    let whole = announcing(3, 3);
+    for damaged in [&b"\x89PNG\r\n\x1a\njunk, junk, junk, junk, junk"[..], b"\x89PN", &whole[..20], &whole] {
+        let folder = Folder::with(&[("p.png", damaged), ("a.svg", &svg(&format!("{IMAGE}{RECT}")))]);
+        let (code, said) = folder.run(&["swirl", "a.svg", "-o", "o.svg"]);
+        assert_eq!(code, 1, "{said}");
+        assert!(said.contains("image at 1:"), "{said}");
+    }
+}
+
+#[test]
+fn linked_and_nested_drawings_are_counted_together() {
+    let inner = svg(&"<rect width='50' height='30'/><circle r='9'/>".repeat(2000));
+    let links = "<image width='90' height='90' href='in.svg'/>".repeat(500);
+    Folder::with(&[("in.svg", &inner), ("a.svg", &svg(&links))]).expect("a.svg", [3, 3], "elements");
+    let own = svg(&format!("<image width='90' height='90' href='a.svg'/>{RECT}"));
+    Folder::with(&[("a.svg", &own)]).run_all("a.svg");
+}
+
+#[test]
+fn layers_masks_and_filters_are_drawn_within_bounds() {
+    let large = |body: &str| {
+        let text =
+            String::from_utf8(svg(body)).unwrap().replace("width='100' height='100'>", "width='4000' height='4000'>");
+        Folder::with(&[("a.svg", text.as_bytes())])
+    };
+    let masks: String =
+        (1..30).map(|i| format!("<mask id='m{i}'><g mask='url(#m{})'>{RECT}</g></mask>", i - 1)).collect();
+    large(&format!("<mask id='m0'>{RECT}</mask>{masks}<g mask='url(#m29)'>{RECT}</g>")).expect(
+        "a.svg",
+        [0, 3],
+        "pixels",
+    );
+    for filter in [
+        "<feTurbulence numOctaves='20' baseFrequency='.1'/>",
+        "<feTurbulence numOctaves='1000000' baseFrequency='.1'/>",
+        "<feMorphology operator='dilate' radius='40'/>",
+        "<feGaussianBlur stdDeviation='1000'/><feGaussianBlur stdDeviation='1000'/>",
+        &"<feDiffuseLighting><feDistantLight azimuth='9'/></feDiffuseLighting>".repeat(100),
+        &format!("<feConvolveMatrix order='100' kernelMatrix='{}'/>", "1 ".repeat(10_000)),
+    ] {
+        let body = format!(
+            "<filter id='f' x='-9' y='-9' width='20' height='20'>{filter}</filter><g filter='url(#f)'>{RECT}</g>"
+        );
+        let all = large(&body).run_all("a.svg");
+        assert_eq!(all[3].0, 3, "{filter}: {}", all[3].1);
+    }
+    let tile = "<pattern id='p' width='1e5' height='1e5' patternUnits='userSpaceOnUse'><circle r='1'/></pattern>";
+    expect(&format!("{tile}<rect width='90' height='90' fill='url(#p)'/>"), [0, 3], "painting");
+    expect("<path d='M0 0H100' stroke='red' stroke-dasharray='1e-6'/>", [0, 3], "painting");
+    let folder = Folder::with(&[("a.svg", &svg(RECT))]);
+    assert_eq!(folder.run(&["render", "a.svg", "-o", "o.png", "--width", "100000"]).0, 3);
+    assert_eq!(folder.run(&["render", "a.svg", "-o", "o.png", "--width", "3000"]).0, 0);
+}
