@@ -2,11 +2,14 @@
 
 mod batches;
 mod chains;
+mod circles;
 mod commands;
 mod common;
 mod documentation;
 mod encodings;
 mod exit_codes;
+mod explain;
+mod fonts;
 mod overwriting;
 mod report;
 mod selection;

@@ -68,3 +68,20 @@ fn a_page_fitted_to_the_artwork_keeps_its_margin() {
     let out = pathwarp_in(dir.path(), &["affine", "--fit", "page", "--move-x", "1"], bleeding.as_bytes());
     assert!(text(&out.stdout).contains("viewBox='1 20 65 40'"), "{}", text(&out.stdout));
 }
+
+/// Letters of text elements are named as those of outlined words are.
+#[test]
+fn a_fold_of_text_names_the_letters() {
+    let dir = tempfile::tempdir().unwrap();
+    let drawing = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 100'>\
+                   <text id='hello' x='10' y='60' font-size='40'>Q<tspan fill='red'>y</tspan></text></svg>";
+    for (along, letters) in [("x*(60-x)", "hello: the letter “Q” folds over"), ("x*(46-x)", "hello: the letter “Q”")]
+    {
+        let out = pathwarp_in(dir.path(), &["expr", "--x", along, "--no-system-fonts"], drawing.as_bytes());
+        let said = text(&out.stderr);
+        assert!(said.contains(letters), "{said}");
+    }
+    // Both are upside down: neither folds against the other. One in the middle does.
+    let out = pathwarp_in(dir.path(), &["expr", "--x", "-x", "--no-system-fonts"], drawing.as_bytes());
+    assert!(!text(&out.stderr).contains("folds"), "{}", text(&out.stderr));
+}

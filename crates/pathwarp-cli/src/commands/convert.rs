@@ -3,6 +3,7 @@
 use super::file_args;
 use crate::failure::Failure;
 use crate::input::{self, GimpFile};
+use crate::options::{Fonts, font_args, fonts_given};
 use crate::output::{self, PendingFile};
 use crate::sources::Files;
 use crate::status::Status;
@@ -35,6 +36,7 @@ pub(super) fn command() -> Command {
                 .action(ArgAction::SetTrue)
                 .help("Copy the paths before the damage in a damaged file"),
         )
+        .args(font_args())
         .after_help(
             "The SVG has its size in px and a matching viewBox, so that GIMP imports it without scaling; path names become ids. \
              Coordinates are written with the precision that GIMP stores.\n\nExamples:\n  pathwarp convert \
@@ -51,7 +53,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let damage = gimp.as_ref().and_then(|g| g.damage.clone());
     let (size, paths) = match &gimp {
         Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
-        None => drawing(file)?,
+        None => drawing(file, &fonts_given(m)?)?,
     };
     if let Some(d) = &damage {
         terminal::warning(&format!("{}: {d}", input::display(file)));
@@ -74,8 +76,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
 }
 
 /// The size of an SVG's viewBox and its paths as GIMP would store them, in units of the viewBox.
-fn drawing(file: &Path) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
-    let doc = input::document(file)?;
+fn drawing(file: &Path, fonts: &Fonts) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
+    let doc = input::document(file, fonts)?;
     let page = doc.view_box();
     let to_page = pathwarp::kurbo::Affine::translate(-page.origin().to_vec2());
     let path = |p: pathwarp_svg::NamedPath| {

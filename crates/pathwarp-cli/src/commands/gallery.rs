@@ -2,6 +2,7 @@
 
 use super::file_args;
 use crate::failure::Failure;
+use crate::options::{font_args, fonts_given};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -78,6 +79,7 @@ pub(super) fn command(registry: &Registry) -> Command {
                 .default_value("1")
                 .help("Pixels per px in a PNG sheet"),
         )
+        .args(font_args())
         .after_help(
             "All cells have the same scale, except that a much larger result is reduced to fit. Labels are outlines, so they look the \
              same everywhere.\n\nExamples:\n  \
@@ -111,7 +113,8 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
-    let doc = input::document(file)?;
+    let fonts = fonts_given(m)?;
+    let doc = input::document(file, &fonts)?;
     let frame = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
 
     let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
@@ -129,7 +132,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
         cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
         title: title(file, &sets, bend, axis),
     };
-    let svg = sheet(&cells, &options, &input::read_options(file))?;
+    let svg = sheet(&cells, &options, &input::read_options(file, &fonts))?;
     let bytes = if target.is_some_and(is_png) {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));

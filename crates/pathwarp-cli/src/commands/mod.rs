@@ -33,6 +33,8 @@ const AFTER: &str = "Path references (PATHREF), for every option that takes a pa
   FILE            the only path in the file, or a JSON file of points [[x,y],…]
   #NAME           a path of the input document; it becomes a guide: not part of the artwork, but kept in the file
   'M 0,0 C …'     SVG path data
+  circle:r=60mm   a circle about the middle of the frame, or about cx=X,cy=Y
+  arc:r=60mm,from=180,to=360   an arc of it; angles clockwise from the right, so this is the upper half
   'x,y x,y …'     points; percentages count from the left and top of the frame: 50%,0%
 
 Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg

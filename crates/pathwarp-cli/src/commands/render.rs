@@ -2,6 +2,7 @@
 
 use super::file_args;
 use crate::failure::Failure;
+use crate::options::{font_args, fonts_given};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
@@ -37,6 +38,7 @@ pub(super) fn command() -> Command {
                 .default_value("none")
                 .help("Colour behind the drawing"),
         )
+        .args(font_args())
         .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
 }
 
@@ -56,7 +58,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         Some("black") => Some(Color::BLACK),
         _ => None,
     };
-    let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
+    let read = input::read_options(file, &fonts_given(m)?);
+    let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &read)?;
     let png = encode_png(&RenderOptions { size, background }.render(&tree)?)?;
     output::write(target, &png)?;
     Ok(Status::Complete)

@@ -22,6 +22,11 @@ pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
     OPTIONS.iter().map(arg)
 }
 
+/// The options about fonts, for commands that have no other common options.
+pub(crate) fn font_args() -> impl Iterator<Item = Arg> {
+    OPTIONS.iter().filter(|o| o.fonts).map(|o| arg(o).help_heading("Fonts"))
+}
+
 fn arg(option: &CommonOption) -> Arg {
     let mut arg = Arg::new(option.name)
         .long(option.name)

@@ -1,5 +1,6 @@
 //! The common options as typed values.
 
+use super::fonts::Fonts;
 use super::typed_box::TypedBox;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length};
@@ -78,6 +79,7 @@ pub(crate) struct CommonOptions {
     pub(crate) precision: Option<u8>,
     pub(crate) strokes: Strokes,
     pub(crate) text: TextMode,
+    pub(crate) fonts: Fonts,
     pub(crate) gradients: GradientChoice,
     pub(crate) patterns: Patterns,
     pub(crate) page: PageFit,

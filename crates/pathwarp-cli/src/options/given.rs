@@ -3,6 +3,7 @@
 use super::args::INPUT;
 use super::common::CommonOptions;
 use super::definition::{CommonOption, OptionValue};
+use super::fonts::Fonts;
 use super::table::OPTIONS;
 use crate::failure::Failure;
 use clap::ArgMatches;
@@ -27,8 +28,12 @@ impl Given {
 
     /// The options of a parsed command line without inputs.
     pub(crate) fn options(m: &ArgMatches) -> Self {
+        Self::of(OPTIONS.iter(), m)
+    }
+
+    fn of(options: impl Iterator<Item = &'static CommonOption>, m: &ArgMatches) -> Self {
         let mut values = Vec::new();
-        for option in OPTIONS {
+        for option in options {
             if m.value_source(option.name) != Some(ValueSource::CommandLine) {
                 continue;
             }
@@ -122,6 +127,16 @@ impl Given {
         }
         Ok(options)
     }
+}
+
+/// The fonts that a command line of [`font_args`](super::font_args) gives.
+///
+/// # Errors
+/// A file is not a font, a folder holds none, or a value is empty.
+pub(crate) fn fonts_given(m: &ArgMatches) -> Result<Fonts, Failure> {
+    let fonts = Given::of(OPTIONS.iter().filter(|o| o.fonts), m).read()?.fonts;
+    fonts.check()?;
+    Ok(fonts)
 }
 
 /// The values when no option is given.

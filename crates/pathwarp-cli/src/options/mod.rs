@@ -6,13 +6,15 @@
 mod args;
 mod common;
 mod definition;
+mod fonts;
 mod given;
 mod parse;
 mod table;
 mod typed_box;
 
-pub(crate) use args::{args, options_without_inputs};
+pub(crate) use args::{args, font_args, options_without_inputs};
 pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
-pub(crate) use given::Given;
+pub(crate) use fonts::Fonts;
+pub(crate) use given::{Given, fonts_given};
 pub(crate) use parse::rect;
 pub(crate) use table::OPTIONS;

@@ -1,18 +1,28 @@
 //! The table of common options: each is declared here, and nowhere else.
 
-use super::common::{GradientChoice, OnFailure};
+use super::common::{CommonOptions, GradientChoice, OnFailure};
 use super::definition::{CommonOption, LeadingMinus, OptionValue};
 use super::parse;
 use pathwarp_svg::{PageFit, Patterns, Strokes, Structure, TextMode};
 
 /// An option without short name, default and conflicts, stored in recipes.
 const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
-    CommonOption { name, short: None, value, default: None, stored: true, conflicts: &[], help }
+    CommonOption { name, short: None, value, default: None, stored: true, fonts: false, conflicts: &[], help }
 }
 
 /// An option that names files or changes what is printed; recipes do not store it.
 const fn of_the_run(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
     CommonOption { stored: false, ..stored(name, value, help) }
+}
+
+/// A family for one of CSS's generic names.
+const fn family(
+    name: &'static str,
+    set: fn(&mut CommonOptions, &str) -> Result<(), String>,
+    help: &'static str,
+) -> CommonOption {
+    let value = OptionValue::Text { name: "FAMILY", minus: LeadingMinus::No, set };
+    CommonOption { fonts: true, ..stored(name, value, help) }
 }
 
 /// All common options, in the order of help.
@@ -148,6 +158,55 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "Text: warp its outlines, or leave it unchanged",
         )
     },
+    CommonOption {
+        fonts: true,
+        ..of_the_run(
+            "font-file",
+            OptionValue::List { name: "FILE", push: |o, file| o.fonts.paths.push(file.into()) },
+            "Use this font for text, too; may be given several times",
+        )
+    },
+    CommonOption {
+        fonts: true,
+        ..of_the_run(
+            "fonts-dir",
+            OptionValue::List { name: "DIR", push: |o, dir| o.fonts.paths.push(dir.into()) },
+            "Use the fonts in this folder and the folders below, too; may be given several times",
+        )
+    },
+    CommonOption {
+        fonts: true,
+        ..stored(
+            "no-system-fonts",
+            OptionValue::Switch(|o| o.fonts.no_system = true),
+            "Use only the fonts that are given or embedded in the drawing, and the bundled Noto Sans",
+        )
+    },
+    family(
+        "serif-family",
+        |o, name| parse::family(name).map(|n| o.fonts.generic.serif = Some(n)),
+        "The family that serif stands for",
+    ),
+    family(
+        "sans-serif-family",
+        |o, name| parse::family(name).map(|n| o.fonts.generic.sans_serif = Some(n)),
+        "The family that sans-serif stands for",
+    ),
+    family(
+        "cursive-family",
+        |o, name| parse::family(name).map(|n| o.fonts.generic.cursive = Some(n)),
+        "The family that cursive stands for",
+    ),
+    family(
+        "fantasy-family",
+        |o, name| parse::family(name).map(|n| o.fonts.generic.fantasy = Some(n)),
+        "The family that fantasy stands for",
+    ),
+    family(
+        "monospace-family",
+        |o, name| parse::family(name).map(|n| o.fonts.generic.monospace = Some(n)),
+        "The family that monospace stands for",
+    ),
     CommonOption {
         default: Some("auto"),
         ..stored(

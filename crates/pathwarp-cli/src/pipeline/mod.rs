@@ -40,6 +40,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     let started = Instant::now();
     let options = given.read()?;
     let inputs = inputs::inputs(&options)?;
+    options.fonts.check()?;
     let jobs = plan::plan(registry, recipe, &options, &inputs, from)?;
     drop(inputs);
     if options.dry_run {
@@ -47,7 +48,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
         return Ok(Status::Complete);
     }
     let mut resolved = recipe.clone();
-    references::resolve_files(registry, &mut resolved)?;
+    references::resolve_files(registry, &mut resolved, &options.fonts)?;
     let batch = Batch { registry, recipe: &resolved, options: &options, given, flags: Flags::of(registry) };
 
     let _empty_ones_removed_at_the_end = Folders::create(&options, &jobs)?;
