@@ -65,6 +65,18 @@ fn lines_take_the_guides_one_by_one() {
     assert!(String::from_utf8(out.stderr).unwrap().contains("1 band(s)"));
 }
 
+/// Outlines that are not lettering have no known lines, and stand on the first guide of button in one piece.
+#[test]
+fn artwork_without_lines_is_not_divided() {
+    for (options, bands) in
+        [(&[][..], "1 band(s)"), (&["--split", "40%,60%"], "3 band(s)"), (&["--box", "artwork"], "3 band(s)")]
+    {
+        let args = [&["wordart", "samples/lettering.svg", "--preset", "button", "--explain"], options].concat();
+        let said = String::from_utf8(pathwarp_in(&root(), &args, b"").stderr).unwrap();
+        assert!(said.contains(bands), "{options:?}: {said}");
+    }
+}
+
 /// A box given in user units or % is used as it is; text on a single guide is scaled to its length.
 #[test]
 fn a_box_can_be_given() {

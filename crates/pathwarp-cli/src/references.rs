@@ -85,7 +85,10 @@ fn in_file(reference: &str, fonts: &Fonts) -> Result<Outline, Error> {
     }
     let shown = file.display();
     let bytes = std::fs::read(&file).map_err(|e| {
-        let problem = format!("cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data or points");
+        let problem = format!(
+            "cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data, \
+                       points, circle:r=R or arc:r=R,from=A,to=B"
+        );
         Error::input(shown.to_string(), problem)
     })?;
     if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {

@@ -19,6 +19,8 @@ fn likely_mistakes_get_an_answer() {
         (&["gallery", "p.xcf"], 3, "an XCF holds paths"),
         (&["expr", "a.svg", "--x", "sqrt(x-300)"], 4, "at 0.0000,0.0000 sqrt(-300) has no finite value"),
         (&["affine", "a.svg", "+", "expr", "--x", "1/(x-50)", "--y", "ln(y-100)"], 4, "has no finite value"),
+        (&["bend", "a.svg", "--along", "circel:r=3"], 3, "circle:r=R"),
+        (&["shaper", "a.svg", "--base"], 2, "quote it: '#NAME'"),
         (&["anamorph", "a.svg", "--distance", "50cm"], 2, "--onto is needed"),
     ] {
         let out = pathwarp_in(dir.path(), args, b"");

@@ -7,8 +7,7 @@ use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
-use pathwarp::kurbo::Rect;
-use pathwarp::param::{Args, Frame, Kind};
+use pathwarp::param::{Args, Axis, Frame, Kind};
 use pathwarp::refit;
 use pathwarp_raster::{RenderOptions, Size, encode_png};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
@@ -120,7 +119,10 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
     let presets: Vec<Preset<'_>> =
         sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis)).collect();
-    let draw = |p: &Preset<'_>| Ok(Cell { svg: p.warp(&doc, frame)?, label: p.name.to_owned() });
+    let lettering = doc.lettering(&Selection::default());
+    let frame = Frame::new(frame);
+    let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
+    let draw = |p: &Preset<'_>| Ok(Cell { svg: p.warp(&doc, &frame)?, label: p.name.to_owned() });
     let mut cells: Vec<Cell> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
     // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
     if sets.iter().any(|(_, g)| g.bend.is_some()) {
@@ -188,9 +190,9 @@ fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: 
 
 impl Preset<'_> {
     /// The artwork under the preset.
-    fn warp(&self, doc: &Document, frame: Rect) -> Result<String, Failure> {
-        let built = self.entry.build_from(&self.args, &Frame::new(frame))?;
-        let tolerance = TOLERANCE * frame.width().hypot(frame.height());
+    fn warp(&self, doc: &Document, frame: &Frame) -> Result<String, Failure> {
+        let built = self.entry.build_from(&self.args, frame)?;
+        let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
         Ok(doc.warp(&built.map, &WarpOptions::new(refit::Options::new(tolerance)))?.svg)
     }
 }

@@ -22,9 +22,12 @@ use crate::advice;
 use crate::failure::Failure;
 use crate::status::Status;
 use clap::Command;
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
+
+/// The placeholder of a path reference in help.
+const PATHREF: &str = "PATHREF";
 
 const ABOUT: &str = "Bends, warps and deforms SVG artwork, and writes clean Bézier curves.";
 
@@ -130,8 +133,15 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
 }
 
-/// Suggests a command to `pathwarp help NAME`, for which clap does not.
-fn suggested(registry: &Registry, args: &[OsString], error: clap::Error) -> Failure {
+/// Suggests a command to `pathwarp help NAME`, for which clap does not, and quotes around `#NAME`, which shells take for a comment.
+fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Failure {
+    if error.kind() == ErrorKind::InvalidValue
+        && let Some(ContextValue::String(arg)) = error.get(ContextKind::InvalidArg)
+        && arg.contains(PATHREF)
+    {
+        let tip = "shells take a word that starts with # for a comment; quote it: '#NAME'";
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
     let wanted = args.get(2).map(|name| name.to_string_lossy());
     match wanted {
         Some(name) if error.kind() == ErrorKind::InvalidSubcommand && args[1] == "help" => {

@@ -64,7 +64,7 @@ in menus (\"Chevron Up\") and files (textChevron) work too.\n\nThe artwork's box
 arch-up, arch-down, circle and button it stands on them instead. Shapes are drawn in the artwork's box, but round ones (these four, the pours \
 and the rings) in one that suits its proportion: on a single guide, letters keep their size, measured at half their height, in a square that \
 the text fills, and short words in one so large that no letter is twice as wide at one end as at the other; between two guides, the box that \
-distorts least. Lettering of fewer lines than button has guides takes the first ones. --box artwork draws these in the artwork's box too, and \
+distorts least. Lettering of fewer lines than button has guides takes the first ones, and artwork that is not lettering the first, unless --split divides it. --box artwork draws these in the artwork's box too, and \
 --box X,Y,W,H in any box; text on a single guide is then scaled to its length.\n\ndeflate-inflate has two bands, \
 deflate-inflate-deflate, button and button-pour have three, for as many lines of text. --split sets the heights at which the artwork is \
 divided; by default between as many lines, or evenly.\n\nA shape of your own is a TOML or JSON file of adjust values, formulas over w and h (the \

@@ -121,7 +121,10 @@ impl WordArt {
         let lines = place::lines(&self.letters, *rect);
         let bands = match guides(rect.width(), rect.height())? {
             Guides::Between(b) => b.len(),
-            Guides::Along(p) if self.split.is_none() && !lines.is_empty() => p.len().min(lines.len()),
+            // Artwork without known lines counts as one, unless it is laid into a given box.
+            Guides::Along(p) if self.split.is_none() && (self.shape_box == ShapeBox::Fit || !lines.is_empty()) => {
+                p.len().min(lines.len().max(1))
+            }
             Guides::Along(p) => p.len(),
         };
         let cuts = self.cuts(bands, &lines)?;
