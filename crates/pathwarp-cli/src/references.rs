@@ -2,17 +2,19 @@
 
 use crate::failure::Failure;
 use crate::input::{GimpFile, read_data_file, split_reference};
+use crate::options::Reading;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
 use pathwarp::param::{Kind, is_inline};
 use pathwarp::recipe::Recipe;
 use pathwarp::{Error, Outline};
-use pathwarp_svg::{Document, ReadOptions};
+use pathwarp_svg::Document;
 use std::path::{Path, PathBuf};
 
 /// Looks up every file that a recipe refers to. References to the input document, `#NAME`, stay open.
-pub(crate) fn resolve_files(registry: &Registry, recipe: &mut Recipe) -> Result<(), Failure> {
-    let outside = |reference: &str| if reference.starts_with('#') { Ok(None) } else { in_file(reference).map(Some) };
+pub(crate) fn resolve_files(registry: &Registry, recipe: &mut Recipe, reading: &Reading) -> Result<(), Failure> {
+    let outside =
+        |reference: &str| if reference.starts_with('#') { Ok(None) } else { in_file(reference, reading).map(Some) };
     for step in &mut recipe.steps {
         let Some(e) = registry.get(&step.deformation) else { continue };
         let paths = step.args.resolve_paths(e.info().params, outside);
@@ -73,7 +75,7 @@ pub(crate) fn files_written<'a>(
 }
 
 /// Looks up `FILE#NAME` or `FILE`.
-fn in_file(reference: &str) -> Result<Outline, Error> {
+fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
     let (file, name) = split_reference(reference);
     if let Some(gimp) = GimpFile::read(&file, false)? {
         return Ok(match name {
@@ -83,13 +85,16 @@ fn in_file(reference: &str) -> Result<Outline, Error> {
     }
     let shown = file.display();
     let bytes = std::fs::read(&file).map_err(|e| {
-        let problem = format!("cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data or points");
+        let problem = format!(
+            "cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data, \
+                       points, circle:r=R or arc:r=R,from=A,to=B"
+        );
         Error::input(shown.to_string(), problem)
     })?;
     if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
         return points(&bytes).map_err(|e| Error::input(reference, e));
     }
-    let doc = Document::read(&bytes, &shown.to_string(), &ReadOptions::default())?;
+    let doc = Document::read(&bytes, &shown.to_string(), &reading.read_options())?;
     if let Some(name) = name {
         return Ok(doc.path(name)?.outline);
     }

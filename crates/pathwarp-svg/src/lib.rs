@@ -52,7 +52,7 @@ pub use embed::Origin;
 pub use scene::lettering::selected::{Lettering, LetteringFrame, LetteringFrameError};
 pub use scene::shape::{NamedPath, Shape};
 pub use scene::unread::UnreadImages;
-pub use source::fonts::{FontFile, GenericFamilies, bundled_font, installed_styles, system_font};
+pub use source::fonts::{FontFile, GenericFamilies, bundled_font, check_fonts, family_styles, find_font};
 pub use source::read::{ReadOptions, compressed};
 pub use source::select::Selection;
 pub use write::lettering::{LetteringOptions, write_lettering};

@@ -4,6 +4,7 @@ use crate::error::{Error, guarded};
 use crate::glyph::Outlines;
 use crate::metrics::{FontAxis, FontMetrics};
 use crate::setting::Variation;
+use crate::synthesis::Synthesis;
 use harfrust::{ShaperData, ShaperInstance};
 use kurbo::Shape as _;
 use skrifa::charmap::Charmap;
@@ -22,6 +23,7 @@ pub struct Font<'a> {
     charmap: Charmap<'a>,
     units_per_em: f64,
     metrics: FontMetrics,
+    pub(crate) synthesis: Synthesis,
 }
 
 impl fmt::Debug for Font<'_> {
@@ -63,6 +65,7 @@ impl<'a> Font<'a> {
             charmap: Charmap::new(&font),
             units_per_em,
             metrics: FontMetrics::default(),
+            synthesis: Synthesis::default(),
             font,
         };
         out.measure();
@@ -92,6 +95,20 @@ impl<'a> Font<'a> {
         self.instance = ShaperInstance::from_coords(&self.font, location.coords().iter().copied());
         self.measure();
         Ok(self)
+    }
+
+    /// Thickens the stems of every letter by `share` of the em, and widens its advance by as much: a synthesised bold.
+    #[must_use]
+    pub fn emboldened(mut self, share: f64) -> Self {
+        self.synthesis.bold = share;
+        self
+    }
+
+    /// Slants every letter to the right, in degrees: a synthesised italic.
+    #[must_use]
+    pub fn slanted(mut self, degrees: f64) -> Self {
+        self.synthesis.slant = degrees;
+        self
     }
 
     /// Returns the weight of the font as it was designed, such as 400 for a regular and 700 for a bold one.

@@ -35,6 +35,7 @@ mod painter;
 mod setting;
 mod shape;
 mod style;
+mod synthesis;
 
 pub use error::Error;
 pub use font::Font;

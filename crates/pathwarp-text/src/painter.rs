@@ -57,7 +57,10 @@ impl GlyphPainter<'_, '_> {
         let key = (g.font, g.id);
         let glyph = match self.drawn.entry(key) {
             Entry::Occupied(e) => e.into_mut(),
-            Entry::Vacant(e) => e.insert(font.outlines.draw(GlyphId::new(g.id), font.location())?),
+            Entry::Vacant(e) => {
+                let outline = font.outlines.draw(GlyphId::new(g.id), font.location())?;
+                e.insert(font.synthesis.apply(outline, font.units_per_em()))
+            }
         };
         self.budget = self
             .budget

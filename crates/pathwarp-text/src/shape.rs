@@ -111,12 +111,14 @@ impl RunShaper<'_, '_> {
                 out.push(ShapedCluster { range: start..end, advance: 0.0, glyphs: Vec::new(), missing: false });
             }
             let Some(cluster) = out.last_mut() else { continue };
+            // Marks without advance stay so.
+            let thicker = if place.x_advance > 0 { font.synthesis.bold * self.size } else { 0.0 };
             let glyph = PlacedGlyph {
                 font: index,
                 id: info.glyph_id,
                 dx: cluster.advance + f64::from(place.x_offset) * scale,
                 dy: -f64::from(place.y_offset) * scale,
-                advance: f64::from(place.x_advance) * scale,
+                advance: f64::from(place.x_advance) * scale + thicker,
             };
             cluster.advance += glyph.advance;
             cluster.missing |= glyph.id == 0;

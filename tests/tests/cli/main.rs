@@ -2,12 +2,15 @@
 
 mod batches;
 mod chains;
+mod circles;
 mod commands;
 mod common;
 mod documentation;
 mod encodings;
 mod exit_codes;
+mod explain;
 mod faults;
+mod fonts;
 mod overwriting;
 mod report;
 mod selection;

@@ -19,6 +19,8 @@ fn likely_mistakes_get_an_answer() {
         (&["gallery", "p.xcf"], 3, "an XCF holds paths"),
         (&["expr", "a.svg", "--x", "sqrt(x-300)"], 4, "at 0.0000,0.0000 sqrt(-300) has no finite value"),
         (&["affine", "a.svg", "+", "expr", "--x", "1/(x-50)", "--y", "ln(y-100)"], 4, "has no finite value"),
+        (&["bend", "a.svg", "--along", "circel:r=3"], 3, "circle:r=R"),
+        (&["shaper", "a.svg", "--base"], 2, "quote it: '#NAME'"),
         (&["anamorph", "a.svg", "--distance", "50cm"], 2, "--onto is needed"),
     ] {
         let out = pathwarp_in(dir.path(), args, b"");
@@ -67,4 +69,21 @@ fn a_page_fitted_to_the_artwork_keeps_its_margin() {
     let bleeding = drawing.replace("M5,20", "M-5,20").replace("H5Z", "H-5Z");
     let out = pathwarp_in(dir.path(), &["affine", "--fit", "page", "--move-x", "1"], bleeding.as_bytes());
     assert!(text(&out.stdout).contains("viewBox='1 20 65 40'"), "{}", text(&out.stdout));
+}
+
+/// Letters of text elements are named as those of outlined words are.
+#[test]
+fn a_fold_of_text_names_the_letters() {
+    let dir = tempfile::tempdir().unwrap();
+    let drawing = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 100'>\
+                   <text id='hello' x='10' y='60' font-size='40'>Q<tspan fill='red'>y</tspan></text></svg>";
+    for (along, letters) in [("x*(60-x)", "hello: the letter “Q” folds over"), ("x*(46-x)", "hello: the letter “Q”")]
+    {
+        let out = pathwarp_in(dir.path(), &["expr", "--x", along, "--no-system-fonts"], drawing.as_bytes());
+        let said = text(&out.stderr);
+        assert!(said.contains(letters), "{said}");
+    }
+    // Both are upside down: neither folds against the other. One in the middle does.
+    let out = pathwarp_in(dir.path(), &["expr", "--x", "-x", "--no-system-fonts"], drawing.as_bytes());
+    assert!(!text(&out.stderr).contains("folds"), "{}", text(&out.stderr));
 }

@@ -2,7 +2,7 @@
 
 use super::file_args;
 use crate::failure::Failure;
-use crate::options::{self, Given};
+use crate::options::{Given, reading_args};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -39,7 +39,7 @@ pub(super) fn command() -> Command {
         .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more than this, in user units"))
         .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this fraction of the pixels differs visibly (0 to 1)"))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
-        .args(options::access_args())
+        .args(reading_args())
         .after_help(
             "Paths with the same id are compared; paths without an id are matched by their order within the closest ancestor that \
              has one. The distance is the largest from a point of either path to the other path. A pixel differs visibly if a \
@@ -76,8 +76,8 @@ struct Pixels {
 }
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
-    let access = Given::access(m)?;
-    let document = |name: &str| input::document(file_args::given(m, name)?, &access);
+    let reading = Given::reading(m)?;
+    let document = |name: &str| input::document(file_args::given(m, name)?, &reading);
     let (a, b) = (document("A")?, document("B")?);
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
     let result = compare(&a, &b, size)?;

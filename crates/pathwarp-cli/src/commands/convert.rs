@@ -3,7 +3,7 @@
 use super::file_args;
 use crate::failure::Failure;
 use crate::input::{self, GimpFile};
-use crate::options::{self, Access, Given};
+use crate::options::{Given, Reading, reading_args};
 use crate::output::{self, PendingFile};
 use crate::sources::Files;
 use crate::status::Status;
@@ -36,7 +36,7 @@ pub(super) fn command() -> Command {
                 .action(ArgAction::SetTrue)
                 .help("Copy the paths before the damage in a damaged file"),
         )
-        .args(options::access_args())
+        .args(reading_args())
         .after_help(
             "The SVG has its size in px and a matching viewBox, so that GIMP imports it without scaling; path names become ids. \
              Coordinates are written with the precision that GIMP stores.\n\nExamples:\n  pathwarp convert \
@@ -53,7 +53,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let damage = gimp.as_ref().and_then(|g| g.damage.clone());
     let (size, paths) = match &gimp {
         Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
-        None => drawing(file, &Given::access(m)?)?,
+        None => drawing(file, &Given::reading(m)?)?,
     };
     if let Some(d) = &damage {
         terminal::warning(&format!("{}: {d}", input::display(file)));
@@ -76,8 +76,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
 }
 
 /// The size of an SVG's viewBox and its paths as GIMP would store them, in units of the viewBox.
-fn drawing(file: &Path, access: &Access) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
-    let doc = input::document(file, access)?;
+fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
+    let doc = input::document(file, reading)?;
     let page = doc.view_box();
     let to_page = pathwarp::kurbo::Affine::translate(-page.origin().to_vec2());
     let path = |p: pathwarp_svg::NamedPath| {

@@ -2,13 +2,12 @@
 
 use super::file_args;
 use crate::failure::Failure;
-use crate::options::{self, Given};
+use crate::options::{Given, reading_args};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
-use pathwarp::kurbo::Rect;
-use pathwarp::param::{Args, Frame, Kind};
+use pathwarp::param::{Args, Axis, Frame, Kind};
 use pathwarp::refit;
 use pathwarp_raster::{RenderOptions, Size, encode_png};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
@@ -79,7 +78,7 @@ pub(super) fn command(registry: &Registry) -> Command {
                 .default_value("1")
                 .help("Pixels per px in a PNG sheet"),
         )
-        .args(options::access_args())
+        .args(reading_args())
         .after_help(
             "All cells have the same scale, except that a much larger result is reduced to fit. Labels are outlines, so they look the \
              same everywhere.\n\nExamples:\n  \
@@ -113,14 +112,17 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
-    let access = Given::access(m)?;
-    let doc = input::document(file, &access)?;
+    let reading = Given::reading(m)?;
+    let doc = input::document(file, &reading)?;
     let frame = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
 
     let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
     let presets: Vec<Preset<'_>> =
         sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis)).collect();
-    let draw = |p: &Preset<'_>| Ok(Cell { svg: p.warp(&doc, frame)?, label: p.name.to_owned() });
+    let lettering = doc.lettering(&Selection::default());
+    let frame = Frame::new(frame);
+    let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
+    let draw = |p: &Preset<'_>| Ok(Cell { svg: p.warp(&doc, &frame)?, label: p.name.to_owned() });
     let mut cells: Vec<Cell> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
     // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
     if sets.iter().any(|(_, g)| g.bend.is_some()) {
@@ -132,7 +134,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
         cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
         title: title(file, &sets, bend, axis),
     };
-    let svg = sheet(&cells, &options, &input::read_options(file, &access))?;
+    let svg = sheet(&cells, &options, &input::read_options(file, &reading))?;
     let bytes = if target.is_some_and(is_png) {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
@@ -188,9 +190,9 @@ fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: 
 
 impl Preset<'_> {
     /// The artwork under the preset.
-    fn warp(&self, doc: &Document, frame: Rect) -> Result<String, Failure> {
-        let built = self.entry.build_from(&self.args, &Frame::new(frame))?;
-        let tolerance = TOLERANCE * frame.width().hypot(frame.height());
+    fn warp(&self, doc: &Document, frame: &Frame) -> Result<String, Failure> {
+        let built = self.entry.build_from(&self.args, frame)?;
+        let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
         Ok(doc
             .warp(&built.map, &WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone())))?
             .svg)

@@ -1,7 +1,7 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
 use crate::failure::Failure;
-use crate::options::rect;
+use crate::options::{Reading, rect};
 use crate::status::Status;
 use crate::{input, output, references, steps};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -63,7 +63,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, false)?.into_iter().map(|part| part.step));
-    references::resolve_files(registry, &mut recipe)?;
+    references::resolve_files(registry, &mut recipe, &Reading::default())?;
     references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;

@@ -24,9 +24,12 @@ use crate::options::Given;
 use crate::status::Status;
 use crate::watch;
 use clap::Command;
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
+
+/// The placeholder of a path reference in help.
+const PATHREF: &str = "PATHREF";
 
 const ABOUT: &str = "Bends, warps and deforms SVG artwork, and writes clean Bézier curves.";
 
@@ -35,6 +38,8 @@ const AFTER: &str = "Path references (PATHREF), for every option that takes a pa
   FILE            the only path in the file, or a JSON file of points [[x,y],…]
   #NAME           a path of the input document; it becomes a guide: not part of the artwork, but kept in the file
   'M 0,0 C …'     SVG path data
+  circle:r=60mm   a circle about the middle of the frame, or about cx=X,cy=Y
+  arc:r=60mm,from=180,to=360   an arc of it; angles clockwise from the right, so this is the upper half
   'x,y x,y …'     points; percentages count from the left and top of the frame: 50%,0%
 
 Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
@@ -105,7 +110,9 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
-    watch::begin(Given::access(m)?.limits);
+    let reading = Given::reading(m)?;
+    watch::begin(reading.limits);
+    reading.check()?;
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
     }
@@ -131,8 +138,15 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
 }
 
-/// Suggests a command to `pathwarp help NAME`, for which clap does not.
-fn suggested(registry: &Registry, args: &[OsString], error: clap::Error) -> Failure {
+/// Suggests a command to `pathwarp help NAME`, for which clap does not, and quotes around `#NAME`, which shells take for a comment.
+fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Failure {
+    if error.kind() == ErrorKind::InvalidValue
+        && let Some(ContextValue::String(arg)) = error.get(ContextKind::InvalidArg)
+        && arg.contains(PATHREF)
+    {
+        let tip = "shells take a word that starts with # for a comment; quote it: '#NAME'";
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
     let wanted = args.get(2).map(|name| name.to_string_lossy());
     match wanted {
         Some(name) if error.kind() == ErrorKind::InvalidSubcommand && args[1] == "help" => {

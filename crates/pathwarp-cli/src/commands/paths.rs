@@ -3,7 +3,7 @@
 use super::file_args;
 use crate::failure::Failure;
 use crate::input::{self, GimpFile};
-use crate::options::{self, Given};
+use crate::options::{Given, reading_args};
 use crate::status::Status;
 use crate::{output, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -27,7 +27,7 @@ pub(super) fn command() -> Command {
                 .action(ArgAction::SetTrue)
                 .help("List the paths before the damage in a damaged GIMP file"),
         )
-        .args(options::access_args())
+        .args(reading_args())
         .after_help(
             "Every anchor is listed as drawing programs store it: incoming handle, anchor, outgoing handle. Arcs are listed as \
              cubics. Numbers of GIMP files are listed exactly as stored.\n\nExamples:\n  pathwarp paths samples/cages.svg\n  pathwarp paths --json samples/cages.svg\n  pathwarp paths art.xcf",
@@ -68,7 +68,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let gimp = GimpFile::open(file, m.get_flag("salvage"))?;
     let mut paths = match &gimp {
         Some(gimp) => gimp.paths().map(of_gimp).collect(),
-        None => of_drawing(&input::document(file, &Given::access(m)?)?),
+        None => of_drawing(&input::document(file, &Given::reading(m)?)?),
     };
     let text = if m.get_flag("json") {
         if gimp.is_some() {

@@ -2,7 +2,7 @@
 
 use super::file_args;
 use crate::failure::Failure;
-use crate::options::{self, Given};
+use crate::options::{Given, reading_args};
 use crate::status::Status;
 use crate::{advice, input, output, terminal};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
@@ -38,7 +38,7 @@ pub(super) fn command() -> Command {
                 .default_value("none")
                 .help("Colour behind the drawing"),
         )
-        .args(options::access_args())
+        .args(reading_args())
         .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
 }
 
@@ -58,11 +58,11 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         Some("black") => Some(Color::BLACK),
         _ => None,
     };
-    let access = Given::access(m)?;
+    let reading = Given::reading(m)?;
     let bytes = input::bytes(file)?;
     let name = input::display(file);
-    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &access))?;
-    let limits = access.limits.for_input(bytes.len());
+    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &reading))?;
+    let limits = reading.limits.for_input(bytes.len());
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
     let png = encode_png(&drawn.map_err(|e| Failure::from(e).about(&name))?)?;
     advice::unread(&read.unread).iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));

@@ -79,7 +79,7 @@ fn override_parameters(registry: &Registry, recipe: &mut Recipe, m: &ArgMatches)
 
 pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "RECIPE")?;
-    let mut saved = recipe_file::read(registry, file, Given::access(m)?.external)?;
+    let mut saved = recipe_file::read(registry, file, Given::reading(m)?.external)?;
     override_parameters(registry, &mut saved.recipe, m)?;
     let given = saved.options.overridden_by(&Given::inputs_and_options(m));
     // The command line alone has no conflicts, so one that shows up now involves the recipe.

@@ -16,7 +16,7 @@ pub(super) fn command() -> Command {
         .arg(file_args::file("FILE", "The warped drawing; - is standard input"))
         .arg(file_args::out("OUT", "Write the source to this file; - or none writes to standard output"))
         .arg(Arg::new("recipe").long("recipe").action(ArgAction::SetTrue).help("Write the recipe instead of the source"))
-        .args(options::access_args())
+        .args(options::reading_args())
         .after_help("Example:\n  pathwarp unwarp warped.svg -o source.svg\n  pathwarp unwarp --recipe warped.svg -o recipe.toml")
 }
 
@@ -25,7 +25,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let target = file_args::target(m, [file])?;
     let name = input::display(file);
     let text = String::from_utf8(input::bytes(file)?).map_err(|_| Failure::file(file, "is not UTF-8 text"))?;
-    let origin = Origin::read_within(&text, &Given::access(m)?.limits.for_input(text.len()))
+    let origin = Origin::read_within(&text, &Given::reading(m)?.limits.for_input(text.len()))
         .map_err(|e| Failure::from(e).about(&name))?;
     let origin =
         origin.ok_or_else(|| Failure::file(file, "holds no source; only drawings written with --embed-recipe do"))?;

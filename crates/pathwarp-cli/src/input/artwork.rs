@@ -45,7 +45,7 @@ pub(crate) trait Artwork {
 pub(crate) enum Baseline {
     /// The deformation has none; it has no use for lettering.
     None,
-    /// The recipe gives it.
+    /// The recipe gives it, or the deformation has none and only asks for the letters.
     Given,
     /// The recipe leaves it at its default, which follows the lettering.
     Open,

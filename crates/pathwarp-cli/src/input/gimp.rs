@@ -201,7 +201,7 @@ impl GimpArtwork {
             match result {
                 Ok(mut warped) => {
                     let fold = Fold::of(&orientation, &all);
-                    out.warnings.extend(fold.at.map(|at| folds::warning(&path.name, at)));
+                    out.warnings.extend(fold.at.map(|at| folds::warning(&path.name, &[], at)));
                     if self.format == GimpFormat::IntoXcf {
                         warped.max_error += warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
                     }

@@ -46,7 +46,7 @@ impl PictureArtwork {
                 return Err(Failure::usage(format!("--{option} is for SVG files; {name} is a picture")));
             }
         }
-        let limits = options.access.limits.for_input(bytes.len());
+        let limits = options.reading.limits.for_input(bytes.len());
         let picture = Picture::read_within(bytes, &limits)?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);

@@ -1,7 +1,7 @@
 //! Reads input files, and standard input for `-`.
 
 use crate::failure::Failure;
-use crate::options::Access;
+use crate::options::Reading;
 use crate::watch;
 use pathwarp_svg::{Document, ReadOptions};
 use std::io::Read;
@@ -37,21 +37,21 @@ pub(crate) fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// Reads an SVG document. Linked images are looked up relative to its folder.
-pub(crate) fn document(input: &Path, access: &Access) -> Result<Document, Failure> {
+pub(crate) fn document(input: &Path, reading: &Reading) -> Result<Document, Failure> {
     let bytes = bytes(input)?;
     if bytes.starts_with(XCF_MAGIC) {
         let advice =
             "an XCF holds paths, not a drawing; `pathwarp paths` lists them, `pathwarp convert` copies them to an SVG";
         return Err(Failure::file(input, advice));
     }
-    Ok(Document::read(&bytes, &display(input), &read_options(input, access))?)
+    Ok(Document::read(&bytes, &display(input), &read_options(input, reading))?)
 }
 
 /// Options for reading `input` as SVG: linked images are looked up relative to its folder.
-pub(crate) fn read_options(input: &Path, access: &Access) -> ReadOptions {
+pub(crate) fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
     let folder = match input.parent() {
         Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
         other => other.map(Path::to_path_buf),
     };
-    ReadOptions::default().with_base_dir(folder).with_limits(access.limits).with_external(access.external)
+    reading.read_options().with_base_dir(folder)
 }

@@ -22,6 +22,7 @@ use pathwarp_svg::{
     WarpedDocument, compressed,
 };
 use rayon::prelude::*;
+use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -56,7 +57,7 @@ impl SvgArtwork {
         if let Some(t) = target {
             check_extension(t, input)?;
         }
-        let (name, read) = (display(input), read_options(input, &options.access));
+        let (name, read) = (display(input), read_options(input, &options.reading));
         let doc = Document::read(bytes, &name, &read)?;
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
@@ -135,12 +136,22 @@ impl SvgArtwork {
         }
         let (mut shapes, mut warnings) = (Vec::with_capacity(warped.shapes.len()), Vec::new());
         let mut warned = HashSet::new();
+        let places = &request.built.placement;
+        let survey = LazyCell::new(|| Survey::new(&request.built.map, None, 1));
+        let lettering = LazyCell::new(|| self.doc.lettering(&self.selection));
+        let letters = LazyCell::new(|| {
+            // Letters that are placed one by one do not follow the map.
+            let letters = if places.letters.is_empty() { lettering.letters() } else { &[] };
+            folds::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
+        });
         for s in &warped.shapes {
             let fold = Fold::of(&by_id.get(s.id.as_str()).copied().unwrap_or_default(), &all);
             if let Some(at) = fold.at
                 && warned.insert(&s.id)
             {
-                warnings.push(folds::warning(&s.id, at));
+                let orientation = |o: &Outline| survey.orientation_of_copies(o, &places.copies, true);
+                let letters = folds::folded(letters.get(&*s.id), &all, orientation);
+                warnings.push(folds::warning(&s.id, &letters, at));
             }
             shapes.push(shape_report(s, &fold));
         }

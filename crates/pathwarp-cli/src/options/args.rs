@@ -1,7 +1,7 @@
 //! The table of common options as clap arguments.
 
 use super::definition::{CommonOption, LeadingMinus, OptionValue};
-use super::table::{ALLOW_EXTERNAL, LIMIT, OPTIONS};
+use super::table::OPTIONS;
 use clap::{Arg, ArgAction, value_parser};
 use std::path::PathBuf;
 
@@ -22,9 +22,9 @@ pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
     OPTIONS.iter().map(arg)
 }
 
-/// The options for access to files and work alone.
-pub(crate) fn access_args() -> impl Iterator<Item = Arg> {
-    OPTIONS.iter().filter(|o| [LIMIT, ALLOW_EXTERNAL].contains(&o.name)).map(arg)
+/// The options about reading drawings, for commands that have no other common options.
+pub(crate) fn reading_args() -> impl Iterator<Item = Arg> {
+    OPTIONS.iter().filter(|o| o.reading).map(|o| arg(o).help_heading("Reading"))
 }
 
 fn arg(option: &CommonOption) -> Arg {

@@ -1,6 +1,6 @@
 //! The common options as typed values.
 
-use super::access::Access;
+use super::reading::Reading;
 use super::typed_box::TypedBox;
 use crate::failure::Failure;
 use pathwarp::kurbo::Rect;
@@ -101,7 +101,7 @@ pub(crate) struct CommonOptions {
     pub(crate) explain: bool,
     /// Number of threads; `None`: one per core.
     pub(crate) jobs: Option<usize>,
-    pub(crate) access: Access,
+    pub(crate) reading: Reading,
     pub(crate) quiet: bool,
 }
 

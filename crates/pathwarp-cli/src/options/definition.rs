@@ -14,6 +14,8 @@ pub(crate) struct CommonOption {
     pub(crate) default: Option<&'static str>,
     /// Recipes store the option: it shapes the result, rather than naming files or changing what is printed.
     pub(crate) stored: bool,
+    /// Every command that reads drawings has the option.
+    pub(crate) reading: bool,
     /// Options that cannot be given together with this one.
     pub(crate) conflicts: &'static [&'static str],
     pub(crate) help: &'static str,

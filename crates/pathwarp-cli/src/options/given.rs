@@ -1,9 +1,9 @@
 //! The common options that a command line or a recipe gives, before and after they are read.
 
-use super::access::Access;
 use super::args::INPUT;
 use super::common::CommonOptions;
 use super::definition::{CommonOption, OptionValue};
+use super::reading::Reading;
 use super::table::OPTIONS;
 use crate::failure::Failure;
 use clap::ArgMatches;
@@ -26,13 +26,15 @@ impl Given {
         Self { inputs, ..Self::options(m) }
     }
 
-    /// The options of a parsed command line without inputs. The command may declare only some of them.
+    /// The options of a parsed command line without inputs.
     pub(crate) fn options(m: &ArgMatches) -> Self {
+        Self::of(OPTIONS.iter(), m)
+    }
+
+    fn of(options: impl Iterator<Item = &'static CommonOption>, m: &ArgMatches) -> Self {
         let mut values = Vec::new();
-        for option in OPTIONS {
-            if !matches!(m.try_contains_id(option.name), Ok(true))
-                || m.value_source(option.name) != Some(ValueSource::CommandLine)
-            {
+        for option in options {
+            if m.value_source(option.name) != Some(ValueSource::CommandLine) {
                 continue;
             }
             let typed = match option.value {
@@ -47,9 +49,13 @@ impl Given {
         Self { inputs: Vec::new(), values }
     }
 
-    /// The access that a parsed command line gives.
-    pub(crate) fn access(m: &ArgMatches) -> Result<Access, Failure> {
-        Ok(Self::options(m).read()?.access)
+    /// The options about reading that a command line of [`reading_args`](super::reading_args) gives.
+    ///
+    /// # Errors
+    /// A value with its own syntax cannot be parsed.
+    pub(crate) fn reading(m: &ArgMatches) -> Result<Reading, Failure> {
+        let declared = |o: &&CommonOption| o.reading && matches!(m.try_contains_id(o.name), Ok(true));
+        Ok(Self::of(OPTIONS.iter().filter(declared), m).read()?.reading)
     }
 
     /// Adds the value of an option named in a recipe. Of several values for an option that does not repeat, the last wins.

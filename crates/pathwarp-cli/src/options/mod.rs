@@ -3,18 +3,18 @@
 //! `table.rs` declares each of them once. clap's arguments (`args.rs`), the values given on a command line or in a recipe
 //! (`given.rs`), the typed struct (`common.rs`), the recipe schema, help and man page all come from that table.
 
-mod access;
 mod args;
 mod common;
 mod definition;
 mod given;
 mod parse;
+mod reading;
 mod table;
 mod typed_box;
 
-pub(crate) use access::Access;
-pub(crate) use args::{access_args, args, options_without_inputs};
+pub(crate) use args::{args, options_without_inputs, reading_args};
 pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
 pub(crate) use given::Given;
 pub(crate) use parse::rect;
+pub(crate) use reading::Reading;
 pub(crate) use table::OPTIONS;

@@ -69,3 +69,8 @@ pub(crate) fn rect(text: &str) -> Result<TypedBox, String> {
         )),
     }
 }
+/// Parses a family's name.
+pub(super) fn family(text: &str) -> Result<String, String> {
+    let name = text.trim().trim_matches(['"', '\'']);
+    if name.is_empty() { Err("the name is empty".into()) } else { Ok(name.to_owned()) }
+}

@@ -1,13 +1,13 @@
 //! The table of common options: each is declared here, and nowhere else.
 
-use super::common::{GradientChoice, OnFailure};
+use super::common::{CommonOptions, GradientChoice, OnFailure};
 use super::definition::{CommonOption, LeadingMinus, OptionValue};
 use super::parse;
 use pathwarp_svg::{PageFit, Patterns, Strokes, Structure, TextMode};
 
 /// An option without short name, default and conflicts, stored in recipes.
 const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
-    CommonOption { name, short: None, value, default: None, stored: true, conflicts: &[], help }
+    CommonOption { name, short: None, value, default: None, stored: true, reading: false, conflicts: &[], help }
 }
 
 /// An option that names files or changes what is printed; recipes do not store it.
@@ -15,9 +15,15 @@ const fn of_the_run(name: &'static str, value: OptionValue, help: &'static str) 
     CommonOption { stored: false, ..stored(name, value, help) }
 }
 
-/// The options for access to files and work, which commands without other common options have, too.
-pub(super) const LIMIT: &str = "limit";
-pub(super) const ALLOW_EXTERNAL: &str = "allow-external";
+/// A family for one of CSS's generic names.
+const fn family(
+    name: &'static str,
+    set: fn(&mut CommonOptions, &str) -> Result<(), String>,
+    help: &'static str,
+) -> CommonOption {
+    let value = OptionValue::Text { name: "FAMILY", minus: LeadingMinus::No, set };
+    CommonOption { reading: true, ..stored(name, value, help) }
+}
 
 /// All common options, in the order of help.
 pub(crate) static OPTIONS: &[CommonOption] = &[
@@ -153,6 +159,67 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         )
     },
     CommonOption {
+        reading: true,
+        ..of_the_run(
+            "font-file",
+            OptionValue::List {
+                name: "FILE",
+                push: |o, file| {
+                    o.reading.fonts.paths.push(file.into());
+                    Ok(())
+                },
+            },
+            "Use this font for text, too; may be given several times",
+        )
+    },
+    CommonOption {
+        reading: true,
+        ..of_the_run(
+            "fonts-dir",
+            OptionValue::List {
+                name: "DIR",
+                push: |o, dir| {
+                    o.reading.fonts.paths.push(dir.into());
+                    Ok(())
+                },
+            },
+            "Use the fonts in this folder and the folders below, too; may be given several times",
+        )
+    },
+    CommonOption {
+        reading: true,
+        ..stored(
+            "no-system-fonts",
+            OptionValue::Switch(|o| o.reading.fonts.no_system = true),
+            "Use only the fonts that are given or embedded in the drawing, and the bundled Noto Sans",
+        )
+    },
+    family(
+        "serif-family",
+        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.serif = Some(n)),
+        "The family that serif stands for",
+    ),
+    family(
+        "sans-serif-family",
+        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.sans_serif = Some(n)),
+        "The family that sans-serif stands for",
+    ),
+    family(
+        "cursive-family",
+        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.cursive = Some(n)),
+        "The family that cursive stands for",
+    ),
+    family(
+        "fantasy-family",
+        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.fantasy = Some(n)),
+        "The family that fantasy stands for",
+    ),
+    family(
+        "monospace-family",
+        |o, name| parse::family(name).map(|n| o.reading.fonts.generic.monospace = Some(n)),
+        "The family that monospace stands for",
+    ),
+    CommonOption {
         default: Some("auto"),
         ..stored(
             "gradients",
@@ -285,20 +352,26 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "Number of threads; the output does not depend on it",
         )
     },
-    of_the_run(
-        LIMIT,
-        OptionValue::List { name: "NAME=N", push: |o, text| parse::limit(text, &mut o.access.limits) },
-        "Raise or lower a limit on the work that an input may cause, such as segments=5e6, or memory=none; may be given \
+    CommonOption {
+        reading: true,
+        ..of_the_run(
+            "limit",
+            OptionValue::List { name: "NAME=N", push: |o, text| parse::limit(text, &mut o.reading.limits) },
+            "Raise or lower a limit on the work that an input may cause, such as segments=5e6, or memory=none; may be given \
          several times. The limits are bytes, elements, comparisons, segments, letters, pixels, painting, image-bytes, \
          evaluations, seconds (of processor time) and memory (in bytes); without this option they grow with the size of \
          the input",
-    ),
-    of_the_run(
-        ALLOW_EXTERNAL,
-        OptionValue::Switch(|o| o.access.external = true),
-        "Read linked pictures and drawings from anywhere, not only beside the input or in folders below it, and let a \
+        )
+    },
+    CommonOption {
+        reading: true,
+        ..of_the_run(
+            "allow-external",
+            OptionValue::Switch(|o| o.reading.external = true),
+            "Read linked pictures and drawings from anywhere, not only beside the input or in folders below it, and let a \
          recipe name files by absolute paths",
-    ),
+        )
+    },
     CommonOption {
         short: Some('q'),
         ..of_the_run("quiet", OptionValue::Switch(|o| o.quiet = true), "Print no warnings and no progress")

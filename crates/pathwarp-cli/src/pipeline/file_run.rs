@@ -9,6 +9,8 @@ use crate::output::PendingFile;
 use crate::report::FileReport;
 use crate::{recipe_file, references};
 use pathwarp::deform::{Explanation, Registry};
+use pathwarp::kurbo::Rect;
+use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use std::path::Path;
 
@@ -46,7 +48,7 @@ impl Batch<'_> {
         let bounds = artwork.bounding_box();
         let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
         let frame = frame.with_units_per_px(artwork.units_per_px());
-        let baseline = frame.baseline;
+        let framed = frame_note(options.frame, &frame, bounds.is_some());
         let tolerance = options.tolerance_for(bounds, &frame)?;
         let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
 
@@ -84,22 +86,17 @@ impl Batch<'_> {
             report,
             files,
             past_page: warped.overhang.map(|o| o.share),
-            notes: self.notes(&built, baseline),
+            notes: self.notes(&built, framed),
             partial,
         })
     }
 
     /// The decisions made on the user's behalf.
-    fn notes(&self, built: &BuiltRecipe, baseline: Option<f64>) -> Vec<String> {
-        let mut notes = Vec::new();
+    fn notes(&self, built: &BuiltRecipe, framed: String) -> Vec<String> {
         if !self.options.explain {
-            return notes;
+            return Vec::new();
         }
-        if let (FrameChoice::Default, Some(y)) = (self.options.frame, baseline) {
-            notes.push(format!(
-                "frame: the artwork is lettering; its baseline, at {y:.6}, lies on the curve (--frame baseline-ascent)"
-            ));
-        }
+        let mut notes = vec![framed];
         notes.extend(self.in_flags(built, |e| &e.notes));
         notes
     }
@@ -112,6 +109,30 @@ impl Batch<'_> {
     ) -> impl Iterator<Item = String> {
         built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| self.flags.in_text(m))
     }
+}
+
+/// The frame: the box, and the reason for it. `seen` is `true` if any artwork is visible.
+fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
+    const PX_PER_MM: f64 = 96.0 / 25.4;
+    let [x, y] = frame.units_per_px;
+    let Rect { x0, y0, .. } = frame.rect;
+    let (width, height) = (frame.rect.width(), frame.rect.height());
+    let why = match (choice, frame.baseline) {
+        (FrameChoice::Default, Some(_)) => {
+            "the artwork is lettering (--frame baseline-ascent), whose baseline lies on the curve".to_owned()
+        }
+        (FrameChoice::Default | FrameChoice::Artwork, _) if seen => "the visible artwork".to_owned(),
+        (FrameChoice::Default | FrameChoice::Artwork, _) => "the page, as no artwork is visible".to_owned(),
+        (FrameChoice::ViewBox, _) => "the page (--frame viewbox)".to_owned(),
+        (FrameChoice::Rect(_), _) => "given by --frame".to_owned(),
+        (FrameChoice::Lettering(_), _) => "the lettering (--frame)".to_owned(),
+    };
+    let baseline = frame.baseline.map(|y| format!(", baseline at {y:.4}")).unwrap_or_default();
+    format!(
+        "frame: {width:.4} × {height:.4} user units at {x0:.4},{y0:.4} ({:.2} × {:.2} mm){baseline}: {why}",
+        width / x / PX_PER_MM,
+        height / y / PX_PER_MM,
+    )
 }
 
 /// Adds to an error where the map is undefined which operation is, if a step can say so.
@@ -133,7 +154,9 @@ fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
 /// The baseline of a recipe's first step.
 fn first_baseline(registry: &Registry, recipe: &Recipe) -> Baseline {
     let Some(step) = recipe.steps.first() else { return Baseline::None };
-    match registry.get(&step.deformation).and_then(|e| e.info().baseline) {
+    let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
+    match info.baseline {
+        None if info.letters => Baseline::Given,
         None => Baseline::None,
         Some(param) if step.args.get(param).is_empty() => Baseline::Open,
         Some(_) => Baseline::Given,

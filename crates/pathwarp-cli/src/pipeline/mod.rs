@@ -42,8 +42,9 @@ const MOST_THREADS_PER_CORE: usize = 4;
 pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Option<&Path>) -> Result<Status, Failure> {
     let started = Instant::now();
     let options = given.read()?;
-    watch::begin(options.access.limits);
+    watch::begin(options.reading.limits);
     let inputs = inputs::inputs(&options)?;
+    options.reading.check()?;
     let jobs = plan::plan(registry, recipe, &options, &inputs, from)?;
     drop(inputs);
     if options.dry_run {
@@ -51,7 +52,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
         return Ok(Status::Complete);
     }
     let mut resolved = recipe.clone();
-    references::resolve_files(registry, &mut resolved)?;
+    references::resolve_files(registry, &mut resolved, &options.reading)?;
     let batch = Batch { registry, recipe: &resolved, options: &options, given, flags: Flags::of(registry) };
 
     let _empty_ones_removed_at_the_end = Folders::create(&options, &jobs)?;

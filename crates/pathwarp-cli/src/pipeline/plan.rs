@@ -35,6 +35,7 @@ pub(super) fn plan(
     let mut files = Files::default();
     files_read(registry, recipe).iter().for_each(|f| files.read(f));
     from.iter().for_each(|f| files.read(f));
+    options.reading.fonts.paths.iter().for_each(|f| files.read(f));
     jobs.iter().for_each(|j| files.read_artwork(&j.input));
     if options.in_place {
         files.allow_in_place();

@@ -1,9 +1,10 @@
 //! Fonts for text: installed ones if wanted, given files, and a bundled fallback.
 
+use super::read::ReadOptions;
 use pathwarp::Error;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, Family, ID};
 use usvg::{FontFamily, FontResolver};
 
@@ -41,12 +42,12 @@ pub struct FontFile {
 }
 
 /// Finds the installed or bundled font of a family that is nearest to `weight` (100 to 900; 400 is regular). `family` may be
-/// a generic family of CSS.
+/// a generic family of CSS. `read` says which fonts there are.
 ///
 /// # Errors
 /// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
-pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, Error> {
-    let db = database(true, &[]);
+pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) -> Result<FontFile, Error> {
+    let db = database(read.system_fonts, &read.fonts);
     let query = |name: &str| {
         db.query(&fontdb::Query {
             families: &[Family::Name(name)],
@@ -65,7 +66,7 @@ pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, 
     };
     let exact = || db.faces().flat_map(|f| &f.families).find(|(n, _)| n.eq_ignore_ascii_case(family)).map(|(n, _)| n);
     let found = match generic {
-        Some(kind) => of_kind(&kind, &GenericFamilies::default(), query),
+        Some(kind) => of_kind(&kind, &read.generic_families, query),
         None => exact().and_then(|name| query(name)),
     };
     let file = found.and_then(|id| db.with_face_data(id, |bytes, index| FontFile { bytes: bytes.to_vec(), index }));
@@ -74,13 +75,33 @@ pub fn system_font(family: &str, weight: u16, italic: bool) -> Result<FontFile, 
     })
 }
 
-/// The installed fonts of a family: weight, and `true` for italic and oblique ones; sorted, without repetitions.
+/// The fonts of a family: weight, and `true` for italic and oblique ones; sorted, without repetitions.
 #[must_use]
-pub fn installed_styles(family: &str) -> Vec<(u16, bool)> {
-    let db = database(true, &[]);
+pub fn family_styles(family: &str, read: &ReadOptions) -> Vec<(u16, bool)> {
+    let db = database(read.system_fonts, &read.fonts);
     let of_family = |f: &&fontdb::FaceInfo| f.families.iter().any(|(n, _)| n.eq_ignore_ascii_case(family));
     let styles = db.faces().filter(of_family).map(|f| (f.weight.0, f.style != fontdb::Style::Normal));
     styles.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Checks that every file is a font, and that every folder holds one.
+///
+/// # Errors
+/// Returns [`Error::Input`] with the name of the first that does not.
+pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
+    for path in paths {
+        let name = path.display().to_string();
+        let mut db = Database::new();
+        if path.is_dir() {
+            db.load_fonts_dir(path);
+        } else {
+            db.load_font_file(path).map_err(|e| Error::input(&name, format!("cannot be read: {e}")))?;
+        }
+        if db.is_empty() {
+            return Err(Error::input(&name, if path.is_dir() { "holds no font" } else { "is not a font" }));
+        }
+    }
+    Ok(())
 }
 
 /// Lists families with names similar to `family`: each word of `family` resembles a word of the name.
@@ -111,6 +132,9 @@ fn similar(family: &str, db: &Database) -> String {
 /// Names that were asked for and not found.
 pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
+/// The given files and folders whose fonts were loaded last: a batch reads them once.
+type Loaded = (bool, Vec<PathBuf>, Arc<Database>);
+
 /// Loads the fonts. The installed ones are read once per process.
 pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
     static SYSTEM: OnceLock<Arc<Database>> = OnceLock::new();
@@ -124,6 +148,16 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
         Arc::new(db)
     };
     let base = if system { SYSTEM.get_or_init(|| load(true)) } else { BARE.get_or_init(|| load(false)) };
+    static LAST: Mutex<Option<Loaded>> = Mutex::new(None);
+    if paths.is_empty() {
+        return base.clone();
+    }
+    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((of_system, of, db)) = &*last
+        && (*of_system, of.as_slice()) == (system, paths)
+    {
+        return db.clone();
+    }
     let mut db = base.clone();
     for p in paths {
         let db = Arc::make_mut(&mut db);
@@ -134,6 +168,7 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
             let _ = db.load_font_file(p);
         }
     }
+    *last = Some((system, paths.to_vec(), db.clone()));
     db
 }
 
@@ -162,9 +197,7 @@ pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolv
                 if found.is_some() {
                     return found;
                 }
-                if let FontFamily::Named(name) = family {
-                    absent.push(name.clone());
-                }
+                absent.extend(asked_for(family, &generic).cloned());
             }
             if let Ok(mut m) = missing.lock() {
                 m.extend(absent);
@@ -176,19 +209,29 @@ pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolv
     }
 }
 
+/// The name of a family; of a generic one, the name configured for it.
+fn asked_for<'a>(family: &'a FontFamily, set: &'a GenericFamilies) -> Option<&'a String> {
+    match family {
+        FontFamily::Named(name) => Some(name),
+        FontFamily::Serif => set.serif.as_ref(),
+        FontFamily::SansSerif => set.sans_serif.as_ref(),
+        FontFamily::Cursive => set.cursive.as_ref(),
+        FontFamily::Fantasy => set.fantasy.as_ref(),
+        FontFamily::Monospace => set.monospace.as_ref(),
+    }
+}
+
 /// Resolves a generic family to the configured one, else to a common one.
 fn of_kind(kind: &FontFamily, set: &GenericFamilies, query: impl Fn(&str) -> Option<ID>) -> Option<ID> {
-    let (own, common): (_, &[&str]) = match kind {
-        FontFamily::Serif => (&set.serif, &["Times New Roman", "Noto Serif", "DejaVu Serif", "Liberation Serif"]),
-        FontFamily::SansSerif => (&set.sans_serif, &["Arial", "Helvetica", "Noto Sans", "DejaVu Sans"]),
-        FontFamily::Cursive => (&set.cursive, &["Comic Sans MS", "Apple Chancery"]),
-        FontFamily::Fantasy => (&set.fantasy, &["Impact", "Papyrus"]),
-        FontFamily::Monospace => {
-            (&set.monospace, &["Courier New", "Noto Sans Mono", "Noto Mono", "DejaVu Sans Mono", "Liberation Mono"])
-        }
+    let common: &[&str] = match kind {
+        FontFamily::Serif => &["Times New Roman", "Noto Serif", "DejaVu Serif", "Liberation Serif"],
+        FontFamily::SansSerif => &["Arial", "Helvetica", "Noto Sans", "DejaVu Sans"],
+        FontFamily::Cursive => &["Comic Sans MS", "Apple Chancery"],
+        FontFamily::Fantasy => &["Impact", "Papyrus"],
+        FontFamily::Monospace => &["Courier New", "Noto Sans Mono", "Noto Mono", "DejaVu Sans Mono", "Liberation Mono"],
         FontFamily::Named(_) => return None,
     };
-    match own {
+    match asked_for(kind, set) {
         Some(name) => query(name),
         None => common.iter().find_map(|n| query(n)).or_else(|| query(BUNDLED_FAMILY)),
     }

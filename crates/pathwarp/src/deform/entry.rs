@@ -66,8 +66,10 @@ pub struct Info {
     pub cases: &'static [Case],
     /// The parameter that puts a baseline on the deformation's curve, if there is one. While it is not given, a frame around
     /// lettering takes its baseline from the lettering. The command line looks for [letters](crate::param::Frame::letters) only
-    /// for deformations that have such a parameter.
+    /// for deformations that have such a parameter, or [ask for them](Self::letters).
     pub baseline: Option<&'static str>,
+    /// The deformation needs to know the artwork's letters.
+    pub letters: bool,
     /// The presets that a gallery draws one by one, if the deformation has any.
     pub gallery: Option<Gallery>,
 }
@@ -88,6 +90,7 @@ impl Info {
             laws: &[],
             cases: &[],
             baseline: None,
+            letters: false,
             gallery: None,
         }
     }
@@ -96,6 +99,12 @@ impl Info {
     #[must_use]
     pub const fn group(self, group: &'static str) -> Self {
         Self { group, ..self }
+    }
+
+    /// Asks for the artwork's letters.
+    #[must_use]
+    pub const fn with_letters(self) -> Self {
+        Self { letters: true, ..self }
     }
 
     /// Sets the text for help and docs.

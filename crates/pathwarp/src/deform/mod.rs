@@ -64,7 +64,7 @@ pub use triangle::Triangle;
 pub use warp::{Style, Warp};
 pub use wave::Wave;
 #[cfg(feature = "serde")]
-pub use wordart::{TextShape, WordArt};
+pub use wordart::{ShapeBox, TextShape, WordArt};
 
 use std::sync::Arc;
 

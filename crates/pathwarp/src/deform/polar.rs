@@ -16,7 +16,7 @@ use super::built::{Built, Seam};
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
 use crate::map::{AffineMap, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Axis, Kind, Param, Settings};
+use crate::param::{Axis, Kind, Param, Settings, word_space};
 use kurbo::{Point, Rect, Vec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
@@ -42,13 +42,14 @@ pub struct Polar {
     turn: f64,
     center: Option<Point>,
     conformal: bool,
+    gap: f64,
 }
 
 impl Polar {
     /// Creates an arch of 60° whose inner edge keeps its length and whose middle stays in place.
     #[must_use]
     pub fn new(frame: Rect) -> Self {
-        Self { frame, sweep: 60.0, inner: None, outer: None, turn: 0.0, center: None, conformal: false }
+        Self { frame, sweep: 60.0, inner: None, outer: None, turn: 0.0, center: None, conformal: false, gap: 0.0 }
     }
 
     /// Sets the angle that the artwork's width is bent into, −360 to 360 degrees; negative bends downwards.
@@ -87,13 +88,24 @@ impl Polar {
         Self { conformal, ..self }
     }
 
+    /// Sets the space between the ends of a whole turn, user units of the source: the artwork is bent into that much less than
+    /// 360°. Smaller sweeps have no such gap.
+    #[must_use]
+    pub fn gap(self, gap: f64) -> Self {
+        Self { gap, ..self }
+    }
+
     /// Builds the map.
     ///
     /// # Errors
     /// [`Error::Usage`] for radii that leave no ring, values that contradict each other, or artwork without width.
     pub fn build(&self) -> Result<Built, Error> {
         let Self { frame: rect, inner, outer, conformal, .. } = *self;
-        let sweep = within("sweep", self.sweep, -360.0, 360.0)?.to_radians();
+        within("sweep", self.sweep, -360.0, 360.0)?;
+        let whole = self.sweep.abs() > 360.0 * (1.0 - WHOLE);
+        let gap = within("gap", self.gap, 0.0, 1e9)?;
+        let left = if whole && gap > 0.0 { rect.width() / (rect.width() + gap) } else { 1.0 };
+        let sweep = self.sweep.to_radians() * left;
         for (name, radius) in [("inner", inner), ("outer", outer)] {
             radius.map(|r| within(name, r, 0.0, 1e9)).transpose()?;
         }
@@ -131,6 +143,9 @@ impl Polar {
             let c = map.centre();
             built.seam = Some(Seam { end: c, through: c + map.turned(Vec2::new(0.0, up)) });
         }
+        if left < 1.0 {
+            built.note(format!("a gap of {gap:.6} between the ends leaves a sweep of {:.6}°", sweep.to_degrees()));
+        }
         built.note(format!("centre {}, radii {near:.6} and {far:.6}", crate::error::show(map.centre())));
         Ok(built)
     }
@@ -159,6 +174,7 @@ impl Polar {
 
 static INFO: Info = Info::new("polar", "bend artwork into an arch or a whole ring")
     .group("Bends")
+    .with_letters()
     .about("Verticals become rays, horizontals become arcs about one centre. The inner edge keeps its length, the outer one is stretched; \
 --inner and --outer set the radii instead. A negative sweep bends downwards (a smile). The middle of the artwork stays where it is, \
 unless --center gives the centre. With --spacing conformal, squares stay squares: heights grow with the width.")
@@ -175,6 +191,10 @@ unless --center gives the centre. With --spacing conformal, squares stay squares
             .slider(0.0, 500.0),
         Param::angle("turn", "Turn the result, clockwise on the screen.").default("0"),
         Param::new("center", Kind::Point, "Centre of the ring. Default: so that the middle of the artwork stays."),
+        Param::length("gap", Axis::X, "Space between the ends of a whole turn, user units or % of the width. Default: a word space for \
+lettering, none for other artwork.")
+            .within(0.0, 1e9)
+            .slider(0.0, 100.0),
         Param::new(
             "spacing",
             Kind::Choice(&["even", "conformal"]),
@@ -237,10 +257,14 @@ impl Deformation for Entry {
             turn: s.number("turn")?,
             center: if s.given("center") { Some(s.point("center")?) } else { None },
             conformal: s.choice("spacing")? == "conformal",
+            gap: s.number_if("gap")?.or_else(|| word_space(&s.frame().letters)).unwrap_or(0.0),
         };
         polar.build()
     }
 }
+
+/// A turn is whole up to this share.
+const WHOLE: f64 = 1e-9;
 
 /// The map.
 #[derive(Debug, Clone, Copy)]
@@ -278,7 +302,7 @@ impl PolarMap {
 
     /// Returns `true` for a whole turn, up to rounding.
     fn is_whole(&self) -> bool {
-        self.sweep > TAU * (1.0 - 1e-9)
+        self.sweep > TAU * (1.0 - WHOLE)
     }
 
     fn centre(&self) -> Point {

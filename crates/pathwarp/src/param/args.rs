@@ -1,5 +1,6 @@
 //! Values of parameters as text, with the paths and files that they refer to.
 
+use super::circle::is_circle;
 use super::{Kind, Param, value};
 use crate::error::Error;
 use crate::outline::Outline;
@@ -122,10 +123,10 @@ impl Args {
     }
 }
 
-/// Returns `true` if a path reference is the path itself, as path data or points, and not a name.
+/// Returns `true` if a path reference is the path itself, as path data, points, a circle or an arc, and not a name.
 #[must_use]
 pub fn is_inline(text: &str) -> bool {
-    is_path_data(text) || value::looks_like_points(text)
+    is_path_data(text) || is_circle(text) || value::looks_like_points(text)
 }
 
 /// Returns `true` if `text` looks like SVG path data: a move command followed by coordinates.

@@ -24,6 +24,7 @@
 //! units, angles degrees. Errors name parameters without dashes.
 
 mod args;
+mod circle;
 mod declaration;
 mod frame;
 mod length;
@@ -37,4 +38,5 @@ pub use declaration::{Axis, Kind, Param};
 pub use frame::Frame;
 pub use length::{Length, LengthError, LengthUnit};
 pub use letter::Letter;
+pub(crate) use letter::word_space;
 pub use settings::Settings;

@@ -2,7 +2,7 @@
 
 use super::number::ValueError;
 use super::value;
-use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args};
+use super::{Args, Axis, Frame, Kind, NamedPath, NamedText, Param, args, circle};
 use crate::error::Error;
 use crate::outline::Outline;
 use kurbo::{Point, Rect};
@@ -238,7 +238,9 @@ impl<'a> Settings<'a> {
         if let Some(p) = self.args.looked_up(text) {
             return Ok(NamedPath { name: format!("{name} {}", p.name), outline: p.outline.clone() });
         }
-        let outline = if args::is_path_data(text) {
+        let outline = if let Some(circle) = circle::circle(text, self.frame) {
+            circle.map_err(|e| Error::usage(name, text, e))?
+        } else if args::is_path_data(text) {
             Outline::from_svg(text).map_err(|e| Error::usage(name, text, format!("is not valid path data: {e}")))?
         } else {
             let points = value::points(text, self.frame)

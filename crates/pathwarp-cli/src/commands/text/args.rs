@@ -1,6 +1,7 @@
 //! The options of `pathwarp text`.
 
 use super::super::file_args;
+use crate::options::reading_args;
 use clap::{Arg, ArgAction, value_parser};
 use std::path::PathBuf;
 
@@ -38,6 +39,7 @@ pub(super) fn args() -> Vec<Arg> {
     let mut all = text_and_font();
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
     all.extend(shaping().map(|a| a.help_heading(SHAPING)));
+    all.extend(reading_args());
     all.push(Arg::new("quiet").short('q').long("quiet").action(ArgAction::SetTrue).help("Print no warnings"));
     all
 }
@@ -68,6 +70,10 @@ fn text_and_font() -> Vec<Arg> {
             "Weight within the family (thin, light, regular, medium, bold, black, …); sets the axis wght of a variable font",
         ),
         Arg::new("italic").long("italic").action(ArgAction::SetTrue).help("Use the family's italic"),
+        Arg::new("synthesize").long("synthesize").action(ArgAction::SetTrue).help(
+            "Make what a font lacks: a bolder weight by thickening its outlines, an italic by slanting them by 14°; without it, that is \
+             an error",
+        ),
         value("variation", "AXIS=N,…", "Positions on the axes of a variable font, such as wght=600,wdth=80")
             .action(ArgAction::Append),
         value("fill", "COLOUR", "Colour, as in CSS [default: black]"),

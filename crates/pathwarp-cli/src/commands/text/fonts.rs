@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::input;
 use clap::ArgMatches;
-use pathwarp_svg::{FontFile, installed_styles, system_font};
+use pathwarp_svg::{FontFile, ReadOptions, family_styles, find_font};
 use pathwarp_text::{Font, Variation, variations};
 use std::path::Path;
 
@@ -21,6 +21,47 @@ const WEIGHTS: [(&str, u16); 9] = [
 ];
 /// The weight of a family's regular font.
 pub(super) const REGULAR: u16 = 400;
+
+/// The style asked for.
+pub(super) struct Wanted {
+    pub(super) weight: Option<u16>,
+    pub(super) italic: bool,
+    /// Make what a font lacks.
+    pub(super) synthesize: bool,
+}
+
+impl Wanted {
+    /// The weight, if a font has neither it nor an axis for it.
+    fn weight_lacking(&self, font: &Font<'_>) -> Option<u16> {
+        /// Weights this far apart look alike: neighbouring names.
+        const NEAR: f64 = 150.0;
+        self.weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(font, &["wght"]))
+    }
+
+    /// Returns `true` if a font should be italic, and has neither that nor an axis for it.
+    fn italic_lacking(&self, font: &Font<'_>) -> bool {
+        self.italic && !font.is_italic() && !has_axis(font, &["ital", "slnt"])
+    }
+
+    /// Makes what a font lacks.
+    fn synthesized<'a>(&self, font: Font<'a>) -> Font<'a> {
+        /// Thickness of stems, as a share of the em, for each step of weight: em/24 from regular to bold (FreeType's
+        /// FT_GlyphSlot_Embolden).
+        const PER_WEIGHT: f64 = 1.0 / 24.0 / 300.0;
+        /// The angle of a synthesised oblique, degrees (CSS Fonts 4, font-style).
+        const SLANT: f64 = 14.0;
+        if !self.synthesize {
+            return font;
+        }
+        let (weight, slanted) = (self.weight_lacking(&font), self.italic_lacking(&font));
+        let more = weight.map_or(0.0, |w| f64::from(w) - font.weight()).max(0.0);
+        font.emboldened(more * PER_WEIGHT).slanted(if slanted { SLANT } else { 0.0 })
+    }
+}
+
+fn has_axis(font: &Font<'_>, tags: &[&str]) -> bool {
+    font.axes().iter().any(|a| tags.contains(&a.tag.as_str()))
+}
 
 /// Parses a weight: a number or a name.
 pub(super) fn weight_of(text: &str) -> Result<u16, Failure> {
@@ -45,18 +86,18 @@ pub(super) fn axis_positions(m: &ArgMatches) -> Result<Vec<Variation>, Failure> 
 pub(super) fn with_variations<'a>(
     fonts: Vec<Font<'a>>,
     positions: &[Variation],
-    weight: Option<u16>,
-    italic: bool,
+    wanted: &Wanted,
 ) -> Result<Vec<Font<'a>>, Failure> {
     let mut out = Vec::with_capacity(fonts.len());
     for (i, font) in fonts.into_iter().enumerate() {
         let mut own = Vec::new();
-        if let Some(w) = weight
+        let font = wanted.synthesized(font);
+        if let Some(w) = wanted.weight
             && let Some(axis) = font.axes().iter().find(|a| a.tag == "wght")
         {
             own.extend(Variation::new("wght", f64::from(w).clamp(axis.min, axis.max)).ok());
         }
-        let slant = font.axes().into_iter().find(|a| italic && matches!(a.tag.as_str(), "ital" | "slnt"));
+        let slant = font.axes().into_iter().find(|a| wanted.italic && matches!(a.tag.as_str(), "ital" | "slnt"));
         if let Some(axis) = slant {
             // An italic axis runs from 0 to 1, a slant axis counts degrees counterclockwise.
             let end = if axis.tag == "ital" { axis.max } else { axis.min };
@@ -75,29 +116,31 @@ pub(super) fn with_variations<'a>(
     Ok(out)
 }
 
-/// Checks that the first font has the weight and the slant asked for, by itself or by an axis.
-pub(super) fn check_style(font: &Font<'_>, name: &str, weight: Option<u16>, italic: bool) -> Result<(), Failure> {
-    /// Weights this far apart look alike: neighbouring names.
-    const NEAR: f64 = 150.0;
-    let has_axis = |tags: &[&str]| font.axes().iter().any(|a| tags.contains(&a.tag.as_str()));
-    let light = weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(&["wght"]));
-    let upright = italic && !font.is_italic() && !has_axis(&["ital", "slnt"]);
-    let wanted = match (light, upright) {
-        (Some(w), _) => format!("--weight: {name} has no weight near {w}"),
-        (None, true) => format!("--italic: {name} has no italic"),
-        (None, false) => return Ok(()),
+/// Checks that the first font has the weight and the slant asked for, by itself, by an axis, or because it may be synthesised.
+pub(super) fn check_style(font: &Font<'_>, name: &str, wanted: &Wanted, read: &ReadOptions) -> Result<(), Failure> {
+    let lacking = wanted.weight_lacking(font);
+    let bolder = lacking.is_some_and(|w| f64::from(w) > font.weight());
+    let problem = match lacking {
+        Some(w) if !(wanted.synthesize && bolder) => format!("--weight: {name} has no weight near {w}"),
+        _ if wanted.italic_lacking(font) && !wanted.synthesize => format!("--italic: {name} has no italic"),
+        _ => return Ok(()),
     };
-    let mut styles = installed_styles(name);
+    let mut styles = family_styles(name, read);
     if styles.is_empty() {
         styles.push((font.weight().round() as u16, font.is_italic()));
     }
     let shown = styles.iter().map(|(w, italic)| format!("{w}{}", if *italic { " italic" } else { "" }));
     let shown = shown.collect::<Vec<_>>().join(", ");
-    Err(Failure::usage(format!("{wanted}, only {shown}; name a font that has it with --font")))
+    let advice = match (wanted.synthesize, lacking) {
+        (true, _) => "; only bolder weights can be synthesised",
+        (false, Some(_)) if !bolder => "",
+        (false, _) => ", or make it with --synthesize",
+    };
+    Err(Failure::usage(format!("{problem}, only {shown}; name a font that has it with --font{advice}")))
 }
 
 /// Finds a font by its file or by its family.
-pub(super) fn find(name: &str, weight: u16, italic: bool) -> Result<FontFile, Failure> {
+pub(super) fn find(name: &str, weight: u16, italic: bool, options: &ReadOptions) -> Result<FontFile, Failure> {
     let read = |path: &Path, index| input::bytes(path).map(|bytes| FontFile { bytes, index });
     let path = Path::new(name);
     if path.is_file() {
@@ -114,5 +157,5 @@ pub(super) fn find(name: &str, weight: u16, italic: bool) -> Result<FontFile, Fa
     if looks_like_file {
         return read(path, 0);
     }
-    Ok(system_font(name, weight, italic)?)
+    Ok(find_font(name, weight, italic, options)?)
 }

@@ -7,9 +7,11 @@ mod words;
 
 use super::file_args;
 use crate::failure::Failure;
+use crate::options::Given;
 use crate::status::Status;
 use crate::{output, terminal};
 use clap::{ArgMatches, Command};
+use fonts::Wanted;
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
 use pathwarp_text::{Font, layout};
 use std::path::{Path, PathBuf};
@@ -34,7 +36,9 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let em = Em::given(m)?;
     let style = style::style(m, &em)?;
     let weight = m.get_one::<String>("weight").map(|w| fonts::weight_of(w)).transpose()?;
-    let find = |name: &&str| fonts::find(name, weight.unwrap_or(fonts::REGULAR), m.get_flag("italic"));
+    let (italic, synthesize) = (m.get_flag("italic"), m.get_flag("synthesize"));
+    let read = Given::reading(m)?.read_options();
+    let find = |name: &&str| fonts::find(name, weight.unwrap_or(fonts::REGULAR), italic, &read);
     let files: Vec<FontFile> = names.iter().map(find).collect::<Result<_, _>>()?;
     let mut chosen: Vec<Font<'_>> = Vec::with_capacity(files.len() + 1);
     for (name, file) in names.iter().zip(&files) {
@@ -42,8 +46,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     }
     chosen.push(Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))?);
     let first = names.first().copied().unwrap_or("the bundled font");
-    fonts::check_style(&chosen[0], first, weight, m.get_flag("italic"))?;
-    let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, weight, m.get_flag("italic"))?;
+    fonts::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
+    let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
     let set = layout(&text, &chosen, &style).map_err(|e| failure(&e))?;
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();

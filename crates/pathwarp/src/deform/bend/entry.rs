@@ -30,7 +30,7 @@ its sides are handles on the control polygon instead of normals of the curve. FI
 omitted). A handle is the image of the artwork's height.")
     .source("Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994")
     .params(&[
-        Param::path("along", "The skeleton: one connected path.").needed(),
+        Param::path("along", "The skeleton: one connected path, such as circle:r=60mm or arc:r=60mm,from=200,to=340.").needed(),
         Param::new(
             "stretch",
             Kind::Choice(&["keep", "scale", "fit", "repeat"]),
@@ -88,6 +88,10 @@ omitted). A handle is the image of the artwork's height.")
         Example {
             what: "On an arc of a circle, scaled to its length",
             command: "bend samples/logo.svg --along 'M60,190 A400,400 0 0 1 604,190' --stretch scale --baseline 0 --fit grow -o out.svg",
+        },
+        Example {
+            what: "On an arc of 60 mm radius about the middle, from 200° to 340°",
+            command: "bend samples/lettering.svg --along arc:r=60mm,from=200,to=340 --fit grow -o out.svg",
         },
         Example {
             what: "A border of logos round a circle",

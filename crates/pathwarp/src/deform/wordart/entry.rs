@@ -1,10 +1,11 @@
 //! The registry's entry: reads a [`WordArt`] from text.
 
-use super::{TextShape, WordArt};
+use super::{ShapeBox, TextShape, WordArt};
 use crate::deform::built::Built;
 use crate::deform::entry::{Case, Deformation, Example, Gallery, Info, Law};
 use crate::error::Error;
 use crate::param::{Axis, Kind, Param, Settings};
+use std::sync::Arc;
 
 pub(in crate::deform) struct Entry;
 
@@ -55,14 +56,19 @@ pub(super) const NAMES: &[&str] = &[
 pub(super) static INFO: Info = Info::new("wordart", "put artwork into one of the forty text shapes of office programs")
     .gallery(Gallery { set: "wordart", title: "text shapes", presets: "preset", bend: None, axis: None })
     .group("Envelopes")
+    .with_letters()
     .about("The text effects that word processors and presentations offer under Transform, from their published formulas: \
 plain, triangle, chevron, arch-up, ring-inside, wave1, inflate, slant-up, cascade-up and the others below; \
 `pathwarp gallery --set wordart` draws them all. The names \
 in menus (\"Chevron Up\") and files (textChevron) work too.\n\nThe artwork's box is spanned between the guides; in \
-arch-up, arch-down, circle and button it stands on them instead, scaled to their length. deflate-inflate has two bands, \
+arch-up, arch-down, circle and button it stands on them instead. Shapes are drawn in the artwork's box, but round ones (these four, the pours \
+and the rings) in one that suits its proportion: on a single guide, letters keep their size, measured at half their height, in a square that \
+the text fills, and short words in one so large that no letter is twice as wide at one end as at the other; between two guides, the box that \
+distorts least. Lettering of fewer lines than button has guides takes the first ones, and artwork that is not lettering the first, unless --split divides it. --box artwork draws these in the artwork's box too, and \
+--box X,Y,W,H in any box; text on a single guide is then scaled to its length.\n\ndeflate-inflate has two bands, \
 deflate-inflate-deflate, button and button-pour have three, for as many lines of text. --split sets the heights at which the artwork is \
-divided; by default it is divided evenly.\n\nA shape of your own is a TOML or JSON file of adjust values, formulas over w and h (the \
-box) and guides written like path data:\n\n  name = \"hill\"\n  adj = [{ name = \"adj\", default = 40000, least = 0, most = 80000 }]\n  \
+divided; by default between as many lines, or evenly.\n\nA shape of your own is a TOML or JSON file of adjust values, formulas over w and h (the \
+box) and guides written like path data (`round = true`: the box suits the artwork's proportion):\n\n  name = \"hill\"\n  adj = [{ name = \"adj\", default = 40000, least = 0, most = 80000 }]\n  \
 let = [\"y = adj*h/100000\"]\n  bands = [[\"M 0,y Q w/2,-y w,y\", \"M 0,h L w,h\"]]")
     .source("ECMA-376, Office Open XML File Formats, Part 1, presetTextWarpDefinitions (DrawingML prstTxWarp, 20.1.9.19)")
     .params(&[
@@ -80,6 +86,13 @@ their order.",
             "Spacing along the guides: even by length, or by their parameters.",
         )
         .default("arclength"),
+        Param::new(
+            "box",
+            Kind::Text("fit|artwork|X,Y,W,H"),
+            "The box that the shape is drawn in: for round shapes one that suits the artwork's proportion, the artwork's own, or this one \
+(user units or %).",
+        )
+        .default("fit"),
         Param::new("split", Kind::Text("Y[,Y…]"), "The heights at which artwork is divided between bands, user units or %."),
     ])
     .demo(&[("preset", "wave1"), ("adj", "adj1=15000"), ("adj", "adj2=4000")])
@@ -121,7 +134,7 @@ their order.",
             tolerance: 1e-9,
         },
         Case {
-            args: &[("preset", "arch-up")],
+            args: &[("preset", "arch-up"), ("box", "artwork")],
             at: (25.0, 100.0),
             to: (50.0 - 50.0 * R2, 50.0 - 50.0 * R2),
             tolerance: 1e-9,
@@ -149,6 +162,11 @@ impl Deformation for Entry {
             shape,
             by_parameter: s.choice("by")? == "parameter",
             split: if s.given("split") { Some(split(s)?) } else { None },
+            shape_box: match s.texts("box").last() {
+                Some(&"fit") => ShapeBox::Fit,
+                _ => s.rect_if("box")?.map_or(ShapeBox::Artwork, ShapeBox::Given),
+            },
+            letters: Arc::clone(&s.frame().letters),
         };
         wordart.build()
     }

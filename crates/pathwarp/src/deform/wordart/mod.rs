@@ -5,22 +5,24 @@
 //! text warps of DrawingML, `prstTxWarp`), written anew as data in `presets.json` ([`preset`]).
 
 mod entry;
+mod place;
 mod shape;
 #[cfg(test)]
 mod tests;
 
 pub(super) use entry::Entry;
+pub use place::ShapeBox;
 pub use shape::TextShape;
 
-use super::bend::{Bend, Stretch};
+use super::bend::{Align, Bend, Stretch};
 use super::built::{Built, Role};
 use crate::anchors;
 use crate::error::{Error, GeometryError};
 use crate::map::{AffineMap, Along, Class, Guide, Map, TileRow, Tiled, ruled};
 use crate::outline::{Outline, Seg, Subpath};
-use crate::param::Frame;
-use kurbo::{Affine, BezPath, Rect};
-use shape::Guides;
+use crate::param::{Frame, Letter, word_space};
+use kurbo::{Affine, BezPath, Rect, Size};
+use shape::{GuideError, Guides};
 use std::sync::Arc;
 
 /// A text shape of office programs over the artwork's box: wave, chevron, arch, inflate, …
@@ -42,6 +44,8 @@ pub struct WordArt {
     adjusted: Vec<f64>,
     by_parameter: bool,
     split: Option<Vec<f64>>,
+    shape_box: ShapeBox,
+    letters: Arc<[Letter]>,
 }
 
 /// A point on a guide's curve is drawn within this share of the box's width and height.
@@ -52,7 +56,15 @@ impl WordArt {
     #[must_use]
     pub fn new(shape: TextShape, frame: Rect) -> Self {
         let adjusted = shape.adj.iter().map(|a| a.default).collect();
-        Self { frame, shape, adjusted, by_parameter: false, split: None }
+        Self {
+            frame,
+            shape,
+            adjusted,
+            by_parameter: false,
+            split: None,
+            shape_box: ShapeBox::Fit,
+            letters: Arc::new([]),
+        }
     }
 
     /// Sets the first adjust values, in the shape's order: lengths in 1/100000 of the box, angles in 1/60000 degree.
@@ -75,6 +87,19 @@ impl WordArt {
         Self { split: Some(heights.to_vec()), ..self }
     }
 
+    /// Sets the box that the shape is drawn in.
+    #[must_use]
+    pub fn shape_box(self, shape_box: ShapeBox) -> Self {
+        Self { shape_box, ..self }
+    }
+
+    /// Sets the artwork's letters. By default the artwork is divided between their lines, and fewer lines than guides take the
+    /// first guides only.
+    #[must_use]
+    pub fn letters(self, letters: Arc<[Letter]>) -> Self {
+        Self { letters, ..self }
+    }
+
     /// Builds the map.
     ///
     /// # Errors
@@ -92,16 +117,26 @@ impl WordArt {
             a.check(*value, &shape.name)?;
         }
         let wrong = |problem: String| Error::usage("preset", shape.name.clone(), problem);
-        let guides = shape.guides(rect.width(), rect.height(), adjusted).map_err(|e| wrong(e.to_string()))?;
-        let bands = match &guides {
+        let guides = |w, h| shape.guides(w, h, adjusted).map_err(|e: GuideError| wrong(e.to_string()));
+        let lines = place::lines(&self.letters, *rect);
+        let bands = match guides(rect.width(), rect.height())? {
             Guides::Between(b) => b.len(),
+            // Artwork without known lines counts as one, unless it is laid into a given box.
+            Guides::Along(p) if self.split.is_none() && (self.shape_box == ShapeBox::Fit || !lines.is_empty()) => {
+                p.len().min(lines.len().max(1))
+            }
             Guides::Along(p) => p.len(),
         };
-        let cuts = self.cuts(bands)?;
+        let cuts = self.cuts(bands, &lines)?;
+        let shape_box = self.placed(&cuts, &guides)?;
         let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
         let values = shape.adj.iter().zip(adjusted).map(|(a, v)| format!("{} {v}", a.name)).collect::<Vec<_>>();
         built.note(format!("text shape {}: {}, {bands} band(s)", shape.name, values.join(", ")));
-        let rows = self.rows(guides, &cuts, &mut built)?;
+        if shape_box != *rect {
+            let Rect { x0, y0, .. } = shape_box;
+            built.note(format!("box of the shape: {x0:.6},{y0:.6},{:.6},{:.6}", shape_box.width(), shape_box.height()));
+        }
+        let rows = self.rows(guides(shape_box.width(), shape_box.height())?, &cuts, shape_box, &mut built)?;
         let map = rows.and_then(|rows| Tiled::over(*rect, cuts, rows));
         let map = map.ok_or_else(|| wrong("has a guide without length in this box: adjust it less far".into()))?;
         built.map = match map.class() {
@@ -111,17 +146,52 @@ impl WordArt {
         Ok(built)
     }
 
-    /// Returns the maps of the bands; `None` if a guide has no length.
-    fn rows(&self, guides: Guides, cuts: &[f64], built: &mut Built) -> Result<Option<Vec<TileRow>>, Error> {
+    /// Returns the box that the shape is drawn in; the artwork is divided at `cuts`.
+    fn placed(&self, cuts: &[f64], guides: &dyn Fn(f64, f64) -> Result<Guides, Error>) -> Result<Rect, Error> {
         let rect = self.frame;
-        let place = Affine::translate(rect.origin().to_vec2());
+        match self.shape_box {
+            ShapeBox::Given(given) => return Ok(given.abs()),
+            ShapeBox::Artwork => return Ok(rect),
+            ShapeBox::Fit => {}
+        }
+        match guides(1.0, 1.0)? {
+            Guides::Along(paths) => {
+                let space = word_space(&self.letters).unwrap_or(0.0);
+                let side = paths.iter().take(cuts.len() + 1).enumerate().map(|(k, path)| {
+                    let space = if place::is_closed(path) { space } else { 0.0 };
+                    place::side(path, rect.width() + space, self.band(cuts, k).height())
+                });
+                let side = side.fold(0.0, f64::max);
+                Ok(Rect::from_center_size(rect.center(), Size::new(side, side)))
+            }
+            Guides::Between(_) if !self.shape.round => Ok(rect),
+            Guides::Between(_) => place::least_distorting(rect, |b| {
+                let rows =
+                    self.rows(guides(b.width(), b.height())?, cuts, b, &mut Built::new(Arc::new(AffineMap::IDENTITY)))?;
+                Ok::<_, Error>(rows.and_then(|rows| Tiled::over(rect, cuts.to_vec(), rows)))
+            }),
+        }
+    }
+
+    /// The part of the artwork's box between two cuts.
+    fn band(&self, cuts: &[f64], k: usize) -> Rect {
+        let rect = self.frame;
+        let y0 = if k == 0 { rect.y0 } else { cuts[k - 1] };
+        Rect { y0, y1: cuts.get(k).copied().unwrap_or(rect.y1), ..rect }
+    }
+
+    /// Returns the maps of the bands; `None` if a guide has no length.
+    fn rows(
+        &self,
+        guides: Guides,
+        cuts: &[f64],
+        shape_box: Rect,
+        built: &mut Built,
+    ) -> Result<Option<Vec<TileRow>>, Error> {
+        let place = Affine::translate(shape_box.origin().to_vec2());
         let moved = |segs: &[Seg]| -> Vec<Seg> { segs.iter().map(|g| g.transformed(place)).collect() };
-        let band = |k: usize| {
-            let y0 = if k == 0 { rect.y0 } else { cuts[k - 1] };
-            Rect { y0, y1: cuts.get(k).copied().unwrap_or(rect.y1), ..rect }
-        };
-        let drawn =
-            |segs: &[Seg]| -> BezPath { outline(segs).to_bez_path(GUIDE_TOLERANCE * (rect.width() + rect.height())) };
+        let tolerance = GUIDE_TOLERANCE * (shape_box.width() + shape_box.height());
+        let drawn = |segs: &[Seg]| -> BezPath { outline(segs).to_bez_path(tolerance) };
         match guides {
             Guides::Between(pairs) => {
                 let along = if self.by_parameter { Along::Parameter } else { Along::ArcLength };
@@ -129,16 +199,16 @@ impl WordArt {
                     let (top, bottom) = (moved(top), moved(bottom));
                     built.overlay(Role::Cage, drawn(&top));
                     built.overlay(Role::Cage, drawn(&bottom));
-                    ruled::row(band(k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
+                    ruled::row(self.band(cuts, k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
                 };
                 Ok(pairs.iter().enumerate().map(one).collect())
             }
             Guides::Along(paths) => {
-                let mut rows = Vec::with_capacity(paths.len());
-                for (k, path) in paths.iter().enumerate() {
+                let mut rows = Vec::with_capacity(cuts.len() + 1);
+                for (k, path) in paths.iter().take(cuts.len() + 1).enumerate() {
                     let path = moved(path);
                     built.overlay(Role::Cage, drawn(&path));
-                    let bent = standing(&path, band(k))?;
+                    let bent = self.standing(&path, self.band(cuts, k))?;
                     built.explanation.warnings.extend(bent.explanation.warnings);
                     rows.push(TileRow { cuts: Vec::new(), maps: vec![bent.map] });
                 }
@@ -147,10 +217,29 @@ impl WordArt {
         }
     }
 
+    /// Stands a band of artwork on `path`: true to size in a box that suits it, else scaled to the path's length.
+    fn standing(&self, path: &[Seg], band: Rect) -> Result<Built, Error> {
+        let bend = Bend::new(band, &outline(path)).baseline(band.y1).as_drawn(true);
+        let loose = || place::is_loose(path, band.width(), band.height(), word_space(&self.letters).unwrap_or(0.0));
+        match self.shape_box {
+            // Short text stands around the top.
+            ShapeBox::Fit if place::is_closed(path) && loose() => {
+                bend.even(true).offset((place::top(path) - 0.5) * place::mid_length(path, band.height()))
+            }
+            ShapeBox::Fit if place::is_closed(path) => bend.even(true).align(Align::Start),
+            ShapeBox::Fit => bend.even(true),
+            _ => bend.stretch(Stretch::Scale),
+        }
+        .build()
+    }
+
     /// Returns the heights between bands.
-    fn cuts(&self, bands: usize) -> Result<Vec<f64>, Error> {
+    fn cuts(&self, bands: usize, lines: &[place::Line]) -> Result<Vec<f64>, Error> {
         let rect = self.frame;
         let Some(split) = &self.split else {
+            if let Some(cuts) = place::gaps(lines, rect).filter(|_| lines.len() == bands) {
+                return Ok(cuts);
+            }
             return Ok((1..bands).map(|k| rect.y0 + rect.height() * (k as f64 / bands as f64)).collect());
         };
         let inside = split.iter().all(|y| *y > rect.y0 && *y < rect.y1) && split.windows(2).all(|w| w[0] < w[1]);
@@ -168,11 +257,6 @@ impl WordArt {
 fn no_adjust_value(shape: &TextShape, text: &str) -> Error {
     let known: Vec<&str> = shape.adj.iter().map(|a| a.name.as_str()).collect();
     Error::usage("adj", text, format!("is not an adjust value of {}: {}", shape.name, known.join(", ")))
-}
-
-/// Stands the band of artwork in `frame` on `path`, scaled to its length.
-fn standing(path: &[Seg], frame: Rect) -> Result<Built, Error> {
-    Bend::new(frame, &outline(path)).stretch(Stretch::Scale).baseline(frame.y1).as_drawn(true).build()
 }
 
 fn outline(segs: &[Seg]) -> Outline {

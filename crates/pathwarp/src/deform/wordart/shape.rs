@@ -34,6 +34,9 @@ pub struct TextShape {
     /// Top and bottom guides, one pair below the other.
     #[serde(default)]
     bands: Vec<[String; 2]>,
+    /// `true` if the shape surrounds a middle, so that its box should suit the artwork's proportion.
+    #[serde(default)]
+    pub(super) round: bool,
     /// Single guides that text stands on, one below the other.
     #[serde(default)]
     paths: Vec<String>,

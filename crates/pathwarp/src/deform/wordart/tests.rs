@@ -244,7 +244,7 @@ fn cans_and_rings_are_ellipses() {
         }
         for (name, sign) in [("ring-inside", 1.0), ("ring-outside", -1.0)] {
             for by in ["arclength", "parameter"] {
-                let m = build(&[("preset", name), ("by", by)]).unwrap().map;
+                let m = build(&[("preset", name), ("by", by), ("box", "artwork")]).unwrap().map;
                 for (y, cy) in [(0.0, 0.3 * H), (H, 0.7 * H)] {
                     let p = m.point((x, y).into());
                     assert!(on(p, cy, 0.3 * H), "{name} {x}: {p:?}");
@@ -263,7 +263,7 @@ fn cans_and_rings_are_ellipses() {
 fn arches_begin_where_their_angle_points() {
     for degrees in [10.0_f64, 100.0, 150.0, 200.0, 300.0] {
         let text = format!("{degrees}deg");
-        let up = build(&[("preset", "arch-up"), ("adj", &text)]).unwrap().map;
+        let up = build(&[("preset", "arch-up"), ("adj", &text), ("box", "artwork")]).unwrap().map;
         let (a, b) = (up.point((0.0, H).into()), up.point((W, H).into()));
         let d = a - Point::new(0.5 * W, 0.5 * H);
         let off = (d.y.atan2(d.x).to_degrees() - degrees).rem_euclid(360.0);
@@ -278,7 +278,7 @@ fn bands_take_lines_of_text() {
     assert!(m.point((0.0, 0.2 * H).into()).distance((0.0, 0.225 * H).into()) < 1e-9);
     assert!(m.point((0.0, H).into()).distance((0.0, H).into()) < 1e-9);
     assert!(m.point((0.0, 0.7 * H).into()).distance((0.0, 0.775 * H).into()) < 1e-9);
-    let button = build(&[("preset", "button")]).unwrap().map;
+    let button = build(&[("preset", "button"), ("box", "artwork")]).unwrap().map;
     assert!(button.point((0.5 * W, 2.0 * H / 3.0).into()).distance((0.5 * W, 0.5 * H).into()) < 1e-9);
 }
 
