@@ -4,6 +4,7 @@ pub(crate) mod cascade;
 pub(crate) mod edit;
 pub(crate) mod element;
 mod encoding;
+pub(crate) mod families;
 mod fontface;
 pub(crate) mod fonts;
 pub(crate) mod live;
