@@ -141,6 +141,6 @@ fn undoing_a_fold_is_warned_of_with_the_place() {
         assert!(code == Some(0) && !said.contains("ambiguous"), "{map:?}: {said}");
     }
     // This one cannot be undone on all of the square: an error or a warning, never silence.
-    let (code, said) = back(&["wordart", "--preset", "button"]);
+    let (code, said) = back(&["wordart", "--preset", "button", "--box", "artwork"]);
     assert!(code == Some(4) || said.contains("ambiguous"), "{code:?}: {said}");
 }

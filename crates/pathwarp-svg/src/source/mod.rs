@@ -5,6 +5,7 @@ mod check;
 pub(crate) mod edit;
 pub(crate) mod element;
 mod encoding;
+pub(crate) mod families;
 mod fontface;
 pub(crate) mod fonts;
 pub(crate) mod images;

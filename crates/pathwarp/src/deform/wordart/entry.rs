@@ -88,9 +88,9 @@ their order.",
         .default("arclength"),
         Param::new(
             "box",
-            Kind::Text("fit|artwork|X,Y,W,H"),
-            "The box that the shape is drawn in: for round shapes one that suits the artwork's proportion, the artwork's own, or this one \
-(user units or %).",
+            Kind::Text("BOX"),
+            "The box that the shape is drawn in: fit (for round shapes, one that suits the artwork's proportion), artwork (its own), or \
+X,Y,W,H (user units or %).",
         )
         .default("fit"),
         Param::new("split", Kind::Text("Y[,Y…]"), "The heights at which artwork is divided between bands, user units or %."),
