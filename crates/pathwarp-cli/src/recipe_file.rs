@@ -102,7 +102,9 @@ fn step(registry: &Registry, table: &toml::Table, folder: &Folder<'_>) -> Result
                         continue;
                     }
                     if param.kind == Kind::Save {
-                        return Err(format!("{key} is not for recipes, which write no files; give it on the command line"));
+                        return Err(format!(
+                            "{key} is not for recipes, which write no files; give it on the command line"
+                        ));
                     }
                     step.args.push(key, from_folder(param, v, folder).map_err(|e| format!("{key}: {e}"))?);
                 }
@@ -145,7 +147,9 @@ fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<Stri
     }
     let path = Path::new(&value);
     if (path.is_absolute() || path.has_root()) && !folder.external {
-        return Err(format!("`{value}` is absolute; name it relative to the recipe, or allow it with --allow-external"));
+        return Err(format!(
+            "`{value}` is absolute; name it relative to the recipe, or allow it with --allow-external"
+        ));
     }
     let placed = folder.path.join(path);
     let file = if placed.exists() { placed.clone() } else { split_reference(&placed.to_string_lossy()).0 };
@@ -178,7 +182,9 @@ pub(crate) fn write(registry: &Registry, recipe: &Recipe, given: &Given, folder:
                 continue;
             }
             let placed = values.iter().map(|v| match param {
-                Some(p) if (!same_place || Path::new(v).is_absolute()) && names_file(p, v) => relative(&here.join(v), &here.join(folder)),
+                Some(p) if (!same_place || Path::new(v).is_absolute()) && names_file(p, v) => {
+                    relative(&here.join(v), &here.join(folder))
+                }
                 _ => v.clone(),
             });
             t.insert(name.to_owned(), value(placed.collect()));

@@ -95,14 +95,16 @@ fn on_interruption_remove_all() {
     static INSTALL: Once = Once::new();
     INSTALL.call_once(|| {
         // A program around this library may have a handler already; it then answers for interruptions.
-        let _ = ctrlc::set_handler(|| remove_all_and(|| {
-            terminal::error(&match FINISHED.load(Ordering::Relaxed) {
-                0 => "interrupted; no output was written".to_owned(),
-                1 => "interrupted; the result of 1 input is written".to_owned(),
-                n => format!("interrupted; the results of {n} inputs are written"),
-            });
-            std::process::exit(INTERRUPTED);
-        }));
+        let _ = ctrlc::set_handler(|| {
+            remove_all_and(|| {
+                terminal::error(&match FINISHED.load(Ordering::Relaxed) {
+                    0 => "interrupted; no output was written".to_owned(),
+                    1 => "interrupted; the result of 1 input is written".to_owned(),
+                    n => format!("interrupted; the results of {n} inputs are written"),
+                });
+                std::process::exit(INTERRUPTED);
+            })
+        });
     });
 }
 

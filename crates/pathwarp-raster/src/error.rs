@@ -31,7 +31,8 @@ pub enum Error {
     /// Geometry reaches farther than the renderer can compute with.
     #[error(
         "a shape or a stroke extends more than {:.0e} pixels from the picture, or has coordinates that are not finite, which \
-         cannot be drawn; remove it, or draw the picture smaller", crate::load::FARTHEST
+         cannot be drawn; remove it, or draw the picture smaller",
+        crate::load::FARTHEST
     )]
     TooFar,
     /// A turbulence filter has more octaves than have any effect.

@@ -58,7 +58,11 @@ impl Picture {
     /// # Errors
     /// As for [`Picture::read`].
     pub fn read_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
-        if Self::sniff(bytes) { Self::decode(bytes, true, limits) } else { Err(undecodable("neither a PNG nor a JPEG")) }
+        if Self::sniff(bytes) {
+            Self::decode(bytes, true, limits)
+        } else {
+            Err(undecodable("neither a PNG nor a JPEG"))
+        }
     }
 
     /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) without applying its orientation, as SVG renderers do. Takes the

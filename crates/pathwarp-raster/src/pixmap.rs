@@ -16,6 +16,11 @@ pub(crate) fn new_pixmap(width: f64, height: f64, limits: &Limits) -> Result<Pix
     if whole_width == 0 || whole_height == 0 {
         return Err(Error::Empty { width: whole_width, height: whole_height });
     }
-    let refused = || Exceeded { limit: Limit::Pixels, most: limits.of(Limit::Pixels), needed: COPIES * width * height, cut: false };
+    let refused = || Exceeded {
+        limit: Limit::Pixels,
+        most: limits.of(Limit::Pixels),
+        needed: COPIES * width * height,
+        cut: false,
+    };
     Pixmap::new(whole_width, whole_height).ok_or_else(|| too_large(refused()))
 }

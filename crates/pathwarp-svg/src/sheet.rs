@@ -135,7 +135,7 @@ mod tests {
         let cells = [(ONE, "whole & all"), (&half, "half"), (ONE, "again")]
             .map(|(s, l)| Cell { svg: s.into(), label: l.into() });
         let options = SheetOptions { columns: 2, cell: (124.0, 96.0), title: "Title".into() };
-        let svg = sheet(&cells, &options, &ReadOptions::default()).unwrap().0;
+        let svg = sheet(&cells, &options, &ReadOptions::default()).unwrap();
         assert!(!svg.contains("<text") && svg.contains("<title>whole &amp; all</title>"));
         let doc = usvg::roxmltree::Document::parse(&svg).unwrap();
         let mut ids: Vec<&str> = doc.descendants().filter_map(|n| n.attribute("id")).collect();

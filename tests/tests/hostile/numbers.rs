@@ -21,9 +21,10 @@ fn shapes_out_of_range_stay_and_are_reported() {
         let (code, said) = &all[0];
         assert_eq!(*code, 1, "{body}: {said}");
         assert!(said.contains("is out of range") || said.contains("beyond the range"), "{body}: {said}");
-        // The rest of the drawing is warped, and what is out of range keeps its text.
+        // What is out of range keeps its text. The rest is warped, unless a style sheet may concern it.
         let out = std::fs::read_to_string(folder.path().join("out.svg")).unwrap();
-        assert!(!out.contains(RECT) && out.contains(&body[body.len() - 20..]), "{body}: {out}");
+        assert!(out.contains(&body[body.len() - 20..]), "{body}: {out}");
+        assert_eq!(out.contains(RECT), body.starts_with("<style>"), "{body}: {out}");
     }
 }
 
@@ -34,9 +35,18 @@ fn the_renderer_stands_what_it_is_given() {
         for (body, strokes) in [
             (format!("<path d='M0 0L{size} {size}L-{size} 50Z'/>"), ""),
             (format!("<circle r='{size}'/><ellipse cx='{size}' rx='{size}' ry='.001'/>"), ""),
-            (format!("<path d='M0 0L50 10L20 30C{size} 0 0 {size} 9 9' fill='none'/>"), "stroke='red' stroke-width='3'"),
-            ("<path d='M0 0L50 10L20 30' fill='none'/>".into(), &*format!("stroke='red' stroke-width='{size}' stroke-dasharray='{size}'")),
-            ("<path d='M0 0L50 .001L0 0'/>".into(), "stroke='red' stroke-linejoin='round' stroke-width='30' stroke-miterlimit='1e6'"),
+            (
+                format!("<path d='M0 0L50 10L20 30C{size} 0 0 {size} 9 9' fill='none'/>"),
+                "stroke='red' stroke-width='3'",
+            ),
+            (
+                "<path d='M0 0L50 10L20 30' fill='none'/>".into(),
+                &*format!("stroke='red' stroke-width='{size}' stroke-dasharray='{size}'"),
+            ),
+            (
+                "<path d='M0 0L50 .001L0 0'/>".into(),
+                "stroke='red' stroke-linejoin='round' stroke-width='30' stroke-miterlimit='1e6'",
+            ),
         ] {
             let all = Folder::with(&[("a.svg", &svg(&format!("<g {strokes}>{body}</g>")))]).run_all("a.svg");
             assert!([0, 3].contains(&all[3].0), "{size} {body}: {}", all[3].1);

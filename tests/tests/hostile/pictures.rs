@@ -16,7 +16,8 @@ fn announcing(width: u32, height: u32) -> Vec<u8> {
         [&u32::try_from(data.len()).unwrap().to_be_bytes()[..], &content, &crc(&content).to_be_bytes()].concat()
     };
     let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
-    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), chunk(b"IDAT", &[120, 156, 3, 0]), chunk(b"IEND", b"")].concat()
+    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), chunk(b"IDAT", &[120, 156, 3, 0]), chunk(b"IEND", b"")]
+        .concat()
 }
 
 const IMAGE: &str = "<image width='80' height='80' href='p.png'/>";
@@ -55,11 +56,17 @@ fn linked_and_nested_drawings_are_counted_together() {
 #[test]
 fn layers_masks_and_filters_are_drawn_within_bounds() {
     let large = |body: &str| {
-        let text = String::from_utf8(svg(body)).unwrap().replace("width='100' height='100'>", "width='4000' height='4000'>");
+        let text =
+            String::from_utf8(svg(body)).unwrap().replace("width='100' height='100'>", "width='4000' height='4000'>");
         Folder::with(&[("a.svg", text.as_bytes())])
     };
-    let masks: String = (1..30).map(|i| format!("<mask id='m{i}'><g mask='url(#m{})'>{RECT}</g></mask>", i - 1)).collect();
-    large(&format!("<mask id='m0'>{RECT}</mask>{masks}<g mask='url(#m29)'>{RECT}</g>")).expect("a.svg", [0, 3], "pixels");
+    let masks: String =
+        (1..30).map(|i| format!("<mask id='m{i}'><g mask='url(#m{})'>{RECT}</g></mask>", i - 1)).collect();
+    large(&format!("<mask id='m0'>{RECT}</mask>{masks}<g mask='url(#m29)'>{RECT}</g>")).expect(
+        "a.svg",
+        [0, 3],
+        "pixels",
+    );
     for filter in [
         "<feTurbulence numOctaves='20' baseFrequency='.1'/>",
         "<feTurbulence numOctaves='1000000' baseFrequency='.1'/>",
@@ -68,7 +75,9 @@ fn layers_masks_and_filters_are_drawn_within_bounds() {
         &"<feDiffuseLighting><feDistantLight azimuth='9'/></feDiffuseLighting>".repeat(100),
         &format!("<feConvolveMatrix order='100' kernelMatrix='{}'/>", "1 ".repeat(10_000)),
     ] {
-        let body = format!("<filter id='f' x='-9' y='-9' width='20' height='20'>{filter}</filter><g filter='url(#f)'>{RECT}</g>");
+        let body = format!(
+            "<filter id='f' x='-9' y='-9' width='20' height='20'>{filter}</filter><g filter='url(#f)'>{RECT}</g>"
+        );
         let all = large(&body).run_all("a.svg");
         assert_eq!(all[3].0, 3, "{filter}: {}", all[3].1);
     }

@@ -16,7 +16,12 @@ fn pixel() -> Vec<u8> {
 fn linked_pictures_are_read_beside_the_drawing_only() {
     let outside = Folder::with(&[("secret.png", &pixel()), ("secret.svg", &svg(RECT))]);
     let absolute = outside.path().join("secret.png").display().to_string();
-    let folder = Folder::with(&[("art/a.svg", b""), ("art/beside.png", &pixel()), ("art/in/below.png", &pixel()), ("above.png", &pixel())]);
+    let folder = Folder::with(&[
+        ("art/a.svg", b""),
+        ("art/beside.png", &pixel()),
+        ("art/in/below.png", &pixel()),
+        ("above.png", &pixel()),
+    ]);
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(&absolute, folder.path().join("art/link.png")).unwrap();
@@ -24,8 +29,11 @@ fn linked_pictures_are_read_beside_the_drawing_only() {
     }
     let secret = STANDARD.encode(pixel());
     let holds = |link: &str, more: &[&str]| {
-        fs::write(folder.path().join("art/a.svg"), svg(&format!("<image width='9' height='9' href='{link}'/>{RECT}"))).unwrap();
-        let (code, said) = folder.run(&[&["wave", "art/a.svg", "-o", "out.svg", "--structure", "flatten", "--images", "keep"], more].concat());
+        fs::write(folder.path().join("art/a.svg"), svg(&format!("<image width='9' height='9' href='{link}'/>{RECT}")))
+            .unwrap();
+        let (code, said) = folder.run(
+            &[&["wave", "art/a.svg", "-o", "out.svg", "--structure", "flatten", "--images", "keep"], more].concat(),
+        );
         let (drawn, _) = folder.run(&[&["render", "art/a.svg", "-o", "out.png"], more].concat());
         let read = fs::read_to_string(folder.path().join("out.svg")).unwrap().contains(&secret);
         // What is not read is reported, by both commands.
@@ -55,8 +63,19 @@ fn recipes_set_deformations_only() {
     };
     let swirl = "[[step]]\ndeformation=\"swirl\"\n";
     for option in [
-        "out=\"../evil.svg\"", "out-dir=\"..\"", "report=\"r.json\"", "preview=\"p.png\"", "write-recipe=\"w.toml\"", "into=\"c.xcf\"",
-        "jobs=65535", "in-place=true", "recursive=true", "embed-recipe=true", "limit=\"bytes=1e99\"", "allow-external=true", "quiet=true",
+        "out=\"../evil.svg\"",
+        "out-dir=\"..\"",
+        "report=\"r.json\"",
+        "preview=\"p.png\"",
+        "write-recipe=\"w.toml\"",
+        "into=\"c.xcf\"",
+        "jobs=65535",
+        "in-place=true",
+        "recursive=true",
+        "embed-recipe=true",
+        "limit=\"bytes=1e99\"",
+        "allow-external=true",
+        "quiet=true",
     ] {
         let (code, said) = run(&format!("[options]\n{option}\n{swirl}"), &[]);
         assert_eq!(code, 3, "{option}: {said}");
@@ -81,7 +100,8 @@ fn recipes_set_deformations_only() {
 #[test]
 fn split_files_stay_in_their_folder() {
     let long = "n".repeat(300);
-    let paths = ["../../../var/EVIL", "/var/EVIL", "..\\..\\x", &long, "q"].map(|id| format!("<path id='{id}' d='M0 0L1 1'/>"));
+    let paths =
+        ["../../../var/EVIL", "/var/EVIL", "..\\..\\x", &long, "q"].map(|id| format!("<path id='{id}' d='M0 0L1 1'/>"));
     let folder = Folder::with(&[("a.svg", &svg(&paths.concat()))]);
     let (code, said) = folder.run(&["convert", "a.svg", "--split", "-o", "x.svg"]);
     assert_eq!(code, 0, "{said}");

@@ -3,9 +3,9 @@
 use super::file_args;
 use crate::failure::Failure;
 use crate::input::{self, GimpFile};
+use crate::options::{self, Access, Given};
 use crate::output::{self, PendingFile};
 use crate::sources::Files;
-use crate::options::{self, Access, Given};
 use crate::status::Status;
 use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Command};

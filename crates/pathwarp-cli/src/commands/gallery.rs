@@ -191,6 +191,8 @@ impl Preset<'_> {
     fn warp(&self, doc: &Document, frame: Rect) -> Result<String, Failure> {
         let built = self.entry.build_from(&self.args, &Frame::new(frame))?;
         let tolerance = TOLERANCE * frame.width().hypot(frame.height());
-        Ok(doc.warp(&built.map, &WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone())))?.svg)
+        Ok(doc
+            .warp(&built.map, &WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone())))?
+            .svg)
     }
 }

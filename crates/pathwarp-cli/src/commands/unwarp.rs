@@ -25,7 +25,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let target = file_args::target(m, [file])?;
     let name = input::display(file);
     let text = String::from_utf8(input::bytes(file)?).map_err(|_| Failure::file(file, "is not UTF-8 text"))?;
-    let origin = Origin::read_within(&text, &Given::access(m)?.limits.for_input(text.len())).map_err(|e| Failure::from(e).about(&name))?;
+    let origin = Origin::read_within(&text, &Given::access(m)?.limits.for_input(text.len()))
+        .map_err(|e| Failure::from(e).about(&name))?;
     let origin =
         origin.ok_or_else(|| Failure::file(file, "holds no source; only drawings written with --embed-recipe do"))?;
     let bytes = if m.get_flag("recipe") { origin.recipe.into_bytes() } else { origin.source };

@@ -66,7 +66,8 @@ impl SvgArtwork {
 
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
         let WarpRequest { built, options, tolerance, .. } = request;
-        let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_limits(*self.doc.budget().limits());
+        let bender =
+            Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_limits(*self.doc.budget().limits());
         let bender = Arc::new(bender);
         let gradients = match options.gradients {
             GradientChoice::Fit => Gradients::Fit,

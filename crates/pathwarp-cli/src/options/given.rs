@@ -30,7 +30,9 @@ impl Given {
     pub(crate) fn options(m: &ArgMatches) -> Self {
         let mut values = Vec::new();
         for option in OPTIONS {
-            if !matches!(m.try_contains_id(option.name), Ok(true)) || m.value_source(option.name) != Some(ValueSource::CommandLine) {
+            if !matches!(m.try_contains_id(option.name), Ok(true))
+                || m.value_source(option.name) != Some(ValueSource::CommandLine)
+            {
                 continue;
             }
             let typed = match option.value {
@@ -54,7 +56,9 @@ impl Given {
     pub(crate) fn push(&mut self, name: &str, value: &str) -> Result<(), String> {
         let option = OPTIONS.iter().find(|o| o.name == name).ok_or_else(|| unknown(name))?;
         if !option.stored {
-            return Err(format!("{name} is not for recipes, which describe the deformation only; give it on the command line"));
+            return Err(format!(
+                "{name} is not for recipes, which describe the deformation only; give it on the command line"
+            ));
         }
         option.check(value).map_err(|e| format!("{name}: {e}"))?;
         let mut all = std::mem::take(self);
@@ -228,16 +232,15 @@ mod tests {
             ("out", "a.svg"),
             ("limit", "bytes=1e99"),
             ("allow-external", "true"),
-        ]
-        {
+        ] {
             assert!(given.push(name, value).is_err(), "{name} {value}");
         }
         given.push("tolerance", "-1").unwrap();
         assert!(given.read().is_err());
-        let mut both = Given::default();
-        both.push("out", "a.svg").unwrap();
+        let option = |name: &str| OPTIONS.iter().find(|o| o.name == name).unwrap();
+        let mut both = Given { values: vec![(option("out"), vec!["a.svg".into()])], ..Given::default() };
         assert!(both.check_conflicts().is_ok());
-        both.push("into", "b.xcf").unwrap();
+        both.values.push((option("into"), vec!["b.xcf".into()]));
         assert!(both.check_conflicts().is_err());
     }
 }

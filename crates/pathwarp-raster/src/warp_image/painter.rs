@@ -12,8 +12,8 @@ use super::trace::{ChebyshevBasis, Trace};
 use crate::error::Error;
 use crate::parallel::for_each_chunk;
 use crate::pixmap::new_pixmap;
-use pathwarp::budget::Limits;
 use kurbo::{Affine, Point, Vec2};
+use pathwarp::budget::Limits;
 use pathwarp::map::Jet;
 use tiny_skia::Pixmap;
 

@@ -29,7 +29,9 @@ impl Far {
         let inside = |e: Option<ElementId>| e.is_some_and(|e| source.ancestors(e).any(|a| named.contains(&a)));
         let mut reasons: Vec<(String, String)> = numbers
             .iter()
-            .map(|(e, n)| (source.display_name(*e), format!("its number {n} is out of range, which ends at {LARGEST:e}")))
+            .map(|(e, n)| {
+                (source.display_name(*e), format!("its number {n} is out of range, which ends at {LARGEST:e}"))
+            })
             .collect();
         let (mut parts, mut told) = (Vec::with_capacity(reach.len()), BTreeSet::new());
         for ((p, shape), far) in scene.parts.iter().zip(drawing.shapes()).zip(reach) {
@@ -53,8 +55,8 @@ impl Far {
 fn is_near(o: &Outline) -> bool {
     o.segs().all(|s| {
         let [a, b] = [s.start(), s.end()];
-        // A sum of absolute values is finite and small only if all are. The middle stands for control points.
+        // The middle stands for control points. What is not a number is not in range, either.
         let m = s.eval(0.5);
-        a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs() + m.x.abs() + m.y.abs() < LARGEST
+        [a.x, a.y, b.x, b.y, m.x, m.y].iter().all(|v| v.abs() < LARGEST)
     })
 }

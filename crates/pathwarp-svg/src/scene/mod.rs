@@ -12,6 +12,6 @@ pub(crate) mod model;
 pub(crate) mod regular;
 pub(crate) mod resolve;
 pub(crate) mod seen;
-pub(crate) mod unread;
 pub(crate) mod shape;
+pub(crate) mod unread;
 pub(crate) mod usvg_path;

@@ -5,7 +5,7 @@
 
 use super::tags::ElementId;
 use super::text::SourceText;
-use memchr::memchr2;
+use memchr::{memchr, memchr2};
 use pathwarp::Error;
 use std::ops::Range;
 use usvg::roxmltree;
@@ -25,15 +25,62 @@ fn is_checked(name: &str) -> bool {
     matches!(
         name,
         "d" | "points"
-            | "x" | "y" | "x1" | "y1" | "x2" | "y2" | "dx" | "dy" | "z"
-            | "cx" | "cy" | "r" | "rx" | "ry" | "fx" | "fy" | "fr"
-            | "width" | "height" | "viewBox" | "transform" | "gradientTransform" | "patternTransform" | "style"
-            | "stroke-width" | "stroke-dasharray" | "stroke-dashoffset" | "stroke-miterlimit"
-            | "font-size" | "letter-spacing" | "word-spacing" | "textLength" | "startOffset" | "baseline-shift" | "rotate"
-            | "markerWidth" | "markerHeight" | "refX" | "refY"
-            | "stdDeviation" | "radius" | "baseFrequency" | "scale" | "surfaceScale" | "kernelUnitLength"
-            | "pointsAtX" | "pointsAtY" | "pointsAtZ" | "limitingConeAngle" | "kernelMatrix" | "divisor" | "bias"
-            | "k1" | "k2" | "k3" | "k4"
+            | "x"
+            | "y"
+            | "x1"
+            | "y1"
+            | "x2"
+            | "y2"
+            | "dx"
+            | "dy"
+            | "z"
+            | "cx"
+            | "cy"
+            | "r"
+            | "rx"
+            | "ry"
+            | "fx"
+            | "fy"
+            | "fr"
+            | "width"
+            | "height"
+            | "viewBox"
+            | "transform"
+            | "gradientTransform"
+            | "patternTransform"
+            | "style"
+            | "stroke-width"
+            | "stroke-dasharray"
+            | "stroke-dashoffset"
+            | "stroke-miterlimit"
+            | "font-size"
+            | "letter-spacing"
+            | "word-spacing"
+            | "textLength"
+            | "startOffset"
+            | "baseline-shift"
+            | "rotate"
+            | "markerWidth"
+            | "markerHeight"
+            | "refX"
+            | "refY"
+            | "stdDeviation"
+            | "radius"
+            | "baseFrequency"
+            | "scale"
+            | "surfaceScale"
+            | "kernelUnitLength"
+            | "pointsAtX"
+            | "pointsAtY"
+            | "pointsAtZ"
+            | "limitingConeAngle"
+            | "kernelMatrix"
+            | "divisor"
+            | "bias"
+            | "k1"
+            | "k2"
+            | "k3"
+            | "k4"
     )
 }
 
@@ -73,8 +120,12 @@ pub(crate) fn replaced(xml: &roxmltree::Document<'_>, name: &str) -> Result<Opti
     Ok(Some(out))
 }
 
-/// The elements with numbers out of range, each with the first of them.
+/// The elements with numbers out of range, each with the first of them. A style sheet may concern any element, so its numbers are
+/// the root's.
 pub(crate) fn elements(source: &SourceText) -> Vec<(ElementId, String)> {
+    if let Some(r) = far(&source.css, true).into_iter().next() {
+        return vec![(0, source.css[r].to_owned())];
+    }
     let first = |e: ElementId| {
         source.elements[e].attrs.iter().find_map(|a| {
             let (name, value) = (a.name(&source.text), a.value(&source.text));
@@ -100,7 +151,7 @@ fn may_be_far(text: &str) -> bool {
     memchr2(b'e', b'E', bytes).is_some() || digits()
 }
 
-/// The numbers out of range in a text, without their signs. In CSS, digits in names and colours are no numbers.
+/// The numbers out of range in a text, without their signs. In CSS, digits in names, colours and links are no numbers.
 fn far(text: &str, css: bool) -> Vec<Range<usize>> {
     let bytes = text.as_bytes();
     let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
@@ -114,6 +165,11 @@ fn far(text: &str, css: bool) -> Vec<Range<usize>> {
     let mut i = 0;
     while i < bytes.len() {
         let start = i;
+        if css && bytes[i..].starts_with(b"url(") {
+            // Names and embedded data.
+            i += memchr(b')', &bytes[i..]).unwrap_or(bytes.len() - i);
+            continue;
+        }
         if !digit(i) {
             i += 1;
             continue;
@@ -159,7 +215,10 @@ mod tests {
         let svg = "<svg><path d='M0 0L1e308,1' stroke-width='1e20px' data-n='1e99'/><style>a{r:1e12}</style></svg>";
         let xml = roxmltree::Document::parse(svg).unwrap();
         let text = replaced(&xml, "t").unwrap().unwrap();
-        assert_eq!(text, "<svg><path d='M0 0L009e8,1' stroke-width='09e8px' data-n='1e99'/><style>a{r:09e8}</style></svg>");
+        assert_eq!(
+            text,
+            "<svg><path d='M0 0L009e8,1' stroke-width='09e8px' data-n='1e99'/><style>a{r:09e8}</style></svg>"
+        );
         assert_eq!(replaced(&roxmltree::Document::parse(&text).unwrap(), "t").unwrap(), None);
     }
 }

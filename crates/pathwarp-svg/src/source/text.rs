@@ -313,7 +313,8 @@ mod tests {
             let marked = marks::mark(d).unwrap();
             assert_eq!(marked.text, wanted);
             assert_eq!(marked.marks.elements, marks.elements);
-            let (source, n) = SourceText::read(d.to_owned(), "t", &Budget::default(), |_, doc| Ok(doc.input_text().len())).unwrap();
+            let (source, n) =
+                SourceText::read(d.to_owned(), "t", &Budget::default(), |_, doc| Ok(doc.input_text().len())).unwrap();
             assert_eq!((n, &source.text), (wanted.len(), &direct.text));
             assert_eq!(format!("{:?}", source.elements), format!("{:?}", direct.elements));
             for e in &source.elements {
@@ -323,8 +324,10 @@ mod tests {
             }
         }
         let (text, ids) = {
-            let (s, text) =
-                SourceText::read(drawings[0].to_owned(), "t", &Budget::default(), |_, doc| Ok(doc.input_text().to_owned())).unwrap();
+            let (s, text) = SourceText::read(drawings[0].to_owned(), "t", &Budget::default(), |_, doc| {
+                Ok(doc.input_text().to_owned())
+            })
+            .unwrap();
             (text, s.by_tree_id().clone())
         };
         assert_eq!(
