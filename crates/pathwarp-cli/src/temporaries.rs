@@ -103,7 +103,7 @@ fn on_interruption_remove_all() {
                     n => format!("interrupted; the results of {n} inputs are written"),
                 });
                 std::process::exit(INTERRUPTED);
-            })
+            });
         });
     });
 }

@@ -34,5 +34,5 @@ pub(super) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &Rea
             *panel = panel.clone().with(PreviewOverlay::new(kind, o.path.clone()));
         }
     }
-    Ok(encode_png(&Preview::new(left, right).view(view).render_within(&doc.budget().limits())?)?)
+    Ok(encode_png(&Preview::new(left, right).view(view).render_within(doc.budget().limits())?)?)
 }

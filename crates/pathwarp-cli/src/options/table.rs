@@ -114,12 +114,24 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     },
     stored(
         "select",
-        OptionValue::List { name: "SEL", push: |o, text| Ok(o.select.push(text.to_owned())) },
+        OptionValue::List {
+            name: "SEL",
+            push: |o, text| {
+                o.select.push(text.to_owned());
+                Ok(())
+            },
+        },
         "Warp only these: #id, .class, an element's tag, or a label; may be given several times",
     ),
     stored(
         "exclude",
-        OptionValue::List { name: "SEL", push: |o, text| Ok(o.exclude.push(text.to_owned())) },
+        OptionValue::List {
+            name: "SEL",
+            push: |o, text| {
+                o.exclude.push(text.to_owned());
+                Ok(())
+            },
+        },
         "Leave these unchanged; takes the same values as --select",
     ),
     CommonOption {
