@@ -79,7 +79,7 @@ impl Failure {
             Self::Geometry(_) => 4,
             Self::Output(_) => 5,
             Self::Library { error, .. } => match **error {
-                pathwarp::Error::Input { .. } | pathwarp::Error::Limit { .. } => 3,
+                pathwarp::Error::Input { .. } => 3,
                 pathwarp::Error::Geometry(_) => 4,
                 _ => 2,
             },
@@ -119,7 +119,7 @@ impl Failure {
             Self::Geometry(m) => Self::Geometry(prefixed(name, &m)),
             Self::Library { error, of_recipe, .. } => {
                 let concerns_input = match *error {
-                    pathwarp::Error::Input { .. } | pathwarp::Error::Limit { .. } => !of_recipe,
+                    pathwarp::Error::Input { .. } => !of_recipe,
                     pathwarp::Error::Geometry(_) => true,
                     _ => false,
                 };

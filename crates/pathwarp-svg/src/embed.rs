@@ -65,7 +65,7 @@ impl Origin {
     /// Reads the origin embedded in `svg` like [`Origin::read`], within limits.
     ///
     /// # Errors
-    /// As for [`Origin::read`]; also [`Error::Limit`] if the source unpacks to more than the limit.
+    /// As for [`Origin::read`]; also [`Error::Input`] if the source unpacks to more than the limit.
     pub fn read_within(svg: &str, limits: &Limits) -> Result<Option<Self>, Error> {
         let budget = Budget::new(*limits);
         xml::check(svg, "the drawing", &budget)?;

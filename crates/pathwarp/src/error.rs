@@ -37,16 +37,8 @@ pub enum Error {
         place: String,
         /// The problem and a remedy.
         problem: String,
-    },
-    /// Reading or drawing a file takes more work than a limit allows.
-    #[error("{place}: {what} {exceeded}")]
-    Limit {
-        /// File, and place in it if there is one.
-        place: String,
-        /// The cause, and a verb: `its text takes`.
-        what: String,
-        /// The limit, and the amount.
-        exceeded: Exceeded,
+        /// The limit, if the file takes more work than it allows.
+        limit: Option<Exceeded>,
     },
     /// The geometry forbids the deformation.
     #[error(transparent)]
@@ -202,14 +194,15 @@ impl Error {
         Self::Missing { param: param.to_owned(), hint: hint.into() }
     }
 
-    /// Creates an [`Error::Limit`].
+    /// Creates an [`Error::Input`] for a file that takes too much work. `what` is the cause and a verb: `its text takes`.
     pub fn limit(place: impl Into<String>, what: impl Into<String>, exceeded: Exceeded) -> Self {
-        Self::Limit { place: place.into(), what: what.into(), exceeded }
+        let problem = format!("{} {exceeded}", what.into());
+        Self::Input { place: place.into(), problem, limit: Some(exceeded) }
     }
 
     /// Creates an [`Error::Input`].
     pub fn input(place: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self::Input { place: place.into(), problem: problem.into() }
+        Self::Input { place: place.into(), problem: problem.into(), limit: None }
     }
 }
 

@@ -19,8 +19,8 @@ pub(crate) fn error(e: &Error, flags: &Flags) -> String {
             Error::usage(&format!("--{param}"), value, problem).to_string()
         }
         Error::Missing { param, hint } => Error::missing(&format!("--{param}"), flags.in_text(hint)).to_string(),
-        Error::Input { place, problem } => Error::input(place, flags.in_text(problem)).to_string(),
-        Error::Limit { exceeded, .. } => format!("{e}; {}", raise(exceeded)),
+        Error::Input { limit: Some(exceeded), .. } => format!("{e}; {}", raise(exceeded)),
+        Error::Input { place, problem, .. } => Error::input(place, flags.in_text(problem)).to_string(),
         Error::Geometry(g) => geometry(g, flags),
         _ => flags.in_text(&e.to_string()),
     }

@@ -243,10 +243,10 @@ mod tests {
         }
         given.push("tolerance", "-1").unwrap();
         assert!(given.read().is_err());
-        let mut both = Given::default();
-        both.push("out", "a.svg").unwrap();
+        let option = |name: &str| OPTIONS.iter().find(|o| o.name == name).unwrap();
+        let mut both = Given { values: vec![(option("out"), vec!["a.svg".into()])], ..Given::default() };
         assert!(both.check_conflicts().is_ok());
-        both.push("into", "b.xcf").unwrap();
+        both.values.push((option("into"), vec!["b.xcf".into()]));
         assert!(both.check_conflicts().is_err());
     }
 }

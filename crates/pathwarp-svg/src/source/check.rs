@@ -36,7 +36,7 @@ impl Features {
 /// Checks a drawing. `name` identifies it in errors.
 ///
 /// # Errors
-/// Returns [`Error::Limit`] if it exceeds the budget, and [`Error::Input`] if it nests too deeply.
+/// Returns [`Error::Input`] if it exceeds the budget or nests too deeply.
 pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<Features, Error> {
     let features = Features::of(xml);
     selectors::count(xml, budget).map_err(|e| Error::limit(name, "its style sheet takes", e))?;

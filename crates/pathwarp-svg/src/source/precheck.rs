@@ -1,7 +1,7 @@
-//! Work of the XML parser that grows faster than the text, counted before it is done: entities that expand to entities, and
+//! Work of the XML parser, counted before it is done where it takes much memory or grows faster than the text: tags, entities that expand to entities, and
 //! elements with very many attributes or declarations, which the parsers compare with each other.
 
-use memchr::{memchr, memmem};
+use memchr::{memchr, memchr_iter, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use std::collections::HashMap;
 
@@ -13,8 +13,16 @@ const LONG_TAG: usize = 4096;
 /// # Errors
 /// They exceed the limits.
 pub(crate) fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    tags(text, budget)?;
     entities(text, budget)?;
     attributes(text, budget)
+}
+
+/// Tags, which also count comments and texts: several make an element.
+fn tags(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    /// More per element than in any ordinary drawing.
+    const PER_ELEMENT: f64 = 8.0;
+    budget.check(Limit::Elements, memchr_iter(b'<', text.as_bytes()).count() as f64 / PER_ELEMENT)
 }
 
 /// Declarations of entities, and what they expand to.

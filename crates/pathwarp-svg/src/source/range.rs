@@ -5,7 +5,7 @@
 
 use super::tags::ElementId;
 use super::text::SourceText;
-use memchr::memchr2;
+use memchr::{memchr, memchr2};
 use pathwarp::Error;
 use std::ops::Range;
 use usvg::roxmltree;
@@ -120,8 +120,12 @@ pub(crate) fn replaced(xml: &roxmltree::Document<'_>, name: &str) -> Result<Opti
     Ok(Some(out))
 }
 
-/// The elements with numbers out of range, each with the first of them.
+/// The elements with numbers out of range, each with the first of them. A style sheet may concern any element, so its numbers are
+/// the root's.
 pub(crate) fn elements(source: &SourceText) -> Vec<(ElementId, String)> {
+    if let Some(r) = far(&source.css, true).into_iter().next() {
+        return vec![(0, source.css[r].to_owned())];
+    }
     let first = |e: ElementId| {
         source.elements[e].attrs.iter().find_map(|a| {
             let (name, value) = (a.name(&source.text), a.value(&source.text));
@@ -147,7 +151,7 @@ fn may_be_far(text: &str) -> bool {
     memchr2(b'e', b'E', bytes).is_some() || digits()
 }
 
-/// The numbers out of range in a text, without their signs. In CSS, digits in names and colours are no numbers.
+/// The numbers out of range in a text, without their signs. In CSS, digits in names, colours and links are no numbers.
 fn far(text: &str, css: bool) -> Vec<Range<usize>> {
     let bytes = text.as_bytes();
     let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
@@ -161,6 +165,11 @@ fn far(text: &str, css: bool) -> Vec<Range<usize>> {
     let mut i = 0;
     while i < bytes.len() {
         let start = i;
+        if css && bytes[i..].starts_with(b"url(") {
+            // Names and embedded data.
+            i += memchr(b')', &bytes[i..]).unwrap_or(bytes.len() - i);
+            continue;
+        }
         if !digit(i) {
             i += 1;
             continue;

@@ -36,7 +36,7 @@ pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referr
 /// Counts a drawing that cannot expand to much.
 ///
 /// # Errors
-/// Returns [`Error::Limit`] if it exceeds the budget as it is.
+/// Returns [`Error::Input`] if it exceeds the budget as it is.
 pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
     let sizes = doc.descendants().filter(Node::is_element).map(Size::of);
     let sum = sizes.fold(Size::default(), Size::plus);
@@ -47,7 +47,7 @@ pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Bu
 /// Rejects a drawing that expands to too much. `name` identifies the drawing in the error.
 ///
 /// # Errors
-/// Returns [`Error::Limit`] or [`Error::Input`] that names the element.
+/// Returns [`Error::Input`] that names the element.
 pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
     let counted = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
@@ -55,7 +55,11 @@ pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) 
         let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
         let place = format!("{name}:{line}");
         match why {
-            TooMuch::Work(e) => Error::limit(place, format!("{which}, with all that its references show, takes"), e),
+            TooMuch::Work(e) => {
+                let what =
+                    format!("{which} expands to more than is allowed: with all that its references show, it takes");
+                Error::limit(place, what, e)
+            }
             TooMuch::Depth => {
                 let problem =
                     format!("the content of {which} nests deeper than {DEEPEST} levels, through references to");

@@ -6,12 +6,9 @@ use pathwarp::Error;
 use pathwarp::budget::Budget;
 use usvg::roxmltree;
 
-/// Limit on elements, text and comment nodes together. usvg accepts at most a million elements.
-const MOST: u32 = 4_000_000;
-
 /// Parses XML that is known to be within the budget.
 pub(super) fn document(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error> {
-    let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MOST, ..Default::default() };
+    let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
     roxmltree::Document::parse_with_options(text, options)
 }
 
@@ -23,15 +20,12 @@ pub(crate) fn parse<'a>(text: &'a str, name: &str, budget: &Budget) -> Result<ro
 
 /// Counts the work of parsing.
 pub(crate) fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
-    precheck::count(text, budget).map_err(|e| Error::limit(name, "its entities and attributes take", e))
+    precheck::count(text, budget).map_err(|e| Error::limit(name, "its markup takes", e))
 }
 
 /// Parses XML that is known to be within the budget. `name` identifies the text in errors.
 pub(crate) fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
     document(text).map_err(|e| {
-        if matches!(e, roxmltree::Error::NodesLimitReached) {
-            return Error::input(name, format!("it has more than {MOST} elements, texts and comments"));
-        }
         let at = e.pos();
         Error::input(format!("{name}:{}:{}", at.row, at.col), format!("not well-formed XML: {e}"))
     })
