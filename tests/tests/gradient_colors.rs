@@ -62,12 +62,7 @@ const CASES: &[Case] = &[
                  stop-color='#000'/><stop offset='.4' stop-color='#fff'/><stop offset='.5' stop-color='#fff'/><stop \
                  offset='1' stop-color='#f00'/></linearGradient>",
         along: |p| p.y / 100.0,
-        stops: &[
-            (0.0, [0.0, 0.0, 0.0, 255.0]),
-            (0.4, [255.0; 4]),
-            (0.5, [255.0; 4]),
-            (1.0, [255.0, 0.0, 0.0, 255.0]),
-        ],
+        stops: &[(0.0, [0.0, 0.0, 0.0, 255.0]), (0.4, [255.0; 4]), (0.5, [255.0; 4]), (1.0, [255.0, 0.0, 0.0, 255.0])],
         most: [2.5, 7.0],
         bytes: 1500,
     },

@@ -93,7 +93,9 @@ impl SmoothShade<'_> {
             }
             let error = Interpolation { pixmap: &pixmap, area }.error(self.seen, &self.tolerance);
             let Some(grow) = error else { return Ok((pixmap, area)) };
-            inner = limit(Vec2::new(inner.x * grow.x, inner.y * grow.y));
+            let next = limit(Vec2::new(inner.x * grow.x, inner.y * grow.y));
+            // The guilty side may have reached its limit.
+            inner = if next == inner { finest } else { next };
         }
     }
 
@@ -170,5 +172,67 @@ impl Interpolation<'_> {
             (0..4).map(|k| (before[k] - 2.0 * here[k] + after[k]).abs()).fold(0.0, f64::max)
         };
         (color, [bend(read(i.saturating_sub(1), j), a, b), bend(read(i, j.saturating_sub(1)), a, c)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::map::{AffineMap, Formula, Real};
+
+    struct Bend;
+
+    impl Formula for Bend {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y + (x / 25.0).sin() * 8.0)
+        }
+    }
+
+    const SOURCE: Rect = Rect::new(0.0, 0.0, 100.0, 60.0);
+
+    fn seen(map: &dyn Map, color: &dyn Fn(Point) -> [f64; 4]) -> Vec<SeenColor> {
+        let place = |k: u32| Point::new(f64::from(k) / 10.0, 60.0 * (f64::from(k) * 0.618).fract());
+        (0..1000).map(|k| SeenColor { at: map.point(place(k)), color: color(place(k)) }).collect()
+    }
+
+    fn painted(map: &dyn Map, color: &(dyn Fn(Point) -> [f64; 4] + Sync), tolerance: ShadeTolerance) -> (Pixmap, Rect) {
+        let seen = seen(map, color);
+        let target = Rect::new(0.0, -8.0, 100.0, 68.0);
+        let (placed, after) = (Affine::IDENTITY, Affine::IDENTITY);
+        let (source, finest) = (SOURCE, 8.0);
+        SmoothShade { color, source, placed, map, after, target, seen: &seen, tolerance, finest }.paint().unwrap()
+    }
+
+    #[test]
+    fn the_resolution_follows_from_the_colours() {
+        let grey = |v: f64| [v, v, v, 1.0];
+        let plain = |p: Point| grey(p.x / 100.0);
+        let smooth = |p: Point| grey(0.5 + 0.5 * (p.y / 10.0).sin());
+        let jump = |p: Point| grey(if p.y < 30.0 { 0.0 } else { 1.0 });
+        let size = |color: &(dyn Fn(Point) -> [f64; 4] + Sync)| {
+            let (pixmap, area) = painted(&Bend, color, ShadeTolerance::INVISIBLE);
+            assert!(area.x0 < 0.0 && area.x1 > 100.0 && area.y0 < -8.0 && area.y1 > 68.0, "{area}");
+            let found = Interpolation { pixmap: &pixmap, area };
+            let off =
+                |s: &SeenColor| s.color.iter().zip(found.at(s.at).0).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max);
+            let seen = seen(&Bend, color);
+            (pixmap.width(), pixmap.height(), seen.iter().map(off).fold(0.0, f64::max))
+        };
+        let [plain, smooth, jump] = [size(&plain), size(&smooth), size(&jump)];
+        println!("{plain:?} {smooth:?} {jump:?}");
+        assert_eq!((plain.0, plain.1), (16, 16));
+        assert!(smooth.1 > 30 && smooth.1 < 200, "{smooth:?}");
+        // At full resolution, and off only at the jump itself.
+        assert_eq!((jump.0, jump.1), (804, 612));
+        assert!(plain.2 <= 1.5 / 255.0 && smooth.2 <= 1.5 / 255.0 && jump.2 > 0.1);
+    }
+
+    /// Only one side grows, up to its limit; the other must follow, or the search would not end.
+    #[test]
+    fn the_search_ends_at_the_limit_of_one_side() {
+        let map = AffineMap(Affine::IDENTITY);
+        let color = |p: Point| [(p.x * 1000.0).sin().abs(), 0.0, 0.0, 1.0];
+        let (pixmap, _) = painted(&map, &color, ShadeTolerance::INVISIBLE);
+        assert_eq!((pixmap.width(), pixmap.height()), (804, 612));
     }
 }
