@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn the_resolution_follows_from_the_colours() {
         let grey = |v: f64| [v, v, v, 1.0];
-        let plain = |p: Point| grey(p.x / 100.0);
+        let plain = |p: Point| grey(0.2 + 0.6 * p.x / 100.0);
         let smooth = |p: Point| grey(0.5 + 0.5 * (p.y / 10.0).sin());
         let jump = |p: Point| grey(if p.y < 30.0 { 0.0 } else { 1.0 });
         let size = |color: &(dyn Fn(Point) -> [f64; 4] + Sync)| {
