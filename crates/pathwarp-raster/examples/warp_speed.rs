@@ -85,10 +85,10 @@ fn main() {
     }
 }
 
-/// Rings whose period falls to four pixels in the far corner, different in each channel: whatever is sampled too sparsely shows.
+/// Rings whose period falls to two pixels in the far corner, different in each channel: whatever is sampled too sparsely shows.
 fn rings(pixel: usize, channel: usize) -> u8 {
     let (x, y) = ((pixel % SIDE as usize) as f64, (pixel / SIDE as usize) as f64);
-    let r2 = (x * x + y * y) / (8.0 * f64::from(SIDE) * std::f64::consts::SQRT_2);
+    let r2 = (x * x + y * y) / (4.0 * f64::from(SIDE) * std::f64::consts::SQRT_2);
     (127.5 + 120.0 * (2.0 * std::f64::consts::PI * r2 + channel as f64).cos()) as u8
 }
 
