@@ -3,8 +3,9 @@
 //!
 //! `cargo run --release -p pathwarp-raster --example warp_speed [FOLDER]`
 //!
-//! With FOLDER, writes `source.rgba` and a file `NAME.f32` per map: for each pixel of the result, rows from top to bottom, x and y in
-//! the source (pixel centres at integers) as little-endian 32-bit floats.
+//! With FOLDER, writes `source.rgba` and two files per map: `NAME.rgba`, the result, and `NAME.f32`, for each pixel of the result,
+//! rows from top to bottom, x and y in the source (pixel centres at integers) as little-endian 32-bit floats. `warp_opencv.py`
+//! reads these. Times are CPU times where `/proc` has them; `RAYON_NUM_THREADS=1` uses one thread.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a benchmark that prints to the terminal")]
 
 use kurbo::{Affine, Point, Rect};
@@ -45,7 +46,7 @@ fn main() {
     let area = Rect::new(0.0, 0.0, f64::from(SIDE), f64::from(SIDE));
     let mut source = Pixmap::new(SIDE, SIDE).unwrap();
     for (i, byte) in source.data_mut().iter_mut().enumerate() {
-        *byte = if i % 4 == 3 { 255 } else { (i / 4 % 251) as u8 };
+        *byte = if i % 4 == 3 { 255 } else { rings(i / 4, i % 4) };
     }
     let folder = std::env::args().nth(1);
     if let Some(folder) = &folder {
@@ -68,9 +69,9 @@ fn main() {
         };
         let mut times: Vec<f64> = (0..RUNS)
             .map(|_| {
-                let started = Instant::now();
+                let started = cpu_time();
                 let out = warp_image(&warp).unwrap();
-                let elapsed = started.elapsed().as_secs_f64();
+                let elapsed = cpu_time() - started;
                 assert!(out.pixels().iter().any(|p| p.alpha() > 0));
                 elapsed
             })
@@ -79,8 +80,29 @@ fn main() {
         println!("{name}: {:.3} s (least {:.3})", times[RUNS / 2], times[0]);
         if let Some(folder) = &folder {
             write_places(&Path::new(folder).join(format!("{name}.f32")), &*inverse, warp.shown);
+            std::fs::write(Path::new(folder).join(format!("{name}.rgba")), warp_image(&warp).unwrap().data()).unwrap();
         }
     }
+}
+
+/// Rings whose period falls to two pixels in the far corner, different in each channel: whatever is sampled too sparsely shows.
+fn rings(pixel: usize, channel: usize) -> u8 {
+    let (x, y) = ((pixel % SIDE as usize) as f64, (pixel / SIDE as usize) as f64);
+    let r2 = (x * x + y * y) / (4.0 * f64::from(SIDE) * std::f64::consts::SQRT_2);
+    (127.5 + 120.0 * (2.0 * std::f64::consts::PI * r2 + channel as f64).cos()) as u8
+}
+
+/// CPU time of this process in seconds; elapsed time where that is unknown.
+fn cpu_time() -> f64 {
+    /// Clock ticks per second, on every Linux.
+    const TICKS: f64 = 100.0;
+    static START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
+    let stat = std::fs::read_to_string("/proc/self/stat").ok();
+    let ticks = stat.and_then(|s| {
+        let mut fields = s.rsplit(')').next()?.split_whitespace().skip(11);
+        Some(fields.next()?.parse::<f64>().ok()? + fields.next()?.parse::<f64>().ok()?)
+    });
+    ticks.map_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64(), |t| t / TICKS)
 }
 
 /// Writes the source place of every pixel.

@@ -61,6 +61,9 @@ pub enum Error {
         /// Width and height of the second picture.
         b: (u32, u32),
     },
+    /// The map takes no point to the place that the picture shows.
+    #[error("no pixel of the picture has an inverse image")]
+    NoInverse,
     /// The page and the overlays of a preview are empty or not finite.
     #[error("the preview has nothing to show: {0}")]
     NoView(&'static str),

@@ -4,7 +4,7 @@
 //! * [`encode_png`] and [`decode_png`] convert pictures to and from PNG.
 //! * [`compare()`] measures the difference of two pictures; [`diff_image`] visualises it.
 //! * [`Picture`] reads and writes photographs with orientation and colour profile.
-//! * [`warp_image()`] warps a bitmap by a map; [`shade()`] warps a paint.
+//! * [`warp_image()`] warps a bitmap by a map; [`SmoothShade`] warps a paint.
 //! * [`Preview`] draws a drawing and its warped result side by side, with cages, bases and targets on top.
 //!
 //! All pictures are [`Pixmap`]s: RGBA, sRGB, 8 bits per channel, premultiplied alpha.
@@ -38,6 +38,7 @@ mod pixmap;
 mod png;
 mod preview;
 mod render;
+mod smooth_png;
 mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
@@ -46,5 +47,8 @@ pub use picture::{Picture, PictureFormat, header_size};
 pub use png::{decode_png, encode_png};
 pub use preview::{OverlayKind, Panel, Preview, PreviewOverlay};
 pub use render::{RenderOptions, Size, render};
+pub use smooth_png::encode_smooth_png;
 pub use tiny_skia::{Color, Pixmap};
-pub use warp_image::{Extent, ImageWarp, Shade, extent, shade, shown, warp_image};
+pub use warp_image::{
+    Extent, GridInverse, ImageWarp, SeenColor, Shade, ShadeTolerance, SmoothShade, extent, shade, shown, warp_image,
+};

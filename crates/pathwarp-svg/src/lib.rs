@@ -41,7 +41,7 @@ mod source;
 pub mod usvg_tree;
 mod write;
 
-pub use bend::gradient::{GradientPainter, GradientRequest};
+pub use bend::gradient::{GradientPainter, GradientRequest, SeenColor};
 pub use bend::image::{ImageRequest, ImageWarper, Images};
 pub use bend::letter_places::LetterPlaces;
 pub use bend::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};

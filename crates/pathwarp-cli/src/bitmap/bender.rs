@@ -4,7 +4,10 @@ use super::inverse::{ROUNDING, inverse};
 use pathwarp::budget::Limits;
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
-use pathwarp_raster::{ImageWarp, Picture, PictureFormat, Shade, extent, shade, shown, warp_image};
+use pathwarp_raster::{
+    ImageWarp, Picture, PictureFormat, SeenColor, ShadeTolerance, SmoothShade, encode_smooth_png, extent, shown,
+    warp_image,
+};
 use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
 use std::sync::Arc;
 
@@ -76,40 +79,38 @@ impl ImageWarper for Bender {
 
 impl GradientPainter for Bender {
     fn paint(&self, r: &GradientRequest<'_>) -> Result<BentImage, PictureError> {
-        /// Samples per pixel of the drawing in each direction: the resolution of a screen of twice the density.
+        /// Largest number of samples per pixel of the drawing in each direction: the resolution of a screen of twice the density.
         const DENSITY: f64 = 2.0;
-        /// Fewest samples along the longer side: small drawings are often shown enlarged.
+        /// The same for small drawings, which are often shown enlarged, along the longer side.
         const LEAST: f64 = 256.0;
         /// Most samples in a picture: the file holds them as text.
         const MOST: f64 = 2e6;
         /// Most samples in all pictures of a drawing.
         const MOST_TOGETHER: f64 = 64e6;
-        /// Margin around the shape in pixels, for renderers that interpolate.
-        const MARGIN: f64 = 2.0;
         let (width, height) = (r.target.width(), r.target.height());
         if !(width > 0.0 && height > 0.0 && (width + height).is_finite()) {
             return Err("the image of the shape has no area".into());
         }
         let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
-        let wanted = match self.dpi {
+        let finest = match self.dpi {
             Some(dpi) => dpi / PX_PER_INCH * unit,
             None => (DENSITY * unit).max(LEAST / width.max(height)),
         };
         let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64);
-        let wanted = wanted.min((most / (width * height)).sqrt()).min(most / width.max(height));
-        let pixels = |length: f64| (length * wanted + 2.0 * MARGIN).ceil().clamp(1.0, MOST);
-        let size = (pixels(width), pixels(height));
-        let target = Rect::from_center_size(r.target.center(), (size.0 / wanted, size.1 / wanted));
-        let size = (size.0 as u32, size.1 as u32);
-        let inverse = inverse(&self.map, r.placed.transform_rect_bbox(r.area));
-        let pixmap = shade(&Shade {
+        let finest = finest.min((most / (width * height)).sqrt()).min(most / width.max(height));
+        let seen: Vec<_> = r.seen.iter().map(|s| SeenColor { at: s.at, color: s.color }).collect();
+        let shade = SmoothShade {
             color: r.color,
+            source: r.area,
             placed: r.placed,
-            inverse: &*inverse,
-            shown: r.after.inverse() * shown(target, size),
-            size,
-        });
-        let picture = Picture { pixmap: pixmap.map_err(|e| e.to_string())?, profile: None };
-        Ok(BentImage { png: picture.write(PictureFormat::Png).map_err(|e| e.to_string())?, area: target })
+            map: r.map,
+            after: r.after,
+            target: r.target,
+            seen: if r.sharp { &[] } else { &seen },
+            tolerance: if r.strict { ShadeTolerance::INVISIBLE } else { ShadeTolerance::UNNOTICED },
+            finest,
+        };
+        let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
+        Ok(BentImage { png: encode_smooth_png(&pixmap).map_err(|e| e.to_string())?, area })
     }
 }

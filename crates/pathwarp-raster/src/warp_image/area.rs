@@ -1,7 +1,7 @@
 //! Rectangles of pixels of the result.
 
 use super::trace::{ChebyshevBasis, SAMPLES, Trace};
-use kurbo::{Affine, Point};
+use kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 
 /// Side of a tile in pixels; its part of the source fits into the cache.
@@ -32,6 +32,12 @@ impl PixelArea {
             }
         };
         (0..4).map(quarter).filter(|a| a.width > 0 && a.height > 0)
+    }
+
+    /// The box in the plane that the pixels cover.
+    pub(super) fn covered(self, shown: Affine) -> Rect {
+        let (left, top) = (self.left as f64, self.top as f64);
+        shown.transform_rect_bbox(Rect::new(left, top, left + self.width as f64, top + self.height as f64))
     }
 
     /// Approximates the source places of the pixels by a polynomial; `None` if that is not accurate. `shown` maps pixels to the

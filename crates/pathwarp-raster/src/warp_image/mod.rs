@@ -22,18 +22,22 @@ mod area;
 mod block;
 mod color;
 mod extent;
+mod grid_inverse;
 mod image_warp;
 mod painter;
 mod pyramid;
 mod reach;
+mod resolution;
 mod rows;
 mod sample;
 mod shade;
 mod trace;
 
 pub use extent::{Extent, extent};
+pub use grid_inverse::GridInverse;
 pub use image_warp::{ImageWarp, shown};
 pub use painter::warp_image;
+pub use resolution::{SeenColor, ShadeTolerance, SmoothShade};
 pub use shade::{Shade, shade};
 
 #[cfg(test)]

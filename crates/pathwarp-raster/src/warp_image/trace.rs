@@ -8,7 +8,7 @@ use kurbo::{Point, Vec2};
 use pathwarp::map::Jet;
 
 /// Maximum error of a place in source pixels: a quarter of a level at the sharpest possible edge.
-const MAX_ERROR: f64 = 1.0 / 1024.0;
+pub(super) const MAX_ERROR: f64 = 1.0 / 1024.0;
 /// Interpolation points along a side.
 const NODES: usize = 4;
 /// Number of values of the inverse per tile.

@@ -32,4 +32,19 @@ pub struct GradientRequest<'a> {
     pub to_px: Affine,
     /// Upper bound on the number of gradients in the drawing, which share a budget of pixels.
     pub among: usize,
+    /// Exact colours at places spread over the shape, to judge a resolution by.
+    pub seen: &'a [SeenColor],
+    /// No difference may be visible; otherwise, none may be noticed.
+    pub strict: bool,
+    /// Colours jump, so that only the highest resolution shows them right.
+    pub sharp: bool,
+}
+
+/// A colour of a bent gradient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenColor {
+    /// Place in the user space of the result.
+    pub at: Point,
+    /// Red, green, blue and alpha, 0 to 1, premultiplied.
+    pub color: [f64; 4],
 }

@@ -1,5 +1,6 @@
 //! The drawing under a map: images of outlines, strokes, gradients and bitmaps.
 
+mod bent_gradient;
 pub(crate) mod bitmap;
 pub(crate) mod drawing;
 pub(crate) mod gradient;
@@ -11,6 +12,7 @@ pub(crate) mod outcome;
 pub(crate) mod paint;
 mod part;
 pub(crate) mod picture;
+mod places;
 mod shading;
 pub(crate) mod slots;
 mod stroke;

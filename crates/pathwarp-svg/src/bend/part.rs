@@ -1,18 +1,16 @@
 //! The image of a part: path, fill, stroke, and paints.
 
-use super::gradient::GradientRequest;
+use super::bent_gradient::BentGradient;
 use super::letters::LetterPiece;
-use super::options::{Gradients, Strokes, WarpOptions};
+use super::options::{Strokes, WarpOptions};
 use super::outcome::{StrokeOutcome, WarpedPart};
 use super::paint::{self, PaintFit};
-use super::picture::{BentImage, PictureError};
-use super::shading::{Seen, Shading};
 use super::stroke;
 use super::stubs;
 use super::task::PartTask;
 use crate::scene::affine::stretch;
 use crate::scene::model::{Part, PartRole};
-use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Rect, Shape as _};
+use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Shape as _};
 use pathwarp::map::Class;
 use pathwarp::outline::Subpath;
 use pathwarp::refit::PathReport;
@@ -28,13 +26,13 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let Filled { path, fill, report } = filled(t, path, report)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
     let expands = matches!(t.options().strokes, Strokes::Auto | Strokes::Outline) && !p.fixed_width;
-    let stroke_shading = p.stroke.as_ref().filter(|_| expands).and_then(|s| shading(t, s.paint(), fit));
-    let (stroke, expanded) = stroke::stroke(t, &path, stroke_shading.is_some())?;
+    let stroke_gradient = p.stroke.as_ref().filter(|_| expands).and_then(|s| BentGradient::of(t, s.paint(), fit));
+    let (stroke, expanded) = stroke::stroke(t, &path, stroke_gradient.is_some())?;
     // Count what is written: the path is not if only its expanded stroke is painted.
     let mut written = written(p, &stroke, report, fill.is_some());
     written.extend(expanded);
     let report = combined(centre, written);
-    let fill_shading = p.fill.as_ref().and_then(|f| shading(t, f.paint(), fit));
+    let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::of(t, f.paint(), fit));
     let mut out = WarpedPart {
         path,
         fill,
@@ -49,9 +47,9 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         report,
         rounding: t.rounding,
     };
-    out.fill_image = fill_shading.and_then(|s| painted(t, &s, &out.path, &mut out.unpainted));
-    if let (Some(s), StrokeOutcome::Outlined(outline)) = (stroke_shading, &out.stroke) {
-        out.stroke_image = painted(t, &s, outline, &mut out.unpainted);
+    out.fill_image = fill_gradient.and_then(|g| g.painted(t, &out.path, &mut out.unpainted));
+    if let (Some(g), StrokeOutcome::Outlined(outline)) = (stroke_gradient, &out.stroke) {
+        out.stroke_image = g.painted(t, outline, &mut out.unpainted);
     }
     out.residual = fit.filter(|_| follows_fit(p, &out, t.options())).map(|f| f.miss * stretch(t.write));
     Ok(out)
@@ -170,54 +168,4 @@ fn follows_fit(p: &Part, warped: &WarpedPart, options: &WarpOptions) -> bool {
     let stroke = p.stroke.as_ref();
     fill.is_some_and(|f| follows(f.paint(), warped.fill_image.is_some() || p.fill_tiles.is_some()))
         || stroke.is_some_and(|s| follows(s.paint(), warped.stroke_image.is_some() || p.stroke_tiles.is_some()))
-}
-
-/// Tolerance for a shape's inside, as a fraction of its width.
-const INSIDE: f64 = 1e-3;
-
-/// Returns the gradient of a paint if it must become a picture to look right.
-fn shading(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>) -> Option<Shading> {
-    let (p, options) = (t.part, t.options());
-    // A gradient spans all copies, which the map does not describe. In tiles, errors are too small to see.
-    let repeated = options.copies.len() > 1 || !options.letters.places.is_empty();
-    if !options.paints_gradients() || repeated || p.in_tile || !p.painted() {
-        return None;
-    }
-    let shading = Shading::of(paint)?;
-    let map = t.context.map;
-    let strict = matches!(options.gradients, Gradients::Exact(_));
-    // Only a fill has an inside; a gradient on a stroke is compared over the whole box.
-    let is_fill = p.fill.as_ref().is_some_and(|f| std::ptr::eq(f.paint(), paint));
-    let inside =
-        (is_fill && !strict).then(|| p.local.to_bez_path(INSIDE * p.local.bounding_box().map_or(1.0, |b| b.width())));
-    let seen = Seen { strict, inside: inside.as_ref(), area: painted_area(p) };
-    let wrong = fit.is_none_or(|f| shading.differs_from(&f, &seen, p.frame, t.back, map));
-    wrong.then_some(shading)
-}
-
-/// Bounding box of everything a part paints, in its user space.
-fn painted_area(p: &Part) -> Rect {
-    let reach = p.stroke.as_ref().map_or(0.0, |s| 0.5 * f64::from(s.width().get()));
-    p.local.bounding_box().unwrap_or_default().inflate(reach, reach)
-}
-
-/// Paints a gradient over the box of `target`. Records the error if there is one.
-fn painted(
-    t: &PartTask<'_>,
-    shading: &Shading,
-    target: &BezPath,
-    unpainted: &mut Option<PictureError>,
-) -> Option<BentImage> {
-    let (Gradients::Exact(painter) | Gradients::Auto(painter)) = &t.options().gradients else { return None };
-    let request = GradientRequest {
-        color: &|q| shading.color(q),
-        area: painted_area(t.part),
-        placed: t.part.frame,
-        map: t.context.map,
-        after: t.back,
-        target: target.bounding_box(),
-        to_px: t.context.to_px,
-        among: t.context.gradients,
-    };
-    painter.paint(&request).map_err(|why| *unpainted = Some(why)).ok()
 }

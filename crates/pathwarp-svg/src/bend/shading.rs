@@ -1,9 +1,7 @@
 //! Gradients as functions of the plane, for those that no gradient of SVG can follow.
 
-use super::paint::PaintFit;
-use crate::scene::affine::{affine, is_invertible};
-use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
-use pathwarp::map::Map;
+use crate::scene::affine::{affine, is_invertible, stretch};
+use pathwarp::kurbo::{Affine, Point, Vec2};
 use usvg::{Paint, SpreadMethod};
 
 /// A gradient as a function of the plane.
@@ -25,8 +23,17 @@ struct Stop {
 
 #[derive(Debug, Clone, Copy)]
 enum GradientShape {
-    Linear { from: Point, to: Point },
-    Radial { centre: Point, radius: f64, focus: Point, focal_radius: f64 },
+    /// The parameter at `from` is 0, and grows by `slope`.
+    Linear {
+        from: Point,
+        slope: Vec2,
+    },
+    Radial {
+        centre: Point,
+        radius: f64,
+        focus: Point,
+        focal_radius: f64,
+    },
 }
 
 impl Shading {
@@ -34,7 +41,10 @@ impl Shading {
     pub(super) fn of(paint: &Paint) -> Option<Self> {
         let p = |x: f32, y: f32| Point::new(f64::from(x), f64::from(y));
         let (base, kind): (&usvg::BaseGradient, _) = match paint {
-            Paint::LinearGradient(g) => (g, GradientShape::Linear { from: p(g.x1(), g.y1()), to: p(g.x2(), g.y2()) }),
+            Paint::LinearGradient(g) => {
+                let (from, to) = (p(g.x1(), g.y1()), p(g.x2(), g.y2()));
+                (g, GradientShape::Linear { from, slope: (to - from) / (to - from).hypot2() })
+            }
             Paint::RadialGradient(g) => {
                 let (radius, focal_radius) = (f64::from(g.r().get()), f64::from(g.fr().get()));
                 (g, GradientShape::Radial { centre: p(g.cx(), g.cy()), radius, focus: p(g.fx(), g.fy()), focal_radius })
@@ -59,10 +69,7 @@ impl Shading {
     /// Parameter along the stops at a point. Returns `None` outside of the cone of a focal gradient.
     fn along(&self, p: Point) -> Option<f64> {
         match self.kind {
-            GradientShape::Linear { from, to } => {
-                let d = to - from;
-                Some((p - from).dot(d) / d.hypot2())
-            }
+            GradientShape::Linear { from, slope } => Some((p - from).dot(slope)),
             // The largest t for which the interpolated circle (0: focal, 1: outer) passes through the point.
             GradientShape::Radial { centre, radius, focus, focal_radius } => {
                 let (d, grow, q) = (centre - focus, radius - focal_radius, p - focus);
@@ -99,53 +106,115 @@ impl Shading {
         }
     }
 
-    /// Returns `true` if the affine fit is visibly wrong: its colours differ from the map's.
-    pub(super) fn differs_from(
-        &self,
-        fit: &PaintFit,
-        seen: &Seen<'_>,
-        placed: Affine,
-        after: Affine,
-        map: &dyn Map,
-    ) -> bool {
-        /// Samples along a side. They avoid the symmetry axes of the box, where stops tend to be.
-        const N: u32 = 24;
-        let (least, share) = if seen.strict { (SMALLEST, 0.0) } else { (NOTICED, NOTICED_SHARE) };
-        let area = seen.area;
-        let back = fit.affine.inverse();
-        let at = |k: u32| (f64::from(k) + 0.37) / f64::from(N);
-        let points =
-            (0..N * N).map(|k| Point::new(area.x0 + at(k % N) * area.width(), area.y0 + at(k / N) * area.height()));
-        let (mut off, mut count) = (0, 0);
-        for p in points.filter(|p| seen.inside.is_none_or(|i| i.contains(*p))) {
-            let q = back * (after * map.point(placed * p));
-            let (expected, found) = (premultiplied(self.color(p)), premultiplied(self.color(q)));
-            count += 1;
-            off += u32::from(q.is_finite() && expected.iter().zip(found).any(|(w, f)| (w - f).abs() > least));
-            if seen.strict && off > 0 {
-                return true;
-            }
-        }
-        f64::from(off) > share * f64::from(count)
+    /// The same, premultiplied.
+    pub(super) fn premultiplied(&self, p: Point) -> [f64; 4] {
+        premultiplied(self.color(p))
     }
-}
 
-/// Smallest visible difference: more than one of 255 levels.
-const SMALLEST: f64 = 1.5 / 255.0;
-/// Smallest difference that is noticed without a comparison.
-const NOTICED: f64 = 8.0 / 255.0;
-/// The fraction of the shape on which it must be exceeded. Less are edges between hard stops, which move a little.
-const NOTICED_SHARE: f64 = 0.01;
+    /// Upper bound on the change of a premultiplied channel per unit of user space; infinite if colours jump or the bound is not
+    /// known.
+    pub(super) fn steepest(&self) -> f64 {
+        let along = match self.kind {
+            GradientShape::Linear { slope, .. } => slope.hypot(),
+            // The circles are closest on the side to which the focus is shifted.
+            GradientShape::Radial { centre, radius, focus, focal_radius } => {
+                1.0 / (radius - focal_radius - (centre - focus).hypot()).max(0.0)
+            }
+        };
+        self.steps().map(|(_, rate, _)| rate).fold(0.0, f64::max) * along * stretch(self.inside)
+    }
 
-/// The place where colours are compared.
-pub(super) struct Seen<'a> {
-    /// Every visible difference counts, not only those that are noticed.
-    pub(super) strict: bool,
-    /// The part of the area that counts; `None` for all of it.
-    pub(super) inside: Option<&'a BezPath>,
-    pub(super) area: Rect,
+    /// Returns `true` if the colour jumps by more than `least` between stops that the places show.
+    pub(super) fn jumps(&self, places: impl Iterator<Item = Point>, least: f64) -> bool {
+        /// Stops nearer than this are at one place; usvg moves them apart by a rounding error.
+        const SAME: f64 = 1e-4;
+        /// Places are spread over the shape with gaps between.
+        const BETWEEN: f64 = 0.05;
+        let range = places
+            .filter_map(|p| self.along(self.inside * p))
+            .fold(None, |r: Option<(f64, f64)>, t| Some(r.map_or((t, t), |(a, b)| (a.min(t), b.max(t)))));
+        let Some((from, to)) = range else { return false };
+        let margin = BETWEEN * (to - from);
+        let is_seen = |t: f64| self.spread != SpreadMethod::Pad || (from - margin..=to + margin).contains(&t);
+        self.steps().any(|(t, rate, change)| change > least && rate * SAME >= change && is_seen(t))
+    }
+
+    /// Offset, rate of change and change of the colour between neighbouring stops.
+    fn steps(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        let wrap = match (self.spread, self.stops.first(), self.stops.last()) {
+            (SpreadMethod::Repeat, Some(first), Some(last)) => Some((0.0, first, last, 0.0)),
+            _ => None,
+        };
+        let pairs = self.stops.iter().zip(self.stops.iter().skip(1));
+        pairs.map(|(a, b)| (a.offset, a, b, b.offset - a.offset)).chain(wrap).map(|(t, a, b, apart)| {
+            let (p, q) = (premultiplied(a.color), premultiplied(b.color));
+            let change = p.iter().zip(q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
+            let alpha = (a.color[3] - b.color[3]).abs();
+            // The product rule for colour times alpha.
+            let most = |k: usize, of: [f64; 4]| (a.color[k] - b.color[k]).abs() * of[3] + of[k] * alpha;
+            let larger: [f64; 4] = std::array::from_fn(|k| a.color[k].max(b.color[k]));
+            let rate = (0..3).map(|k| most(k, larger)).fold(alpha, f64::max);
+            (t, if rate > 0.0 { rate / apart.max(0.0) } else { 0.0 }, change)
+        })
+    }
 }
 
 fn premultiplied([r, g, b, a]: [f64; 4]) -> [f64; 4] {
     [r * a, g * a, b * a, a]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shading(gradient: &str) -> Shading {
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>{gradient}<rect width='100' height='80' \
+             fill='url(#a)'/></svg>"
+        );
+        let tree = usvg::Tree::from_str(&svg, &usvg::Options::default()).unwrap();
+        let usvg::Node::Path(path) = &tree.root().children()[0] else { panic!("{svg}") };
+        Shading::of(path.fill().unwrap().paint()).unwrap()
+    }
+
+    const SMOOTH: &[&str] = &[
+        "<linearGradient id='a' x2='.3' y2='.4'><stop stop-color='red'/><stop offset='.7' stop-color='#0f8'/><stop offset='1' \
+         stop-color='blue' stop-opacity='.2'/></linearGradient>",
+        "<radialGradient id='a' cx='.4' fx='.5' r='.4' gradientTransform='rotate(20) scale(1 .6)'><stop stop-color='red'/>\
+         <stop offset='1' stop-color='#080' stop-opacity='0'/></radialGradient>",
+        "<linearGradient id='a' spreadMethod='reflect' x2='.3'><stop stop-color='red'/><stop offset='1'/></linearGradient>",
+    ];
+
+    #[test]
+    fn no_colour_changes_faster_than_the_bound() {
+        for gradient in SMOOTH {
+            let shading = shading(gradient);
+            let (bound, mut fastest) = (shading.steepest(), 0.0_f64);
+            for k in 0..20_000 {
+                let p = Point::new(0.5 * f64::from(k % 200), 0.8 * f64::from(k / 200));
+                for step in [Vec2::new(0.05, 0.0), Vec2::new(0.0, 0.05), Vec2::new(0.03, 0.04)] {
+                    let (a, b) = (shading.premultiplied(p), shading.premultiplied(p + step));
+                    fastest = a.iter().zip(b).map(|(a, b)| (a - b).abs() / 0.05).fold(fastest, f64::max);
+                }
+            }
+            assert!(fastest <= bound * 1.001 && fastest > 0.2 * bound, "{gradient}: {fastest} {bound}");
+        }
+    }
+
+    #[test]
+    fn jumps_count_if_they_are_shown() {
+        let hard = "<linearGradient id='a'><stop offset='.5' stop-color='red'/><stop offset='.5' stop-color='blue'/>\
+                    </linearGradient>";
+        let repeated = "<linearGradient id='a' spreadMethod='repeat' x2='.2'><stop stop-color='red'/><stop offset='1' \
+                        stop-color='blue'/></linearGradient>";
+        let places = |from: f64, to: f64| [Point::new(from, 5.0), Point::new(to, 50.0)].into_iter();
+        assert!(shading(hard).steepest() > 1e3 && shading(repeated).steepest() == f64::INFINITY);
+        assert!(shading(hard).jumps(places(0.0, 100.0), 0.05));
+        assert!(!shading(hard).jumps(places(0.0, 40.0), 0.05));
+        assert!(!shading(&hard.replace("blue", "#fe0000")).jumps(places(0.0, 100.0), 0.05));
+        assert!(shading(repeated).jumps(places(0.0, 100.0), 0.05));
+        for gradient in SMOOTH {
+            assert!(!shading(gradient).jumps(places(0.0, 100.0), 0.05));
+        }
+    }
 }

@@ -1,0 +1,425 @@
+//! The inverse of a map over a box, started from a grid of the map's values.
+//!
+//! The box is cut into cells, whose corners are mapped forwards. To invert a point, the triangle of mapped corners that contains it
+//! gives a first answer, and Newton's steps x ← x + J⁻¹(q − F(x)) improve it. A point outside of all triangles has no inverse, which
+//! costs a look into a table and no step. Around the box the map continues by its tangent, so that the inverse reaches a little
+//! beyond the image of the box even where the map is undefined there.
+//!
+//! Unlike [`NewtonInverse`](pathwarp::map::NewtonInverse), answers are not certified: this serves colours, not geometry.
+
+use super::image_warp::in_pixels;
+use kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp::map::{Creases, Jet, Map};
+
+/// Pixels of the result per side of a cell.
+const PIXELS: f64 = 2.0;
+/// Fewest and most cells along a side of a square box; an oblong one has more along its longer and fewer along its shorter side.
+const SQUARE_CELLS: (f64, f64) = (8.0, 24.0);
+/// Fewest and most cells along a side.
+const CELL_RANGE: (f64, f64) = (6.0, 96.0);
+/// Shortest side of the box in terms of the other, so that a line has cells too.
+const FLATTEST: f64 = 1e-3;
+/// Buckets along a side of the image's bounding box.
+const BUCKETS: usize = 32;
+/// Largest number of Newton steps. The first nearly always suffices; more help at creases.
+const MAX_STEPS: usize = 5;
+/// A residual below this fraction of the image's size needs no step after the next: that leaves about its square.
+const CLOSE: f64 = 1.0 / 1024.0;
+/// Farthest step from the first answer, in cells.
+const FARTHEST: f64 = 1.5;
+
+/// The inverse of a map over a box and a little beyond it. NaN marks points outside.
+pub struct GridInverse<'a> {
+    map: &'a dyn Map,
+    read: Affine,
+    write: Affine,
+    nodes: Vec<Node>,
+    triangles: Vec<Triangle>,
+    buckets: Buckets,
+    cell: Vec2,
+    /// A residual below this needs no second step.
+    close: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    at: Point,
+    image: Point,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Triangle {
+    corners: [usize; 3],
+    /// The triangle lies in the box: Newton's steps can improve its answers.
+    inner: bool,
+    /// The map does not reverse it.
+    upright: bool,
+}
+
+impl<'a> GridInverse<'a> {
+    /// The inverse of `read`, then `map`, then `write` over `area`, a box before `read`, and up to `reach` around it, for a picture
+    /// of about `pixels` pixels along each side.
+    #[must_use]
+    pub fn new(map: &'a dyn Map, area: Rect, reach: f64, read: Affine, write: Affine, pixels: f64) -> Self {
+        let longest = area.width().max(area.height());
+        let grow = |side: f64| 0.5 * (FLATTEST * longest - side).max(0.0);
+        let area = area.inflate(grow(area.width()), grow(area.height()));
+        let grid = Grid::over(area, reach, (pixels / PIXELS).clamp(SQUARE_CELLS.0, SQUARE_CELLS.1));
+        let nodes = grid.nodes(map, read, write);
+        let triangles = grid.triangles(&nodes);
+        let images = nodes.iter().map(|n| n.image).filter(|p| p.is_finite());
+        let bounds = images
+            .fold(None, |b: Option<Rect>, p| Some(b.map_or(Rect::from_origin_size(p, (0.0, 0.0)), |b| b.union_pt(p))));
+        let bounds = bounds.unwrap_or_default();
+        let buckets = Buckets::new(bounds, &nodes, &triangles);
+        let close = CLOSE * bounds.width().hypot(bounds.height());
+        Self { map, read, write, nodes, triangles, buckets, cell: grid.cell(), close }
+    }
+
+    /// Returns `false` if no point of a box has an inverse.
+    #[must_use]
+    pub fn touches(&self, r: Rect) -> bool {
+        let common = r.intersect(self.buckets.bounds);
+        let ((i0, j0), (i1, j1)) =
+            (self.buckets.index(common.origin()), self.buckets.index(Point::new(common.x1, common.y1)));
+        let mut all = (j0..=j1).flat_map(|j| (i0..=i1).map(move |i| j * BUCKETS + i));
+        r.overlaps(self.buckets.bounds) && all.any(|k| self.buckets.starts[k] < self.buckets.starts[k + 1])
+    }
+
+    /// The first answer for a point, and whether it can be improved. `last` is the triangle of the answer before, where a
+    /// neighbour is likely to be, too.
+    fn locate(&self, q: Point, last: &mut Option<u32>) -> Option<(Point, bool)> {
+        let found = last.and_then(|k| self.within(q, k));
+        if found.is_some() {
+            return found;
+        }
+        let mut reversed = None;
+        for k in self.buckets.at(q)? {
+            let t = &self.triangles[*k as usize];
+            let Some(found) = self.within(q, *k) else { continue };
+            if t.upright {
+                *last = t.inner.then_some(*k);
+                return Some(found);
+            }
+            reversed = reversed.or(Some(found));
+        }
+        reversed
+    }
+
+    /// The answer of one triangle if the point is in its image.
+    #[inline]
+    fn within(&self, q: Point, k: u32) -> Option<(Point, bool)> {
+        let t = &self.triangles[k as usize];
+        let [a, b, c] = t.corners;
+        let (a, b, c) = (&self.nodes[a], &self.nodes[b], &self.nodes[c]);
+        let (v, w) = barycentric(q, a.image, b.image, c.image)?;
+        Some((a.at + (b.at - a.at) * v + (c.at - a.at) * w, t.inner))
+    }
+
+    /// One Newton step from `p`, whose jet is known; `None` where that is singular.
+    fn step(&self, q: Point, jet: &Jet) -> Option<(Vec2, f64)> {
+        let jet = in_pixels(jet, self.write, self.read);
+        let (r, det) = (q - jet.p, jet.det());
+        let step = Vec2::new(r.cross(jet.dy) / det, jet.dx.cross(r) / det);
+        step.is_finite().then(|| (step, r.hypot()))
+    }
+}
+
+impl Map for GridInverse<'_> {
+    fn jet(&self, q: Point) -> Jet {
+        let p = self.point(q);
+        if !p.is_finite() {
+            return Jet::UNDEFINED;
+        }
+        let there = in_pixels(&self.map.jet(self.read * p), self.write, self.read);
+        let det = there.det();
+        Jet { p, dx: Vec2::new(there.dy.y, -there.dx.y) / det, dy: Vec2::new(-there.dy.x, there.dx.x) / det }
+    }
+
+    fn point(&self, q: Point) -> Point {
+        let mut out = [Point::ORIGIN];
+        self.points(&[q], &mut out);
+        out[0]
+    }
+
+    fn points(&self, qs: &[Point], out: &mut [Point]) {
+        let mut active = Vec::with_capacity(qs.len());
+        let mut last = None;
+        for (i, (q, o)) in qs.iter().zip(out.iter_mut()).enumerate() {
+            let found = self.locate(*q, &mut last);
+            *o = found.map_or(Point::new(f64::NAN, f64::NAN), |f| f.0);
+            if found.is_some_and(|f| f.1) {
+                active.push(Search { index: i, start: *o, at: *o, best: f64::INFINITY });
+            }
+        }
+        let mut places = Vec::with_capacity(active.len());
+        let mut jets = vec![Jet::default(); active.len()];
+        for _ in 0..MAX_STEPS {
+            if active.is_empty() {
+                return;
+            }
+            places.clear();
+            places.extend(active.iter().map(|s| self.read * s.at));
+            self.map.jets(&places, &mut jets[..active.len()]);
+            let mut k = 0;
+            active.retain_mut(|s| {
+                let found = self.step(qs[s.index], &jets[k]);
+                k += 1;
+                let Some((step, residual)) = found.filter(|f| f.1 < s.best) else { return false };
+                out[s.index] = s.at;
+                s.best = residual;
+                let (to, far) = (s.at + step, s.at + step - s.start);
+                if far.x.abs() > FARTHEST * self.cell.x || far.y.abs() > FARTHEST * self.cell.y {
+                    return false;
+                }
+                s.at = to;
+                if residual <= self.close {
+                    out[s.index] = to;
+                    return false;
+                }
+                true
+            });
+        }
+    }
+}
+
+/// A point that is being inverted.
+struct Search {
+    index: usize,
+    start: Point,
+    at: Point,
+    /// The smallest residual so far.
+    best: f64,
+}
+
+/// The cells of a box, and a ring of cells around it.
+struct Grid {
+    area: Rect,
+    /// Width of the ring.
+    reach: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Grid {
+    fn over(area: Rect, reach: f64, square: f64) -> Self {
+        let oblong = (area.width() / area.height()).sqrt();
+        let cells = |n: f64| if n.is_finite() { n.clamp(CELL_RANGE.0, CELL_RANGE.1) as usize } else { square as usize };
+        Self { area, reach, columns: cells(square * oblong), rows: cells(square / oblong) }
+    }
+
+    /// Size of a cell of the box.
+    fn cell(&self) -> Vec2 {
+        Vec2::new(self.area.width() / self.columns as f64, self.area.height() / self.rows as f64)
+    }
+
+    /// Nodes along the width.
+    fn side(&self) -> usize {
+        self.columns + 3
+    }
+
+    /// The nodes row by row: those of the box, and those around it on the tangents of the map.
+    fn nodes(&self, map: &dyn Map, read: Affine, write: Affine) -> Vec<Node> {
+        let (area, side) = (self.area, self.side());
+        let along = |k: usize, from: f64, size: f64, n: usize| match k {
+            0 => from - self.reach,
+            k if k == n + 2 => from + size + self.reach,
+            k => from + size * (k - 1) as f64 / n as f64,
+        };
+        let at = |k: usize| {
+            let x = along(k % side, area.x0, area.width(), self.columns);
+            Point::new(x, along(k / side, area.y0, area.height(), self.rows))
+        };
+        let inside: Vec<Point> = (0..side * (self.rows + 3))
+            .map(|k| at(k).to_vec2())
+            .map(|p| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1)))
+            .collect();
+        let places: Vec<Point> = inside.iter().map(|p| read * *p).collect();
+        let mut jets = vec![Jet::default(); places.len()];
+        map.jets(&places, &mut jets);
+        let mut creases = Creases::default();
+        map.creases(&mut creases);
+        let node = |(k, (jet, place)): (usize, (&Jet, &Point))| {
+            let jet = in_pixels(jet, write, read);
+            let image = jet.p + jet.push(at(k) - inside[k]);
+            let image = if creases.defined_at(*place) { image } else { Point::new(f64::NAN, f64::NAN) };
+            Node { at: at(k), image }
+        };
+        jets.iter().zip(&places).enumerate().map(node).collect()
+    }
+
+    /// The triangles between nodes that have images: those of the box first, which take precedence.
+    fn triangles(&self, nodes: &[Node]) -> Vec<Triangle> {
+        let area = |t: [usize; 3]| {
+            let [a, b, c] = t.map(|n| nodes[n].image);
+            (b - a).cross(c - a)
+        };
+        let side = self.side();
+        let mut out: Vec<(Triangle, f64)> = Vec::with_capacity(2 * nodes.len());
+        for k in (0..side * (self.rows + 2)).filter(|k| k % side != side - 1) {
+            let inner = (1..=self.columns).contains(&(k % side)) && (1..=self.rows).contains(&(k / side));
+            for corners in [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]] {
+                let size = area(corners);
+                if size.is_finite() && size != 0.0 {
+                    out.push((Triangle { corners, inner, upright: true }, size));
+                }
+            }
+        }
+        // The larger part of the image decides which side is up.
+        let up = out.iter().filter(|t| t.0.inner).map(|t| t.1).sum::<f64>().signum();
+        for (t, size) in &mut out {
+            t.upright = size.signum() == up;
+        }
+        out.sort_by_key(|t| !t.0.inner);
+        out.into_iter().map(|t| t.0).collect()
+    }
+}
+
+/// Weights of a triangle's second and third corner at a point inside it.
+fn barycentric(q: Point, a: Point, b: Point, c: Point) -> Option<(f64, f64)> {
+    /// Points on a common side belong to both triangles in spite of rounding.
+    const ROUNDING: f64 = 1e-9;
+    let (ab, ac, aq) = (b - a, c - a, q - a);
+    let scale = 1.0 / ab.cross(ac);
+    let (v, w) = (aq.cross(ac) * scale, ab.cross(aq) * scale);
+    (v >= -ROUNDING && w >= -ROUNDING && v + w <= 1.0 + ROUNDING).then_some((v, w))
+}
+
+/// The triangles near each place of the image, in their order.
+struct Buckets {
+    bounds: Rect,
+    /// Start of each bucket's list, and the end of the last.
+    starts: Vec<u32>,
+    lists: Vec<u32>,
+}
+
+impl Buckets {
+    fn new(bounds: Rect, nodes: &[Node], triangles: &[Triangle]) -> Self {
+        let mut out = Self { bounds, starts: vec![0; BUCKETS * BUCKETS + 1], lists: Vec::new() };
+        let spans: Vec<_> = triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.corners.map(|n| nodes[n].image);
+                let r = Rect::from_points(a, b).union_pt(c);
+                (out.index(r.origin()), out.index(Point::new(r.x1, r.y1)))
+            })
+            .collect();
+        let each = |((i0, j0), (i1, j1)): ((usize, usize), (usize, usize))| {
+            (j0..=j1).flat_map(move |j| (i0..=i1).map(move |i| j * BUCKETS + i))
+        };
+        for span in &spans {
+            each(*span).for_each(|b| out.starts[b + 1] += 1);
+        }
+        for b in 0..BUCKETS * BUCKETS {
+            out.starts[b + 1] += out.starts[b];
+        }
+        out.lists = vec![0; out.starts[BUCKETS * BUCKETS] as usize];
+        let mut next = out.starts.clone();
+        for (k, span) in (0..).zip(&spans) {
+            for b in each(*span) {
+                out.lists[next[b] as usize] = k;
+                next[b] += 1;
+            }
+        }
+        out
+    }
+
+    fn index(&self, q: Point) -> (usize, usize) {
+        let along = |v: f64, a: f64, b: f64| (((v - a) / (b - a) * BUCKETS as f64).max(0.0) as usize).min(BUCKETS - 1);
+        (along(q.x, self.bounds.x0, self.bounds.x1), along(q.y, self.bounds.y0, self.bounds.y1))
+    }
+
+    fn at(&self, q: Point) -> Option<&[u32]> {
+        let b = &self.bounds;
+        if !((b.x0..=b.x1).contains(&q.x) && (b.y0..=b.y1).contains(&q.y)) {
+            return None;
+        }
+        let (i, j) = self.index(q);
+        let k = j * BUCKETS + i;
+        self.lists.get(self.starts[k] as usize..self.starts[k + 1] as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::map::{Formula, Real};
+
+    struct Bend;
+    impl Formula for Bend {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x + (y / 30.0).sin() * 6.0, y + (x / 25.0).sin() * 8.0)
+        }
+    }
+
+    const AREA: Rect = Rect::new(10.0, 20.0, 90.0, 70.0);
+    const READ: Affine = Affine::new([0.5, 0.1, -0.2, 0.8, 3.0, -5.0]);
+    const WRITE: Affine = Affine::new([2.0, 0.0, 0.5, -1.0, 30.0, 7.0]);
+
+    fn forward(p: Point) -> Point {
+        WRITE * Bend.point(READ * p)
+    }
+
+    #[test]
+    fn the_image_of_the_box_is_inverted() {
+        let inverse = GridInverse::new(&Bend, AREA, 20.0, READ, WRITE, 50.0);
+        let mut worst: f64 = 0.0;
+        for k in 0..10_000 {
+            let p = AREA.origin() + Vec2::new(0.8 * f64::from(k % 100) + 0.4, 0.5 * f64::from(k / 100) + 0.25);
+            worst = worst.max(inverse.point(forward(p)).distance(p));
+        }
+        println!("largest error {worst:.1e}");
+        assert!(worst < 1e-4, "{worst}");
+        let (p, q) = (Point::new(40.0, 50.0), forward(Point::new(40.0, 50.0)));
+        let jet = inverse.jet(q);
+        let there = in_pixels(&Bend.jet(READ * p), WRITE, READ).then(&jet);
+        assert!((there.dx - Vec2::new(1.0, 0.0)).hypot() + (there.dy - Vec2::new(0.0, 1.0)).hypot() < 1e-6);
+    }
+
+    #[test]
+    fn beyond_the_box_it_follows_the_tangent_and_then_ends() {
+        let inverse = GridInverse::new(&Bend, AREA, 20.0, READ, WRITE, 50.0);
+        for (p, c) in [((8.0, 45.0), (10.0, 45.0)), ((95.0, 30.0), (90.0, 30.0)), ((50.0, 75.0), (50.0, 70.0))] {
+            let (p, c) = (Point::from(p), Point::from(c));
+            let jet = in_pixels(&Bend.jet(READ * c), WRITE, READ);
+            let back = inverse.point(jet.p + jet.push(p - c));
+            assert!(back.distance(p) < 0.1, "{p} {back}");
+        }
+        assert!(inverse.point(forward(Point::new(200.0, 50.0))).is_nan());
+        assert!(inverse.point(Point::new(f64::NAN, 0.0)).is_nan());
+    }
+
+    /// The map folds where its determinant changes sign; the larger sheet counts.
+    #[test]
+    fn of_two_sheets_the_larger_is_taken() {
+        struct Fold;
+        impl Formula for Fold {
+            fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+                (x * x, y)
+            }
+        }
+        let inverse =
+            GridInverse::new(&Fold, Rect::new(-1.0, 0.0, 3.0, 1.0), 0.1, Affine::IDENTITY, Affine::IDENTITY, 50.0);
+        assert!((inverse.point(Point::new(0.49, 0.5)).x - 0.7).abs() < 1e-4);
+    }
+
+    /// A kink between the corners of a cell, at most a close residual times the ratio of the slopes off.
+    #[test]
+    fn kinks_are_followed() {
+        struct Kink;
+        impl Map for Kink {
+            fn jet(&self, p: Point) -> Jet {
+                let k = if p.x < 0.4321 { 1.0 } else { 3.0 };
+                Jet { p: Point::new(0.4321 + k * (p.x - 0.4321), p.y), dx: Vec2::new(k, 0.0), dy: Vec2::new(0.0, 1.0) }
+            }
+        }
+        // The diagonal of the image with its surroundings.
+        let size = Vec2::new(2.6, 1.2).hypot();
+        let inverse =
+            GridInverse::new(&Kink, Rect::new(0.0, 0.0, 1.0, 1.0), 0.1, Affine::IDENTITY, Affine::IDENTITY, 50.0);
+        for k in 0..1000 {
+            let p = Point::new(f64::from(k) / 1000.0, 0.3);
+            assert!(inverse.point(Kink.point(p)).distance(p) < 3.0 * CLOSE * size, "{p}");
+        }
+    }
+}

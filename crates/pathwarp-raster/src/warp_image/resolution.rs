@@ -1,0 +1,238 @@
+//! Chooses the resolution of a warped paint.
+//!
+//! Renderers interpolate between the pixels of a picture. A smooth gradient therefore needs only so many pixels that the
+//! interpolated colours are right; only jumps and kinks need as many as the screen has.
+
+use super::grid_inverse::GridInverse;
+use super::image_warp::shown;
+use super::shade::{Shade, shade};
+use crate::error::Error;
+use kurbo::{Affine, Point, Rect, Vec2};
+use pathwarp::map::Map;
+use tiny_skia::Pixmap;
+
+/// Pixels along each side of the first picture, without its margin.
+const COARSEST: f64 = 12.0;
+/// Margin around the target in pixels: renderers read up to two pixels on either side of a place.
+const MARGIN: f64 = 2.0;
+/// Reach of the paint around its source, in pixels: the margin, several times as wide where the map compresses.
+const READ: f64 = 6.0;
+/// Largest reach as a fraction of the source's longer side.
+const FARTHEST: f64 = 0.3;
+/// Range of the growth of a side from one picture to the next.
+const GROWTH: (f64, f64) = (1.2, 4.0);
+/// Factor on the expected growth, to be sure of it.
+const SURE: f64 = 1.05;
+/// A side grows if it contributes more than this fraction to the error of interpolation.
+const GUILTY: f64 = 0.4;
+
+/// A colour that the result must show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenColor {
+    /// Place in the plane of the result.
+    pub at: Point,
+    /// Red, green, blue and alpha, 0 to 1, premultiplied.
+    pub color: [f64; 4],
+}
+
+/// Accepted differences between a picture, interpolated, and the exact colours, of 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ShadeTolerance {
+    /// The largest difference that most places may have.
+    pub usual: f64,
+    /// The share of the places that may exceed it.
+    pub share: f64,
+    /// The largest difference that any place may have.
+    pub largest: f64,
+}
+
+impl ShadeTolerance {
+    /// Invisible, except that kinks at stops may be softened a little.
+    pub const UNNOTICED: Self = Self { usual: 1.5 / 255.0, share: 0.05, largest: 8.0 / 255.0 };
+    /// Invisible everywhere.
+    pub const INVISIBLE: Self = Self { usual: 1.5 / 255.0, share: 0.0, largest: 1.5 / 255.0 };
+}
+
+/// A paint to be warped at the lowest sufficient resolution.
+#[derive(Clone, Copy)]
+pub struct SmoothShade<'a> {
+    /// The colour at a point of the paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
+    pub color: &'a (dyn Fn(Point) -> [f64; 4] + Sync),
+    /// The part of the paint that is warped, in its coordinates.
+    pub source: Rect,
+    /// From the paint's coordinates to the plane of the map.
+    pub placed: Affine,
+    /// The map.
+    pub map: &'a dyn Map,
+    /// From the plane of the map to that of the result.
+    pub after: Affine,
+    /// The part of the result's plane to be painted.
+    pub target: Rect,
+    /// Colours to compare with. Without any, the resolution is `finest`.
+    pub seen: &'a [SeenColor],
+    /// Accepted differences from `seen`.
+    pub tolerance: ShadeTolerance,
+    /// Largest number of pixels per unit of the plane, reached if nothing less suffices.
+    pub finest: f64,
+}
+
+impl SmoothShade<'_> {
+    /// Paints the target and two pixels around it. Returns the picture and its place in the plane.
+    ///
+    /// # Errors
+    /// Those of [`shade`].
+    pub fn paint(&self) -> Result<(Pixmap, Rect), Error> {
+        let finest = Vec2::new(self.target.width(), self.target.height()) * self.finest;
+        let limit = |v: Vec2| Vec2::new(v.x.min(finest.x), v.y.min(finest.y));
+        let mut inner = if self.seen.is_empty() { finest } else { limit(Vec2::new(COARSEST, COARSEST)) };
+        loop {
+            let (pixmap, area) = self.painted(inner)?;
+            if inner == finest {
+                return Ok((pixmap, area));
+            }
+            let error = Interpolation { pixmap: &pixmap, area }.error(self.seen, &self.tolerance);
+            let Some(grow) = error else { return Ok((pixmap, area)) };
+            let next = limit(Vec2::new(inner.x * grow.x, inner.y * grow.y));
+            // The guilty side may have reached its limit.
+            inner = if next == inner { finest } else { next };
+        }
+    }
+
+    /// Paints with the given number of pixels across the target.
+    fn painted(&self, inner: Vec2) -> Result<(Pixmap, Rect), Error> {
+        let (wide, high) = (self.target.width() / inner.x, self.target.height() / inner.y);
+        let pixels = |n: f64| (n + 2.0 * MARGIN).ceil().max(1.0);
+        let (columns, rows) = (pixels(inner.x), pixels(inner.y));
+        let area = Rect::from_center_size(self.target.center(), (columns * wide, rows * high));
+        let size = (columns as u32, rows as u32);
+        // Around the image of the source, the pixels that renderers read.
+        let reach = (READ / inner.x.min(inner.y)).min(FARTHEST) * self.source.width().max(self.source.height());
+        let side = (inner.x * inner.y).sqrt();
+        let inverse = GridInverse::new(self.map, self.source, reach, self.placed, self.after, side);
+        let pixmap = shade(&Shade { color: self.color, inverse: &inverse, shown: shown(area, size), size })?;
+        Ok((pixmap, area))
+    }
+}
+
+/// A picture as a renderer shows it, interpolated between its pixels.
+struct Interpolation<'a> {
+    pixmap: &'a Pixmap,
+    area: Rect,
+}
+
+impl Interpolation<'_> {
+    /// Returns `None` if the picture is good enough, else the factors by which its sides should grow.
+    fn error(&self, seen: &[SeenColor], tolerance: &ShadeTolerance) -> Option<Vec2> {
+        let mut bends = [0.0_f64; 2];
+        let mut off: Vec<f64> = Vec::with_capacity(seen.len());
+        for s in seen {
+            let (found, bend) = self.at(s.at);
+            off.push(s.color.iter().zip(found).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max));
+            if off.last().is_some_and(|o| *o > tolerance.usual) {
+                bends = [bends[0] + bend[0], bends[1] + bend[1]];
+            }
+        }
+        off.sort_by(f64::total_cmp);
+        let largest = off.last().copied().unwrap_or_default();
+        let within = off.len().saturating_sub(1 + (tolerance.share * off.len() as f64) as usize);
+        let usual = off.get(within).copied().unwrap_or_default();
+        if largest <= tolerance.largest && usual <= tolerance.usual {
+            return None;
+        }
+        // The error of interpolation falls with the square of the distance of the pixels, and at kinks in proportion to it.
+        let grow = (usual / tolerance.usual).sqrt().max(largest / tolerance.largest);
+        let grow = (SURE * grow).clamp(GROWTH.0, GROWTH.1);
+        let most = bends[0].max(bends[1]);
+        let factor = |bend: f64| if bend >= GUILTY * most { grow } else { 1.0 };
+        Some(Vec2::new(factor(bends[0]), factor(bends[1])))
+    }
+
+    /// The colour at a place, premultiplied, and its second differences along both sides.
+    fn at(&self, p: Point) -> ([f64; 4], [f64; 2]) {
+        let (width, height) = (self.pixmap.width() as usize, self.pixmap.height() as usize);
+        let place = |v: f64, from: f64, size: f64, n: usize| {
+            let v = ((v - from) / size * n as f64 - 0.5).clamp(0.0, n as f64 - 1.0);
+            let i = (v as usize).min(n.saturating_sub(2));
+            (i, v - i as f64)
+        };
+        let (i, u) = place(p.x, self.area.x0, self.area.width(), width);
+        let (j, v) = place(p.y, self.area.y0, self.area.height(), height);
+        let read = |i: usize, j: usize| {
+            let at = (j.min(height - 1) * width + i.min(width - 1)) * 4;
+            let c = &self.pixmap.data()[at..at + 4];
+            [c[0], c[1], c[2], c[3]].map(|v| f64::from(v) / 255.0)
+        };
+        let [a, b, c, d] = [read(i, j), read(i + 1, j), read(i, j + 1), read(i + 1, j + 1)];
+        let color = std::array::from_fn(|k| {
+            let (top, bottom) = (a[k] + u * (b[k] - a[k]), c[k] + u * (d[k] - c[k]));
+            top + v * (bottom - top)
+        });
+        let bend = |before: [f64; 4], here: [f64; 4], after: [f64; 4]| {
+            (0..4).map(|k| (before[k] - 2.0 * here[k] + after[k]).abs()).fold(0.0, f64::max)
+        };
+        (color, [bend(read(i.saturating_sub(1), j), a, b), bend(read(i, j.saturating_sub(1)), a, c)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathwarp::map::{AffineMap, Formula, Real};
+
+    struct Bend;
+
+    impl Formula for Bend {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y + (x / 25.0).sin() * 8.0)
+        }
+    }
+
+    const SOURCE: Rect = Rect::new(0.0, 0.0, 100.0, 60.0);
+
+    fn seen(map: &dyn Map, color: &dyn Fn(Point) -> [f64; 4]) -> Vec<SeenColor> {
+        let place = |k: u32| Point::new(f64::from(k) / 10.0, 60.0 * (f64::from(k) * 0.618).fract());
+        (0..1000).map(|k| SeenColor { at: map.point(place(k)), color: color(place(k)) }).collect()
+    }
+
+    fn painted(map: &dyn Map, color: &(dyn Fn(Point) -> [f64; 4] + Sync), tolerance: ShadeTolerance) -> (Pixmap, Rect) {
+        let seen = seen(map, color);
+        let target = Rect::new(0.0, -8.0, 100.0, 68.0);
+        let (placed, after) = (Affine::IDENTITY, Affine::IDENTITY);
+        let (source, finest) = (SOURCE, 8.0);
+        SmoothShade { color, source, placed, map, after, target, seen: &seen, tolerance, finest }.paint().unwrap()
+    }
+
+    #[test]
+    fn the_resolution_follows_from_the_colours() {
+        let grey = |v: f64| [v, v, v, 1.0];
+        let plain = |p: Point| grey(0.2 + 0.6 * p.x / 100.0);
+        let smooth = |p: Point| grey(0.5 + 0.5 * (p.y / 10.0).sin());
+        let jump = |p: Point| grey(if p.y < 30.0 { 0.0 } else { 1.0 });
+        let size = |color: &(dyn Fn(Point) -> [f64; 4] + Sync)| {
+            let (pixmap, area) = painted(&Bend, color, ShadeTolerance::INVISIBLE);
+            assert!(area.x0 < 0.0 && area.x1 > 100.0 && area.y0 < -8.0 && area.y1 > 68.0, "{area}");
+            let found = Interpolation { pixmap: &pixmap, area };
+            let off =
+                |s: &SeenColor| s.color.iter().zip(found.at(s.at).0).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max);
+            let seen = seen(&Bend, color);
+            (pixmap.width(), pixmap.height(), seen.iter().map(off).fold(0.0, f64::max))
+        };
+        let [plain, smooth, jump] = [size(&plain), size(&smooth), size(&jump)];
+        println!("{plain:?} {smooth:?} {jump:?}");
+        assert_eq!((plain.0, plain.1), (16, 16));
+        assert!(smooth.1 > 30 && smooth.1 < 200, "{smooth:?}");
+        // At full resolution, and off only at the jump itself.
+        assert_eq!((jump.0, jump.1), (804, 612));
+        assert!(plain.2 <= 1.5 / 255.0 && smooth.2 <= 1.5 / 255.0 && jump.2 > 0.1);
+    }
+
+    /// Only one side grows, up to its limit; the other must follow, or the search would not end.
+    #[test]
+    fn the_search_ends_at_the_limit_of_one_side() {
+        let map = AffineMap(Affine::IDENTITY);
+        let color = |p: Point| [(p.x * 1000.0).sin().abs(), 0.0, 0.0, 1.0];
+        let (pixmap, _) = painted(&map, &color, ShadeTolerance::INVISIBLE);
+        assert_eq!((pixmap.width(), pixmap.height()), (804, 612));
+    }
+}
