@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::input::{Baseline, Input, WarpRequest, WarpedResult};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
-use crate::report::FileReport;
+use crate::report::{FileReport, ReportedShape};
 use crate::{recipe_file, references};
 use pathwarp::deform::{Explanation, Registry};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
@@ -80,17 +80,18 @@ impl Batch<'_> {
             warnings,
         };
         let partial = warped.partial || report.is_partial();
+        let notes = self.notes(&built, baseline, &report.shapes);
         Ok(FileRun {
             report,
             files,
             past_page: warped.overhang.map(|o| o.share),
-            notes: self.notes(&built, baseline),
+            notes,
             partial,
         })
     }
 
     /// The decisions made on the user's behalf.
-    fn notes(&self, built: &BuiltRecipe, baseline: Option<f64>) -> Vec<String> {
+    fn notes(&self, built: &BuiltRecipe, baseline: Option<f64>, shapes: &[ReportedShape]) -> Vec<String> {
         let mut notes = Vec::new();
         if !self.options.explain {
             return notes;
@@ -101,6 +102,7 @@ impl Batch<'_> {
             ));
         }
         notes.extend(self.in_flags(built, |e| &e.notes));
+        notes.extend(strokes(shapes));
         notes
     }
 
@@ -112,6 +114,19 @@ impl Batch<'_> {
     ) -> impl Iterator<Item = String> {
         built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| self.flags.in_text(m))
     }
+}
+
+/// What became of the strokes.
+fn strokes(shapes: &[ReportedShape]) -> Option<String> {
+    let outlined: usize = shapes.iter().map(|s| s.outlined_strokes).sum();
+    let scaled = || shapes.iter().filter_map(|s| Some((s.stroke_error?, &s.id)));
+    let worst = scaled().reduce(|a, b| if b.0 > a.0 { b } else { a });
+    let outlined = (outlined > 0).then(|| format!("{outlined} became outlines (--strokes scale|keep prevents that)"));
+    let scaled = worst.map(|(error, id)| {
+        format!("{} stayed strokes, within {error:.3} units of the exact ones (the farthest: {id})", scaled().count())
+    });
+    let parts: Vec<String> = [scaled, outlined].into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("strokes: {}", parts.join("; ")))
 }
 
 /// Adds to an error where the map is undefined which operation is, if a step can say so.

@@ -17,22 +17,28 @@ use pathwarp::map::Class;
 use pathwarp::outline::Subpath;
 use pathwarp::refit::PathReport;
 use pathwarp::{GeometryError, Outline, Seg};
-use usvg::Paint;
+use usvg::{Paint, Stroke};
 
 /// Warps a part.
 pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
-    let (path, report) = t.bend(&t.outline)?;
+    // The centre line of an outlined stroke is not written.
+    let draft = p.fill.is_none() && p.stroke.as_ref().is_some_and(|s| expands(t, s)) && !p.in_tile;
+    let (path, report) = if draft { t.draft()? } else { t.bend(&t.outline)? };
     let fit = paint_fit(t, &path);
-    let centre = report.segments_in;
-    let Filled { path, fill, report } = filled(t, path, report)?;
+    let (centre, pieces) = (report.segments_in, report.segments_out);
+    let Filled { mut path, fill, mut report } = filled(t, path, report)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
-    let expands = matches!(t.options().strokes, Strokes::Auto | Strokes::Outline) && !p.fixed_width;
-    let stroke_shading = p.stroke.as_ref().filter(|_| expands).and_then(|s| shading(t, s.paint(), fit));
-    let (stroke, expanded) = stroke::stroke(t, &path, stroke_shading.is_some())?;
+    let stroke_shading = p.stroke.as_ref().filter(|s| expands(t, s)).and_then(|s| shading(t, s.paint(), fit));
+    let bent = stroke::stroke(t, &path, pieces, stroke_shading.is_some())?;
+    if draft && bent.outcome.outline().is_none() {
+        let (refitted, refit) = t.bend(&t.outline)?;
+        (path, report) = (refitted, [Some(refit), None]);
+    }
+    let error = report[0].as_ref().map_or(0.0, |r| r.max_error);
     // Count what is written: the path is not if only its expanded stroke is painted.
-    let mut written = written(p, &stroke, report, fill.is_some());
-    written.extend(expanded);
+    let mut written = written(p, &bent.outcome, report, fill.is_some());
+    written.extend(bent.report);
     let report = combined(centre, written);
     let fill_shading = p.fill.as_ref().and_then(|f| shading(t, f.paint(), fit));
     let mut out = WarpedPart {
@@ -40,7 +46,9 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         fill,
         decimals: t.decimals,
         data: None,
-        stroke,
+        stroke: bent.outcome,
+        stroke_error: bent.error.map(|e| e + bent.leverage * (error + t.rounding)),
+        stroke_refused: bent.refused,
         fit,
         fill_image: None,
         stroke_image: None,
@@ -55,6 +63,15 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     }
     out.residual = fit.filter(|_| follows_fit(p, &out, t.options())).map(|f| f.miss * stretch(t.write));
     Ok(out)
+}
+
+/// Returns `true` if a part's stroke may become an outline.
+fn expands(t: &PartTask<'_>, s: &Stroke) -> bool {
+    match t.options().strokes {
+        Strokes::Outline => !t.part.fixed_width,
+        Strokes::Auto => !t.part.fixed_width && !stroke::is_hairline(t, s),
+        Strokes::Keep | Strokes::Scale => false,
+    }
 }
 
 /// Finds the affine fit for the part's gradients and patterns.

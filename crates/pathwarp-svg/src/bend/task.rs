@@ -23,6 +23,8 @@ pub(super) struct PartContext<'a> {
     pub(super) to_px: Affine,
     /// Number of gradients in the drawing that may become pictures.
     pub(super) gradients: usize,
+    /// Largest width of a hairline, in root user units; 0 if the page is not measured in physical units.
+    pub(super) hairline: f64,
 }
 
 /// A part to be warped.
@@ -80,12 +82,26 @@ impl<'a> PartTask<'a> {
         self.context.options
     }
 
-    /// Bends an outline, leaving room for rounding in the tolerance.
+    /// Bends an outline.
     pub(super) fn bend(&self, outline: &Outline) -> Result<(BezPath, PathReport), GeometryError> {
-        let options = &self.options().refit;
-        let tolerance = (options.tolerance - self.rounding).max(0.5 * options.tolerance);
-        let warped = refit::warp_path(outline, self.map, &options.clone().with_tolerance(tolerance))?;
+        self.bend_with(outline, &self.options().refit.clone().with_tolerance(self.allowed()))
+    }
+
+    /// Bends the part's outline for measures of it. Merging would take most of the time.
+    pub(super) fn draft(&self) -> Result<(BezPath, PathReport), GeometryError> {
+        let options = self.options().refit.clone().with_tolerance(self.allowed());
+        self.bend_with(&self.outline, &options.with_merge(false).with_certify(false))
+    }
+
+    fn bend_with(&self, outline: &Outline, options: &refit::Options) -> Result<(BezPath, PathReport), GeometryError> {
+        let warped = refit::warp_path(outline, self.map, options)?;
         Ok((self.to_local(warped.path), warped.report))
+    }
+
+    /// The tolerance less the room for rounding.
+    pub(super) fn allowed(&self) -> f64 {
+        let tolerance = self.options().refit.tolerance;
+        (tolerance - self.rounding).max(0.5 * tolerance)
     }
 
     /// Transforms a path from root user space to the part's user space as written.

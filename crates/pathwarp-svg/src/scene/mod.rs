@@ -12,4 +12,5 @@ pub(crate) mod regular;
 pub(crate) mod resolve;
 pub(crate) mod seen;
 pub(crate) mod shape;
+mod tidy;
 pub(crate) mod usvg_path;
