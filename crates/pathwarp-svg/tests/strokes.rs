@@ -223,11 +223,14 @@ fn similarities_scale_widths_exactly() {
     let map = Affine::rotate(0.4) * Affine::scale(1.7);
     for width in [0.001, 0.1, 5.0, 40.0] {
         for style in STYLES {
-            let body = format!("<path d='M15 80L30 20C45 80 50 20 70 70' fill='none' stroke='red' stroke-width='{width}' {style}/>");
+            let body = format!(
+                "<path d='M15 80L30 20C45 80 50 20 70 70' fill='none' stroke='red' stroke-width='{width}' {style}/>"
+            );
             let w = read(&page(&body, "")).warp(&Hidden(map), &tolerance(1e-3)).unwrap();
             let error = w.shapes[0].stroke_error.unwrap();
             assert!(error <= 1.1e-3, "{body}: {error}");
-            let written: f64 = w.svg.split("stroke-width=").nth(1).unwrap()[1..].split(['\'', '"']).next().unwrap().parse().unwrap();
+            let written: f64 =
+                w.svg.split("stroke-width=").nth(1).unwrap()[1..].split(['\'', '"']).next().unwrap().parse().unwrap();
             assert!((written - 1.7 * width).abs() <= 1e-5 * width, "{}", w.svg);
         }
     }
@@ -255,7 +258,11 @@ fn strokes_at_the_edge_of_the_domain_are_reported() {
 #[test]
 fn the_measure_measures() {
     let square = |x: f64, side: f64| {
-        Area(vec![[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(a, b)| Point::new(x, 0.0) + Vec2::new(a, b) * side).into()])
+        Area(vec![
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+                .map(|(a, b)| Point::new(x, 0.0) + Vec2::new(a, b) * side)
+                .into(),
+        ])
     };
     assert_eq!(square(0.0, 1.0).apart(&square(0.0, 1.0)), 0.0);
     assert!((square(0.0, 1.0).apart(&square(0.3, 1.0)) - 0.3).abs() < 1e-12);

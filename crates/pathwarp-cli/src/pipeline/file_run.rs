@@ -81,13 +81,7 @@ impl Batch<'_> {
         };
         let partial = warped.partial || report.is_partial();
         let notes = self.notes(&built, baseline, &report.shapes);
-        Ok(FileRun {
-            report,
-            files,
-            past_page: warped.overhang.map(|o| o.share),
-            notes,
-            partial,
-        })
+        Ok(FileRun { report, files, past_page: warped.overhang.map(|o| o.share), notes, partial })
     }
 
     /// The decisions made on the user's behalf.

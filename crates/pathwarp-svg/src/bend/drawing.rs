@@ -61,7 +61,8 @@ pub(crate) fn bend(
                     out.warnings.push(format!("a gradient of {id} only follows the best affine fit: {why}"));
                 }
                 if let Some(error) = warped.stroke_error.filter(|_| warped.stroke_refused) {
-                    let off = if error.is_finite() { format!(", off by up to {error:.3} units") } else { String::new() };
+                    let off =
+                        if error.is_finite() { format!(", off by up to {error:.3} units") } else { String::new() };
                     out.warnings.push(format!(
                         "the stroke of {id} extends to where the map is undefined; it keeps a single width{off}"
                     ));

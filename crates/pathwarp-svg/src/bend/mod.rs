@@ -1,5 +1,6 @@
 //! The drawing under a map: images of outlines, strokes, gradients and bitmaps.
 
+mod arcs;
 pub(crate) mod bitmap;
 pub(crate) mod drawing;
 pub(crate) mod gradient;

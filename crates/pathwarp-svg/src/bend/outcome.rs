@@ -159,7 +159,8 @@ pub(crate) struct WarpedPart {
     /// too. Empty if there is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
-    /// The text of `path`, if it has been written already: a large drawing's on the threads that bend it.
+    /// The text of `path`, if it has been written already: if it has arcs, which `path` approximates, and a large drawing's on the
+    /// threads that bend it.
     pub(crate) data: Option<String>,
     pub(crate) stroke: StrokeOutcome,
     /// Largest distance between a scaled stroke and the exact one, in root user units.
@@ -183,7 +184,7 @@ pub(crate) struct WarpedPart {
 impl WarpedPart {
     /// Writes the text of the path.
     pub(super) fn with_data(self) -> Self {
-        Self { data: Some(path_data(&self.path, self.decimals)), ..self }
+        Self { data: Some(self.data.unwrap_or_else(|| path_data(&self.path, self.decimals))), ..self }
     }
 }
 

@@ -9,7 +9,7 @@ use super::picture::{BentImage, PictureError};
 use super::shading::{Seen, Shading};
 use super::stroke;
 use super::stubs;
-use super::task::PartTask;
+use super::task::{BentPath, PartTask};
 use crate::scene::affine::stretch;
 use crate::scene::model::{Part, PartRole};
 use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Rect, Shape as _};
@@ -24,16 +24,16 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
     // The centre line of an outlined stroke is not written.
     let draft = p.fill.is_none() && p.stroke.as_ref().is_some_and(|s| expands(t, s)) && !p.in_tile;
-    let (path, report) = if draft { t.draft()? } else { t.bend(&t.outline)? };
-    let fit = paint_fit(t, &path);
-    let (centre, pieces) = (report.segments_in, report.segments_out);
-    let Filled { mut path, fill, mut report } = filled(t, path, report)?;
+    let bent = if draft { t.draft()? } else { t.bend(&t.outline)? };
+    let fit = paint_fit(t, &bent.path);
+    let (centre, pieces) = (bent.report.segments_in, bent.report.segments_out);
+    let Filled { mut path, mut data, fill, mut report } = filled(t, bent)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
     let stroke_shading = p.stroke.as_ref().filter(|s| expands(t, s)).and_then(|s| shading(t, s.paint(), fit));
     let bent = stroke::stroke(t, &path, pieces, stroke_shading.is_some())?;
     if draft && bent.outcome.outline().is_none() {
-        let (refitted, refit) = t.bend(&t.outline)?;
-        (path, report) = (refitted, [Some(refit), None]);
+        let refitted = t.bend(&t.outline)?;
+        (path, data, report) = (refitted.path, refitted.data, [Some(refitted.report), None]);
     }
     let error = report[0].as_ref().map_or(0.0, |r| r.max_error);
     // Count what is written: the path is not if only its expanded stroke is painted.
@@ -45,7 +45,7 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         path,
         fill,
         decimals: t.decimals,
-        data: None,
+        data,
         stroke: bent.outcome,
         stroke_error: bent.error.map(|e| e + bent.leverage * (error + t.rounding)),
         stroke_refused: bent.refused,
@@ -98,6 +98,8 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
 /// The bent path of a part and its fill.
 struct Filled {
     path: BezPath,
+    /// The text of the path if it has arcs.
+    data: Option<String>,
     /// The filled outline if it is separate.
     fill: Option<BezPath>,
     /// Reports of both; of the path, then of the fill.
@@ -125,7 +127,8 @@ fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
 }
 
 /// Bends the filled area if it differs from the path.
-fn filled(t: &PartTask<'_>, path: BezPath, report: PathReport) -> Result<Filled, GeometryError> {
+fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
+    let BentPath { path, data, report } = bent;
     let stroked = t.part.stroke.is_some() && t.part.role != PartRole::Clip;
     // With `Strokes::Keep`, each centre line is to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
@@ -133,14 +136,14 @@ fn filled(t: &PartTask<'_>, path: BezPath, report: PathReport) -> Result<Filled,
     let area = filled_area(t, tolerance).filter(|a| closes || a.is_empty());
     let report = Some(report);
     Ok(match area {
-        None => Filled { path, fill: None, report: [report, None] },
-        Some(area) if area.is_empty() => Filled { path, fill: Some(BezPath::new()), report: [report, None] },
+        None => Filled { path, data, fill: None, report: [report, None] },
+        Some(area) if area.is_empty() => Filled { path, data, fill: Some(BezPath::new()), report: [report, None] },
         Some(area) => {
-            let (fill, closed) = t.bend(&area)?;
+            let closed = t.bend(&area)?;
             if stroked {
-                Filled { path, fill: Some(fill), report: [report, Some(closed)] }
+                Filled { path, data, fill: Some(closed.path), report: [report, Some(closed.report)] }
             } else {
-                Filled { path: fill, fill: None, report: [Some(closed), None] }
+                Filled { path: closed.path, data: closed.data, fill: None, report: [Some(closed.report), None] }
             }
         }
     })

@@ -323,9 +323,9 @@ impl<'a> StrokeWidth<'a> {
         match self.stroke.linecap() {
             LineCap::Butt => self.pairs.push(Pair { exact: across, drawn: up }),
             LineCap::Round => self.pairs.extend(ellipse(at.columns)),
-            LineCap::Square => self.pairs.extend(
-                [1.0, -1.0].map(|k| Pair { exact: along + across * k, drawn: Vec2::new(1.0, k) }),
-            ),
+            LineCap::Square => {
+                self.pairs.extend([1.0, -1.0].map(|k| Pair { exact: along + across * k, drawn: Vec2::new(1.0, k) }))
+            }
         }
     }
 

@@ -86,7 +86,8 @@ fn push(out: &mut Vec<Seg>, mut next: Seg, half: f64, corners: &Corners) {
         next = Seg::Line(one);
         out.pop();
     }
-    let between = |g: &Seg, least: f64, most: f64| matches!(g, Seg::Line(l) if (least..=most).contains(&(l.length() / half)));
+    let between =
+        |g: &Seg, least: f64, most: f64| matches!(g, Seg::Line(l) if (least..=most).contains(&(l.length() / half)));
     let pivot = |g: &Seg| between(g, 1.0 - PRECISION, 1.0 + PRECISION);
     let lines = match out.as_slice() {
         // By way of the corner.

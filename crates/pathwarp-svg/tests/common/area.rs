@@ -55,7 +55,8 @@ fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {
                     // Coordinates are enlarged: the stroker works to about a quarter of a unit of the enlarged ones.
                     Some(s) => {
                         let s = s.to_tiny_skia();
-                        let dashed = s.dash.as_ref().map_or_else(|| p.data().clone(), |d| p.data().dash(d, 1e3).unwrap());
+                        let dashed =
+                            s.dash.as_ref().map_or_else(|| p.data().clone(), |d| p.data().dash(d, 1e3).unwrap());
                         dashed.stroke(&s, 1e3).unwrap()
                     }
                     None => p.data().clone(),
