@@ -165,7 +165,8 @@ fn strokes_are_reported_and_explained() {
     let [cut, thick] = [&shapes[0], &shapes[1]];
     assert!(cut["id"] == "cut" && cut["outlined_strokes"].is_null(), "{shapes}");
     let error = cut["stroke_error"].as_f64().unwrap();
-    assert!(error > 0.0 && error < 0.3, "{shapes}");
+    // A miter reaches four half widths from the corner, and the map stretches it.
+    assert!(error > 0.0 && error < 3.0 * 4.0 * 0.05, "{shapes}");
     assert!(thick["outlined_strokes"] == 1 && thick["stroke_error"].is_null(), "{shapes}");
     assert!(said.contains("strokes: 1 stayed strokes") && said.contains("1 became outlines"), "{said}");
     // The cut line is one contour.

@@ -1,6 +1,5 @@
 //! Arcs that stay arcs: under affine maps, and under any other map that takes them to circles, as similitudes and Möbius maps do.
 
-use super::task::PartTask;
 use pathwarp::kurbo::{Point, Vec2};
 use pathwarp::map::{Class, Map};
 use pathwarp::outline::{EllipticArc, Subpath};
@@ -19,7 +18,7 @@ const FLATTEST: f64 = 1e4;
 
 /// The image of an outline in which arcs stay arcs, in root user space. Returns `None` if there are none.
 pub(super) fn with_arcs(
-    t: &PartTask<'_>,
+    map: &dyn Map,
     outline: &Outline,
     options: &refit::Options,
 ) -> Result<Option<(Outline, PathReport)>, GeometryError> {
@@ -27,18 +26,18 @@ pub(super) fn with_arcs(
         return Ok(None);
     }
     let mut report = PathReport::default();
-    let image = if let Class::Affine(m) = t.map.class() {
+    let image = if let Class::Affine(m) = map.class() {
         outline.transformed(m)
     } else if options.certify {
         // The test for circles is no proof.
         return Ok(None);
     } else {
-        let images = |s: &Subpath| s.segs.iter().map(|g| circle_of(g, t.map)).collect();
+        let images = |s: &Subpath| s.segs.iter().map(|g| circle_of(g, map)).collect();
         let all: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();
         if all.iter().flatten().all(Option::is_none) {
             return Ok(None);
         }
-        let subpaths = outline.subpaths.iter().zip(&all).map(|(s, arcs)| subpath(s, arcs, t.map, options, &mut report));
+        let subpaths = outline.subpaths.iter().zip(&all).map(|(s, arcs)| subpath(s, arcs, map, options, &mut report));
         Outline { subpaths: subpaths.collect::<Result<_, _>>()? }
     };
     let image = Outline { subpaths: image.subpaths.into_iter().map(short_arcs).collect() };

@@ -94,7 +94,7 @@ impl<'a> PartTask<'a> {
     /// Bends an outline.
     pub(super) fn bend(&self, outline: &Outline) -> Result<BentPath, GeometryError> {
         let options = self.options().refit.clone().with_tolerance(self.allowed());
-        if let Some((image, report)) = with_arcs(self, outline, &options)? {
+        if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
             let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
             let fine = ROUNDING * self.allowed() / stretch(self.write).max(f64::MIN_POSITIVE);
             let data = arcs_data(&image, self.decimals);

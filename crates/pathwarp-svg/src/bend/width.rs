@@ -324,7 +324,8 @@ impl<'a> StrokeWidth<'a> {
             LineCap::Butt => self.pairs.push(Pair { exact: across, drawn: up }),
             LineCap::Round => self.pairs.extend(ellipse(at.columns)),
             LineCap::Square => {
-                self.pairs.extend([1.0, -1.0].map(|k| Pair { exact: along + across * k, drawn: Vec2::new(1.0, k) }))
+                let corner = |k: f64| Pair { exact: along + across * k, drawn: Vec2::new(1.0, k) };
+                self.pairs.extend([1.0, -1.0].map(corner));
             }
         }
     }
