@@ -144,3 +144,34 @@ fn undoing_a_fold_is_warned_of_with_the_place() {
     let (code, said) = back(&["wordart", "--preset", "button", "--box", "artwork"]);
     assert!(code == Some(4) || said.contains("ambiguous"), "{code:?}: {said}");
 }
+
+/// Strokes that stay strokes say how close they are; those that become outlines are counted.
+#[test]
+fn strokes_are_reported_and_explained() {
+    let dir = tempfile::tempdir().unwrap();
+    let drawing = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100' fill='none' \
+                   stroke='red'><path id='cut' d='M10 10H90V90L20 40Z' stroke-width='.1'/><path id='thick' d='M20 20L80 30' \
+                   stroke-width='9'/></svg>";
+    let run = |options: &[&str]| {
+        let args =
+            [&["warp", "--style", "flag", "--bend", "60%", "--report", "r.json", "--explain", "-o", "o.svg"], options];
+        let out = pathwarp_in(dir.path(), &args.concat(), drawing.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        let r: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
+        let svg = fs::read_to_string(dir.path().join("o.svg")).unwrap();
+        (text(&out.stderr), r["inputs"][0]["shapes"].clone(), svg)
+    };
+    let (said, shapes, svg) = run(&[]);
+    let [cut, thick] = [&shapes[0], &shapes[1]];
+    assert!(cut["id"] == "cut" && cut["outlined_strokes"].is_null(), "{shapes}");
+    let error = cut["stroke_error"].as_f64().unwrap();
+    // A miter reaches four half widths from the corner, and the map stretches it.
+    assert!(error > 0.0 && error < 3.0 * 4.0 * 0.05, "{shapes}");
+    assert!(thick["outlined_strokes"] == 1 && thick["stroke_error"].is_null(), "{shapes}");
+    assert!(said.contains("strokes: 1 stayed strokes") && said.contains("1 became outlines"), "{said}");
+    // The cut line is one contour.
+    let line = svg.split("<path").find(|p| p.contains("id='cut'")).unwrap();
+    assert_eq!(line.matches('M').count(), 1, "{svg}");
+    let (said, shapes, _) = run(&["--strokes", "keep"]);
+    assert!(shapes[1]["stroke_error"].is_null() && !said.contains("strokes:"), "{said} {shapes}");
+}

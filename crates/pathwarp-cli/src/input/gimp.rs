@@ -236,6 +236,8 @@ fn shape_report(name: &str, copies: usize, warped: &WarpedStrokes, fold: &Fold) 
         over_budget: warped.over_budget.iter().map(|p| [p.x, p.y]).collect(),
         paint_residual: None,
         pictures: 0,
+        stroke_error: None,
+        outlined_strokes: 0,
     }
 }
 

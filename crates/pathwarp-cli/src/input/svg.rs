@@ -184,6 +184,8 @@ fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ReportedShape {
         over_budget: s.over_budget.iter().map(|p| [p.x, p.y]).collect(),
         paint_residual: s.paint_residual,
         pictures: s.pictures,
+        stroke_error: s.stroke_error,
+        outlined_strokes: s.outlined_strokes,
     }
 }
 

@@ -159,7 +159,9 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 ("outline", |o| o.strokes = Strokes::Outline),
             ]),
             "Strokes: keep their width, scale it by the local stretch, or convert them to outlines that are \
-             warped; auto scales where that looks right and outlines elsewhere",
+             warped; auto scales if the edges are then within the tolerance, the width is right within 2 %, or the \
+             stroke is a hairline (no wider than the tolerance or, on a page measured in mm, cm, in, pt or pc, than \
+             0.1 mm), and outlines elsewhere",
         )
     },
     CommonOption {

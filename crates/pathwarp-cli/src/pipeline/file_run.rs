@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::input::{Baseline, Input, WarpRequest, WarpedResult};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
-use crate::report::FileReport;
+use crate::report::{FileReport, ReportedShape};
 use crate::{recipe_file, references};
 use pathwarp::deform::{Explanation, Registry};
 use pathwarp::kurbo::Rect;
@@ -82,22 +82,18 @@ impl Batch<'_> {
             warnings,
         };
         let partial = warped.partial || report.is_partial();
-        Ok(FileRun {
-            report,
-            files,
-            past_page: warped.overhang.map(|o| o.share),
-            notes: self.notes(&built, framed),
-            partial,
-        })
+        let notes = self.notes(&built, framed, &report.shapes);
+        Ok(FileRun { report, files, past_page: warped.overhang.map(|o| o.share), notes, partial })
     }
 
     /// The decisions made on the user's behalf.
-    fn notes(&self, built: &BuiltRecipe, framed: String) -> Vec<String> {
+    fn notes(&self, built: &BuiltRecipe, framed: String, shapes: &[ReportedShape]) -> Vec<String> {
         if !self.options.explain {
             return Vec::new();
         }
         let mut notes = vec![framed];
         notes.extend(self.in_flags(built, |e| &e.notes));
+        notes.extend(strokes(shapes));
         notes
     }
 
@@ -133,6 +129,19 @@ fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
         width / x / PX_PER_MM,
         height / y / PX_PER_MM,
     )
+}
+
+/// What became of the strokes.
+fn strokes(shapes: &[ReportedShape]) -> Option<String> {
+    let outlined: usize = shapes.iter().map(|s| s.outlined_strokes).sum();
+    let scaled = || shapes.iter().filter_map(|s| Some((s.stroke_error?, &s.id)));
+    let worst = scaled().reduce(|a, b| if b.0 > a.0 { b } else { a });
+    let outlined = (outlined > 0).then(|| format!("{outlined} became outlines (--strokes scale|keep prevents that)"));
+    let scaled = worst.map(|(error, id)| {
+        format!("{} stayed strokes, within {error:.3} units of the exact ones (the farthest: {id})", scaled().count())
+    });
+    let parts: Vec<String> = [scaled, outlined].into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("strokes: {}", parts.join("; ")))
 }
 
 /// Adds to an error where the map is undefined which operation is, if a step can say so.

@@ -18,6 +18,10 @@ use pathwarp::map::{Class, Map};
 use pathwarp::{Error, GeometryError};
 use std::collections::HashMap;
 
+/// Width of a hairline in millimetres: a quarter of a point is 0.088 mm, and laser and plotter programs take lines up to 0.1 mm for
+/// paths to follow. There is room for the rounding of the page's size and the width.
+const HAIRLINE: f64 = 0.1001;
+
 /// The image of a drawing.
 pub(crate) struct BentDrawing {
     /// One for each part.
@@ -55,6 +59,13 @@ pub(crate) fn bend(
                 let id = &drawing.shapes()[i].id;
                 if let Some(why) = &warped.unpainted {
                     out.warnings.push(format!("a gradient of {id} only follows the best affine fit: {why}"));
+                }
+                if let Some(error) = warped.stroke_error.filter(|_| warped.stroke_refused) {
+                    let off =
+                        if error.is_finite() { format!(", off by up to {error:.3} units") } else { String::new() };
+                    out.warnings.push(format!(
+                        "the stroke of {id} extends to where the map is undefined; it keeps a single width{off}"
+                    ));
                 }
                 let element = part.element();
                 let known = element.and_then(|e| reports.get(&e).copied());
@@ -99,7 +110,8 @@ fn warp_parts(
     let (parts, shapes) = (&scene.parts, drawing.shapes());
     let pieces = letters::pieces(drawing, options);
     let gradients = if options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
-    let context = PartContext { map, options, to_px: scene.to_px, gradients };
+    let hairline = drawing.millimetre().map_or(0.0, |mm| HAIRLINE * mm);
+    let context = PartContext { map, options, to_px: scene.to_px, gradients, hairline };
     let identity = is_identity(map, options);
     let warp = |i: usize| {
         let p = &parts[i];

@@ -1,5 +1,6 @@
 //! The drawing under a map: images of outlines, strokes, gradients and bitmaps.
 
+mod arcs;
 mod bent_gradient;
 pub(crate) mod bitmap;
 pub(crate) mod drawing;
@@ -15,7 +16,9 @@ pub(crate) mod picture;
 mod places;
 mod shading;
 pub(crate) mod slots;
+mod spot;
 mod stroke;
 mod stubs;
 mod task;
 pub(crate) mod tiles;
+mod width;

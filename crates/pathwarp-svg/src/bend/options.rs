@@ -13,7 +13,9 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Strokes {
-    /// Scale the width if that is correct within 2 % of the width along the whole shape; else expand the stroke.
+    /// Scale the width if the edges are then within the tolerance, or the width is right within 2 % along the whole shape, or the
+    /// stroke is a hairline: no wider than the tolerance or, on a page measured in physical units, than 0.1 mm. Else expand the
+    /// stroke.
     #[default]
     Auto,
     /// Warp the centre line and keep the width.

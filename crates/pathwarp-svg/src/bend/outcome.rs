@@ -47,6 +47,11 @@ pub struct ShapeReport {
     pub paint_residual: Option<f64>,
     /// Number of gradients that became pictures.
     pub pictures: usize,
+    /// Largest distance between a stroke that is still a stroke and the exact one, as painted areas, in root user units;
+    /// infinite if it is unknown. `None` if there is no such stroke, or its width is kept on request.
+    pub stroke_error: Option<f64>,
+    /// Number of strokes that became outlines.
+    pub outlined_strokes: usize,
 }
 
 /// An element that was not warped. It is unchanged, or left out of flattened output if it cannot be included.
@@ -74,6 +79,8 @@ impl WarpedDocument {
         let r = &part.report;
         let error = r.max_error + part.rounding;
         let pictures = usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some());
+        let outlined = usize::from(part.stroke.outline().is_some());
+        let most = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::max);
         match known.and_then(|i| Some((i, self.shapes.get_mut(i)?))) {
             Some((i, last)) => {
                 last.segments_in += r.segments_in;
@@ -82,7 +89,9 @@ impl WarpedDocument {
                 last.assurance = last.assurance.min(r.assurance);
                 last.over_budget.extend(&r.over_budget);
                 last.pictures += pictures;
-                last.paint_residual = [last.paint_residual, part.residual].into_iter().flatten().reduce(f64::max);
+                last.paint_residual = most(last.paint_residual, part.residual);
+                last.stroke_error = most(last.stroke_error, part.stroke_error);
+                last.outlined_strokes += outlined;
                 return i;
             }
             None => self.shapes.push(ShapeReport {
@@ -95,6 +104,8 @@ impl WarpedDocument {
                 over_budget: r.over_budget.clone(),
                 paint_residual: part.residual,
                 pictures,
+                stroke_error: part.stroke_error,
+                outlined_strokes: outlined,
             }),
         }
         self.shapes.len() - 1
@@ -148,9 +159,14 @@ pub(crate) struct WarpedPart {
     /// too. Empty if there is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
-    /// The text of `path`, if it has been written already: a large drawing's on the threads that bend it.
+    /// The text of `path`, if it has been written already: if it has arcs, which `path` approximates, and a large drawing's on the
+    /// threads that bend it.
     pub(crate) data: Option<String>,
     pub(crate) stroke: StrokeOutcome,
+    /// Largest distance between a scaled stroke and the exact one, in root user units.
+    pub(super) stroke_error: Option<f64>,
+    /// The stroke is scaled because the map is not defined around it.
+    pub(super) stroke_refused: bool,
     /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
     pub(crate) fit: Option<PaintFit>,
     /// Pictures of the fill's and the stroke's gradient.
@@ -168,7 +184,7 @@ pub(crate) struct WarpedPart {
 impl WarpedPart {
     /// Writes the text of the path.
     pub(super) fn with_data(self) -> Self {
-        Self { data: Some(path_data(&self.path, self.decimals)), ..self }
+        Self { data: Some(self.data.unwrap_or_else(|| path_data(&self.path, self.decimals))), ..self }
     }
 }
 

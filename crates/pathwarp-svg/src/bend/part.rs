@@ -7,7 +7,7 @@ use super::outcome::{StrokeOutcome, WarpedPart};
 use super::paint::{self, PaintFit};
 use super::stroke;
 use super::stubs;
-use super::task::PartTask;
+use super::task::{BentPath, PartTask};
 use crate::scene::affine::stretch;
 use crate::scene::model::{Part, PartRole};
 use pathwarp::kurbo::{BezPath, Line, ParamCurveNearest as _, Point, Shape as _};
@@ -15,30 +15,38 @@ use pathwarp::map::Class;
 use pathwarp::outline::Subpath;
 use pathwarp::refit::PathReport;
 use pathwarp::{GeometryError, Outline, Seg};
-use usvg::Paint;
+use usvg::{Paint, Stroke};
 
 /// Warps a part.
 pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
-    let (path, report) = t.bend(&t.outline)?;
-    let fit = paint_fit(t, &path);
-    let centre = report.segments_in;
-    let Filled { path, fill, report } = filled(t, path, report)?;
+    // The centre line of an outlined stroke is not written.
+    let draft = p.fill.is_none() && p.stroke.as_ref().is_some_and(|s| expands(t, s)) && !p.in_tile;
+    let bent = if draft { t.draft()? } else { t.bend(&t.outline)? };
+    let fit = paint_fit(t, &bent.path);
+    let (centre, pieces) = (bent.report.segments_in, bent.report.segments_out);
+    let Filled { mut path, mut data, fill, mut report } = filled(t, bent)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
-    let expands = matches!(t.options().strokes, Strokes::Auto | Strokes::Outline) && !p.fixed_width;
-    let stroke_gradient = p.stroke.as_ref().filter(|_| expands).and_then(|s| BentGradient::of(t, s.paint(), fit));
-    let (stroke, expanded) = stroke::stroke(t, &path, stroke_gradient.is_some())?;
+    let stroke_gradient = p.stroke.as_ref().filter(|s| expands(t, s)).and_then(|s| BentGradient::of(t, s.paint(), fit));
+    let bent = stroke::stroke(t, &path, pieces, stroke_gradient.is_some())?;
+    if draft && bent.outcome.outline().is_none() {
+        let refitted = t.bend(&t.outline)?;
+        (path, data, report) = (refitted.path, refitted.data, [Some(refitted.report), None]);
+    }
+    let error = report[0].as_ref().map_or(0.0, |r| r.max_error);
     // Count what is written: the path is not if only its expanded stroke is painted.
-    let mut written = written(p, &stroke, report, fill.is_some());
-    written.extend(expanded);
+    let mut written = written(p, &bent.outcome, report, fill.is_some());
+    written.extend(bent.report);
     let report = combined(centre, written);
     let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::of(t, f.paint(), fit));
     let mut out = WarpedPart {
         path,
         fill,
         decimals: t.decimals,
-        data: None,
-        stroke,
+        data,
+        stroke: bent.outcome,
+        stroke_error: bent.error.map(|e| e + bent.leverage * (error + t.rounding)),
+        stroke_refused: bent.refused,
         fit,
         fill_image: None,
         stroke_image: None,
@@ -53,6 +61,15 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     }
     out.residual = fit.filter(|_| follows_fit(p, &out, t.options())).map(|f| f.miss * stretch(t.write));
     Ok(out)
+}
+
+/// Returns `true` if a part's stroke may become an outline.
+fn expands(t: &PartTask<'_>, s: &Stroke) -> bool {
+    match t.options().strokes {
+        Strokes::Outline => !t.part.fixed_width,
+        Strokes::Auto => !t.part.fixed_width && !stroke::is_hairline(t, s),
+        Strokes::Keep | Strokes::Scale => false,
+    }
 }
 
 /// Finds the affine fit for the part's gradients and patterns.
@@ -79,6 +96,8 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
 /// The bent path of a part and its fill.
 struct Filled {
     path: BezPath,
+    /// The text of the path if it has arcs.
+    data: Option<String>,
     /// The filled outline if it is separate.
     fill: Option<BezPath>,
     /// Reports of both; of the path, then of the fill.
@@ -106,7 +125,8 @@ fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
 }
 
 /// Bends the filled area if it differs from the path.
-fn filled(t: &PartTask<'_>, path: BezPath, report: PathReport) -> Result<Filled, GeometryError> {
+fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
+    let BentPath { path, data, report } = bent;
     let stroked = t.part.stroke.is_some() && t.part.role != PartRole::Clip;
     // With `Strokes::Keep`, each centre line is to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
@@ -114,14 +134,14 @@ fn filled(t: &PartTask<'_>, path: BezPath, report: PathReport) -> Result<Filled,
     let area = filled_area(t, tolerance).filter(|a| closes || a.is_empty());
     let report = Some(report);
     Ok(match area {
-        None => Filled { path, fill: None, report: [report, None] },
-        Some(area) if area.is_empty() => Filled { path, fill: Some(BezPath::new()), report: [report, None] },
+        None => Filled { path, data, fill: None, report: [report, None] },
+        Some(area) if area.is_empty() => Filled { path, data, fill: Some(BezPath::new()), report: [report, None] },
         Some(area) => {
-            let (fill, closed) = t.bend(&area)?;
+            let closed = t.bend(&area)?;
             if stroked {
-                Filled { path, fill: Some(fill), report: [report, Some(closed)] }
+                Filled { path, data, fill: Some(closed.path), report: [report, Some(closed.report)] }
             } else {
-                Filled { path: fill, fill: None, report: [Some(closed), None] }
+                Filled { path: closed.path, data: closed.data, fill: None, report: [Some(closed.report), None] }
             }
         }
     })

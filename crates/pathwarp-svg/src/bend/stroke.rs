@@ -1,159 +1,154 @@
-//! Strokes under a map: the scaled width, its error, and expanded outlines.
+//! Strokes under a map: scaled, or expanded to outlines that are bent.
 
 use super::options::Strokes;
 use super::outcome::StrokeOutcome;
 use super::task::PartTask;
+use super::width::StrokeWidth;
 use crate::scene::affine::stretch;
 use crate::scene::expand::stroke_outline;
-use crate::scene::regular::is_point;
-use pathwarp::kurbo::{Affine, BezPath, Vec2};
-use pathwarp::map::{AffineMap, Chain, Map};
-use pathwarp::refit::{self, PathReport};
+use pathwarp::kurbo::{Affine, BezPath, Point};
+use pathwarp::refit::{self, Assurance, PathReport};
 use pathwarp::{GeometryError, Outline};
-use std::sync::Arc;
-use usvg::{LineCap, Stroke};
-
-/// Largest relative error of the width of a scaled stroke; beyond it, the stroke is expanded.
-const WIDTH_ERROR: f64 = 0.02;
+use usvg::Stroke;
 
 /// Share of the tolerance for expanding a stroke; the rest is for refitting the outline. Twice as much needs two thirds of the
 /// segments, so a finer outline would cost more nodes than a finer refit saves.
 const EXPANSION: f64 = 0.5;
 
-/// Warps the stroke of a part whose path is bent to `path`. A stroke with a picture (`pictured`) is always expanded.
-/// An expanded stroke has a report.
+/// Share of the tolerance that an expansion may take before it is repeated.
+const MISSED: f64 = 0.6;
+
+/// Finest expansion, in user units: rounding is coarser.
+const FINEST: f64 = 1e-9;
+
+/// The image of a stroke.
+pub(super) struct BentStroke {
+    pub(super) outcome: StrokeOutcome,
+    /// Report on the outline.
+    pub(super) report: Option<PathReport>,
+    /// For a stroke that is scaled: the largest distance from the exact one, in root user units, if the path is exact.
+    pub(super) error: Option<f64>,
+    /// Factor for the path's error.
+    pub(super) leverage: f64,
+    /// The stroke should be outlined, but the map is not defined around it.
+    pub(super) refused: bool,
+}
+
+impl BentStroke {
+    fn scaled(scale: f64, error: Option<f64>) -> Self {
+        Self { outcome: StrokeOutcome::Scaled(scale), report: None, error, leverage: 1.0, refused: false }
+    }
+
+    /// A scaled stroke of known width; `pieces` is the number of segments of the path.
+    fn with_width(w: &StrokeWidth<'_>, scale: f64, pieces: usize) -> Self {
+        Self { leverage: w.leverage(pieces), ..Self::scaled(scale, Some(w.error(scale))) }
+    }
+
+    /// A scaled stroke of unknown width, where the map has no derivative on the path.
+    fn unknown() -> Self {
+        Self::scaled(1.0, Some(f64::INFINITY))
+    }
+
+    fn outlined(path: BezPath, report: Option<PathReport>) -> Self {
+        Self { outcome: StrokeOutcome::Outlined(path), report, ..Self::scaled(1.0, None) }
+    }
+}
+
+/// Returns `true` for a hairline, which is drawn to show where its centre is: thinner than the tolerance, or than the width of a
+/// hairline in print.
+pub(super) fn is_hairline(t: &PartTask<'_>, s: &Stroke) -> bool {
+    let width = f64::from(s.width().get()) * stretch(t.part.frame);
+    // usvg keeps widths in single precision.
+    width <= t.options().refit.tolerance.max(t.context.hairline) * (1.0 + f64::from(f32::EPSILON))
+}
+
+/// Warps the stroke of a part whose path is bent to `path` of `pieces` segments. A stroke with a picture (`pictured`) is always
+/// expanded.
 pub(super) fn stroke(
     t: &PartTask<'_>,
     path: &BezPath,
+    pieces: usize,
     pictured: bool,
-) -> Result<(StrokeOutcome, Option<PathReport>), GeometryError> {
+) -> Result<BentStroke, GeometryError> {
     let p = t.part;
-    let scaled = |scale: f64| (StrokeOutcome::Scaled(scale), None);
-    let expanded = |(path, report): (BezPath, PathReport)| (StrokeOutcome::Outlined(path), Some(report));
     if p.in_tile && p.stroke.is_some() {
-        return Ok((StrokeOutcome::Outlined(path.clone()), None));
+        return Ok(BentStroke::outlined(path.clone(), None));
     }
-    let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(scaled(1.0)) };
-    Ok(match t.options().strokes {
-        Strokes::Keep => scaled(1.0),
-        Strokes::Scale => scaled(part_width(t, s).map_or(1.0, |w| w.scale)),
-        Strokes::Outline => expanded(outlined(t, s)?),
-        Strokes::Auto => match part_width(t, s).filter(|_| p.stroke_tiles.is_none() && !pictured) {
-            Some(w) if w.error <= WIDTH_ERROR => scaled(w.scale),
-            // The outline may reach outside of the map's domain; then scale the width.
-            w => outlined(t, s).map_or_else(|_| scaled(w.map_or(1.0, |w| w.scale)), expanded),
-        },
-    })
+    let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(BentStroke::scaled(1.0, None)) };
+    let mode = t.options().strokes;
+    if mode == Strokes::Keep {
+        return Ok(BentStroke::scaled(1.0, None));
+    }
+    let width = StrokeWidth::of(t, s, pieces);
+    let scaled = |w: &StrokeWidth<'_>, scale: f64| BentStroke::with_width(w, scale, pieces);
+    let mean = || width.as_ref().map_or_else(BentStroke::unknown, |w| scaled(w, w.mean()));
+    if mode == Strokes::Scale {
+        return Ok(mean());
+    }
+    if mode == Strokes::Auto {
+        let hairline = is_hairline(t, s);
+        let replaced = !hairline && (p.stroke_tiles.is_some() || pictured);
+        if let Some(w) = width.as_ref().filter(|_| !replaced) {
+            let right = [w.mean(), w.middle()].into_iter().find(|s| w.is_right(*s, t.options().refit.tolerance));
+            if let Some(scale) = right.or_else(|| hairline.then(|| w.mean())) {
+                return Ok(scaled(w, scale));
+            }
+        }
+    }
+    match outlined(t, s, stretched(t, width.as_ref())) {
+        Ok((path, report)) => Ok(BentStroke::outlined(path, Some(report))),
+        // The outline may reach outside of the map's domain; then scale the width.
+        Err(_) if mode == Strokes::Auto => Ok(BentStroke { refused: true, ..mean() }),
+        Err(e) => Err(e),
+    }
 }
 
-/// Finds the width of a part's stroke, over all placed letters.
-fn part_width(t: &PartTask<'_>, s: &Stroke) -> Option<StrokeWidth> {
-    if t.pieces.is_empty() {
-        return width(&t.outline, t.part.frame, t.write, t.context.map, s);
-    }
-    let each = t.pieces.iter().flat_map(|piece| piece.places.iter().map(move |m| (piece, *m)));
-    let widths = each.map(|(piece, m)| {
-        let mut map = Chain::new([Arc::new(AffineMap(m)) as Arc<dyn Map>]);
-        map.push(Arc::new(t.options().letters.after.clone()));
-        width(&piece.of(&t.whole), t.part.frame, t.write, &map, s)
-    });
-    StrokeWidth::common(&widths.collect::<Option<Vec<_>>>()?)
+/// Factor by which lengths are stretched on a path, from its user space to root user space.
+fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
+    let known = width.map(StrokeWidth::stretch).filter(|s| *s > 0.0 && s.is_finite());
+    known.unwrap_or_else(|| stretch(t.part.frame))
 }
 
-/// Expands a part's stroke and bends the outline.
-fn outlined(t: &PartTask<'_>, s: &Stroke) -> Result<(BezPath, PathReport), GeometryError> {
+/// Expands a part's stroke and bends the outline. `stretch` is the factor by which the map stretches lengths near the path, from
+/// the part's user space to root user space.
+fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
-    let fine = (options.refit.tolerance / stretch(p.frame) * EXPANSION).max(1e-9);
-    let expanded = |local: &Outline, places: &[Affine]| {
-        stroke_outline(local, s, fine).transformed(p.frame).repeated(places).subpaths
+    let allowed = t.allowed();
+    let expanded = |fine: f64| {
+        let one = |local: &Outline, places: &[Affine]| {
+            stroke_outline(local, s, fine).transformed(p.frame).repeated(places).subpaths
+        };
+        let subpaths = if t.pieces.is_empty() {
+            one(&p.local, &options.copies)
+        } else {
+            t.pieces.iter().flat_map(|piece| one(&piece.of(&p.local), &piece.places)).collect()
+        };
+        Outline { subpaths }
     };
-    let subpaths = if t.pieces.is_empty() {
-        expanded(&p.local, &options.copies)
-    } else {
-        t.pieces.iter().flat_map(|piece| expanded(&piece.of(&p.local), &piece.places)).collect()
-    };
-    let refit = options.refit.clone().with_tolerance(options.refit.tolerance * (1.0 - EXPANSION));
-    let warped = refit::warp_path(&Outline { subpaths }, t.map, &refit)?;
+    let fine = |stretch: f64| (allowed * EXPANSION / stretch).max(FINEST);
+    let mut outline = expanded(fine(stretch));
+    let mut expansion = fine(stretch) * largest_stretch(t, &outline);
+    // The map may stretch more beside the path than on it.
+    if expansion > MISSED * allowed {
+        let found = stretch * expansion / (allowed * EXPANSION);
+        outline = expanded(fine(found));
+        expansion = fine(found) * largest_stretch(t, &outline);
+    }
+    let rest = (allowed - expansion).max((1.0 - MISSED) * allowed);
+    let mut warped = refit::warp_path(&outline, t.map, &options.refit.clone().with_tolerance(rest))?;
+    warped.report.max_error += expansion;
+    warped.report.assurance = warped.report.assurance.min(Assurance::Checked);
     Ok((t.to_local(warped.path), warped.report))
 }
 
-/// Change of a stroke's width along a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct StrokeWidth {
-    /// Factor for width and dashes.
-    scale: f64,
-    /// Largest relative error of the factor along the path.
-    error: f64,
-}
-
-/// Applies the linear part of `m`.
-fn linear(m: Affine, v: Vec2) -> Vec2 {
-    let [a, b, c, d, ..] = m.as_coeffs();
-    Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
-}
-
-/// Finds the width of a stroke along `outline` (in root user space) whose user space has the transform `read` in the source
-/// and `write` in the result. Returns `None` if the map's derivative is not finite.
-fn width(outline: &Outline, read: Affine, write: Affine, map: &dyn Map, stroke: &Stroke) -> Option<StrokeWidth> {
-    let (before, after) = (read.inverse(), write.inverse());
-    let frames = (after.determinant() / before.determinant()).abs();
-    let (mut across, mut along) = (Vec::new(), Vec::new());
-    let (mut area, mut length) = (0.0, 0.0);
-    let mut dots: Vec<f64> = Vec::new();
-    let segments = outline.segs().count().max(1);
-    // Long paths need fewer samples per segment.
-    let samples: &[f64] = match segments {
-        0..=64 => &[0.0, 0.25, 0.5, 0.75, 1.0],
-        65..=4096 => &[0.1, 0.5, 0.9],
-        _ => &[0.5],
+/// Largest factor by which lengths are stretched at the nodes of an expanded stroke, from the part's user space to root user
+/// space.
+fn largest_stretch(t: &PartTask<'_>, outline: &Outline) -> f64 {
+    let frame = stretch(t.part.frame);
+    let at = |p: Point| {
+        let jet = t.map.jet(p);
+        stretch(Affine::new([jet.dx.x, jet.dx.y, jet.dy.x, jet.dy.y, 0.0, 0.0])) * frame
     };
-    for s in outline.segs() {
-        for &t in samples {
-            let (p, v) = (s.eval(t), s.deriv(t));
-            let jet = map.jet(p);
-            let here = linear(before, v).hypot();
-            let there = linear(after, jet.push(v)).hypot();
-            if here <= 0.0 {
-                // A subpath of zero length shows its caps, which extend in all directions.
-                let column = |e| linear(after, jet.push(linear(read, e)));
-                let (x, y) = (column(Vec2::new(1.0, 0.0)), column(Vec2::new(0.0, 1.0)));
-                let long = stretch(Affine::new([x.x, x.y, y.x, y.y, 0.0, 0.0]));
-                if is_point(s, s.start()) && stroke.linecap() != LineCap::Butt && long > 0.0 {
-                    dots.extend([long, x.cross(y).abs() / long]);
-                }
-                continue;
-            }
-            let det = jet.det().abs() * frames;
-            if !(det.is_finite() && there > 0.0) {
-                return None;
-            }
-            across.push(det * here / there);
-            along.push(there / here);
-            area += det.sqrt() * here;
-            length += here;
-        }
-    }
-    let scale = match dots.as_slice() {
-        _ if length > 0.0 => area / length,
-        [long, short, ..] => (long * short).sqrt(),
-        _ => return Some(StrokeWidth { scale: 1.0, error: 0.0 }),
-    };
-    along.extend(&dots);
-    let worst = |all: &[f64]| all.iter().fold(0.0_f64, |m, r| m.max((r / scale - 1.0).abs()));
-    let mut error = worst(&across);
-    // Caps, joins and dashes extend along the path, too.
-    if segments > 1 || !dots.is_empty() || stroke.linecap() != LineCap::Butt || stroke.dasharray().is_some() {
-        error = error.max(worst(&along));
-    }
-    Some(StrokeWidth { scale, error })
-}
-
-impl StrokeWidth {
-    /// Combines several widths to their mean, with its largest error.
-    fn common(all: &[Self]) -> Option<Self> {
-        let scale = all.iter().map(|w| w.scale).sum::<f64>() / all.len() as f64;
-        let error = |w: &Self| (1.0 + w.error) * (w.scale / scale).max(scale / w.scale) - 1.0;
-        let error = all.iter().map(error).fold(0.0, f64::max);
-        (scale > 0.0).then_some(Self { scale, error })
-    }
+    // NaN is ignored: the refit reports where the map is undefined.
+    outline.segs().map(|s| at(s.start())).fold(0.0, f64::max)
 }

@@ -1,11 +1,12 @@
 //! A part to be warped, with everything that determines its image.
 
+use super::arcs::with_arcs;
 use super::letters::{LetterPiece, placed};
 use super::options::WarpOptions;
 use super::stubs;
 use crate::scene::affine::stretch;
 use crate::scene::model::Part;
-use crate::source::number::MOST_DECIMALS;
+use crate::source::number::{MOST_DECIMALS, arcs_data};
 use pathwarp::kurbo::{Affine, BezPath};
 use pathwarp::map::Map;
 use pathwarp::refit::{self, PathReport};
@@ -23,6 +24,16 @@ pub(super) struct PartContext<'a> {
     pub(super) to_px: Affine,
     /// Number of gradients in the drawing that may become pictures.
     pub(super) gradients: usize,
+    /// Largest width of a hairline, in root user units; 0 if the page is not measured in physical units.
+    pub(super) hairline: f64,
+}
+
+/// The image of an outline in the part's user space as written.
+pub(super) struct BentPath {
+    pub(super) path: BezPath,
+    /// The text of the path if it has arcs, which `path` approximates.
+    pub(super) data: Option<String>,
+    pub(super) report: PathReport,
 }
 
 /// A part to be warped.
@@ -80,12 +91,33 @@ impl<'a> PartTask<'a> {
         self.context.options
     }
 
-    /// Bends an outline, leaving room for rounding in the tolerance.
-    pub(super) fn bend(&self, outline: &Outline) -> Result<(BezPath, PathReport), GeometryError> {
-        let options = &self.options().refit;
-        let tolerance = (options.tolerance - self.rounding).max(0.5 * options.tolerance);
-        let warped = refit::warp_path(outline, self.map, &options.clone().with_tolerance(tolerance))?;
-        Ok((self.to_local(warped.path), warped.report))
+    /// Bends an outline.
+    pub(super) fn bend(&self, outline: &Outline) -> Result<BentPath, GeometryError> {
+        let options = self.options().refit.clone().with_tolerance(self.allowed());
+        if let Some((image, report)) = with_arcs(self.map, outline, &options)? {
+            let image = if self.back == Affine::IDENTITY { image } else { image.transformed(self.back) };
+            let fine = ROUNDING * self.allowed() / stretch(self.write).max(f64::MIN_POSITIVE);
+            let data = arcs_data(&image, self.decimals);
+            return Ok(BentPath { path: image.to_bez_path(fine), data: Some(data), report });
+        }
+        self.bend_with(outline, &options)
+    }
+
+    /// Bends the part's outline for measures of it. Merging would take most of the time.
+    pub(super) fn draft(&self) -> Result<BentPath, GeometryError> {
+        let options = self.options().refit.clone().with_tolerance(self.allowed());
+        self.bend_with(&self.outline, &options.with_merge(false).with_certify(false))
+    }
+
+    fn bend_with(&self, outline: &Outline, options: &refit::Options) -> Result<BentPath, GeometryError> {
+        let warped = refit::warp_path(outline, self.map, options)?;
+        Ok(BentPath { path: self.to_local(warped.path), data: None, report: warped.report })
+    }
+
+    /// The tolerance less the room for rounding.
+    pub(super) fn allowed(&self) -> f64 {
+        let tolerance = self.options().refit.tolerance;
+        (tolerance - self.rounding).max(0.5 * tolerance)
     }
 
     /// Transforms a path from root user space to the part's user space as written.

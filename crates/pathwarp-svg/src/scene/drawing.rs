@@ -1,5 +1,6 @@
 //! A drawing: its source text, usvg's tree, and the scene resolved from both.
 
+use super::affine::stretch;
 use super::far::Far;
 use super::geometry::GeometryReader;
 use super::lettering::{self, line::TextLine};
@@ -142,6 +143,18 @@ impl Drawing {
         };
         let specified = self.source.attr(0, "viewBox").is_some() || length("width") && length("height");
         specified.then(|| self.visible_area())
+    }
+
+    /// A millimetre in root user units, if the file specifies the size of its page in physical units.
+    pub(crate) fn millimetre(&self) -> Option<f64> {
+        use LengthUnit::{Cm, In, Mm, Pc, Pt};
+        const MM_PER_INCH: f64 = 25.4;
+        let physical = |name| {
+            let length = Length::from_str(self.source.attr(0, name)?.trim()).ok()?;
+            Some(matches!(length.unit, Mm | Cm | In | Pt | Pc))
+        };
+        let measured = ["width", "height"].into_iter().any(|name| physical(name) == Some(true));
+        measured.then(|| self.dpi / MM_PER_INCH / stretch(self.scene().to_px))
     }
 
     /// The visible page in root user units.

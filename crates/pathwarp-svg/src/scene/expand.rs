@@ -1,12 +1,16 @@
 //! Expands strokes to filled outlines.
 
 use super::regular::{is_point, polygon, regular};
+use super::tidy::tidy;
 use pathwarp::kurbo::{self, Cap, Circle, Join, Rect, Shape as _, StrokeOpts};
 use pathwarp::{Outline, Seg};
 use usvg::{LineCap, LineJoin, Stroke};
 
 /// Length of a dash that stands for a dot, as a fraction of the stroke width.
 const DOT: f64 = 1e-5;
+
+/// Share of the tolerance for regular segments and true arcs as cubics. Their error falls with the sixth power of their number.
+const PATH: f64 = 0.2;
 
 /// Expands the stroke of `local` to a filled outline in the same user space, within `tolerance` there.
 pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -> Outline {
@@ -40,16 +44,17 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     let (points, lines): (Vec<_>, Vec<_>) =
         local.subpaths.iter().cloned().partition(|s| s.segs.iter().all(|g| is_point(g, s.start)));
     let expanded = |o: &Outline| -> Outline {
-        (&kurbo::stroke(o.to_bez_path(tolerance), &style, &StrokeOpts::default(), tolerance)).into()
+        let path = o.to_bez_path(PATH * tolerance);
+        (&kurbo::stroke(path, &style, &StrokeOpts::default(), (1.0 - PATH) * tolerance)).into()
     };
     let mut out = Outline { subpaths: Vec::new() };
     for s in lines {
-        let s = regular(&s, tolerance);
+        let s = regular(&s, PATH * tolerance);
         let mut edge = expanded(&Outline { subpaths: vec![s.clone()] });
         if !is_finite(&edge) {
-            edge = expanded(&polygon(&s, tolerance));
+            edge = expanded(&polygon(&s, PATH * tolerance));
         }
-        out.subpaths.extend(edge.subpaths);
+        out.subpaths.extend(tidy(edge, &s, 0.5 * width).subpaths);
     }
     let reach = width / 2.0;
     for s in points.iter().filter(|s| s.closed || !s.segs.is_empty()) {

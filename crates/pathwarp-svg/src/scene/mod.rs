@@ -14,5 +14,6 @@ pub(crate) mod regular;
 pub(crate) mod resolve;
 pub(crate) mod seen;
 pub(crate) mod shape;
+mod tidy;
 pub(crate) mod unread;
 pub(crate) mod usvg_path;

@@ -1,7 +1,7 @@
 //! Numbers and path data as text: rounded once, in the shortest form.
 
 use pathwarp::decimal::push_trimmed;
-use pathwarp::kurbo::{Affine, BezPath, PathEl, Point};
+use pathwarp::kurbo::{Affine, BezPath, PathEl, Point, Vec2};
 use pathwarp::outline::EllipticArc;
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
@@ -278,6 +278,65 @@ pub(crate) fn outline_data(outline: &Outline) -> String {
         }
     }
     out
+}
+
+/// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with that number of decimals: the centre of
+/// an arc follows from its ends and radii, and needs more.
+pub(crate) fn arcs_data(outline: &Outline, decimals: u8) -> String {
+    let decimals = decimals.saturating_add(1).min(MOST_DECIMALS);
+    let finer = decimals.saturating_add(2).min(MOST_DECIMALS);
+    let mut out = String::new();
+    let add = |out: &mut String, command: char, numbers: &[(f64, u8)]| {
+        if !out.is_empty() {
+            out.push(' ');
+        }
+        out.push(command);
+        for (i, (v, decimals)) in numbers.iter().enumerate() {
+            if i > 0 {
+                out.push(if i % 2 == 1 && command != 'A' { ',' } else { ' ' });
+            }
+            push(out, *v, *decimals);
+        }
+    };
+    for s in &outline.subpaths {
+        let at = |p: Point| [(p.x, decimals), (p.y, decimals)];
+        add(&mut out, 'M', &at(s.start));
+        let closing = s.closed && matches!(s.segs.last(), Some(Seg::Line(_)));
+        for g in s.segs.iter().take(s.segs.len() - usize::from(closing)) {
+            match g {
+                Seg::Line(l) => add(&mut out, 'L', &at(l.p1)),
+                Seg::Quad(q) => add(&mut out, 'Q', &[at(q.p1), at(q.p2)].concat()),
+                Seg::Cubic(c) => add(&mut out, 'C', &[at(c.p1), at(c.p2), at(c.p3)].concat()),
+                Seg::Arc(a) => {
+                    let ([rx, ry], turn) = axes(a);
+                    let flag = |yes: bool| (f64::from(u8::from(yes)), 0);
+                    let large = flag(a.sweep.abs() > std::f64::consts::PI);
+                    let sweep = flag(a.sweep * a.a.cross(a.b) > 0.0);
+                    let [x, y] = at(a.p1);
+                    add(&mut out, 'A', &[(rx, finer), (ry, finer), (turn, finer), large, sweep, x, y]);
+                }
+            }
+        }
+        if s.closed {
+            out.push_str(" Z");
+        }
+    }
+    out
+}
+
+/// The semi-axes of an arc's ellipse and the direction of the first in degrees: the singular values of (a b).
+fn axes(a: &EllipticArc) -> ([f64; 2], f64) {
+    let (u, v) = (a.a, a.b);
+    let sum = Vec2::new(0.5 * (u.x + v.y), 0.5 * (u.y - v.x));
+    let difference = Vec2::new(0.5 * (u.x - v.y), 0.5 * (u.y + v.x));
+    let (q, r) = (sum.hypot(), difference.hypot());
+    let least = 1e-12 * q.max(r);
+    let turn = match (q > least, r > least) {
+        (true, true) => 0.5 * (sum.atan2() + difference.atan2()),
+        // A circle.
+        _ => 0.0,
+    };
+    ([q + r, (q - r).abs()], turn.to_degrees())
 }
 
 /// Relative tolerance of the cubics that replace an arc without principal axes; far below a pixel.

@@ -1,6 +1,8 @@
 //! Helpers for the tests: affine maps that are treated as nonlinear, drawings as text, and comparison of renderings.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
+pub mod area;
+
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Formula, Real};
 use pathwarp::refit;

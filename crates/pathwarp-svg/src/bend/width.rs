@@ -1,0 +1,371 @@
+//! The width of a stroke under a map: the factor that scales it, and the distance of the scaled stroke from the exact one.
+//!
+//! Let h be half the width. To first order the map turns the circle of radius h about a point of the path into an ellipse. Along
+//! the tangent and normal of the path and of its image, the derivative is
+//!
+//! > \[\[α, σ\], \[0, β\]\]
+//!
+//! α stretches along the path, β across it, and σ shears. A stroke scaled by s has a circle of radius s·h, so its edges are off by
+//! |β − s|·h. At ends, corners and dashes, other points count as well. Each is a [`Pair`]: its exact position and the drawn one,
+//! relative to the path and in units of h. The distance is the largest |exact − s·drawn|·h. It is that of the painted areas:
+//! a narrow gap between two edges may close faster than the edges move.
+
+use super::spot::{Pair, Spot, columns, ellipse, linear, tip, turn};
+use super::task::PartTask;
+use crate::scene::affine::stretch;
+use crate::scene::regular::is_point;
+use pathwarp::kurbo::{Affine, Point, Vec2};
+use pathwarp::map::{AffineMap, Chain, Jet, Map};
+use pathwarp::outline::Subpath;
+use pathwarp::{Outline, Seg};
+use std::sync::Arc;
+use usvg::{LineCap, LineJoin, Stroke};
+
+/// Largest relative error of a width that hardly varies: edges off by a hundredth of the width. Widths of lines side by side must
+/// differ by about a twentieth to be told apart.
+pub(super) const WIDTH_ERROR: f64 = 0.02;
+
+/// Factor for errors between samples. At [`TURN`] between samples, a sinusoid over half a turn is missed by at most 1 − cos(π/8).
+const BETWEEN: f64 = 1.08;
+
+/// Largest turn of a path between samples, in radians: an eighth of the period in which widths under an affine map vary.
+const TURN: f64 = std::f64::consts::PI / 8.0;
+
+/// Smallest turn of a corner, in radians: at smaller ones, joins do not extend past the edges by more than a millionth.
+const CORNER: f64 = 2e-3;
+
+/// Share of half the width by which an edge point may lie ahead of its point on the path before a nearer one is looked up; the
+/// distance is then right within 0.2 %.
+const AHEAD: f64 = 0.05;
+
+/// A corner of a dashed path.
+#[derive(Debug, Clone, Copy)]
+struct DashedCorner {
+    /// Lengths of the path and of its image up to the corner.
+    source: f64,
+    image: f64,
+    /// Extent of the join, for the factor 1.
+    reach: f64,
+}
+
+/// Widths of a stroke along a path.
+#[derive(Debug)]
+pub(super) struct StrokeWidth<'a> {
+    stroke: &'a Stroke,
+    half: f64,
+    /// From the stroke's user space in the source to root user space.
+    read: Affine,
+    /// From root user space to the stroke's user space in the result.
+    after: Affine,
+    /// Root units per unit of that space, at most.
+    unit: f64,
+    pairs: Vec<Pair>,
+    /// Local scale integrated along the path, and the path's length.
+    area: f64,
+    length: f64,
+    /// For dashes, at each sample: the lengths of the path and of its image so far, and the factor by which the outer edge is
+    /// longer than the path.
+    lengths: Vec<[f64; 3]>,
+    corners: Vec<DashedCorner>,
+    /// Part of the edge is outside of the map's domain.
+    open: bool,
+    /// Largest factor by which lengths are stretched on the path, from the stroke's user space to root user space.
+    stretch: f64,
+    /// For dashes: the sum of the path's turns, in radians.
+    turns: f64,
+}
+
+/// An end of a segment.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    p: Point,
+    spot: Spot,
+    /// Lengths of the path and of its image so far.
+    run: [f64; 2],
+}
+
+impl<'a> StrokeWidth<'a> {
+    /// Samples the stroke of a part, over all placed letters. `pieces` is the number of segments that the bent path needed.
+    /// Returns `None` if the map's derivative is not finite on the path.
+    pub(super) fn of(t: &PartTask<'_>, stroke: &'a Stroke, pieces: usize) -> Option<Self> {
+        let mut out = Self {
+            stroke,
+            half: 0.5 * f64::from(stroke.width().get()),
+            read: t.part.frame,
+            after: t.back,
+            unit: stretch(t.write),
+            pairs: Vec::new(),
+            area: 0.0,
+            length: 0.0,
+            lengths: Vec::new(),
+            corners: Vec::new(),
+            open: false,
+            stretch: 0.0,
+            turns: 0.0,
+        };
+        if t.pieces.is_empty() {
+            out.add(&t.outline, t.context.map, pieces)?;
+        }
+        for (piece, m) in t.pieces.iter().flat_map(|piece| piece.places.iter().map(move |m| (piece, *m))) {
+            let mut map = Chain::new([Arc::new(AffineMap(m)) as Arc<dyn Map>]);
+            map.push(Arc::new(t.options().letters.after.clone()));
+            out.add(&piece.of(&t.whole), &map, pieces / t.pieces.len())?;
+        }
+        Some(out)
+    }
+
+    /// Largest factor by which lengths are stretched on the path, from the stroke's user space to root user space.
+    pub(super) fn stretch(&self) -> f64 {
+        self.stretch
+    }
+
+    /// The mean local scale.
+    pub(super) fn mean(&self) -> f64 {
+        if self.length > 0.0 { self.area / self.length } else { self.middle() }
+    }
+
+    /// The middle of all local scales, whose largest error is nearly the least.
+    pub(super) fn middle(&self) -> f64 {
+        let scales = self.pairs.iter().map(|p| p.exact.dot(p.drawn) / p.drawn.hypot2());
+        let (low, high) = scales.fold((f64::INFINITY, 0.0_f64), |(low, high), s| (low.min(s), high.max(s)));
+        if low <= high { 0.5 * (low + high) } else { 1.0 }
+    }
+
+    /// Largest distance between the stroke scaled by `s` and the exact one, in root user units, if the path is exact.
+    pub(super) fn error(&self, s: f64) -> f64 {
+        let edges = self.pairs.iter().map(|p| (p.exact - p.drawn * s).hypot2()).fold(0.0, f64::max).sqrt();
+        // Corners of dashes are off across the path and along it.
+        BETWEEN * (edges * self.half).hypot(self.drift(s)) * self.unit
+    }
+
+    /// Factor by which an error of the bent path moves the corners of dashes. A cubic fitted to sixth order swings about the curve
+    /// with three waves, so an error ε on a piece of length l tilts it by up to 6π·ε/l, and on a path that turns by θ it changes the
+    /// length by up to ε·θ. The ends of the path are not tilted.
+    pub(super) fn leverage(&self, pieces: usize) -> f64 {
+        let tilt = 3.0 * std::f64::consts::TAU * pieces as f64 / self.length;
+        if self.stroke.dasharray().is_some() && self.length > 0.0 { 1.0 + self.half * tilt + self.turns } else { 1.0 }
+    }
+
+    /// Returns `true` if the stroke scaled by `s` is right: its edges are within `tolerance`, or its width hardly varies.
+    pub(super) fn is_right(&self, s: f64, tolerance: f64) -> bool {
+        let off = |p: &Pair| (p.exact - p.drawn * s).hypot() <= WIDTH_ERROR * s * p.drawn.hypot();
+        !self.open && (self.error(s) <= tolerance || self.pairs.iter().all(off))
+    }
+
+    /// Largest shift of a dash along the path, in user units of the result. A point of a dash is never farther from another one
+    /// than half a gap.
+    fn drift(&self, s: f64) -> f64 {
+        let Some(dashes) = self.stroke.dasharray() else { return 0.0 };
+        let gap = dashes.iter().skip(1).step_by(2).fold(0.0_f32, |m, g| m.max(*g));
+        let shifts = self.lengths.iter().map(|[source, image, outer]| (image - s * source).abs() * outer);
+        let shift = shifts.fold(0.0, f64::max).min(0.5 * f64::from(gap) * s);
+        // A dash that ends at a corner may be shifted across it, and show its join.
+        let crosses = |c: &&DashedCorner| (c.image - s * c.source).abs() >= s * self.to_next_end(c.source, dashes);
+        self.corners.iter().filter(crosses).map(|c| c.reach * s).fold(shift, f64::max)
+    }
+
+    /// Distance along the path from the length `at` to the nearest end of a dash.
+    fn to_next_end(&self, at: f64, dashes: &[f32]) -> f64 {
+        let period: f64 = dashes.iter().map(|d| f64::from(*d)).sum();
+        let mut phase = (at + f64::from(self.stroke.dashoffset())).rem_euclid(period);
+        let mut nearest = f64::INFINITY;
+        for d in dashes {
+            nearest = nearest.min(phase.abs());
+            phase -= f64::from(*d);
+        }
+        nearest.min(phase.abs())
+    }
+
+    fn add(&mut self, outline: &Outline, map: &dyn Map, pieces: usize) -> Option<()> {
+        /// Segments of a path up to which each has at least four, and two, intervals. Longer paths need fewer.
+        const FEW: usize = 64;
+        const MANY: usize = 4096;
+        let segments = outline.segs().count();
+        let least = if segments <= FEW { 4 } else { 2 * usize::from(segments <= MANY) };
+        // Two samples for each fitted piece, each of which turns by less than half a period of anything the map does.
+        let more = if segments <= MANY { 2 * pieces / segments.max(1) } else { 0 };
+        for sub in &outline.subpaths {
+            if sub.segs.iter().all(|s| is_point(s, sub.start)) {
+                self.dot(sub, &map.jet(sub.start));
+            } else {
+                self.subpath(sub, map, least.max(more))?;
+            }
+        }
+        Some(())
+    }
+
+    /// A subpath of zero length shows its caps, which extend in all directions.
+    fn dot(&mut self, sub: &Subpath, jet: &Jet) {
+        let [x, y] = columns(jet, self.read, self.after);
+        if !(x.is_finite() && y.is_finite()) || sub.segs.is_empty() && !sub.closed {
+            return;
+        }
+        match self.stroke.linecap() {
+            LineCap::Butt => {}
+            LineCap::Round => self.pairs.extend(ellipse([x, y])),
+            LineCap::Square => {
+                let corner = |k: f64| Pair { exact: x + y * k, drawn: Vec2::new(1.0, k) };
+                self.pairs.extend([1.0, -1.0].map(corner));
+            }
+        }
+    }
+
+    fn subpath(&mut self, sub: &Subpath, map: &dyn Map, least: usize) -> Option<()> {
+        let dashed = self.stroke.dasharray().is_some();
+        let mut ends: Vec<[Node; 2]> = Vec::with_capacity(sub.segs.len());
+        let mut run = [0.0; 2];
+        for seg in sub.segs.iter().filter(|s| !is_point(s, s.start())) {
+            let start = run;
+            let spots = self.segment(seg, map, least)?;
+            let &[(t0, first), .., (_, last)] = spots.as_slice() else {
+                // One sample, in the middle of a segment among very many.
+                if let [(_, s)] = spots.as_slice() {
+                    self.integrate(s, s, 1.0, &mut run);
+                }
+                continue;
+            };
+            let mut before = (t0, first);
+            for &(t, spot) in &spots[1..] {
+                self.integrate(&before.1, &spot, t - before.0, &mut run);
+                if dashed {
+                    self.cap(&spot);
+                }
+                before = (t, spot);
+            }
+            let node = |p: Point, spot: Spot, run: [f64; 2]| Node { p, spot, run };
+            ends.push([node(seg.start(), first, start), node(seg.end(), last, run)]);
+        }
+        for joint in ends.windows(2) {
+            self.join(map, &joint[0][1], &joint[1][0].spot);
+        }
+        if let [first, ..] = ends.as_slice()
+            && let Some(last) = ends.last()
+        {
+            if sub.closed {
+                self.join(map, &last[1], &first[0].spot);
+            } else {
+                self.cap(&first[0].spot);
+                self.cap(&last[1].spot);
+            }
+        }
+        Some(())
+    }
+
+    /// Adds the stretch of path between two samples.
+    fn integrate(&mut self, a: &Spot, b: &Spot, dt: f64, run: &mut [f64; 2]) {
+        let mean = |f: &dyn Fn(&Spot) -> f64| 0.5 * dt * (f(a) + f(b));
+        self.area += mean(&|s| s.area_scale() * s.here);
+        self.length += mean(&|s| s.here);
+        run[0] += mean(&|s| s.here);
+        run[1] += mean(&|s| s.there);
+        if self.stroke.dasharray().is_some() {
+            let turn = a.tangent.cross(b.tangent).atan2(a.tangent.dot(b.tangent)).abs();
+            self.turns += turn;
+            self.lengths.push([run[0], run[1], 1.0 + self.half * turn / mean(&|s| s.here)]);
+        }
+    }
+
+    /// Samples a segment and its edges.
+    fn segment(&mut self, seg: &Seg, map: &dyn Map, least: usize) -> Option<Vec<(f64, Spot)>> {
+        // Shifts of dashes are integrals.
+        let finer = if self.stroke.dasharray().is_some() { 4 } else { 1 };
+        let n = if least == 0 { 0 } else { finer * least.max((turn(seg) / TURN).ceil() as usize) };
+        let ts: Vec<f64> = if n == 0 { vec![0.5] } else { (0..=n).map(|i| i as f64 / n as f64).collect() };
+        let ps: Vec<Point> = ts.iter().map(|t| seg.eval(*t)).collect();
+        let mut jets = vec![Jet::default(); ps.len()];
+        map.jets(&ps, &mut jets);
+        let mut spots = Vec::with_capacity(ts.len());
+        let mut centres = Vec::with_capacity(ts.len());
+        let mut edges = Vec::with_capacity(2 * ts.len());
+        for ((t, p), jet) in ts.iter().zip(&ps).zip(&jets) {
+            let v = seg.deriv(*t);
+            if !(jet.det().is_finite() && jet.push(v).is_finite()) {
+                return None;
+            }
+            // At a cusp, the samples beside it count.
+            let Some(spot) = Spot::new(jet, v, self.read, self.after) else { continue };
+            let reach = linear(self.read, spot.normal * self.half);
+            edges.extend([*p + reach, *p - reach]);
+            let [x, y] = spot.columns;
+            self.stretch = self.stretch.max(stretch(Affine::new([x.x, x.y, y.x, y.y, 0.0, 0.0])) * self.unit);
+            centres.push(jet.p);
+            spots.push((*t, spot));
+        }
+        let mut images = vec![Point::ORIGIN; edges.len()];
+        map.points(&edges, &mut images);
+        for (((t, spot), centre), both) in spots.iter().zip(&centres).zip(images.chunks(2)) {
+            for q in both {
+                let exact = self.distance(seg, *t, spot, map, *centre, *q);
+                self.pairs.push(Pair { exact: Vec2::new(exact, 0.0), drawn: Vec2::new(1.0, 0.0) });
+            }
+        }
+        Some(spots)
+    }
+
+    /// Distance of the image `q` of an edge point from the image of the path, in units of half the width.
+    fn distance(&mut self, seg: &Seg, t: f64, spot: &Spot, map: &dyn Map, centre: Point, q: Point) -> f64 {
+        if !q.is_finite() {
+            self.open = true;
+            return spot.in_image(spot.push(spot.normal)).y.abs();
+        }
+        let off = spot.in_image(linear(self.after, q - centre)) / self.half;
+        let nearer = t + off.x * self.half / spot.there;
+        if off.x.abs() <= AHEAD * off.y.abs() || !(0.0..=1.0).contains(&nearer) {
+            return off.y.abs();
+        }
+        linear(self.after, q - map.point(seg.eval(nearer))).hypot() / self.half
+    }
+
+    /// Adds the outermost points of a cap.
+    fn cap(&mut self, at: &Spot) {
+        let [along, across] = [at.tangent, at.normal].map(|v| at.in_image(at.push(v)));
+        let up = Vec2::new(0.0, 1.0);
+        match self.stroke.linecap() {
+            LineCap::Butt => self.pairs.push(Pair { exact: across, drawn: up }),
+            LineCap::Round => self.pairs.extend(ellipse(at.columns)),
+            LineCap::Square => {
+                let corner = |k: f64| Pair { exact: along + across * k, drawn: Vec2::new(1.0, k) };
+                self.pairs.extend([1.0, -1.0].map(corner));
+            }
+        }
+    }
+
+    /// Adds a corner of a dashed path whose join extends `reach` times half the width.
+    fn corner(&mut self, at: &Node, reach: f64) {
+        if self.stroke.dasharray().is_some() {
+            let [source, image] = at.run;
+            self.corners.push(DashedCorner { source, image, reach: reach * self.half });
+        }
+    }
+
+    /// Adds the outermost points of the join of two segments.
+    fn join(&mut self, map: &dyn Map, at: &Node, b: &Spot) {
+        let (p, a) = (at.p, &at.spot);
+        let turned = a.tangent.cross(b.tangent).atan2(a.tangent.dot(b.tangent));
+        if turned.abs() < CORNER {
+            return;
+        }
+        if self.stroke.linejoin() == LineJoin::Round {
+            self.pairs.extend(ellipse(a.columns));
+            self.corner(at, 1.0);
+            return;
+        }
+        let mitered = !matches!(self.stroke.linejoin(), LineJoin::Bevel);
+        let limit = if mitered { f64::from(self.stroke.miterlimit().get()) } else { 0.0 };
+        let outer = -turned.signum();
+        let (exact, from) = tip(a.normal * outer, b.normal * outer, limit);
+        let (drawn, to) = tip(a.image[1] * outer, b.image[1] * outer, limit);
+        self.corner(at, exact.hypot().max(drawn.hypot()).max(1.0));
+        let reach = linear(self.read, exact * self.half);
+        let image = [p, p + reach].map(|p| map.point(p));
+        let image = linear(self.after, image[1] - image[0]) / self.half;
+        if from || to {
+            self.open |= !image.is_finite();
+            self.pairs.push(Pair { exact: if image.is_finite() { image } else { a.push(exact) }, drawn });
+        }
+        if !(from && to) {
+            let corner = |s: &Spot| Pair { exact: s.in_image(s.push(s.normal)), drawn: Vec2::new(0.0, 1.0) };
+            self.pairs.extend([corner(a), corner(b)]);
+        }
+    }
+}

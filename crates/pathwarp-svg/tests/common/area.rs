@@ -1,0 +1,111 @@
+//! Painted areas as polygons, with strokes expanded by the renderer's own stroker, and the distance between them.
+
+use pathwarp::kurbo::Point;
+use pathwarp::map::Map;
+use resvg::tiny_skia::{Path, PathSegment};
+use resvg::usvg::{self, Node, Tree};
+
+/// An area as polygons, by the nonzero rule.
+pub struct Area(pub Vec<Vec<Point>>);
+
+impl Area {
+    /// The painted area of a drawing's strokes, or of its fills if it has no strokes.
+    pub fn of(tree: &Tree) -> Self {
+        let mut paths = Vec::new();
+        collect(tree.root(), &mut paths);
+        Self(paths)
+    }
+
+    pub fn bent(&self, map: &dyn Map) -> Self {
+        Self(self.0.iter().map(|ring| ring.iter().map(|p| map.point(*p)).collect()).collect())
+    }
+
+    fn edges(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
+        self.0.iter().flat_map(|ring| (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()])))
+    }
+
+    /// Distance of a point from the area.
+    pub fn distance(&self, p: Point) -> f64 {
+        let (mut winding, mut nearest) = (0, f64::INFINITY);
+        for (a, b) in self.edges() {
+            if (a.y <= p.y) != (b.y <= p.y) {
+                let side = (b - a).cross(p - a);
+                winding += if b.y > a.y { i32::from(side > 0.0) } else { -i32::from(side < 0.0) };
+            }
+            let d = b - a;
+            let t = if d.hypot2() > 0.0 { ((p - a).dot(d) / d.hypot2()).clamp(0.0, 1.0) } else { 0.0 };
+            nearest = nearest.min((p - (a + d * t)).hypot());
+        }
+        if winding != 0 { 0.0 } else { nearest }
+    }
+
+    /// Largest distance of a point of one area from the other.
+    pub fn apart(&self, other: &Self) -> f64 {
+        let one = |a: &Self, b: &Self| a.0.iter().flatten().map(|p| b.distance(*p)).fold(0.0, f64::max);
+        one(self, other).max(one(other, self))
+    }
+}
+
+fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {
+    for n in g.children() {
+        match n {
+            Node::Group(g) => collect(g, out),
+            Node::Path(p) => {
+                let painted = match p.stroke() {
+                    // Coordinates are enlarged: the stroker works to about a quarter of a unit of the enlarged ones.
+                    Some(s) => {
+                        let s = s.to_tiny_skia();
+                        let dashed =
+                            s.dash.as_ref().map_or_else(|| p.data().clone(), |d| p.data().dash(d, 1e3).unwrap());
+                        dashed.stroke(&s, 1e3).unwrap()
+                    }
+                    None => p.data().clone(),
+                };
+                flatten(&painted.transform(p.abs_transform()).unwrap(), out);
+            }
+            Node::Image(_) | Node::Text(_) => {}
+        }
+    }
+}
+
+/// Points close enough for chords of images.
+fn flatten(path: &Path, out: &mut Vec<Vec<Point>>) {
+    const LEAST: f64 = 16.0;
+    const LONGEST: f64 = 0.35;
+    let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
+    let mut ring: Vec<Point> = Vec::new();
+    let line = |ring: &mut Vec<Point>, to: Point| {
+        let from = *ring.last().unwrap();
+        let n = ((to - from).hypot() / LONGEST).ceil().max(1.0);
+        ring.extend((1..=n as u32).map(|i| from.lerp(to, f64::from(i) / n)));
+    };
+    let curve = |ring: &mut Vec<Point>, length: f64, at: &dyn Fn(f64) -> Point| {
+        let n = (length / LONGEST).ceil().max(LEAST);
+        ring.extend((1..=n as u32).map(|i| at(f64::from(i) / n)));
+    };
+    for s in path.segments() {
+        match s {
+            PathSegment::MoveTo(p) => {
+                out.push(std::mem::replace(&mut ring, vec![point(p)]));
+            }
+            PathSegment::LineTo(p) => line(&mut ring, point(p)),
+            PathSegment::QuadTo(b, c) => {
+                let (a, b, c) = (*ring.last().unwrap(), point(b), point(c));
+                curve(&mut ring, (b - a).hypot() + (c - b).hypot(), &|t| a.lerp(b, t).lerp(b.lerp(c, t), t));
+            }
+            PathSegment::CubicTo(b, c, d) => {
+                let (a, b, c, d) = (*ring.last().unwrap(), point(b), point(c), point(d));
+                curve(&mut ring, (b - a).hypot() + (c - b).hypot() + (d - c).hypot(), &|t| {
+                    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
+                    ab.lerp(bc, t).lerp(bc.lerp(cd, t), t)
+                });
+            }
+            PathSegment::Close => {
+                let start = ring[0];
+                line(&mut ring, start);
+            }
+        }
+    }
+    out.push(ring);
+    out.retain(|r| r.len() > 2);
+}
