@@ -17,7 +17,9 @@ mod advice;
 mod bitmap;
 mod commands;
 mod decimals;
+mod export;
 mod failure;
+mod format;
 mod input;
 mod options;
 mod output;
@@ -30,6 +32,7 @@ mod status;
 mod steps;
 mod temporaries;
 mod terminal;
+mod units;
 
 pub use bitmap::Bender;
 

@@ -50,6 +50,7 @@ pub use bend::picture::{BentImage, PictureError};
 pub use document::Document;
 pub use embed::Origin;
 pub use scene::lettering::selected::{Lettering, LetteringFrame, LetteringFrameError};
+pub use scene::plot::{Plot, PlotLoss, PlotShape};
 pub use scene::shape::{NamedPath, Shape};
 pub use source::fonts::{FontFile, GenericFamilies, bundled_font, installed_styles, system_font};
 pub use source::read::{ReadOptions, compressed};

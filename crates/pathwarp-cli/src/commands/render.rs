@@ -1,12 +1,16 @@
-//! `pathwarp render IN.svg -o OUT.png`: draws an SVG file.
+//! `pathwarp render IN.svg -o OUT.png`: draws an SVG file as a picture.
 
 use super::file_args;
+use crate::bitmap::encode;
 use crate::failure::Failure;
+use crate::format::{Choice, Format, PICTURES};
+use crate::options::{self, Given};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
-use pathwarp_raster::{Color, RenderOptions, Size, encode_png};
+use pathwarp_raster::{Color, RenderOptions, Size};
 use pathwarp_svg::usvg_tree;
+use std::str::FromStr as _;
 
 pub(super) const NAME: &str = "render";
 
@@ -15,9 +19,13 @@ pub(super) fn command() -> Command {
         Arg::new(name).long(name).value_name("PX").value_parser(value_parser!(u32).range(1..)).help(help)
     };
     Command::new(NAME)
-        .about("Draw an SVG file as a PNG")
+        .about("Draw an SVG file as a picture: PNG, JPEG or WebP")
         .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
-        .arg(file_args::out("OUT.png", "Write the picture to this file; - or none writes to standard output"))
+        .arg(file_args::out(
+            "OUT.png",
+            "Write the picture to this file: .png, .jpg or .webp (without loss); - or none writes to standard output",
+        ))
+        .args(options::some_options(&["format", "quality"]))
         .arg(pixels("width", "Width in pixels"))
         .arg(pixels("height", "Height in pixels"))
         .arg(
@@ -31,19 +39,21 @@ pub(super) fn command() -> Command {
         .arg(
             Arg::new("background")
                 .long("background")
-                .value_name("white|black|none")
-                .value_parser(["white", "black", "none"])
-                .hide_possible_values(true)
-                .default_value("none")
-                .help("Colour behind the drawing"),
+                .value_name("COLOUR|none")
+                .value_parser(background)
+                .help("Colour behind the drawing, as in CSS [default: none; white in a JPEG, which has no transparency]"),
         )
-        .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
+        .after_help(
+            "Examples:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white\n  pathwarp render \
+             samples/logo.svg -o logo.jpg --scale 3 --quality 85\n  pathwarp render samples/logo.svg --format webp > logo.webp",
+        )
 }
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "INPUT")?;
     let target = file_args::target(m, [file])?;
-    file_args::check_extension(target, &["png"])?;
+    let options = Given::options(m).read()?;
+    let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
     let size = if let Some(&w) = m.get_one::<u32>("width") {
         Size::Width(w)
     } else if let Some(&h) = m.get_one::<u32>("height") {
@@ -51,13 +61,28 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     } else {
         m.get_one::<f32>("scale").map_or(Size::Native, |s| Size::Scale(*s))
     };
-    let background = match m.get_one::<String>("background").map(String::as_str) {
-        Some("white") => Some(Color::WHITE),
-        Some("black") => Some(Color::BLACK),
-        _ => None,
+    let background = match m.get_one::<Background>("background") {
+        Some(Background(None)) if format == Format::Jpeg => {
+            return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
+        }
+        Some(Background(color)) => *color,
+        None => (format == Format::Jpeg).then_some(Color::WHITE),
     };
     let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
-    let png = encode_png(&RenderOptions { size, background }.render(&tree)?)?;
-    output::write(target, &png)?;
+    let picture = RenderOptions { size, background }.render(&tree)?;
+    output::write(target, &encode(picture, format, options.quality)?)?;
     Ok(Status::Complete)
+}
+
+/// A colour behind the drawing; `None` for transparency.
+#[derive(Clone)]
+struct Background(Option<Color>);
+
+/// Parses a colour as in CSS, or `none`.
+fn background(text: &str) -> Result<Background, String> {
+    if matches!(text, "none" | "transparent") {
+        return Ok(Background(None));
+    }
+    let c = svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
+    Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }

@@ -25,11 +25,12 @@ impl Given {
         Self { inputs, ..Self::options(m) }
     }
 
-    /// The options of a parsed command line without inputs.
+    /// The options of a parsed command line without inputs. The command may have only some of them.
     pub(crate) fn options(m: &ArgMatches) -> Self {
         let mut values = Vec::new();
         for option in OPTIONS {
-            if m.value_source(option.name) != Some(ValueSource::CommandLine) {
+            let is_declared = m.try_contains_id(option.name).is_ok();
+            if !is_declared || m.value_source(option.name) != Some(ValueSource::CommandLine) {
                 continue;
             }
             let typed = match option.value {

@@ -11,7 +11,7 @@ mod parse;
 mod table;
 mod typed_box;
 
-pub(crate) use args::{args, options_without_inputs};
+pub(crate) use args::{args, options_without_inputs, some_options};
 pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
 pub(crate) use given::Given;
 pub(crate) use parse::rect;
