@@ -43,12 +43,15 @@ impl Format {
     pub(crate) fn of(file: &Path) -> Option<Self> {
         let extension = file.extension()?;
         let is = |known: &&str| extension.eq_ignore_ascii_case(known);
-        TABLE.iter().find(|(.., extensions)| extensions.iter().any(|e| is(e))).map(|(format, ..)| *format)
+        TABLE.iter().find(|(.., extensions)| extensions.iter().any(is)).map(|(format, ..)| *format)
     }
 
     /// The name and the extensions.
     fn entry(self) -> (&'static str, &'static [&'static str]) {
-        TABLE.iter().find(|(format, ..)| *format == self).map_or(("", &[]), |(_, name, extensions)| (*name, *extensions))
+        TABLE
+            .iter()
+            .find(|(format, ..)| *format == self)
+            .map_or(("", &[]), |(_, name, extensions)| (*name, *extensions))
     }
 
     /// The usual extension, which is also the word for `--format`.
@@ -155,7 +158,11 @@ mod tests {
         assert_eq!(of(Some("plain"), None), Format::Svg);
         assert_eq!(of(Some("plain.tmp"), Some(Format::Dxf)), Format::Dxf);
         for (target, given, part) in [
-            ("a.eps", None, "a.eps: a drawing is written as SVG, PDF or DXF (.svg, .svgz, .pdf, .dxf), not as .eps; write a .pdf"),
+            (
+                "a.eps",
+                None,
+                "a.eps: a drawing is written as SVG, PDF or DXF (.svg, .svgz, .pdf, .dxf), not as .eps; write a .pdf",
+            ),
             ("a.png", None, "`pathwarp render`"),
             ("a.svg", Some(Format::Pdf), "disagree"),
             ("a", Some(Format::Png), "--format png: a drawing is written as SVG"),

@@ -20,7 +20,8 @@ pub(crate) fn nearest(color: [u8; 3]) -> (u8, bool) {
     if let Some(i) = (1..).zip(PURE).find(|(_, c)| *c == color) {
         return (i.0, true);
     }
-    let distance = |c: [u8; 3]| -> i32 { c.iter().zip(color).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum() };
+    let distance =
+        |c: [u8; 3]| -> i32 { c.iter().zip(color).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum() };
     let greys = GREYS.iter().map(|(i, v)| (*i, [*v; 3]));
     let shades = (10..250).map(|i| (i, shade(i)));
     let foreground = [(FOREGROUND, [0; 3]), (FOREGROUND, [255; 3])];

@@ -1,8 +1,8 @@
 //! The parts of a file around its entities: header, tables, blocks, objects.
 
-use crate::Options;
 use crate::codes::Codes;
 use crate::layers::Layers;
+use crate::model::Options;
 use pathwarp::kurbo::Point;
 
 /// Handles of the objects that every file has. Each is unique.

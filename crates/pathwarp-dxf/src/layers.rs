@@ -1,7 +1,7 @@
 //! The layers of a file.
 
-use crate::Shape;
 use crate::color::{FOREGROUND, nearest};
+use crate::model::Shape;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 

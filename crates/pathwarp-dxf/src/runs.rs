@@ -45,7 +45,8 @@ pub(crate) fn runs(subpath: &Subpath, tolerance: f64) -> Vec<Run> {
     if n == 0 {
         return Vec::new();
     }
-    let starts: Vec<usize> = (0..n).filter(|i| !subpath.closed && *i == 0 || (*i > 0 || subpath.closed) && breaks(*i)).collect();
+    let starts: Vec<usize> =
+        (0..n).filter(|i| !subpath.closed && *i == 0 || (*i > 0 || subpath.closed) && breaks(*i)).collect();
     let Some(&first) = starts.first() else {
         return vec![Run { kind: kinds[0], segs, closed: true }];
     };

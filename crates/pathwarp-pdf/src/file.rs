@@ -1,6 +1,6 @@
 //! The file under construction: its objects, and the function that draws groups.
 
-use crate::Options;
+use crate::options::Options;
 use crate::space::pdf_rect;
 use crate::stream::Stream;
 use flate2::Compression;

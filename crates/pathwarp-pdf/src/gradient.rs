@@ -16,6 +16,9 @@ const MOST_PERIODS: i32 = 256;
 /// Offsets closer than this are a sharp change.
 const SHARP: f64 = 1e-6;
 
+/// Share of the range in which a colour at its very end counts.
+const EDGE: f64 = 1e-4;
+
 /// A gradient over the range of offsets that a painted area needs.
 pub(crate) struct Gradient {
     /// To the user space of the painted path.
@@ -154,7 +157,22 @@ fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec
 /// Adds the function that goes through these stops.
 fn function(file: &mut File<'_>, stops: &[(f64, Vec<f32>)]) -> Ref {
     let span = 1.0 / stops.len().max(1) as f64;
-    let pieces: Vec<_> = stops.windows(2).filter(|w| w[1].0 - w[0].0 > SHARP * span).collect();
+    let pairs = stops.iter().zip(stops.iter().skip(1));
+    let mut pieces: Vec<[(f64, Vec<f32>); 2]> =
+        pairs.filter(|(a, b)| b.0 - a.0 > SHARP * span).map(|(a, b)| [a.clone(), b.clone()]).collect();
+    // The colours at the very ends go on outside, even if others take over at once.
+    if let (Some(first), Some([start, _])) = (stops.first(), pieces.first_mut())
+        && first.1 != start.1
+    {
+        start.0 = EDGE;
+        pieces.insert(0, [(0.0, first.1.clone()), (EDGE, first.1.clone())]);
+    }
+    if let (Some(last), Some([_, end])) = (stops.last(), pieces.last_mut())
+        && last.1 != end.1
+    {
+        end.0 = 1.0 - EDGE;
+        pieces.push([(1.0 - EDGE, last.1.clone()), (1.0, last.1.clone())]);
+    }
     let mut refs = Vec::with_capacity(pieces.len());
     for w in &pieces {
         let at = file.new_ref();

@@ -19,6 +19,7 @@ mod file;
 mod gradient;
 mod group;
 mod image;
+mod options;
 mod outline;
 mod paint;
 mod path;
@@ -27,36 +28,18 @@ mod picture;
 mod space;
 mod stream;
 
+pub use options::{ExactOutline, Options};
+
 use file::File;
-use kurbo::{Affine, BezPath};
+use kurbo::Affine;
 use pdf_writer::{Name, Rect, TextStr};
 use stream::Stream;
-
-/// Resolution of the pictures that stand for filters, in pixels per inch, if none is given: the usual one for print.
-const PRINT: f64 = 300.0;
 
 /// Points per px: 72 points and 96 px are an inch.
 const POINTS_PER_PX: f64 = 0.75;
 
 /// The longest side of a page in its units (PDF 32000-1, annex C.2). The unit of a larger page is a multiple of a point.
 const LONGEST_SIDE: f64 = 14_400.0;
-
-/// Gives the exact outline of a path in its own coordinates, if usvg's is an approximation.
-pub type ExactOutline<'a> = dyn Fn(&usvg::Path) -> Option<BezPath> + 'a;
-
-/// Options for writing a PDF.
-pub struct Options<'a> {
-    /// Outlines that replace usvg's, which approximates arcs.
-    pub exact: &'a ExactOutline<'a>,
-    /// Pixels per inch of the pictures that stand for filters; `None`: 300.
-    pub picture_dpi: Option<f64>,
-}
-
-impl Default for Options<'_> {
-    fn default() -> Self {
-        Self { exact: &|_| None, picture_dpi: None }
-    }
-}
 
 /// A PDF.
 #[derive(Debug, Clone, PartialEq, Eq)]

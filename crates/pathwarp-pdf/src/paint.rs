@@ -18,12 +18,7 @@ pub(crate) struct Use<'a> {
 }
 
 /// Calls `draw` with the paint set.
-pub(crate) fn with_paint(
-    file: &mut File<'_>,
-    stream: &mut Stream,
-    painted: &Use<'_>,
-    draw: impl FnOnce(&mut Stream),
-) {
+pub(crate) fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use<'_>, draw: impl FnOnce(&mut Stream)) {
     let area = roomy(rect(painted.path.stroke_bounding_box()));
     let gradient = Gradient::of(painted.paint, area);
     let mut state = State::default().opacity(painted.opacity);

@@ -4,7 +4,7 @@ use crate::file::File;
 use crate::outline::{from_usvg, has_area};
 use crate::paint::{Use, with_paint};
 use crate::stream::Stream;
-use kurbo::BezPath;
+use kurbo::{BezPath, PathEl};
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use usvg::{Fill, FillRule, LineCap, LineJoin, Paint, PaintOrder, Path, Stroke};
 
@@ -44,7 +44,10 @@ fn stroke(file: &mut File<'_>, stream: &mut Stream, path: &Path, outline: &BezPa
     let painted = Use { paint, opacity: stroke.opacity().get(), strokes: true, path };
     with_paint(file, stream, &painted, |stream| {
         pen(stream, stroke);
-        stream.outline(outline);
+        match stroke.linecap() {
+            LineCap::Square => stream.outline(&with_dots(outline, stroke.width().get())),
+            _ => stream.outline(outline),
+        }
         stream.content.stroke();
     });
 }
@@ -66,6 +69,24 @@ fn pen(stream: &mut Stream, stroke: &Stroke) {
     content.set_miter_limit(stroke.miterlimit().get());
     let dashes = stroke.dasharray().unwrap_or_default();
     content.set_dash_pattern(dashes.iter().copied(), offset(dashes, stroke.dashoffset()));
+}
+
+/// The outline with lines of no length made minute ones: SVG draws their square caps, PDF does not.
+fn with_dots(outline: &BezPath, width: f32) -> BezPath {
+    /// Length as a share of the width.
+    const MINUTE: f64 = 1e-4;
+    let elements = outline.elements();
+    let starts = |i: usize| elements.get(i).is_none_or(|e| matches!(e, PathEl::MoveTo(_)));
+    let mut out = BezPath::new();
+    for (i, element) in elements.iter().enumerate() {
+        match (*element, elements.get(i.wrapping_sub(1))) {
+            (PathEl::LineTo(p), Some(PathEl::MoveTo(q))) if p == *q && starts(i + 1) => {
+                out.line_to((p.x + MINUTE * f64::from(width), p.y));
+            }
+            (other, _) => out.push(other),
+        }
+    }
+    out
 }
 
 /// The offset into the dashes, which PDF wants positive.

@@ -1,6 +1,6 @@
 //! Groups with filters as pictures.
 
-use crate::PRINT;
+use crate::options::PRINT;
 use crate::space::{affine, rect};
 use kurbo::{Affine, Rect};
 use resvg::tiny_skia::{Pixmap, Transform};

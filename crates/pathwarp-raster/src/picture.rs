@@ -58,7 +58,11 @@ impl Picture {
     /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above [`MAX_PIXELS`] pixels, before any memory is
     /// allocated for them.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
-        if Self::sniff(bytes) { Self::decode(bytes, true) } else { Err(undecodable("neither a PNG nor a JPEG nor a WebP")) }
+        if Self::sniff(bytes) {
+            Self::decode(bytes, true)
+        } else {
+            Err(undecodable("neither a PNG nor a JPEG nor a WebP"))
+        }
     }
 
     /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) without applying its orientation, as SVG renderers do. Takes the

@@ -42,8 +42,7 @@ fn sizes_are_true_and_curves_exact() {
         println!("{name}: {there:.6} mm there, {back:.6} mm back, {:?}", kinds(&file));
         assert!(there.max(back) < SAMPLING, "{name}: {there} {back}");
         // The circle is one; the rounded rectangle, its arcs as bulges, is one contour; the ellipse is one.
-        let expected =
-            [("ARC", 1), ("CIRCLE", 1), ("ELLIPSE", 2), ("LINE", 2), ("LWPOLYLINE", 3), ("SPLINE", 2)];
+        let expected = [("ARC", 1), ("CIRCLE", 1), ("ELLIPSE", 2), ("LINE", 2), ("LWPOLYLINE", 3), ("SPLINE", 2)];
         let found = kinds(&file);
         for (kind, n) in expected {
             assert_eq!(found.get(kind), Some(&n), "{name} {kind}: {found:?}");
@@ -158,7 +157,10 @@ fn losses_are_reported() {
     let square = "<path d='M5,5H40V40H5Z'/>";
     for (body, part) in [
         (format!("<g clip-path='url(#all)'>{square}</g>"), ""),
-        (format!("<g clip-path='url(#half)'>{square}</g>"), "of 1 group, parts that a clip path or mask hides are in it"),
+        (
+            format!("<g clip-path='url(#half)'>{square}</g>"),
+            "of 1 group, parts that a clip path or mask hides are in it",
+        ),
         (format!("<g filter='url(#f)'>{square}</g>"), "left out 1 filter"),
         (format!("{square}<image href='a.png' width='9' height='9'/>"), "left out 1 bitmap"),
         ("<path d='M5,5H40' stroke='red' stroke-width='1mm'/>".to_owned(), "1 stroke wider than 0.5 mm"),

@@ -75,8 +75,9 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
             let mut files = Files::default();
             files.read(file);
             names.iter().try_for_each(|to| files.write(to, ""))?;
-            let single =
-                |(to, p): (&PathBuf, &GimpPath)| PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), &options)?);
+            let single = |(to, p): (&PathBuf, &GimpPath)| {
+                PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), &options)?)
+            };
             let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();
             PendingFile::commit_all(files?)?;
         }
@@ -111,8 +112,7 @@ fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOpt
 }
 
 /// The formats that this command writes.
-const FORMATS: &[Format] =
-    &[Format::Svg, Format::Svgz, Format::Pdf, Format::Dxf, Format::PointList, Format::Xcf];
+const FORMATS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Dxf, Format::PointList, Format::Xcf];
 
 /// The bytes of a file with these paths.
 fn bytes(format: Format, size: [f64; 2], paths: &[GimpPath], options: &CommonOptions) -> Result<Vec<u8>, Failure> {

@@ -13,7 +13,7 @@ use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame, Kind};
 use pathwarp::refit;
-use pathwarp_raster::{Color, RenderOptions, Size};
+use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use rayon::prelude::*;
@@ -142,8 +142,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let bytes = if format.of_picture(None).is_some() {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
-        let background = (format == Format::Jpeg).then_some(Color::WHITE);
-        encode(RenderOptions { size, background }.render(&tree)?, format, options.quality)?
+        encode(RenderOptions { size, background: None }.render(&tree)?, format, options.quality)?
     } else {
         export::drawing(svg, format, &ReadOptions::default(), &options, None)?.bytes
     };

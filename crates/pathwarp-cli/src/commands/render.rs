@@ -66,7 +66,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
             return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
         }
         Some(Background(color)) => *color,
-        None => (format == Format::Jpeg).then_some(Color::WHITE),
+        // Encoded as a JPEG, a picture gets white behind it.
+        None => None,
     };
     let tree = usvg_tree::parse_tree(&input::bytes(file)?, &input::display(file), &input::read_options(file))?;
     let picture = RenderOptions { size, background }.render(&tree)?;
@@ -83,6 +84,7 @@ fn background(text: &str) -> Result<Background, String> {
     if matches!(text, "none" | "transparent") {
         return Ok(Background(None));
     }
-    let c = svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
+    let c =
+        svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
     Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }

@@ -235,7 +235,8 @@ impl Artwork for SvgArtwork {
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;
         let preview = common.preview.as_deref();
-        let preview = preview.map(|file| preview::draw(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
+        let preview =
+            preview.map(|file| preview::draw(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
         let result = export::drawing(warped.svg, self.format, &self.read, common, Some(request.tolerance))?;
         warnings.extend(result.warnings);
         Ok(WarpedArtwork {

@@ -57,9 +57,8 @@ mod tests {
     #[test]
     fn patterns_and_folders() {
         let input = Path::new("art/sub/cat.svg");
-        let named = |dir: &str, below: &str, extension| {
-            in_folder(Path::new(dir), input, Path::new(below), extension).unwrap()
-        };
+        let named =
+            |dir: &str, below: &str, extension| in_folder(Path::new(dir), input, Path::new(below), extension).unwrap();
         let name = |dir: &str, below: &str| named(dir, below, None);
         assert_eq!(name("out", ""), Path::new("out/cat.svg"));
         assert_eq!(name("out", "sub"), Path::new("out/sub/cat.svg"));

@@ -76,7 +76,9 @@ impl Walk<'_> {
         let mut room = room;
         self.out.lost.filters += usize::from(!g.filters.is_empty());
         if let Some(clip) = g.clip {
-            let Some(left) = clip_box(self.scene, clip, &|i| self.scene.parts[i].outline().bounding_box()) else { return };
+            let Some(left) = clip_box(self.scene, clip, &|i| self.scene.parts[i].outline().bounding_box()) else {
+                return;
+            };
             let Some(left) = room.map_or(Some(left), |room| overlap(room, left)) else { return };
             room = Some(left);
         }
@@ -140,9 +142,10 @@ fn color(paint: &Paint) -> Option<[u8; 3]> {
         Paint::RadialGradient(g) => g.stops(),
         Paint::Pattern(_) => return None,
     };
-    let sum = stops.iter().map(usvg::Stop::color).fold([0; 3], |[r, g, b], c| {
-        [r + usize::from(c.red), g + usize::from(c.green), b + usize::from(c.blue)]
-    });
+    let sum = stops
+        .iter()
+        .map(usvg::Stop::color)
+        .fold([0; 3], |[r, g, b], c| [r + usize::from(c.red), g + usize::from(c.green), b + usize::from(c.blue)]);
     Some(sum.map(|v| (v / stops.len().max(1)) as u8))
 }
 
