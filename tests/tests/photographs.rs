@@ -66,7 +66,11 @@ fn photographing_and_warping_commute() {
 fn sizes_formats_and_exit_codes() {
     let dir = tempfile::tempdir().unwrap();
     let picture = Picture { pixmap: photograph(DRAWING, 200), profile: Some(b"a profile".to_vec()) };
-    fs::write(dir.path().join("in.jpg"), picture.write(PictureFormat::Jpeg).unwrap()).unwrap();
+    fs::write(
+        dir.path().join("in.jpg"),
+        picture.write(PictureFormat::Jpeg { quality: PictureFormat::QUALITY }).unwrap(),
+    )
+    .unwrap();
     let run = |more: &[&str]| {
         let mut args = vec!["affine", "in.jpg", "--rotate", "90"];
         args.extend(more);

@@ -17,7 +17,9 @@ mod advice;
 mod bitmap;
 mod commands;
 mod decimals;
+mod export;
 mod failure;
+mod format;
 mod input;
 mod leftovers;
 mod options;
@@ -31,6 +33,7 @@ mod status;
 mod steps;
 mod temporaries;
 mod terminal;
+mod units;
 mod watch;
 
 pub use bitmap::Bender;

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
-use image::codecs::{jpeg, png};
+use image::codecs::{jpeg, png, webp};
 use image::metadata::Orientation;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageReader};
 use pathwarp::budget::{Limit, Limits};
@@ -29,7 +29,17 @@ pub enum PictureFormat {
     #[default]
     Png,
     /// JPEG on white, since it has no transparency.
-    Jpeg,
+    Jpeg {
+        /// From 1 (small) to 100 (fine).
+        quality: u8,
+    },
+    /// WebP with transparency, without loss.
+    WebP,
+}
+
+impl PictureFormat {
+    /// A quality of JPEGs at which artefacts are hard to see.
+    pub const QUALITY: u8 = 92;
 }
 
 impl Picture {
@@ -38,13 +48,14 @@ impl Picture {
     /// The first bytes of every JPEG file.
     const JPEG_SIGNATURE: &[u8] = b"\xff\xd8\xff";
 
-    /// Returns `true` if the bytes start like a PNG or JPEG file.
+    /// Returns `true` if the bytes start like a PNG, JPEG or WebP file.
     #[must_use]
     pub fn sniff(bytes: &[u8]) -> bool {
-        bytes.starts_with(Self::PNG_SIGNATURE) || bytes.starts_with(Self::JPEG_SIGNATURE)
+        let is_webp = || bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP");
+        bytes.starts_with(Self::PNG_SIGNATURE) || bytes.starts_with(Self::JPEG_SIGNATURE) || is_webp()
     }
 
-    /// Reads a PNG or JPEG and applies its EXIF orientation.
+    /// Reads a PNG, JPEG or WebP and applies its EXIF orientation.
     ///
     /// # Errors
     /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the default limits, before any memory is
@@ -53,7 +64,7 @@ impl Picture {
         Self::read_within(bytes, &Limits::default().for_input(bytes.len()))
     }
 
-    /// Reads a PNG or JPEG like [`Picture::read`], within limits.
+    /// Reads a picture like [`Picture::read`], within limits.
     ///
     /// # Errors
     /// As for [`Picture::read`].
@@ -61,7 +72,7 @@ impl Picture {
         if Self::sniff(bytes) {
             Self::decode(bytes, true, limits)
         } else {
-            Err(undecodable("neither a PNG nor a JPEG"))
+            Err(undecodable("neither a PNG nor a JPEG nor a WebP"))
         }
     }
 
@@ -110,25 +121,32 @@ impl Picture {
         let profile = self.profile.clone();
         match format {
             PictureFormat::Png => {
-                let pixels = self.pixmap.pixels().iter().flat_map(|p| {
-                    let c = p.demultiply();
-                    [c.red(), c.green(), c.blue(), c.alpha()]
-                });
                 let encoder = png::PngEncoder::new(&mut out);
-                self.encode(encoder, profile, &pixels.collect::<Vec<u8>>(), ExtendedColorType::Rgba8)?;
+                self.encode(encoder, profile, &self.straight(), ExtendedColorType::Rgba8)?;
             }
-            PictureFormat::Jpeg => {
-                /// Artefacts are hard to see at this quality.
-                const QUALITY: u8 = 92;
+            PictureFormat::WebP => {
+                let encoder = webp::WebPEncoder::new_lossless(&mut out);
+                self.encode(encoder, profile, &self.straight(), ExtendedColorType::Rgba8)?;
+            }
+            PictureFormat::Jpeg { quality } => {
                 let pixels = self.pixmap.pixels().iter().flat_map(|p| {
                     let white = u8::MAX - p.alpha();
                     [p.red() + white, p.green() + white, p.blue() + white]
                 });
-                let encoder = jpeg::JpegEncoder::new_with_quality(&mut out, QUALITY);
+                let encoder = jpeg::JpegEncoder::new_with_quality(&mut out, quality.clamp(1, 100));
                 self.encode(encoder, profile, &pixels.collect::<Vec<u8>>(), ExtendedColorType::Rgb8)?;
             }
         }
         Ok(out)
+    }
+
+    /// The pixels with straight alpha.
+    fn straight(&self) -> Vec<u8> {
+        let pixels = self.pixmap.pixels().iter().flat_map(|p| {
+            let c = p.demultiply();
+            [c.red(), c.green(), c.blue(), c.alpha()]
+        });
+        pixels.collect()
     }
 
     fn encode(
@@ -178,16 +196,26 @@ mod tests {
         Picture { pixmap, profile: Some(b"a profile".to_vec()) }
     }
 
+    const JPEG: PictureFormat = PictureFormat::Jpeg { quality: PictureFormat::QUALITY };
+
     #[test]
-    fn png_is_lossless() {
-        let bytes = half_red().write(PictureFormat::Png).unwrap();
-        assert!(Picture::sniff(&bytes));
-        assert_eq!(Picture::read(&bytes).unwrap(), half_red());
+    fn png_and_webp_are_lossless() {
+        for (format, signature) in [(PictureFormat::Png, b"\x89PNG"), (PictureFormat::WebP, b"RIFF")] {
+            let bytes = half_red().write(format).unwrap();
+            assert!(bytes.starts_with(signature) && Picture::sniff(&bytes));
+            assert_eq!(Picture::read(&bytes).unwrap(), half_red(), "{format:?}");
+        }
+    }
+
+    #[test]
+    fn a_lower_quality_is_smaller() {
+        let size = |quality| half_red().write(PictureFormat::Jpeg { quality }).unwrap().len();
+        assert!(size(1) < size(50) && size(50) < size(100));
     }
 
     #[test]
     fn jpeg_is_on_white() {
-        let bytes = half_red().write(PictureFormat::Jpeg).unwrap();
+        let bytes = half_red().write(JPEG).unwrap();
         assert!(Picture::sniff(&bytes));
         let back = Picture::read(&bytes).unwrap();
         let at = |x| back.pixmap.pixel(x, 4).unwrap();
@@ -197,7 +225,7 @@ mod tests {
 
     #[test]
     fn orientation_is_applied() {
-        let mut bytes = half_red().write(PictureFormat::Jpeg).unwrap();
+        let mut bytes = half_red().write(JPEG).unwrap();
         // Add an APP1 segment with orientation (0x0112) = 6: the first row is the right side.
         let exif = b"\xff\xe1\x00\x22Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
         bytes.splice(2..2, exif.iter().copied());
@@ -208,7 +236,7 @@ mod tests {
 
     #[test]
     fn damaged_files_are_errors() {
-        for format in [PictureFormat::Png, PictureFormat::Jpeg] {
+        for format in [PictureFormat::Png, JPEG, PictureFormat::WebP] {
             let bytes = half_red().write(format).unwrap();
             for end in [0, 3, 9, 20, 60] {
                 assert!(matches!(Picture::read(&bytes[..end]), Err(Error::Decode(_))), "{format:?} {end}");

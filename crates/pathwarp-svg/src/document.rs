@@ -7,6 +7,7 @@ use crate::bend::outcome::WarpedDocument;
 use crate::bend::tiles;
 use crate::scene::drawing::Drawing;
 use crate::scene::lettering::selected::{Lettering, lettering};
+use crate::scene::plot::{self, Plot};
 use crate::scene::seen;
 use crate::scene::shape::{NamedPath, Shape, named_path};
 use crate::scene::unread::UnreadImages;
@@ -93,6 +94,14 @@ impl Document {
         &self.drawing
     }
 
+    /// Fonts and images that the drawing asks for and that were not found, in words.
+    #[must_use]
+    pub fn missing(&self) -> Vec<String> {
+        let missed = &self.drawing.missed;
+        let fonts = missed.fonts.iter().map(|name| format!("text uses another font, as {name} is missing"));
+        fonts.chain(missed.images.iter().map(|link| format!("the image {link} cannot be read"))).collect()
+    }
+
     /// All shapes that are painted, clip or mask, in painting order. Texts and `use` copies have one shape per path.
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
@@ -149,6 +158,17 @@ impl Document {
             }
         }
         Ok(())
+    }
+
+    /// The outlines of the drawing, for a plotter or cutter.
+    ///
+    /// # Errors
+    /// Returns [`Error::Input`] if the drawing nests too deep for the memory there is.
+    pub fn plot(&self) -> Result<Plot, Error> {
+        let (scene, source) = (self.drawing.scene(), &self.drawing.source);
+        // Not inside of `with_stack`, as it may wait for other threads.
+        let _ = self.drawing.shapes();
+        self.drawing.with_stack(|| Ok(plot::plot(scene, source)))
     }
 
     /// The lettering among the selected painted shapes.

@@ -50,6 +50,7 @@ pub use bend::picture::{BentImage, PictureError};
 pub use document::Document;
 pub use embed::Origin;
 pub use scene::lettering::selected::{Lettering, LetteringFrame, LetteringFrameError};
+pub use scene::plot::{Plot, PlotLoss, PlotShape};
 pub use scene::shape::{NamedPath, Shape};
 pub use scene::unread::UnreadImages;
 pub use source::families::{FontFile, check_fonts, family_styles, find_font};

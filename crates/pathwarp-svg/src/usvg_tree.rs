@@ -7,7 +7,9 @@ use crate::document::Document;
 use crate::scene::unread::UnreadImages;
 use crate::source::read::ReadOptions;
 use crate::source::tree;
-use pathwarp::Error;
+use pathwarp::kurbo::BezPath;
+use pathwarp::{Error, Seg};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Reads SVG or svgz data into usvg's tree, with the same fonts and limits as [`Document::read`]. `name` identifies the data
@@ -42,4 +44,44 @@ pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadT
 #[must_use]
 pub fn tree(document: &Document) -> &Arc<usvg::Tree> {
     &document.drawing().tree
+}
+
+/// Runs `f` with enough stack to walk the tree of a document. `f` must not wait for other threads of a thread pool.
+///
+/// # Errors
+/// Returns the error of `f`, or [`Error::Input`] if there is no memory for the stack.
+pub fn with_stack<T: Send>(document: &Document, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+    document.drawing().with_stack(f)
+}
+
+/// The outlines of the paths whose arcs usvg approximates, by up to a tenth of a unit.
+#[derive(Debug)]
+pub struct ExactOutlines<'d> {
+    by_address: HashMap<usize, BezPath>,
+    // The tree must not go, or another path could get the address.
+    _document: &'d Document,
+}
+
+/// The distance between an arc and the curves that stand for it, as a share of the size of its outline.
+const OF_SIZE: f64 = 1e-6;
+
+impl<'d> ExactOutlines<'d> {
+    /// The outlines of a document.
+    #[must_use]
+    pub fn of(document: &'d Document) -> Self {
+        let mut by_address = HashMap::new();
+        for part in &document.drawing().scene().parts {
+            if part.path != 0 && part.local.segs().any(|s| matches!(s, Seg::Arc(_))) {
+                let size = part.local.bounding_box().map_or(0.0, |b| b.width().max(b.height()));
+                by_address.insert(part.path, part.local.to_bez_path(OF_SIZE * size));
+            }
+        }
+        Self { by_address, _document: document }
+    }
+
+    /// The outline of a path of the document's tree, in its own coordinates; `None` if usvg's is exact.
+    #[must_use]
+    pub fn get(&self, path: &usvg::Path) -> Option<&BezPath> {
+        self.by_address.get(&(std::ptr::from_ref(path) as usize))
+    }
 }

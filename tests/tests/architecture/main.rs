@@ -46,10 +46,14 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
+    allowed("pathwarp-dxf", &["pathwarp"]);
+    allowed("pathwarp-pdf", &["pathwarp-raster"]);
     let below_cli = [
         "pathwarp",
+        "pathwarp-dxf",
         "pathwarp-gimp",
         "pathwarp-mesh",
+        "pathwarp-pdf",
         "pathwarp-psd",
         "pathwarp-svg",
         "pathwarp-raster",

@@ -33,12 +33,12 @@ fn unknown_extensions_are_errors() {
     fs::write(dir.path().join("a.svg"), SQUARE).unwrap();
     fs::write(dir.path().join("a.drawing"), SQUARE).unwrap();
     for (args, part) in [
-        (&["affine", "a.svg", "-o", "o.pdf"][..], ".svg or .svgz"),
+        (&["affine", "a.svg", "-o", "o.doc"][..], "SVG, PDF or DXF (.svg, .svgz, .pdf, .dxf)"),
         (&["affine", "a.svg", "-o", "o.svg", "--preview", "o.bmp"], ".png"),
         (&["render", "a.svg", "-o", "o.tiff"], ".png"),
-        (&["gallery", "a.svg", "-o", "o.pdf"], ".svg or .png"),
-        (&["text", "a", "-o", "o.pdf"], ".svg"),
-        (&["convert", "a.svg", "-o", "o.pdf"], ".svg, .json or .xcf"),
+        (&["gallery", "a.svg", "-o", "o.dxf"], "SVG, PDF, PNG, JPEG or WebP"),
+        (&["text", "a", "-o", "o.ttf"], ".svg"),
+        (&["convert", "a.svg", "-o", "o.doc"], ".json, .xcf"),
     ] {
         let out = pathwarp_in(dir.path(), args, b"");
         assert_eq!(out.status.code(), Some(2), "{args:?}: {}", text(&out.stderr));

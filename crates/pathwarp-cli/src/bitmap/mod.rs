@@ -1,7 +1,9 @@
-//! Bitmaps and gradients bent pixel by pixel.
+//! Bitmaps and gradients bent pixel by pixel, and pictures as files.
 
 mod bender;
+mod encode;
 mod inverse;
 
 pub use bender::Bender;
+pub(crate) use encode::encode;
 pub(crate) use inverse::{ROUNDING, inverse};

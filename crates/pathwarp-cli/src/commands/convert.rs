@@ -1,15 +1,18 @@
-//! `pathwarp convert art.xcf -o art.svg`: copies the paths of a file into another format.
+//! `pathwarp convert art.xcf -o art.svg`: copies the paths of a file into another format, or a drawing into a PDF or DXF.
 
 use super::file_args;
+use crate::export::{self, Exported};
 use crate::failure::Failure;
+use crate::format::{Choice, Format};
 use crate::input::{self, GimpFile};
-use crate::options::{Given, Reading, reading_args};
+use crate::options::{CommonOptions, Given, Reading, reading_args, some_options};
 use crate::output::{self, PendingFile};
 use crate::sources::Files;
 use crate::status::Status;
 use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
+use pathwarp_svg::ReadOptions;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -17,12 +20,14 @@ pub(super) const NAME: &str = "convert";
 
 pub(super) fn command() -> Command {
     Command::new(NAME)
-        .about("Copy the paths of a file (GIMP files, SVG) into an SVG, a point list, or a new XCF")
+        .about("Copy the paths of a file (GIMP files, SVG) into an SVG, a point list or a new XCF, or a drawing into a PDF or DXF")
         .arg(file_args::file("FILE", "A GIMP file or an SVG; FILE#NAME copies one path of a GIMP file"))
         .arg(file_args::out(
             "OUT",
-            "Output file: .svg, .json (GIMP point list) or .xcf (paths only); none writes SVG to standard output",
+            "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
+             drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
+        .args(some_options(&["format", "dxf-curves", "tolerance"]))
         .arg(
             Arg::new("split")
                 .long("split")
@@ -40,7 +45,8 @@ pub(super) fn command() -> Command {
         .after_help(
             "The SVG has its size in px and a matching viewBox, so that GIMP imports it without scaling; path names become ids. \
              Coordinates are written with the precision that GIMP stores.\n\nExamples:\n  pathwarp convert \
-             art.xcf -o art.svg\n  pathwarp convert art.xcf#Cage -o cage.json\n  pathwarp convert art.xcf -o paths.svg --split",
+             art.xcf -o art.svg\n  pathwarp convert art.xcf#Cage -o cage.json\n  pathwarp convert art.xcf -o paths.svg --split\n  pathwarp convert \
+             drawing.svg -o drawing.pdf\n  pathwarp convert drawing.svg -o drawing.dxf --dxf-curves polyline",
         )
 }
 
@@ -49,28 +55,34 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let split = m.get_flag("split");
     // The files that --split writes are checked below.
     let target = file_args::target(m, (!split).then_some(file))?;
+    let options = Given::options(m).read()?;
+    let choice = Choice { what: "paths are", among: FORMATS };
+    let format = choice.format(target, options.format)?;
     let gimp = GimpFile::open(file, m.get_flag("salvage"))?;
+    if gimp.is_none() && !split && matches!(format, Format::Pdf | Format::Dxf) {
+        return whole(file, target, format, &options);
+    }
     let damage = gimp.as_ref().and_then(|g| g.damage.clone());
     let (size, paths) = match &gimp {
         Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
-        None => drawing(file, &Given::reading(m)?)?,
+        None => drawing(file, &options.reading)?,
     };
     if let Some(d) = &damage {
         terminal::warning(&format!("{}: {d}", input::display(file)));
     }
     match target {
-        None => output::to_stdout(to_svg(size, &paths, None).as_bytes())?,
         Some(out) if split => {
-            let names = names(out, &paths);
+            let names = names(out, format, &paths);
             let mut files = Files::default();
             files.read(file);
             names.iter().try_for_each(|to| files.write(to, ""))?;
-            let single =
-                |(to, p): (&PathBuf, &GimpPath)| PendingFile::new(to, &bytes(to, size, std::slice::from_ref(p))?);
+            let single = |(to, p): (&PathBuf, &GimpPath)| {
+                PendingFile::new(to, &bytes(format, size, std::slice::from_ref(p), &options)?)
+            };
             let files: Result<Vec<PendingFile>, Failure> = names.iter().zip(&paths).map(single).collect();
             PendingFile::commit_all(files?)?;
         }
-        Some(out) => output::write(Some(out), &bytes(out, size, &paths)?)?,
+        _ => output::write(target, &bytes(format, size, &paths, &options)?)?,
     }
     Ok(Status::partial_if(damage.is_some()))
 }
@@ -87,14 +99,31 @@ fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), 
     Ok(([page.width(), page.height()], doc.paths().into_iter().map(path).collect()))
 }
 
-/// The bytes of a file with these paths, in the format of its extension.
-fn bytes(to: &Path, size: [f64; 2], paths: &[GimpPath]) -> Result<Vec<u8>, Failure> {
-    let extension = to.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    match extension.as_str() {
-        "svg" => Ok(to_svg(size, paths, None).into_bytes()),
-        "json" => Ok(to_json(Some(size), paths).into_bytes()),
-        "xcf" => Ok(new_xcf(size.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), paths)),
-        _ => Err(Failure::usage(format!("{}: paths are written as .svg, .json or .xcf", to.display()))),
+/// Writes the drawing in an SVG as a PDF or DXF.
+fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOptions) -> Result<Status, Failure> {
+    let doc = input::document(file, &options.reading)?;
+    let Exported { bytes, warnings } =
+        export::drawing(doc.text().to_owned(), format, &input::read_options(file, &options.reading), options, None)?;
+    let warnings: Vec<String> = doc.missing().into_iter().chain(warnings).collect();
+    for warning in &warnings {
+        terminal::warning(&format!("{}: {warning}", input::display(file)));
+    }
+    output::write(target, &bytes)?;
+    Ok(Status::Complete)
+}
+
+/// The formats that this command writes.
+const FORMATS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Dxf, Format::PointList, Format::Xcf];
+
+/// The bytes of a file with these paths.
+fn bytes(format: Format, size: [f64; 2], paths: &[GimpPath], options: &CommonOptions) -> Result<Vec<u8>, Failure> {
+    match format {
+        Format::PointList => Ok(to_json(Some(size), paths).into_bytes()),
+        Format::Xcf => Ok(new_xcf(size.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), paths)),
+        drawing => {
+            let svg = to_svg(size, paths, None);
+            Ok(export::drawing(svg, drawing, &ReadOptions::default(), options, None)?.bytes)
+        }
     }
 }
 
@@ -102,9 +131,9 @@ fn bytes(to: &Path, size: [f64; 2], paths: &[GimpPath]) -> Result<Vec<u8>, Failu
 const LONGEST_NAME: usize = 40;
 
 /// A file name for every path, distinct even on file systems that ignore case.
-fn names(out: &Path, paths: &[GimpPath]) -> Vec<PathBuf> {
+fn names(out: &Path, format: Format, paths: &[GimpPath]) -> Vec<PathBuf> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = out.extension().unwrap_or_default().to_string_lossy();
+    let extension = out.extension().map_or_else(|| format.extension().into(), |e| e.to_string_lossy());
     let mut taken = HashSet::new();
     let mut unique = |p: &GimpPath| {
         // File systems allow 255 bytes; the rest is for the stem, a number and the extension.

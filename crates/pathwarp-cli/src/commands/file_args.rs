@@ -25,17 +25,6 @@ pub(super) fn out(value_name: &'static str, help: &'static str) -> Arg {
     Arg::new(OUT).short('o').long(OUT).value_name(value_name).value_parser(value_parser!(PathBuf)).help(help)
 }
 
-/// Checks that an output's extension is one of those that the command writes; a name without one is taken as it is.
-pub(super) fn check_extension(target: Option<&Path>, written: &[&str]) -> Result<(), Failure> {
-    let Some((to, extension)) = target.and_then(|to| Some((to, to.extension()?))) else { return Ok(()) };
-    if written.iter().any(|e| extension.eq_ignore_ascii_case(e)) {
-        return Ok(());
-    }
-    let known = written.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(" or ");
-    let (to, extension) = (to.display(), extension.to_string_lossy());
-    Err(Failure::usage(format!("{to}: this command writes {known}, not .{extension}")))
-}
-
 /// The output file; `None` is standard output.
 ///
 /// # Errors

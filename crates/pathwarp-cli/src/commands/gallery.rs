@@ -1,19 +1,25 @@
 //! `pathwarp gallery ART -o SHEET`: draws artwork under every preset of a set on one sheet.
 
 use super::file_args;
+use crate::bitmap::encode;
+use crate::export;
 use crate::failure::Failure;
-use crate::options::{Given, reading_args};
+use crate::format::{Choice, Format};
+use crate::options::{Given, reading_args, some_options};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Kind};
 use pathwarp::refit;
-use pathwarp_raster::{RenderOptions, Size, encode_png};
+use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use rayon::prelude::*;
 use std::path::Path;
+
+/// The formats of sheets.
+const SHEETS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Png, Format::Jpeg, Format::WebP];
 
 pub(super) const NAME: &str = "gallery";
 
@@ -35,8 +41,9 @@ pub(super) fn command(registry: &Registry) -> Command {
         .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
         .arg(file_args::out(
             "SHEET.svg|SHEET.png",
-            "Write the sheet to this file; - or none writes SVG to standard output",
+            "Write the sheet to this file: .svg, .svgz, .pdf, .png, .jpg or .webp; - or none writes SVG to standard output",
         ))
+        .args(some_options(&["format", "quality"]))
         .arg(
             choice("set", sets[0], &sets)
                 .help("The set of presets to draw, or all of them"),
@@ -76,7 +83,7 @@ pub(super) fn command(registry: &Registry) -> Command {
                 .value_name("S")
                 .value_parser(value_parser!(f32))
                 .default_value("1")
-                .help("Pixels per px in a PNG sheet"),
+                .help("Pixels per px of a sheet that is a picture"),
         )
         .args(reading_args())
         .after_help(
@@ -108,12 +115,12 @@ fn cell(text: &str) -> Result<(f64, f64), String> {
 pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "INPUT")?;
     let target = file_args::target(m, [file])?;
-    file_args::check_extension(target, &["svg", "png"])?;
+    let options = Given::options(m).read()?;
+    let format = Choice { what: "a sheet is", among: SHEETS }.format(target, options.format)?;
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
-    let reading = Given::reading(m)?;
-    let doc = input::document(file, &reading)?;
+    let doc = input::document(file, &options.reading)?;
     let frame = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
 
     let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
@@ -129,25 +136,22 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
         let svg = doc.text().to_owned();
         cells.insert(0, Cell { svg, label: "as it is".into() });
     }
-    let options = SheetOptions {
+    let layout = SheetOptions {
         columns: m.get_one::<u32>("columns").map_or(4, |n| *n as usize),
         cell: m.get_one::<(f64, f64)>("cell").copied().unwrap_or((260.0, 190.0)),
         title: title(file, &sets, bend, axis),
     };
-    let svg = sheet(&cells, &options, &input::read_options(file, &reading))?;
-    let bytes = if target.is_some_and(is_png) {
+    let svg = sheet(&cells, &layout, &input::read_options(file, &options.reading))?;
+    let bytes = if format.of_picture(None).is_some() {
         let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
-        encode_png(&RenderOptions { size, background: None }.render_within(&tree, doc.budget().limits())?)?
+        let drawn = RenderOptions { size, background: None }.render_within(&tree, doc.budget().limits())?;
+        encode(drawn, format, options.quality)?
     } else {
-        svg.into_bytes()
+        export::drawing(svg, format, &ReadOptions::default(), &options, None)?.bytes
     };
     output::write(target, &bytes)?;
     Ok(Status::Complete)
-}
-
-fn is_png(file: &Path) -> bool {
-    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"))
 }
 
 /// The title of the sheet: the file, and the sets with the bend where it applies.

@@ -1,13 +1,16 @@
-//! `pathwarp render IN.svg -o OUT.png`: draws an SVG file.
+//! `pathwarp render IN.svg -o OUT.png`: draws an SVG file as a picture.
 
 use super::file_args;
+use crate::bitmap::encode;
 use crate::failure::Failure;
-use crate::options::{Given, reading_args};
+use crate::format::{Choice, Format, PICTURES};
+use crate::options::{Given, reading_args, some_options};
 use crate::status::Status;
 use crate::{advice, input, output, terminal};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
-use pathwarp_raster::{Color, RenderOptions, Size, encode_png};
+use pathwarp_raster::{Color, RenderOptions, Size};
 use pathwarp_svg::usvg_tree;
+use std::str::FromStr as _;
 
 pub(super) const NAME: &str = "render";
 
@@ -16,9 +19,13 @@ pub(super) fn command() -> Command {
         Arg::new(name).long(name).value_name("PX").value_parser(value_parser!(u32).range(1..)).help(help)
     };
     Command::new(NAME)
-        .about("Draw an SVG file as a PNG")
+        .about("Draw an SVG file as a picture: PNG, JPEG or WebP")
         .arg(file_args::file("INPUT", "An SVG file; - is standard input"))
-        .arg(file_args::out("OUT.png", "Write the picture to this file; - or none writes to standard output"))
+        .arg(file_args::out(
+            "OUT.png",
+            "Write the picture to this file: .png, .jpg or .webp (without loss); - or none writes to standard output",
+        ))
+        .args(some_options(&["format", "quality"]))
         .arg(pixels("width", "Width in pixels"))
         .arg(pixels("height", "Height in pixels"))
         .arg(
@@ -32,20 +39,22 @@ pub(super) fn command() -> Command {
         .arg(
             Arg::new("background")
                 .long("background")
-                .value_name("white|black|none")
-                .value_parser(["white", "black", "none"])
-                .hide_possible_values(true)
-                .default_value("none")
-                .help("Colour behind the drawing"),
+                .value_name("COLOUR|none")
+                .value_parser(background)
+                .help("Colour behind the drawing, as in CSS [default: none; white in a JPEG, which has no transparency]"),
+        )
+        .after_help(
+            "Examples:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white\n  pathwarp render \
+             samples/logo.svg -o logo.jpg --scale 3 --quality 85\n  pathwarp render samples/logo.svg --format webp > logo.webp",
         )
         .args(reading_args())
-        .after_help("Example:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white")
 }
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "INPUT")?;
     let target = file_args::target(m, [file])?;
-    file_args::check_extension(target, &["png"])?;
+    let options = Given::options(m).read()?;
+    let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
     let size = if let Some(&w) = m.get_one::<u32>("width") {
         Size::Width(w)
     } else if let Some(&h) = m.get_one::<u32>("height") {
@@ -53,19 +62,35 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     } else {
         m.get_one::<f32>("scale").map_or(Size::Native, |s| Size::Scale(*s))
     };
-    let background = match m.get_one::<String>("background").map(String::as_str) {
-        Some("white") => Some(Color::WHITE),
-        Some("black") => Some(Color::BLACK),
-        _ => None,
+    let background = match m.get_one::<Background>("background") {
+        Some(Background(None)) if format == Format::Jpeg => {
+            return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
+        }
+        Some(Background(color)) => *color,
+        // Encoded as a JPEG, a picture gets white behind it.
+        None => None,
     };
-    let reading = Given::reading(m)?;
     let bytes = input::bytes(file)?;
     let name = input::display(file);
-    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &reading))?;
-    let limits = reading.limits.for_input(bytes.len());
+    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &options.reading))?;
+    let limits = options.reading.limits.for_input(bytes.len());
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
-    let png = encode_png(&drawn.map_err(|e| Failure::from(e).about(&name))?)?;
+    let picture = encode(drawn.map_err(|e| Failure::from(e).about(&name))?, format, options.quality)?;
     advice::unread(&read.unread).iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
-    output::write(target, &png)?;
+    output::write(target, &picture)?;
     Ok(Status::partial_if(!read.unread.is_empty()))
+}
+
+/// A colour behind the drawing; `None` for transparency.
+#[derive(Clone)]
+struct Background(Option<Color>);
+
+/// Parses a colour as in CSS, or `none`.
+fn background(text: &str) -> Result<Background, String> {
+    if matches!(text, "none" | "transparent") {
+        return Ok(Background(None));
+    }
+    let c =
+        svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
+    Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }

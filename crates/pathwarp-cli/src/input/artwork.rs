@@ -9,7 +9,6 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::Overhang;
-use std::path::Path;
 
 /// Artwork of one kind, read and ready to be warped.
 pub(crate) trait Artwork {
@@ -59,8 +58,6 @@ pub(crate) struct WarpRequest<'a> {
     pub(crate) bounds: Option<Rect>,
     /// User units.
     pub(crate) tolerance: f64,
-    /// `None`: standard output, or the copy that `--into` names.
-    pub(crate) target: Option<&'a Path>,
     /// The recipe file's text, to be embedded in the result.
     pub(crate) embedded_recipe: Option<String>,
 }
@@ -75,7 +72,7 @@ pub(crate) struct WarpedArtwork {
     pub(crate) overhang: Option<Overhang>,
     /// Files besides the result.
     pub(crate) files: Vec<PendingFile>,
-    /// The PNG of `--preview`.
+    /// The picture of `--preview`.
     pub(crate) preview: Option<Vec<u8>>,
     /// Something was left out besides the skipped shapes.
     pub(crate) partial: bool,

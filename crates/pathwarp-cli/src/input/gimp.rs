@@ -7,7 +7,9 @@ use super::gimp_format::{GimpFormat, format};
 use super::gimp_stroke::{WarpedStrokes, single_precision_error, warp_strokes};
 use super::read::display;
 use super::{preview, surface};
+use crate::export::{self, Exported};
 use crate::failure::Failure;
+use crate::format::Format;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
@@ -63,28 +65,43 @@ impl GimpArtwork {
             && !guides.contains(&p.name)
     }
 
-    /// Writes the warped paths in the format chosen.
-    fn write(&self, warped: &WarpedPaths, request: &WarpRequest<'_>) -> Result<WarpedResult, Failure> {
+    /// Writes the warped paths in the format chosen. Returns the result and what the format could not take.
+    fn write(&self, warped: &WarpedPaths, request: &WarpRequest<'_>) -> Result<(WarpedResult, Vec<String>), Failure> {
         let canvas = self.file.canvas();
         let built = request.built;
         // Coordinates that have not moved are not rounded.
         let unmoved = built.map.class() == Class::Affine(Affine::IDENTITY) && built.placement.copies.is_empty();
         let precision = request.options.precision.or((!unmoved).then(|| decimals_for(request.tolerance)));
-        Ok(match (self.format, &request.options.into) {
+        let format = match (self.format, &request.options.into) {
             (GimpFormat::IntoXcf, Some(copy)) => {
-                WarpedResult::File(copy_with_paths(&self.file.path, copy, &warped.strokes)?)
+                let file = copy_with_paths(&self.file.path, copy, &warped.strokes)?;
+                return Ok((WarpedResult::File(file), Vec::new()));
             }
-            (GimpFormat::Json, _) => WarpedResult::Bytes(to_json(Some(canvas), &warped.paths(self)).into_bytes()),
-            _ => WarpedResult::Bytes(to_svg(canvas, &warped.paths(self), precision).into_bytes()),
-        })
+            (GimpFormat::Paths(format), _) => format,
+            (GimpFormat::IntoXcf, None) => Format::Svg,
+        };
+        let paths = warped.paths(self);
+        let Exported { bytes, warnings } = match format {
+            Format::PointList => to_json(Some(canvas), &paths).into_bytes().into(),
+            drawing => {
+                let svg = to_svg(canvas, &paths, precision);
+                export::drawing(svg, drawing, &ReadOptions::default(), request.options, Some(request.tolerance))?
+            }
+        };
+        Ok((WarpedResult::Bytes(bytes), warnings))
     }
 
-    fn preview(&self, warped: &WarpedPaths, built: &BuiltRecipe) -> Result<Vec<u8>, Failure> {
+    fn preview(
+        &self,
+        warped: &WarpedPaths,
+        built: &BuiltRecipe,
+        file: (&Path, Option<u8>),
+    ) -> Result<Vec<u8>, Failure> {
         let canvas = self.file.canvas();
         let before: Vec<GimpPath> = self.selected.iter().map(|&i| self.path(i).clone()).collect();
         let (before, after) = (to_svg(canvas, &before, None), to_svg(canvas, &warped.paths(self), None));
         let doc = Document::read(before.as_bytes(), &self.file_name(), &ReadOptions::default())?;
-        preview::draw(&doc, &after, built, &ReadOptions::default())
+        preview::draw(&doc, &after, built, &ReadOptions::default(), file)
     }
 }
 
@@ -136,11 +153,14 @@ impl Artwork for GimpArtwork {
         if empty {
             warped.warnings.push("there is nothing to warp: no paths with strokes".into());
         }
+        let (result, lost) = self.write(&warped, request)?;
+        warped.warnings.extend(lost);
+        let preview = options.preview.as_deref().map(|file| self.preview(&warped, built, (file, options.quality)));
         Ok(WarpedArtwork {
-            result: self.write(&warped, request)?,
+            result,
             overhang: None,
             files: Vec::new(),
-            preview: options.preview.is_some().then(|| self.preview(&warped, built)).transpose()?,
+            preview: preview.transpose()?,
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings: warped.warnings,

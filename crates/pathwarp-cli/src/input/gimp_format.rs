@@ -4,18 +4,21 @@ use super::gimp_file::GimpFile;
 use super::read::display;
 use super::reference_name::split_reference;
 use crate::failure::Failure;
+use crate::format::{Choice, Format};
 use crate::options::CommonOptions;
 use pathwarp_gimp::FileKind;
 use std::path::Path;
 
-/// The format in which warped GIMP paths are written.
+/// The form in which warped GIMP paths are written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum GimpFormat {
-    Svg,
-    Json,
+    Paths(Format),
     /// A copy of the input XCF.
     IntoXcf,
 }
+
+/// The formats of GIMP paths.
+pub(crate) const PATHS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Dxf, Format::PointList];
 
 /// The format for the options and the target, `None` being standard output.
 ///
@@ -31,16 +34,13 @@ pub(super) fn format(options: &CommonOptions, input: &GimpFile, target: Option<&
         check_into(input, copy)?;
         return Ok(GimpFormat::IntoXcf);
     }
-    let Some(extension) = target.and_then(Path::extension) else { return Ok(GimpFormat::Svg) };
-    match extension.to_string_lossy().to_ascii_lowercase().as_str() {
-        "svg" => Ok(GimpFormat::Svg),
-        "json" => Ok(GimpFormat::Json),
-        "xcf" => Err(Failure::usage(
+    if target.is_some_and(|t| Format::of(t) == Some(Format::Xcf)) {
+        return Err(Failure::usage(
             "an XCF holds more than paths; --into COPY.xcf writes a copy of the input with its paths warped (--into \
              INPUT.xcf --in-place overwrites the input)",
-        )),
-        other => Err(Failure::usage(format!("GIMP paths are written as .svg or .json, not as .{other}"))),
+        ));
     }
+    Ok(GimpFormat::Paths(Choice { what: "GIMP paths are", among: PATHS }.format(target, options.format)?))
 }
 
 /// Checks that the paths of `input` can be written into its copy.
@@ -59,11 +59,6 @@ fn check_into(input: &GimpFile, copy: &Path) -> Result<(), Failure> {
         return Err(Failure::usage(format!("--into writes an XCF; give {} the extension .xcf", copy.display())));
     }
     Ok(())
-}
-
-/// Returns `true` if a result of this name would be a point list or an XCF.
-pub(super) fn is_named_point_list_or_xcf(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json") || e.eq_ignore_ascii_case("xcf"))
 }
 
 /// The name of the SVG made from a GIMP input: `art.xcf.gz#Cage` gives `art-Cage.svg`. `None` for other inputs.

@@ -1,4 +1,4 @@
-//! Photographs (PNG, JPEG) as artwork: warped pixel by pixel, by the same maps as a drawing.
+//! Photographs (PNG, JPEG, WebP) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
 use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::read::display;
@@ -6,6 +6,7 @@ use super::reference_name::no_document;
 use crate::advice;
 use crate::bitmap::{ROUNDING, inverse};
 use crate::failure::Failure;
+use crate::format::{Choice, PICTURES};
 use crate::options::{CommonOptions, FrameChoice};
 use pathwarp::budget::{Limit, Limits};
 use pathwarp::kurbo::{Affine, Point, Rect};
@@ -34,7 +35,8 @@ impl PictureArtwork {
         options: &CommonOptions,
         target: Option<&Path>,
     ) -> Result<Self, Failure> {
-        let format = format(target)?;
+        let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
+        let format = format.of_picture(options.quality).unwrap_or_default();
         let name = display(input);
         for (given, option) in [
             (!options.select.is_empty(), "select"),
@@ -128,21 +130,6 @@ impl Artwork for PictureArtwork {
             preview: None,
             partial: undefined.is_some(),
         })
-    }
-}
-
-/// Returns `true` if a file of this name would hold pixels.
-pub(super) fn is_named_picture(path: &Path) -> bool {
-    path.extension().is_some() && format(Some(path)).is_ok()
-}
-
-/// The format that the target's extension names; PNG without one.
-fn format(target: Option<&Path>) -> Result<PictureFormat, Failure> {
-    let Some(extension) = target.and_then(Path::extension) else { return Ok(PictureFormat::Png) };
-    match extension.to_string_lossy().to_ascii_lowercase().as_str() {
-        "png" => Ok(PictureFormat::Png),
-        "jpg" | "jpeg" => Ok(PictureFormat::Jpeg),
-        other => Err(Failure::usage(format!("a picture is written as .png or .jpg, not as .{other}"))),
     }
 }
 

@@ -1,14 +1,28 @@
 //! `--preview`: the artwork with its guides beside the result.
 
+use crate::bitmap::encode;
 use crate::failure::Failure;
+use crate::format::{Choice, PICTURES};
 use pathwarp::deform::Role;
 use pathwarp::kurbo::{Rect, Shape};
 use pathwarp::recipe::BuiltRecipe;
-use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay, encode_png};
+use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
 use pathwarp_svg::{Document, ReadOptions, Selection, usvg_tree};
+use std::path::Path;
 
-/// Draws the PNG. Bases are drawn over the source; targets and cages over the result.
-pub(super) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &ReadOptions) -> Result<Vec<u8>, Failure> {
+/// The formats of previews.
+pub(crate) const PREVIEW: Choice<'_> = Choice { what: "a preview is", among: PICTURES };
+
+/// Draws the picture for a file, with a quality if it is a JPEG. Bases are drawn over the source; targets and cages over the
+/// result.
+pub(super) fn draw(
+    doc: &Document,
+    warped: &str,
+    built: &BuiltRecipe,
+    read: &ReadOptions,
+    (file, quality): (&Path, Option<u8>),
+) -> Result<Vec<u8>, Failure> {
+    let format = PREVIEW.format(Some(file), None)?;
     let after = Document::read(warped.as_bytes(), "the result", read)?;
     let mut left = Panel::new(usvg_tree::tree(doc), doc.user_to_px(), doc.view_box());
     let mut right = Panel::new(usvg_tree::tree(&after), after.user_to_px(), after.view_box());
@@ -34,5 +48,5 @@ pub(super) fn draw(doc: &Document, warped: &str, built: &BuiltRecipe, read: &Rea
             *panel = panel.clone().with(PreviewOverlay::new(kind, o.path.clone()));
         }
     }
-    Ok(encode_png(&Preview::new(left, right).view(view).render_within(doc.budget().limits())?)?)
+    encode(Preview::new(left, right).view(view).render_within(doc.budget().limits())?, format, quality)
 }

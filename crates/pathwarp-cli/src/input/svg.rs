@@ -2,16 +2,17 @@
 
 use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
 use super::folds::{self, Fold};
-use super::gimp_format::is_named_point_list_or_xcf;
-use super::picture::is_named_picture;
 use super::read::{display, read_options};
 use super::{preview, surface};
 use crate::advice;
 use crate::bitmap::Bender;
+use crate::export;
 use crate::failure::Failure;
+use crate::format::{Choice, DRAWINGS, Format};
 use crate::options::{CommonOptions, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
+use crate::units::units_per_px;
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
@@ -19,7 +20,7 @@ use pathwarp::refit;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::{
     Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions,
-    WarpedDocument, compressed,
+    WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -36,6 +37,8 @@ pub(crate) struct SvgArtwork {
     doc: Document,
     read: ReadOptions,
     selection: Selection,
+    /// The format of the result.
+    format: Format,
 }
 
 impl SvgArtwork {
@@ -45,24 +48,13 @@ impl SvgArtwork {
         options: &CommonOptions,
         target: Option<&Path>,
     ) -> Result<Self, Failure> {
-        if let Some(t) = target.filter(|t| is_named_point_list_or_xcf(t)) {
-            let advice =
-                "point lists and XCF are written for GIMP inputs only; `pathwarp convert` makes them from an SVG";
-            return Err(Failure::usage(format!("{}: {advice}", t.display())));
-        }
-        if let Some(t) = target.filter(|t| is_named_picture(t)) {
-            let advice = "a drawing is written as SVG; --preview and `pathwarp render` make pictures of it";
-            return Err(Failure::usage(format!("{}: {advice}", t.display())));
-        }
-        if let Some(t) = target {
-            check_extension(t, input)?;
-        }
+        let format = format(options, input, target)?;
         let (name, read) = (display(input), read_options(input, &options.reading));
         let doc = Document::read(bytes, &name, &read)?;
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
         doc.check_selection(&selection)?;
-        Ok(Self { name, doc, read, selection })
+        Ok(Self { name, doc, read, selection, format })
     }
 
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
@@ -159,15 +151,16 @@ impl SvgArtwork {
     }
 }
 
-/// Checks that the target's extension is that of a drawing, or the input's own; a name without one is taken as it is.
-fn check_extension(target: &Path, input: &Path) -> Result<(), Failure> {
-    let Some(extension) = target.extension() else { return Ok(()) };
-    let known = ["svg", "svgz"].iter().any(|e| extension.eq_ignore_ascii_case(e));
-    if known || input.extension() == Some(extension) {
-        return Ok(());
+/// The format of the result. An extension that says none may be the input's own, which then is SVG, too.
+fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Result<Format, Failure> {
+    let is_own = |t: &&Path| Format::of(t).is_none() && t.extension() == input.extension();
+    let named = if target.as_ref().is_some_and(is_own) { None } else { target };
+    let format = Choice { what: "a drawing is", among: DRAWINGS }.format(named, options.format)?;
+    if options.embed_recipe && !matches!(format, Format::Svg | Format::Svgz) {
+        let word = format.extension();
+        return Err(Failure::usage(format!("--embed-recipe is for SVG files; a .{word} has no place for the source")));
     }
-    let problem = "a drawing is written as .svg or .svgz";
-    Err(Failure::usage(format!("{}: {problem}, not as .{}", target.display(), extension.to_string_lossy())))
+    Ok(format)
 }
 
 fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ReportedShape {
@@ -232,9 +225,7 @@ impl Artwork for SvgArtwork {
     }
 
     fn units_per_px(&self) -> [f64; 2] {
-        let [a, b, c, d, ..] = self.doc.user_to_px().as_coeffs();
-        let usable = |px: f64| if px > 0.0 && px.is_finite() { 1.0 / px } else { 1.0 };
-        [usable(a.hypot(b)), usable(c.hypot(d))]
+        units_per_px(&self.doc)
     }
 
     fn outlines(&self) -> Vec<&Outline> {
@@ -260,15 +251,13 @@ impl Artwork for SvgArtwork {
         let surfaces = surface::files(&self.doc, built, &options)?;
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;
-        let preview = common.preview.is_some().then(|| preview::draw(&self.doc, &warped.svg, built, &self.read));
-        let result = match request.target {
-            Some(t) if t.extension().is_some_and(|e| e.eq_ignore_ascii_case("svgz")) => {
-                compressed(&warped.svg).map_err(|e| Failure::file(t, e))?
-            }
-            _ => warped.svg.into_bytes(),
-        };
+        let preview = common.preview.as_deref();
+        let preview =
+            preview.map(|file| preview::draw(&self.doc, &warped.svg, built, &self.read, (file, common.quality)));
+        let result = export::drawing(warped.svg, self.format, &self.read, common, Some(request.tolerance))?;
+        warnings.extend(result.warnings);
         Ok(WarpedArtwork {
-            result: WarpedResult::Bytes(result),
+            result: WarpedResult::Bytes(result.bytes),
             shapes,
             skipped: warped.skipped.into_iter().map(|s| SkippedShape { id: s.id, why: s.why }).collect(),
             warnings,

@@ -11,7 +11,7 @@ pub(super) const INPUT: &str = "INPUT";
 /// The inputs and the common options.
 pub(crate) fn args() -> impl Iterator<Item = Arg> {
     let inputs = Arg::new(INPUT).num_args(0..).value_parser(value_parser!(PathBuf)).help(
-        "SVG files (also .svgz), PNG or JPEG pictures, or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none \
+        "SVG files (also .svgz), PNG, JPEG or WebP pictures, or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none \
          reads standard input",
     );
     std::iter::once(inputs).chain(options_without_inputs())
@@ -19,7 +19,12 @@ pub(crate) fn args() -> impl Iterator<Item = Arg> {
 
 /// The common options, without the inputs.
 pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
-    OPTIONS.iter().map(arg)
+    OPTIONS.iter().map(|o| arg(o).help_heading("Common options").conflicts_with_all(o.conflicts.iter().copied()))
+}
+
+/// Those of the common options that a command shares, with these names.
+pub(crate) fn some_options(names: &[&str]) -> impl Iterator<Item = Arg> {
+    OPTIONS.iter().filter(|o| names.contains(&o.name)).map(arg)
 }
 
 /// The options about reading drawings, for commands that have no other common options.
@@ -28,11 +33,7 @@ pub(crate) fn reading_args() -> impl Iterator<Item = Arg> {
 }
 
 fn arg(option: &CommonOption) -> Arg {
-    let mut arg = Arg::new(option.name)
-        .long(option.name)
-        .help(option.help())
-        .help_heading("Common options")
-        .conflicts_with_all(option.conflicts.iter().copied());
+    let mut arg = Arg::new(option.name).long(option.name).help(option.help());
     if let Some(c) = option.short {
         arg = arg.short(c);
     }

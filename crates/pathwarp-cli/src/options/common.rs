@@ -3,8 +3,10 @@
 use super::reading::Reading;
 use super::typed_box::TypedBox;
 use crate::failure::Failure;
+use crate::format::Format;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length};
+use pathwarp_dxf::Curves;
 use pathwarp_svg::{LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::path::PathBuf;
 
@@ -65,6 +67,8 @@ pub(crate) struct CommonOptions {
     /// `None`: standard output.
     pub(crate) out: Option<PathBuf>,
     pub(crate) out_dir: Option<PathBuf>,
+    /// `None`: by the extension.
+    pub(crate) format: Option<Format>,
     /// Overwrite the inputs.
     pub(crate) in_place: bool,
     /// Warp the SVG files in folders.
@@ -93,6 +97,10 @@ pub(crate) struct CommonOptions {
     pub(crate) image_dpi: Option<f64>,
     /// Width, and height if given, of a warped picture in pixels.
     pub(crate) image_size: Option<(u32, Option<u32>)>,
+    /// Form of Bézier curves in a DXF.
+    pub(crate) dxf_curves: Curves,
+    /// Quality of a JPEG, from 1 to 100.
+    pub(crate) quality: Option<u8>,
     pub(crate) on_failure: OnFailure,
     pub(crate) report: Option<PathBuf>,
     pub(crate) preview: Option<PathBuf>,

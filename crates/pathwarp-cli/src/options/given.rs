@@ -26,7 +26,7 @@ impl Given {
         Self { inputs, ..Self::options(m) }
     }
 
-    /// The options of a parsed command line without inputs.
+    /// The options of a parsed command line without inputs. The command may have only some of them.
     pub(crate) fn options(m: &ArgMatches) -> Self {
         Self::of(OPTIONS.iter(), m)
     }
@@ -34,7 +34,8 @@ impl Given {
     fn of(options: impl Iterator<Item = &'static CommonOption>, m: &ArgMatches) -> Self {
         let mut values = Vec::new();
         for option in options {
-            if m.value_source(option.name) != Some(ValueSource::CommandLine) {
+            let is_declared = m.try_contains_id(option.name).is_ok();
+            if !is_declared || m.value_source(option.name) != Some(ValueSource::CommandLine) {
                 continue;
             }
             let typed = match option.value {
@@ -54,8 +55,7 @@ impl Given {
     /// # Errors
     /// A value with its own syntax cannot be parsed.
     pub(crate) fn reading(m: &ArgMatches) -> Result<Reading, Failure> {
-        let declared = |o: &&CommonOption| o.reading && matches!(m.try_contains_id(o.name), Ok(true));
-        Ok(Self::of(OPTIONS.iter().filter(declared), m).read()?.reading)
+        Ok(Self::of(OPTIONS.iter().filter(|o| o.reading), m).read()?.reading)
     }
 
     /// Adds the value of an option named in a recipe. Of several values for an option that does not repeat, the last wins.

@@ -3,6 +3,8 @@
 use super::common::{CommonOptions, GradientChoice, OnFailure};
 use super::definition::{CommonOption, LeadingMinus, OptionValue};
 use super::parse;
+use crate::format::Format;
+use pathwarp_dxf::Curves;
 use pathwarp_svg::{PageFit, Patterns, Strokes, Structure, TextMode};
 
 /// An option without short name, default and conflicts, stored in recipes.
@@ -32,8 +34,29 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         ..of_the_run(
             "out",
             OptionValue::File { name: "OUT", set: |o, file| o.out = Some(file).filter(|f| f.as_os_str() != "-") },
-            "Write the result to this file; - or none writes to standard output. {stem} in the name stands for the \
-             input's name without extension",
+            "Write the result to this file, in the format of its extension (--format); - or none writes to standard \
+             output. {stem} in the name stands for the input's name without extension",
+        )
+    },
+    CommonOption {
+        default: Some("auto"),
+        conflicts: &["into"],
+        ..of_the_run(
+            "format",
+            OptionValue::Choice(&[
+                ("auto", |o| o.format = None),
+                ("svg", |o| o.format = Some(Format::Svg)),
+                ("svgz", |o| o.format = Some(Format::Svgz)),
+                ("pdf", |o| o.format = Some(Format::Pdf)),
+                ("dxf", |o| o.format = Some(Format::Dxf)),
+                ("png", |o| o.format = Some(Format::Png)),
+                ("jpg", |o| o.format = Some(Format::Jpeg)),
+                ("webp", |o| o.format = Some(Format::WebP)),
+                ("json", |o| o.format = Some(Format::PointList)),
+            ]),
+            "Format of the result: of a drawing svg, svgz, pdf or dxf (outlines in mm), of a picture png, jpg or webp \
+             (without loss), of GIMP paths also json. auto goes by the extension; to standard output drawings are \
+             written as svg, pictures as png. With --out-dir it names the files, too",
         )
     },
     CommonOption {
@@ -304,7 +327,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 minus: LeadingMinus::No,
                 set: |o, text| parse::positive(text).map(|dpi| o.image_dpi = Some(dpi)),
             },
-            "Resolution of the warped bitmaps in a drawing, in pixels per inch of the drawing",
+            "Resolution of the warped bitmaps in a drawing, in pixels per inch of the drawing; also of what filters draw in \
+             a PDF (there 300 by default)",
         )
     },
     CommonOption {
@@ -316,7 +340,27 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 minus: LeadingMinus::No,
                 set: |o, text| parse::image_size(text).map(|size| o.image_size = Some(size)),
             },
-            "Size in pixels of a warped PNG or JPEG",
+            "Size in pixels of a warped PNG, JPEG or WebP",
+        )
+    },
+    CommonOption {
+        default: Some("spline"),
+        ..stored(
+            "dxf-curves",
+            OptionValue::Choice(&[
+                ("spline", |o| o.dxf_curves = Curves::Splines),
+                ("polyline", |o| o.dxf_curves = Curves::Polylines),
+            ]),
+            "Curves in a DXF: exact splines, or for programs that know none, one polyline per contour within the \
+             tolerance. Lines, arcs and circles are exact in both",
+        )
+    },
+    CommonOption {
+        default: Some("92"),
+        ..stored(
+            "quality",
+            OptionValue::Whole { name: "N", range: 1..=100, set: |o, n| o.quality = u8::try_from(n).ok() },
+            "Quality of a JPEG, from 1 (small) to 100 (fine)",
         )
     },
     CommonOption {
@@ -335,12 +379,12 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     of_the_run(
         "report",
         OptionValue::File { name: "FILE", set: |o, file| o.report = Some(file) },
-        "Write a report of every shape as JSON",
+        "Write a report of every shape as JSON; - writes it to standard output",
     ),
     of_the_run(
         "write-recipe",
         OptionValue::File { name: "FILE", set: |o, file| o.write_recipe = Some(file) },
-        "Save this command line as a recipe for `pathwarp run`",
+        "Save this command line as a recipe for `pathwarp run`; - writes it to standard output",
     ),
     of_the_run(
         "embed-recipe",
@@ -350,7 +394,7 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
     of_the_run(
         "preview",
         OptionValue::File { name: "FILE", set: |o, file| o.preview = Some(file) },
-        "Draw the artwork, its guides and the result as a PNG",
+        "Draw the artwork, its guides and the result as a picture (.png, .jpg or .webp; - is a PNG on standard output)",
     ),
     of_the_run(
         "explain",

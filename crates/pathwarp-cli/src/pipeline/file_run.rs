@@ -54,7 +54,7 @@ impl Batch<'_> {
 
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
-        let request = WarpRequest { built: &built, options, bounds, tolerance, target, embedded_recipe };
+        let request = WarpRequest { built: &built, options, bounds, tolerance, embedded_recipe };
         let warped = artwork.warp(&request).map_err(|f| explained(f, &built))?;
 
         let mut files = Vec::new();

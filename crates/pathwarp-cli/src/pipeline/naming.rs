@@ -25,14 +25,15 @@ pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<P
     Some(named.parent().unwrap_or(Path::new("")).join(below).join(file))
 }
 
-/// The output of `input` in the folder `dir`, which may be a pattern: of a folder, or of a file with an extension. `None` if the
-/// input has no name.
-pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
+/// The output of `input` in the folder `dir`, which may be a pattern: of a folder, or of a file with an extension. In a folder it
+/// has the input's name, with `extension` if given. `None` if the input has no name.
+pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Option<&str>) -> Option<PathBuf> {
     let last = dir.file_name().unwrap_or_default();
     if is_pattern(Path::new(last)) && dir.extension().is_some() {
         return by_pattern(dir, input, below);
     }
     let name = own_name(input)?;
+    let name = extension.map_or(name.clone(), |e| name.with_extension(e));
     let dir = if is_pattern(dir) { dir.to_string_lossy().replace(STEM, &stem(input)?).into() } else { dir.to_owned() };
     Some(dir.join(below).join(name))
 }
@@ -56,14 +57,19 @@ mod tests {
     #[test]
     fn patterns_and_folders() {
         let input = Path::new("art/sub/cat.svg");
-        let name = |dir: &str, below: &str| in_folder(Path::new(dir), input, Path::new(below)).unwrap();
+        let named =
+            |dir: &str, below: &str, extension| in_folder(Path::new(dir), input, Path::new(below), extension).unwrap();
+        let name = |dir: &str, below: &str| named(dir, below, None);
         assert_eq!(name("out", ""), Path::new("out/cat.svg"));
         assert_eq!(name("out", "sub"), Path::new("out/sub/cat.svg"));
         assert_eq!(name("out/{stem}", ""), Path::new("out/cat/cat.svg"));
         assert_eq!(name("out/{stem}-bent.svg", "sub"), Path::new("out/sub/cat-bent.svg"));
         assert_eq!(name("out/v1.2", ""), Path::new("out/v1.2/cat.svg"));
         assert_eq!(by_pattern(Path::new("{stem}.png"), input, Path::new("")).unwrap(), Path::new("cat.png"));
-        assert_eq!(in_folder(Path::new("out"), Path::new("-"), Path::new("")), None);
+        assert_eq!(named("out", "sub", Some("pdf")), Path::new("out/sub/cat.pdf"));
+        assert_eq!(named("out/{stem}", "", Some("pdf")), Path::new("out/cat/cat.pdf"));
+        assert_eq!(named("out/{stem}.dxf", "", Some("pdf")), Path::new("out/cat.dxf"));
+        assert_eq!(in_folder(Path::new("out"), Path::new("-"), Path::new(""), None), None);
         assert_eq!(fixed_folder(Path::new("out/a/{stem}/x.svg")), Path::new("out/a"));
     }
 }

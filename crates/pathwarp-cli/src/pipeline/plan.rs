@@ -3,6 +3,8 @@
 use super::inputs::InputFile;
 use super::naming::{by_pattern, in_folder, is_pattern};
 use crate::failure::Failure;
+use crate::format::Format;
+use crate::input::PREVIEW;
 use crate::options::CommonOptions;
 use crate::output::is_device;
 use crate::references::{files_read, files_written};
@@ -57,11 +59,8 @@ pub(super) fn plan(
     for (option, file) in files_written(registry, recipe) {
         files.write(file, option)?;
     }
-    if let Some(extension) = options.preview.as_ref().and_then(|p| p.extension())
-        && !extension.eq_ignore_ascii_case("png")
-    {
-        let extension = extension.to_string_lossy();
-        return Err(Failure::usage(format!("--preview: a preview is written as .png, not as .{extension}")));
+    if let Some(preview) = &options.preview {
+        PREVIEW.format(Some(preview), None)?;
     }
     Ok(jobs)
 }
@@ -97,7 +96,10 @@ fn job(options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
         }
     };
     let target = match (&options.out_dir, &options.out) {
-        (Some(dir), _) => Some(in_folder(dir, path, below).ok_or_else(|| unnamed("--out-dir"))?),
+        (Some(dir), _) => {
+            let extension = options.format.map(Format::extension);
+            Some(in_folder(dir, path, below, extension).ok_or_else(|| unnamed("--out-dir"))?)
+        }
         (None, Some(out)) => Some(expanded(out, "{stem}")?),
         (None, None) if options.in_place && options.into.is_none() => {
             Some(path.clone()).filter(|p| p.as_os_str() != "-").ok_or_else(|| unnamed("--in-place")).map(Some)?

@@ -10,6 +10,7 @@ pub(crate) mod geometry;
 pub(crate) mod lettering;
 pub(crate) mod letters;
 pub(crate) mod model;
+pub(crate) mod plot;
 pub(crate) mod regular;
 pub(crate) mod resolve;
 pub(crate) mod seen;

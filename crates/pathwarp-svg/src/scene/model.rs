@@ -43,6 +43,8 @@ pub(crate) struct Part {
     /// The stroke width is in px regardless of the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
     pub(crate) slot: Option<usize>,
+    /// Address of usvg's path (which the document keeps alive); 0 if there is none.
+    pub(crate) path: usize,
     /// `true` for parts of laid-out pattern tiles. If such a part has a stroke, `local` is the outline of that stroke.
     pub(crate) in_tile: bool,
     /// Laid-out tiles of the fill's pattern, and of the stroke's.
@@ -67,6 +69,7 @@ impl Part {
             visible: true,
             fixed_width: false,
             slot: None,
+            path: 0,
             in_tile: false,
             fill_tiles: None,
             stroke_tiles: None,

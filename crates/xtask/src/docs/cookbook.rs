@@ -74,7 +74,7 @@ paint, at actual size. Lengths may have units: `--eye-height 1.2m --distance 20m
         name: "nameplate",
         title: "A drawing on a nameplate for the laser",
         text: "Line art fills a rounded plate. `--strokes keep` keeps each line a centre line with a width, as \
-laser cutters and engravers expect. A rounded box has no sharp corners, so the midpoint of each rounding serves as one.",
+laser cutters and engravers expect; `-o out.dxf` writes them for the machine, in mm. A rounded box has no sharp corners, so the midpoint of each rounding serves as one.",
         command: "envelope samples/lineart.svg --envelope 'M34,40 H326 A34,34 0 0 1 360,74 V204 A34,34 0 0 1 326,238 H34 A34,34 0 0 1 0,204 V74 A34,34 0 0 1 34,40 Z' --strokes keep --fit grow -o out.svg",
     },
     CookbookEntry {

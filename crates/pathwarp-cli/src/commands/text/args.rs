@@ -1,7 +1,7 @@
 //! The options of `pathwarp text`.
 
 use super::super::file_args;
-use crate::options::reading_args;
+use crate::options::{reading_args, some_options};
 use clap::{Arg, ArgAction, value_parser};
 use std::path::PathBuf;
 
@@ -17,6 +17,7 @@ Examples:
   pathwarp text Welcome --font 'DejaVu Serif' --weight bold --size 20mm --fill '#a30' -o word.svg
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
+  pathwarp text Welcome --size 40mm -o sign.dxf
   pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' --fit grow -o arc.svg";
 
 /// An option with a value that is parsed later, and may start with a minus.
@@ -37,6 +38,7 @@ fn choice(name: &'static str, words: &'static [&'static str], help: &'static str
 /// All options, in the order of help.
 pub(super) fn args() -> Vec<Arg> {
     let mut all = text_and_font();
+    all.extend(some_options(&["format", "dxf-curves", "tolerance"]));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
     all.extend(shaping().map(|a| a.help_heading(SHAPING)));
     all.extend(reading_args());
@@ -55,7 +57,10 @@ fn text_and_font() -> Vec<Arg> {
             .value_parser(value_parser!(PathBuf))
             .conflicts_with("WORDS")
             .help("Read the text from a file; - is standard input"),
-        file_args::out("OUT.svg", "Write the drawing to this file; - or none writes to standard output"),
+        file_args::out(
+            "OUT.svg",
+            "Write the drawing to this file: .svg, .svgz, .pdf or .dxf; - or none writes to standard output",
+        ),
         value(
             "font",
             "FILE|FAMILY",

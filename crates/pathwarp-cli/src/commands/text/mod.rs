@@ -6,13 +6,15 @@ mod style;
 mod words;
 
 use super::file_args;
+use crate::export;
 use crate::failure::Failure;
+use crate::format::{Choice, DRAWINGS};
 use crate::options::Given;
 use crate::status::Status;
 use crate::{output, terminal};
 use clap::{ArgMatches, Command};
 use fonts::Wanted;
-use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
+use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, bundled_font, write_lettering};
 use pathwarp_text::{Font, layout};
 use std::path::{Path, PathBuf};
 use style::Em;
@@ -31,7 +33,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
     let target = file_args::target(m, read.chain(names.iter().map(Path::new)))?;
-    file_args::check_extension(target, &["svg"])?;
+    let options = Given::options(m).read()?;
+    let format = Choice { what: "lettering is", among: DRAWINGS }.format(target, options.format)?;
     let text = words::words(m)?;
     let em = Em::given(m)?;
     let style = style::style(m, &em)?;
@@ -56,7 +59,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     if !set.missing.is_empty() && !m.get_flag("quiet") {
         terminal::warning(&missing(&set.missing, &names));
     }
-    output::write(target, svg.as_bytes())?;
+    let result = export::drawing(svg, format, &ReadOptions::default(), &options, None)?;
+    output::write(target, &result.bytes)?;
     Ok(Status::partial_if(!set.missing.is_empty()))
 }
 

@@ -127,6 +127,7 @@ fn part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Contex
         visible: p.is_visible(),
         fixed_width,
         slot: context.slot,
+        path: std::ptr::from_ref(p) as usize,
         fill_tiles,
         stroke_tiles,
         ..Part::plain(context.role, context.owner, traced.outline, frame)

@@ -1,0 +1,52 @@
+//! Writes outlines as DXF, the format that laser cutters, plotters and CAD programs read.
+//!
+//! Lines, circles and circular arcs are exact: `LINE`, `CIRCLE`, `ARC`, or an `LWPOLYLINE` where they follow one another.
+//! Ellipses and their arcs are exact `ELLIPSE`s, Bézier curves exact `SPLINE`s of degree 3, split at corners. For programs that
+//! know no splines, [`Curves::Polylines`] makes every subpath one `LWPOLYLINE` within a tolerance.
+//!
+//! Files are of version AC1018 (AutoCAD 2004), the first with true colours: plain text with characters beyond ASCII escaped.
+//! The unit is the millimetre. They hold neither dates nor random ids: the same outlines always give the same text.
+//!
+//! Source: Autodesk, *DXF Reference* (2011).
+//!
+//! ```
+//! use pathwarp::Outline;
+//! use pathwarp_dxf::{Options, Shape, write};
+//!
+//! let outline = Outline::from_svg("M0,0 H50 V20 A10,10 0 0 1 40,30 H0 Z").unwrap();
+//! let dxf = write(&[Shape { layer: "cut", color: Some([255, 0, 0]), outline: &outline }], &Options::default());
+//! assert!(dxf.contains("LWPOLYLINE"));
+//! ```
+
+mod codes;
+mod color;
+mod entities;
+mod file;
+mod flatten;
+mod layers;
+mod model;
+mod runs;
+
+pub use model::{Curves, Options, Shape};
+
+use codes::Codes;
+use entities::Pen;
+use layers::Layers;
+
+/// Returns a DXF file with the outlines of these shapes.
+#[must_use]
+pub fn write(shapes: &[Shape<'_>], options: &Options) -> String {
+    let layers = Layers::of(shapes);
+    let mut out = Codes::new();
+    file::start(&mut out, &layers, options);
+    for shape in shapes {
+        let pen = Pen { layer: layers.name(shape.layer), color: shape.color };
+        for subpath in &shape.outline.subpaths {
+            match options.curves {
+                Curves::Splines => entities::exact(&mut out, &pen, subpath, options.tolerance),
+                Curves::Polylines => entities::polyline(&mut out, &pen, subpath, options.tolerance),
+            }
+        }
+    }
+    file::finish(out)
+}

@@ -1,0 +1,155 @@
+//! The file under construction: its objects, and the function that draws groups.
+
+use crate::options::Options;
+use crate::space::pdf_rect;
+use crate::stream::Stream;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use kurbo::Rect;
+use pdf_writer::types::{BlendMode, MaskType};
+use pdf_writer::{Filter, Name, Pdf, Ref};
+use std::collections::HashMap;
+use std::io::Write as _;
+
+/// Draws a group. Patterns, masks and images hold groups, and groups hold them.
+pub(crate) type DrawGroup = fn(&mut File<'_>, &mut Stream, &usvg::Group);
+
+/// A PDF under construction.
+pub(crate) struct File<'a> {
+    pub(crate) pdf: Pdf,
+    pub(crate) options: &'a Options<'a>,
+    pub(crate) draw: DrawGroup,
+    /// Number of groups that became pictures.
+    pub(crate) pictures: usize,
+    last: i32,
+    states: HashMap<State, Ref>,
+}
+
+/// Parameters of a graphics state.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub(crate) struct State {
+    /// Opacity, by its bits.
+    opacity: Option<u32>,
+    blend: Option<Blend>,
+    mask: Option<(MaskKind, Ref)>,
+}
+
+/// A blend mode, by its place in the list of PDF's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Blend(u8);
+
+/// The property of a mask's content that counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum MaskKind {
+    Luminosity,
+    Alpha,
+}
+
+impl State {
+    pub(crate) fn opacity(mut self, opacity: f32) -> Self {
+        self.opacity = (opacity < 1.0).then_some(opacity.to_bits());
+        self
+    }
+
+    pub(crate) fn mask(mut self, kind: MaskKind, group: Ref) -> Self {
+        self.mask = Some((kind, group));
+        self
+    }
+
+    pub(crate) fn blend(mut self, mode: usvg::BlendMode) -> Self {
+        self.blend = BLEND_MODES.iter().position(|(m, _)| *m == mode).map(|i| Blend(i as u8));
+        self
+    }
+
+    /// Returns `true` if the state changes nothing.
+    pub(crate) fn is_plain(self) -> bool {
+        self == Self::default()
+    }
+}
+
+/// The blend modes besides the normal one.
+const BLEND_MODES: [(usvg::BlendMode, BlendMode); 15] = [
+    (usvg::BlendMode::Multiply, BlendMode::Multiply),
+    (usvg::BlendMode::Screen, BlendMode::Screen),
+    (usvg::BlendMode::Overlay, BlendMode::Overlay),
+    (usvg::BlendMode::Darken, BlendMode::Darken),
+    (usvg::BlendMode::Lighten, BlendMode::Lighten),
+    (usvg::BlendMode::ColorDodge, BlendMode::ColorDodge),
+    (usvg::BlendMode::ColorBurn, BlendMode::ColorBurn),
+    (usvg::BlendMode::HardLight, BlendMode::HardLight),
+    (usvg::BlendMode::SoftLight, BlendMode::SoftLight),
+    (usvg::BlendMode::Difference, BlendMode::Difference),
+    (usvg::BlendMode::Exclusion, BlendMode::Exclusion),
+    (usvg::BlendMode::Hue, BlendMode::Hue),
+    (usvg::BlendMode::Saturation, BlendMode::Saturation),
+    (usvg::BlendMode::Color, BlendMode::Color),
+    (usvg::BlendMode::Luminosity, BlendMode::Luminosity),
+];
+
+impl<'a> File<'a> {
+    pub(crate) fn new(options: &'a Options<'a>, draw: DrawGroup) -> Self {
+        let mut pdf = Pdf::new();
+        pdf.set_version(1, 7);
+        // Bytes above 127, so that programs take the file for binary.
+        pdf.set_binary_marker(b"\xe2\xe3\xcf\xd3");
+        Self { pdf, options, draw, pictures: 0, last: 0, states: HashMap::new() }
+    }
+
+    /// A number for a new object.
+    pub(crate) fn new_ref(&mut self) -> Ref {
+        self.last += 1;
+        Ref::new(self.last)
+    }
+
+    /// Adds a compressed stream.
+    pub(crate) fn compressed(&mut self, at: Ref, bytes: &[u8]) {
+        self.pdf.stream(at, &deflated(bytes)).filter(Filter::FlateDecode);
+    }
+
+    /// Adds what `draw` draws as a group that is composed on its own. `bounds` is in the coordinates of the group.
+    pub(crate) fn group(&mut self, bounds: Rect, draw: impl FnOnce(&mut Self, &mut Stream)) -> Ref {
+        let mut stream = Stream::new();
+        draw(self, &mut stream);
+        let (bytes, used) = stream.finish();
+        let at = self.new_ref();
+        let bytes = deflated(&bytes);
+        let mut object = self.pdf.form_xobject(at, &bytes);
+        object.filter(Filter::FlateDecode);
+        object.bbox(pdf_rect(bounds));
+        used.write(&mut object.resources());
+        object.group().transparency().isolated(true).pair(Name(b"CS"), Name(b"DeviceRGB"));
+        at
+    }
+
+    /// The graphics state with these parameters.
+    pub(crate) fn state(&mut self, state: State) -> Ref {
+        if let Some(known) = self.states.get(&state) {
+            return *known;
+        }
+        let at = self.new_ref();
+        self.states.insert(state, at);
+        let mut out = self.pdf.ext_graphics(at);
+        if let Some(opacity) = state.opacity.map(f32::from_bits) {
+            out.non_stroking_alpha(opacity).stroking_alpha(opacity);
+        }
+        if let Some((_, mode)) = state.blend.and_then(|b| BLEND_MODES.get(usize::from(b.0))) {
+            out.blend_mode(*mode);
+        }
+        if let Some((kind, group)) = state.mask {
+            let subtype = match kind {
+                MaskKind::Luminosity => MaskType::Luminosity,
+                MaskKind::Alpha => MaskType::Alpha,
+            };
+            out.soft_mask().subtype(subtype).group(group);
+        }
+        at
+    }
+}
+
+/// The bytes, compressed.
+pub(crate) fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    // Writing to memory cannot fail.
+    let _ = encoder.write_all(bytes);
+    encoder.finish().unwrap_or_default()
+}

@@ -1,0 +1,193 @@
+//! Gradients as PDF's axial and radial shadings.
+//!
+//! A shading cannot repeat or reflect its colours. The range of such a gradient is extended instead until it covers what is
+//! painted, and the colours are listed once for each period.
+
+use crate::file::File;
+use crate::space::{affine, matrix};
+use kurbo::{Affine, Point, Rect, Vec2};
+use pdf_writer::types::FunctionShadingType;
+use pdf_writer::{Finish as _, Name, Ref};
+use usvg::{Paint, SpreadMethod, Stop};
+
+/// Most periods of a repeating gradient. Finer ones look like their average.
+const MOST_PERIODS: i32 = 256;
+
+/// Offsets closer than this are a sharp change.
+const SHARP: f64 = 1e-6;
+
+/// Share of the range in which a colour at its very end counts.
+const EDGE: f64 = 1e-4;
+
+/// A gradient over the range of offsets that a painted area needs.
+pub(crate) struct Gradient {
+    /// To the user space of the painted path.
+    transform: Affine,
+    shape: Shape,
+    /// Offset over the range from 0 to 1, colour and opacity.
+    stops: Vec<(f64, [f32; 3], f32)>,
+}
+
+/// The coordinates of a shading, for the ends of the range.
+enum Shape {
+    Axial([Point; 2]),
+    Radial([(Point, f64); 2]),
+}
+
+impl Gradient {
+    /// The gradient of a paint, if it is one, for painting `area`.
+    pub(crate) fn of(paint: &Paint, area: Rect) -> Option<Self> {
+        let point = |x: f32, y: f32| Point::new(f64::from(x), f64::from(y));
+        match paint {
+            Paint::LinearGradient(g) => {
+                let (p, q) = (point(g.x1(), g.y1()), point(g.x2(), g.y2()));
+                let transform = affine(g.transform());
+                let range = match g.spread_method() {
+                    SpreadMethod::Pad => (0, 1),
+                    _ => periods_of_line(p, q, corners(transform, area)?),
+                };
+                let at = |t: i32| p + (q - p) * f64::from(t);
+                let shape = Shape::Axial([at(range.0), at(range.1)]);
+                Some(Self { transform, shape, stops: stops(g.stops(), g.spread_method(), range) })
+            }
+            Paint::RadialGradient(g) => {
+                let (focus, center) = (point(g.fx(), g.fy()), point(g.cx(), g.cy()));
+                let (inner, outer) = (f64::from(g.fr().get()), f64::from(g.r().get()));
+                let transform = affine(g.transform());
+                let circle = |t: i32| (focus + (center - focus) * f64::from(t), inner + (outer - inner) * f64::from(t));
+                let range = match g.spread_method() {
+                    SpreadMethod::Pad => (0, 1),
+                    _ => {
+                        let corners = corners(transform, area)?;
+                        let holds = |(c, r): (Point, f64)| corners.iter().all(|p| p.distance(c) <= r);
+                        (0, (1..MOST_PERIODS).find(|t| holds(circle(*t))).unwrap_or(MOST_PERIODS))
+                    }
+                };
+                let shape = Shape::Radial([circle(range.0), circle(range.1)]);
+                Some(Self { transform, shape, stops: stops(g.stops(), g.spread_method(), range) })
+            }
+            Paint::Color(_) | Paint::Pattern(_) => None,
+        }
+    }
+
+    /// Returns `true` if a colour is not opaque.
+    pub(crate) fn is_translucent(&self) -> bool {
+        self.stops.iter().any(|(_, _, opacity)| *opacity < 1.0)
+    }
+
+    /// Adds the colours as a pattern. `to_start` leads from the user space of the painted path to the start of the content
+    /// stream.
+    pub(crate) fn colors(&self, file: &mut File<'_>, to_start: Affine) -> Ref {
+        let stops: Vec<_> = self.stops.iter().map(|(at, color, _)| (*at, color.to_vec())).collect();
+        self.shading(file, to_start, &stops, Name(b"DeviceRGB"))
+    }
+
+    /// Adds the opacities as shades of grey.
+    pub(crate) fn opacities(&self, file: &mut File<'_>, to_start: Affine) -> Ref {
+        let stops: Vec<_> = self.stops.iter().map(|(at, _, opacity)| (*at, vec![*opacity])).collect();
+        self.shading(file, to_start, &stops, Name(b"DeviceGray"))
+    }
+
+    fn shading(&self, file: &mut File<'_>, to_start: Affine, stops: &[(f64, Vec<f32>)], space: Name<'_>) -> Ref {
+        let function = function(file, stops);
+        let at = file.new_ref();
+        let mut pattern = file.pdf.shading_pattern(at);
+        pattern.matrix(matrix(to_start * self.transform));
+        let mut shading = pattern.function_shading();
+        match &self.shape {
+            Shape::Axial(ends) => {
+                shading.shading_type(FunctionShadingType::Axial);
+                shading.coords(ends.iter().flat_map(|p| [p.x as f32, p.y as f32]));
+            }
+            Shape::Radial(circles) => {
+                shading.shading_type(FunctionShadingType::Radial);
+                shading.coords(circles.iter().flat_map(|(c, r)| [c.x as f32, c.y as f32, *r as f32]));
+            }
+        }
+        shading.pair(Name(b"ColorSpace"), space);
+        shading.extend([true, true]).function(function);
+        shading.finish();
+        at
+    }
+}
+
+/// The corners of an area in the coordinates of a gradient; `None` if the gradient has no area.
+fn corners(transform: Affine, area: Rect) -> Option<[Point; 4]> {
+    let back = transform.inverse();
+    let all = [(area.x0, area.y0), (area.x1, area.y0), (area.x1, area.y1), (area.x0, area.y1)];
+    back.is_finite().then(|| all.map(|p| back * Point::from(p)))
+}
+
+/// The whole periods of a repeating line that cover these points.
+fn periods_of_line(p: Point, q: Point, points: [Point; 4]) -> (i32, i32) {
+    let along: Vec2 = q - p;
+    let at = points.map(|c| (c - p).dot(along) / along.hypot2());
+    let half = f64::from(MOST_PERIODS / 2);
+    let first = at.iter().copied().fold(f64::INFINITY, f64::min).floor().clamp(-half, half - 1.0);
+    let last = at.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil().clamp(first + 1.0, half.max(first + 1.0));
+    (first as i32, last as i32)
+}
+
+/// The stops of all periods, with offsets over the whole range.
+fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec<(f64, [f32; 3], f32)> {
+    let one = |s: &Stop| {
+        let c = s.color();
+        let color = [c.red, c.green, c.blue].map(|v| f32::from(v) / 255.0);
+        (f64::from(s.offset().get()), color, s.opacity().get())
+    };
+    let mut period: Vec<(f64, [f32; 3], f32)> = stops.iter().map(one).collect();
+    // Before the first stop and behind the last the colour does not change.
+    if let (Some(a), Some(z)) = (period.first().copied(), period.last().copied()) {
+        period.insert(0, (0.0, a.1, a.2));
+        period.push((1.0, z.1, z.2));
+    }
+    let mut out = Vec::new();
+    let span = f64::from(last - first);
+    for k in first..last {
+        let place = |at: f64| (f64::from(k - first) + at) / span;
+        if spread == SpreadMethod::Reflect && k.rem_euclid(2) == 1 {
+            out.extend(period.iter().rev().map(|(at, color, opacity)| (place(1.0 - at), *color, *opacity)));
+        } else {
+            out.extend(period.iter().map(|(at, color, opacity)| (place(*at), *color, *opacity)));
+        }
+    }
+    out
+}
+
+/// Adds the function that goes through these stops.
+fn function(file: &mut File<'_>, stops: &[(f64, Vec<f32>)]) -> Ref {
+    let span = 1.0 / stops.len().max(1) as f64;
+    let pairs = stops.iter().zip(stops.iter().skip(1));
+    let mut pieces: Vec<[(f64, Vec<f32>); 2]> =
+        pairs.filter(|(a, b)| b.0 - a.0 > SHARP * span).map(|(a, b)| [a.clone(), b.clone()]).collect();
+    // The colours at the very ends go on outside, even if others take over at once.
+    if let (Some(first), Some([start, _])) = (stops.first(), pieces.first_mut())
+        && first.1 != start.1
+    {
+        start.0 = EDGE;
+        pieces.insert(0, [(0.0, first.1.clone()), (EDGE, first.1.clone())]);
+    }
+    if let (Some(last), Some([_, end])) = (stops.last(), pieces.last_mut())
+        && last.1 != end.1
+    {
+        end.0 = 1.0 - EDGE;
+        pieces.push([(1.0 - EDGE, last.1.clone()), (1.0, last.1.clone())]);
+    }
+    let mut refs = Vec::with_capacity(pieces.len());
+    for w in &pieces {
+        let at = file.new_ref();
+        let mut f = file.pdf.exponential_function(at);
+        f.domain([0.0, 1.0]).c0(w[0].1.iter().copied()).c1(w[1].1.iter().copied()).n(1.0);
+        refs.push(at);
+    }
+    if let [only] = refs.as_slice() {
+        return *only;
+    }
+    let at = file.new_ref();
+    let mut f = file.pdf.stitching_function(at);
+    f.domain([0.0, 1.0]).functions(refs.iter().copied());
+    f.bounds(pieces.iter().skip(1).map(|w| w[0].0 as f32));
+    f.encode(refs.iter().flat_map(|_| [0.0, 1.0]));
+    drop(f);
+    at
+}

@@ -1,0 +1,124 @@
+//! Images. A JPEG stays as it is; other bitmaps are stored without loss.
+
+use crate::file::{File, deflated};
+use crate::space::matrix;
+use crate::stream::Stream;
+use kurbo::{Affine, Rect};
+use pathwarp_raster::{Picture, Pixmap};
+use pdf_writer::{Filter, Finish as _, Name, Ref};
+use usvg::{FillRule, Image, ImageKind, ImageRendering};
+
+/// Draws an image.
+pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
+    if !image.is_visible() {
+        return;
+    }
+    let area = Rect::new(0.0, 0.0, f64::from(image.size().width()), f64::from(image.size().height()));
+    let smooth = !matches!(
+        image.rendering_mode(),
+        ImageRendering::OptimizeSpeed | ImageRendering::Pixelated | ImageRendering::CrispEdges
+    );
+    let object = match image.kind() {
+        ImageKind::SVG(tree) => {
+            let size = Rect::new(0.0, 0.0, f64::from(tree.size().width()), f64::from(tree.size().height()));
+            let object = file.group(size, |file, stream| {
+                stream.clip(&kurbo::Shape::to_path(&size, 1.0), FillRule::NonZero);
+                (file.draw)(file, stream, tree.root());
+            });
+            stream.object(object);
+            return;
+        }
+        ImageKind::JPEG(data) => jpeg(file, data, smooth).or_else(|| decoded(file, data, smooth)),
+        ImageKind::PNG(data) | ImageKind::GIF(data) | ImageKind::WEBP(data) => decoded(file, data, smooth),
+    };
+    if let Some(object) = object {
+        place(stream, object, area);
+    }
+}
+
+/// Draws a bitmap over an area.
+pub(crate) fn place(stream: &mut Stream, object: Ref, area: Rect) {
+    // A bitmap fills the unit square, its first row on top.
+    let unit = Affine::new([area.width(), 0.0, 0.0, -area.height(), area.x0, area.y1]);
+    stream.content.save_state();
+    stream.content.transform(matrix(unit));
+    stream.object(object);
+    stream.content.restore_state();
+}
+
+fn decoded(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
+    Some(add(file, &Picture::read_stored(data).ok()?.pixmap, smooth))
+}
+
+/// Adds a bitmap, with its transparency if it has any.
+pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Ref {
+    let (width, height) = (pixmap.width(), pixmap.height());
+    let mut colors = Vec::with_capacity(pixmap.pixels().len() * 3);
+    let mut opacities = Vec::with_capacity(pixmap.pixels().len());
+    for p in pixmap.pixels() {
+        let c = p.demultiply();
+        colors.extend([c.red(), c.green(), c.blue()]);
+        opacities.push(c.alpha());
+    }
+    let is_opaque = opacities.iter().all(|a| *a == u8::MAX);
+    let mask = (!is_opaque).then(|| {
+        let at = file.new_ref();
+        let bytes = deflated(&opacities);
+        let mut out = file.pdf.image_xobject(at, &bytes);
+        out.filter(Filter::FlateDecode);
+        out.width(width as i32).height(height as i32).bits_per_component(8).interpolate(smooth);
+        out.color_space_name(Name(b"DeviceGray"));
+        at
+    });
+    let at = file.new_ref();
+    let bytes = deflated(&colors);
+    let mut out = file.pdf.image_xobject(at, &bytes);
+    out.filter(Filter::FlateDecode);
+    out.width(width as i32).height(height as i32).bits_per_component(8).interpolate(smooth);
+    out.color_space_name(Name(b"DeviceRGB"));
+    if let Some(mask) = mask {
+        out.s_mask(mask);
+    }
+    at
+}
+
+/// Adds a JPEG as it is, if PDF programs show it as browsers do: grey or with three components of 8 bits.
+fn jpeg(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
+    let frame = JpegFrame::of(data)?;
+    let space = match frame.components {
+        1 => Name(b"DeviceGray"),
+        3 => Name(b"DeviceRGB"),
+        _ => return None,
+    };
+    let at = file.new_ref();
+    let mut out = file.pdf.image_xobject(at, data);
+    out.filter(Filter::DctDecode);
+    out.width(frame.width.into()).height(frame.height.into()).bits_per_component(8).interpolate(smooth);
+    out.color_space_name(space);
+    out.finish();
+    Some(at)
+}
+
+/// The header of a JPEG's frame (ISO 10918-1, B.2.2).
+struct JpegFrame {
+    width: u16,
+    height: u16,
+    components: u8,
+}
+
+impl JpegFrame {
+    /// Finds the frame; `None` if there is none of 8 bits that PDF allows: baseline, extended or progressive.
+    fn of(data: &[u8]) -> Option<Self> {
+        let mut rest = data.strip_prefix(b"\xff\xd8")?;
+        loop {
+            let &[0xff, marker, high, low, ..] = rest else { return None };
+            let length = usize::from(u16::from_be_bytes([high, low]));
+            if matches!(marker, 0xc0..=0xc2) {
+                let &[8, h1, h0, w1, w0, components, ..] = rest.get(4..)? else { return None };
+                let [height, width] = [[h1, h0], [w1, w0]].map(u16::from_be_bytes);
+                return (height > 0 && width > 0).then_some(Self { width, height, components });
+            }
+            rest = rest.get(2 + length..)?;
+        }
+    }
+}

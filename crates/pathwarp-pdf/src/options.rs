@@ -1,0 +1,23 @@
+//! Options for writing a PDF.
+
+use kurbo::BezPath;
+
+/// Resolution of the pictures that stand for filters, in pixels per inch, if none is given: the usual one for print.
+pub(crate) const PRINT: f64 = 300.0;
+
+/// Gives the exact outline of a path in its own coordinates, if usvg's is an approximation.
+pub type ExactOutline<'a> = dyn Fn(&usvg::Path) -> Option<BezPath> + 'a;
+
+/// Options for writing a PDF.
+pub struct Options<'a> {
+    /// Outlines that replace usvg's, which approximates arcs.
+    pub exact: &'a ExactOutline<'a>,
+    /// Pixels per inch of the pictures that stand for filters; `None`: 300.
+    pub picture_dpi: Option<f64>,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { exact: &|_| None, picture_dpi: None }
+    }
+}

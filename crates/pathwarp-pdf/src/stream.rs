@@ -1,0 +1,138 @@
+//! A content stream under construction, with the resources it uses.
+
+use crate::outline;
+use crate::space::matrix;
+use kurbo::{Affine, BezPath};
+use pdf_writer::types::ColorSpaceOperand;
+use pdf_writer::writers::Resources;
+use pdf_writer::{Content, Finish as _, Name, Ref};
+use std::collections::BTreeSet;
+
+/// The kinds of resources in use here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    /// A graphics state: opacity, blend mode, mask.
+    State,
+    /// A gradient or pattern.
+    Pattern,
+    /// A picture or a group.
+    Object,
+}
+
+/// The resources that a content stream uses.
+#[derive(Debug, Default)]
+pub(crate) struct Used(BTreeSet<(Kind, i32)>);
+
+/// A content stream.
+pub(crate) struct Stream {
+    pub(crate) content: Content,
+    used: Used,
+    /// From the current coordinates to those in which the stream starts: patterns are anchored there.
+    pub(crate) to_start: Affine,
+    outer: Vec<Affine>,
+}
+
+impl Stream {
+    pub(crate) fn new() -> Self {
+        Self { content: Content::new(), used: Used::default(), to_start: Affine::IDENTITY, outer: Vec::new() }
+    }
+
+    /// Saves the graphics state.
+    pub(crate) fn save(&mut self) {
+        self.content.save_state();
+        self.outer.push(self.to_start);
+    }
+
+    /// Restores the graphics state.
+    pub(crate) fn restore(&mut self) {
+        self.content.restore_state();
+        self.to_start = self.outer.pop().unwrap_or_default();
+    }
+
+    /// Changes the coordinates.
+    pub(crate) fn transform(&mut self, m: Affine) {
+        if m != Affine::IDENTITY {
+            self.content.transform(matrix(m));
+            self.to_start *= m;
+        }
+    }
+
+    /// Starts a path with these outlines.
+    pub(crate) fn outline(&mut self, path: &BezPath) {
+        outline::write(&mut self.content, path);
+    }
+
+    /// Restricts drawing to an outline.
+    pub(crate) fn clip(&mut self, path: &BezPath, rule: usvg::FillRule) {
+        self.outline(path);
+        match rule {
+            usvg::FillRule::NonZero => self.content.clip_nonzero(),
+            usvg::FillRule::EvenOdd => self.content.clip_even_odd(),
+        };
+        self.content.end_path();
+    }
+
+    /// Sets a graphics state.
+    pub(crate) fn state(&mut self, state: Ref) {
+        let name = self.used.name(Kind::State, state);
+        self.content.set_parameters(Name(name.as_bytes()));
+    }
+
+    /// Draws a picture or a group.
+    pub(crate) fn object(&mut self, object: Ref) {
+        let name = self.used.name(Kind::Object, object);
+        self.content.x_object(Name(name.as_bytes()));
+    }
+
+    /// Takes a pattern as the paint.
+    pub(crate) fn pattern(&mut self, pattern: Ref, strokes: bool) {
+        let name = self.used.name(Kind::Pattern, pattern);
+        let name = Name(name.as_bytes());
+        if strokes {
+            self.content.set_stroke_color_space(ColorSpaceOperand::Pattern).set_stroke_pattern(None, name);
+        } else {
+            self.content.set_fill_color_space(ColorSpaceOperand::Pattern).set_fill_pattern(None, name);
+        }
+    }
+
+    /// The bytes and the resources.
+    pub(crate) fn finish(self) -> (Vec<u8>, Used) {
+        (self.content.finish().into_vec(), self.used)
+    }
+}
+
+impl Used {
+    /// The name of a resource, which is used from now on.
+    fn name(&mut self, kind: Kind, r: Ref) -> String {
+        self.0.insert((kind, r.get()));
+        name(kind, r.get())
+    }
+
+    /// Writes the dictionary of resources.
+    pub(crate) fn write(&self, out: &mut Resources<'_>) {
+        for kind in [Kind::State, Kind::Pattern, Kind::Object] {
+            let mut of_kind = self.0.iter().filter(|(k, _)| *k == kind).peekable();
+            if of_kind.peek().is_none() {
+                continue;
+            }
+            let mut dict = match kind {
+                Kind::State => out.ext_g_states(),
+                Kind::Pattern => out.patterns(),
+                Kind::Object => out.x_objects(),
+            };
+            for (_, r) in of_kind {
+                dict.pair(Name(name(kind, *r).as_bytes()), Ref::new(*r));
+            }
+            dict.finish();
+        }
+    }
+}
+
+fn name(kind: Kind, r: i32) -> String {
+    let letter = match kind {
+        Kind::State => 'G',
+        Kind::Pattern => 'P',
+        Kind::Object => 'X',
+    };
+    format!("{letter}{r}")
+}

@@ -1,0 +1,224 @@
+//! A drawing as outlines for a plotter or cutter: every outline once, with its layer and colour.
+//!
+//! A plotter knows neither areas nor transparency, so an outline is drawn whether it is filled, stroked or both. Strokes are
+//! drawn along their centre lines.
+
+use super::affine::stretch;
+use super::model::{Group, Node, Part, Scene};
+use super::seen::{clip_box, is_seen, overlap};
+use crate::source::tags::{ElementId, Namespace};
+use crate::source::text::SourceText;
+use pathwarp::kurbo::Rect;
+use pathwarp::{Outline, Seg};
+use std::collections::HashSet;
+use std::sync::Arc;
+use usvg::{Fill, Paint, Stroke};
+
+/// The outlines of a drawing.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Plot {
+    /// The outlines, in painting order.
+    pub shapes: Vec<PlotShape>,
+    /// The parts of the drawing that outlines cannot show.
+    pub lost: PlotLoss,
+}
+
+/// An outline with its layer and colour.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct PlotShape {
+    /// The name of the layer; `None` outside of all layers. A layer is an Inkscape layer, or in a drawing without any, a named
+    /// group of the outermost level that has several members.
+    pub layer: Option<Arc<str>>,
+    /// The colour of the stroke, else of the fill; of a gradient, the mean of its stops. `None` for a pattern.
+    pub color: Option<[u8; 3]>,
+    /// Outline in root user space.
+    pub outline: Arc<Outline>,
+    /// Width of the stroke in px, if there is one.
+    pub stroke_width: Option<f64>,
+}
+
+/// The number of things that outlines cannot show.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PlotLoss {
+    /// Bitmaps, which are left out.
+    pub bitmaps: usize,
+    /// Groups of which a clip path or mask hides a part, which is drawn all the same.
+    pub hidden: usize,
+    /// Filters, which are left out.
+    pub filters: usize,
+    /// Shapes painted with a pattern, which is left out.
+    pub patterns: usize,
+}
+
+/// Lists the outlines of a drawing.
+pub(crate) fn plot(scene: &Scene, source: &SourceText) -> Plot {
+    let mut walk = Walk { scene, source, layers: Layers::of(source), out: Plot::default() };
+    walk.group(&scene.root, None);
+    walk.out
+}
+
+struct Walk<'a> {
+    scene: &'a Scene,
+    source: &'a SourceText,
+    layers: Layers,
+    out: Plot,
+}
+
+impl Walk<'_> {
+    /// Adds what is in a group. `room` is the box that clip paths leave.
+    fn group(&mut self, g: &Group, room: Option<Rect>) {
+        if g.opacity <= 0.0 {
+            return;
+        }
+        let mut room = room;
+        self.out.lost.filters += usize::from(!g.filters.is_empty());
+        if let Some(clip) = g.clip {
+            let Some(left) = clip_box(self.scene, clip, &|i| self.scene.parts[i].outline().bounding_box()) else {
+                return;
+            };
+            let Some(left) = room.map_or(Some(left), |room| overlap(room, left)) else { return };
+            room = Some(left);
+        }
+        let (shapes, bitmaps) = (self.out.shapes.len(), self.out.lost.bitmaps);
+        for child in &g.children {
+            match child {
+                Node::Group(g) => self.group(g, room),
+                Node::Text { content, .. } => self.group(content, room),
+                Node::Part(i) => self.part(&self.scene.parts[*i], room),
+                Node::Image(_) => self.out.lost.bitmaps += 1,
+            }
+        }
+        let drawn = &self.out.shapes[shapes..];
+        let holds_all = |area: Rect| {
+            let all = drawn.iter().filter_map(|s| s.outline.bounding_box()).reduce(|a, b| a.union(b));
+            self.out.lost.bitmaps == bitmaps && all.is_none_or(|b| overlap(area, b) == Some(b))
+        };
+        let cuts = g.clip.is_some_and(|i| !self.clip_area(i).is_some_and(holds_all));
+        if (cuts || g.mask.is_some()) && !drawn.is_empty() {
+            self.out.lost.hidden += 1;
+        }
+    }
+
+    /// The rectangle that a clip path is, if it is one.
+    fn clip_area(&self, clip: usize) -> Option<Rect> {
+        let clip = &self.scene.clips[clip];
+        let mut parts = clip.parts.clone().map(|i| self.scene.parts[i].outline());
+        let (Some(only), None, None) = (parts.next(), parts.next(), clip.clip) else { return None };
+        rectangle(&only)
+    }
+
+    fn part(&mut self, p: &Part, room: Option<Rect>) {
+        let outline = p.outline();
+        let bounds = outline.bounding_box().filter(Rect::is_finite);
+        let in_room = bounds.is_some_and(|b| room.is_none_or(|room| overlap(room, b).is_some()));
+        if !is_seen(p) || !in_room {
+            return;
+        }
+        let stroke = p.stroke.as_ref().filter(|s| s.opacity().get() > 0.0);
+        let fill = p.fill.as_ref().filter(|f| f.opacity().get() > 0.0);
+        let paint = stroke.map(Stroke::paint).or(fill.map(Fill::paint));
+        let is_pattern = |paint: Option<&Paint>| matches!(paint, Some(Paint::Pattern(_)));
+        if is_pattern(paint) || is_pattern(fill.map(Fill::paint)) {
+            self.out.lost.patterns += 1;
+        }
+        let scale = if p.fixed_width { 1.0 } else { stretch(self.scene.to_px * p.frame) };
+        self.out.shapes.push(PlotShape {
+            layer: p.element().and_then(|e| self.layers.layer(self.source, e)),
+            color: paint.and_then(color),
+            outline,
+            stroke_width: stroke.map(|s| f64::from(s.width().get()) * scale),
+        });
+    }
+}
+
+/// The colour of a paint; of a gradient, the mean of its stops.
+fn color(paint: &Paint) -> Option<[u8; 3]> {
+    let stops = match paint {
+        Paint::Color(c) => return Some([c.red, c.green, c.blue]),
+        Paint::LinearGradient(g) => g.stops(),
+        Paint::RadialGradient(g) => g.stops(),
+        Paint::Pattern(_) => return None,
+    };
+    let sum = stops
+        .iter()
+        .map(usvg::Stop::color)
+        .fold([0; 3], |[r, g, b], c| [r + usize::from(c.red), g + usize::from(c.green), b + usize::from(c.blue)]);
+    Some(sum.map(|v| (v / stops.len().max(1)) as u8))
+}
+
+/// The bounding box of an outline that is a rectangle along the axes.
+fn rectangle(o: &Outline) -> Option<Rect> {
+    /// Rounding, as a share of the area.
+    const SLACK: f64 = 1e-6;
+    let bounds = o.bounding_box()?;
+    let [only] = o.subpaths.as_slice() else { return None };
+    let mut area = 0.0;
+    for seg in &only.segs {
+        let Seg::Line(l) = seg else { return None };
+        area += l.p0.to_vec2().cross(l.p1.to_vec2()) / 2.0;
+    }
+    // An outline that is not closed is closed when it clips.
+    area += only.end().to_vec2().cross(only.start.to_vec2()) / 2.0;
+    ((area.abs() - bounds.area()).abs() <= SLACK * bounds.area()).then_some(bounds)
+}
+
+/// The layers of a drawing.
+struct Layers {
+    elements: HashSet<ElementId>,
+    /// The layer of everything else.
+    rest: Option<Arc<str>>,
+}
+
+impl Layers {
+    fn of(source: &SourceText) -> Self {
+        let all = 0..source.elements.len();
+        let is_layer =
+            |e: &ElementId| source.attr_in(*e, Namespace::Inkscape, "groupmode").is_some_and(|mode| mode == "layer");
+        let elements: HashSet<ElementId> = all.filter(is_layer).collect();
+        if elements.is_empty() { Self::of_groups(source) } else { Self { elements, rest: None } }
+    }
+
+    /// The named groups of the outermost level that has several members.
+    fn of_groups(source: &SourceText) -> Self {
+        let mut members: Vec<Vec<ElementId>> = vec![Vec::new(); source.elements.len()];
+        for (e, element) in source.elements.iter().enumerate() {
+            if let Some(parent) = element.parent.filter(|_| is_drawn(&element.tag)) {
+                members[parent].push(e);
+            }
+        }
+        let (mut level, mut rest) = (0, None);
+        while let [only] = members.get(level).map_or(&[][..], Vec::as_slice)
+            && is_group(&source.elements[*only].tag)
+        {
+            rest = name(source, *only).or(rest);
+            level = *only;
+        }
+        let groups = members.into_iter().nth(level).unwrap_or_default();
+        let is_layer = |e: &ElementId| is_group(&source.elements[*e].tag) && name(source, *e).is_some();
+        Self { elements: groups.into_iter().filter(is_layer).collect(), rest }
+    }
+
+    /// The name of the layer that an element is in.
+    fn layer(&self, source: &SourceText, e: ElementId) -> Option<Arc<str>> {
+        let layer = source.ancestors(e).find(|a| self.elements.contains(a));
+        layer.and_then(|a| name(source, a)).or_else(|| self.rest.clone())
+    }
+}
+
+/// The label of a group, else its id.
+fn name(source: &SourceText, e: ElementId) -> Option<Arc<str>> {
+    let found = source.label(e).or_else(|| source.attr(e, "id")).filter(|n| !n.trim().is_empty());
+    found.map(|n| n.as_ref().into())
+}
+
+fn is_group(tag: &str) -> bool {
+    matches!(tag, "g" | "a" | "svg" | "switch")
+}
+
+/// Returns `true` for elements that are drawn where they stand.
+fn is_drawn(tag: &str) -> bool {
+    is_group(tag) || crate::source::tags::is_shape(tag) || matches!(tag, "use" | "text" | "image")
+}

@@ -1,0 +1,87 @@
+//! Curves as dense polylines, and the distance between two sets of them.
+
+use pathwarp::Seg;
+use pathwarp::kurbo::{Affine, Line, ParamCurveNearest as _, Point};
+use pathwarp_svg::{Document, ReadOptions};
+
+/// Millimetres per px.
+pub const MM: f64 = 25.4 / 96.0;
+/// Distance of points along a segment, in mm.
+const STEP: f64 = 0.05;
+
+/// A drawing of 80 mm by 60 mm with lines, circles, ellipses, arcs, quadratics and cubics; `per_mm` units are a millimetre.
+pub fn drawing(width: &str, height: &str, per_mm: f64) -> String {
+    let [w, h] = [80.0, 60.0].map(|v| v * per_mm);
+    format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}' viewBox='0 0 {w} {h}'>\n\
+         <g transform='scale({per_mm})' fill='none' stroke-width='0.1'>\n\
+         <g id='cut' stroke='#f00'>\n\
+         <rect x='2' y='2' width='30' height='20' rx='4'/><circle cx='50' cy='14' r='10'/>\n\
+         <path d='M70,2 V22 M74,2 l4,20'/>\n\
+         <path d='M40,40 a6,6 0 1 1 6,6'/>\n\
+         </g>\n\
+         <g id='engrave' fill='#24b3a8'>\n\
+         <ellipse cx='16' cy='40' rx='12' ry='6' transform='rotate(25 16 40)'/>\n\
+         <path d='M34,55 C36,40 44,62 52,52 S60,40 64,50 Q70,58 76,48 V56 H34 Z'/>\n\
+         <path d='M60,30 A9,5 30 0 1 74,34 L70,40 Z'/>\n\
+         </g></g></svg>"
+    )
+}
+
+/// The same drawing in documents with different units.
+pub fn documents() -> [(&'static str, String); 4] {
+    [
+        ("px", drawing("302.36220472440942", "226.77165354330708", 96.0 / 25.4)),
+        ("mm", drawing("80mm", "60mm", 1.0)),
+        ("inch", drawing("3.1496062992125986in", "2.3622047244094488in", 1.0 / 25.4)),
+        ("points", drawing("8cm", "60mm", 72.0 / 25.4)),
+    ]
+}
+
+/// The painted outlines of an SVG as polylines in mm, y up from the bottom of the page.
+pub fn outlines(svg: &[u8]) -> Vec<Vec<Point>> {
+    let doc = Document::read(svg, "svg", &ReadOptions::default()).unwrap();
+    let to_mm = Affine::new([MM, 0.0, 0.0, -MM, 0.0, doc.size_px().height * MM]) * doc.user_to_px();
+    let painted = doc.shapes().iter().filter(|s| s.painted);
+    let subpaths = painted.flat_map(|s| s.outline.transformed(to_mm).subpaths);
+    let points = |segs: &[Seg]| {
+        let one = |s: &Seg| {
+            let c = s.to_cubic();
+            let length = c.p0.distance(c.p1) + c.p1.distance(c.p2) + c.p2.distance(c.p3);
+            let n = (length / STEP).clamp(20.0, 2000.0).ceil() as usize;
+            let s = *s;
+            (0..=n).map(move |i| s.eval(i as f64 / n as f64))
+        };
+        segs.iter().flat_map(one).collect::<Vec<Point>>()
+    };
+    subpaths.map(|s| points(&s.segs)).filter(|p| !p.is_empty()).collect()
+}
+
+/// The largest distance from a point of `a` to the lines of `b`.
+pub fn gap(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
+    /// Side of the cells in which lines are looked up.
+    const CELL: f64 = 0.5;
+    let cell = |p: Point| ((p.x / CELL).floor() as i64, (p.y / CELL).floor() as i64);
+    let mut cells = std::collections::HashMap::<_, Vec<Line>>::new();
+    for w in b.iter().flat_map(|l| l.windows(2)) {
+        let line = Line::new(w[0], w[1]);
+        let ((x0, y0), (x1, y1)) = (cell(w[0]), cell(w[1]));
+        for x in x0.min(x1)..=x0.max(x1) {
+            for y in y0.min(y1)..=y0.max(y1) {
+                cells.entry((x, y)).or_default().push(line);
+            }
+        }
+    }
+    let near = |p: Point| {
+        let (x, y) = cell(p);
+        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
+        let lines = around.filter_map(|c| cells.get(&c)).flatten();
+        lines.map(|l| l.nearest(p, 1e-9).distance_sq.sqrt()).fold(f64::INFINITY, f64::min)
+    };
+    // Points on long lines, too.
+    let between = |w: &[Point]| {
+        let n = (w[0].distance(w[1]) / 0.1).ceil().max(1.0) as usize;
+        (0..=n).map(|i| w[0].lerp(w[1], i as f64 / n as f64)).map(near).fold(0.0, f64::max)
+    };
+    a.iter().flat_map(|l| l.windows(2)).map(between).fold(0.0, f64::max)
+}

@@ -1,0 +1,11 @@
+//! The extension says the format: PDF, DXF, JPEG and WebP beside SVG and PNG, read back by programs and parsers that know nothing
+//! of pathwarp.
+
+mod choice;
+mod dxf;
+mod dxf_reader;
+mod geometry;
+mod pdf;
+mod pictures;
+#[path = "../support/mod.rs"]
+mod support;
