@@ -413,13 +413,13 @@ pub(super) const MAX_RUN: usize = 64;
 /// Tests: *figures* (at 0.1); *sample* (at 2).
 pub(super) const MERGE_SHARE: f64 = 0.99;
 
-/// Batches of eight samples in each segment that a merged piece covers, under a quotient of polynomials.
-pub(super) const RATIONAL_BATCHES: usize = 2;
+/// Intervals between samples of a segment in a run, under a quotient of polynomials. A multiple of eight and of [`MERGE_GRID`].
+pub(super) const RATIONAL_SAMPLES: usize = 16;
 
-/// … and under any other map, whose error may swing several times within a segment. 2: errors between the samples in one of 16,000
-/// random cases; 8: +4 % work.
-/// Tests: `merge_random::waves_shorter_than_a_segment_are_seen` (at 2); *figures* (at 8).
-pub(super) const OPAQUE_BATCHES: usize = 4;
+/// … and under any other map, whose error may swing several times within a segment. 16: errors between the samples in one of 16,000
+/// random cases.
+/// Test: `merge_random::waves_shorter_than_a_segment_are_seen` (at 16).
+pub(super) const OPAQUE_SAMPLES: usize = 32;
 
 /// Searches over one run, each without the pieces that the last one's checks refused. 1: +5.7 % pieces, −8.7 % work; 4: +0.5 %
 /// pieces, −2.4 % work; 100: unchanged.
@@ -452,11 +452,6 @@ pub(super) const LEAPS: usize = 6;
 
 /// Error recorded for a piece that failed the final check: a miss, but a near one. 1e9: unchanged.
 pub(super) const REFUSED_ERROR: f64 = 1.2;
-
-/// Intervals of a segment's table of lengths, two batches. More even parameters save little, as foot points follow the image
-/// anyway. Fixed by the loop that fills it.
-/// Not varied.
-pub(super) const LENGTH_TABLE: usize = 16;
 
 // Proofs: figures are those of certified pieces
 

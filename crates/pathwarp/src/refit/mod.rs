@@ -27,7 +27,6 @@ mod attempt;
 mod breaks;
 mod candidate;
 mod check;
-mod curve;
 mod cusp;
 mod fit;
 mod frame;

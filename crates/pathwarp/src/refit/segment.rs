@@ -7,7 +7,7 @@ use super::proof::RationalForm;
 use super::report::PathReport;
 use super::source::{BreakPoint, SourceCurve};
 use super::split::{self, SlowSpots};
-use super::stretch::{Scrutiny, StretchFitter};
+use super::stretch::StretchFitter;
 use crate::map::{Class, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::{CubicBez, Line, Point};
@@ -121,7 +121,7 @@ impl SegmentFitter<'_> {
         let form = form.map(|f| f.with_blur(blur));
         let degree = degree.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        StretchFitter { source, slow, tolerance, form, degree, scrutiny: Scrutiny::Sufficient, attempts: 0 }
+        StretchFitter { source, slow, tolerance, form, degree, attempts: 0 }
             .cover(from, to, pieces, report)
     }
 

@@ -205,6 +205,14 @@ impl<'a> SourceCurve<'a> {
         if sum(&all).is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
     }
 
+    /// Returns the images at eight parameters. `Err`: the source point at which the map is not finite.
+    #[inline(always)]
+    pub(super) fn images(&self, t: &Lane) -> Result<Lanes, Point> {
+        let mut out = Lanes::default();
+        self.images_into(t, &mut out)?;
+        Ok(out)
+    }
+
     #[cold]
     fn not_finite(&self, t: &Lane, g: &Lanes) -> Point {
         let i = (0..8).find(|&i| !(g.x[i] + g.y[i]).is_finite()).unwrap_or(0);

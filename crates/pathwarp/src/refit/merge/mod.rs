@@ -6,23 +6,23 @@
 //! the segments' own pieces and every one has passed a check by samples in each of its segments or, if proofs are wanted, has
 //! been proven segment by segment.
 
+mod check;
+mod cubic;
+mod proven;
 mod reach;
 mod run;
 mod search;
 
 use super::limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
 use super::options::Options;
-use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
-use super::proof::{self, RationalForm};
+use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
-use super::source::{BreakPoint, SourceCurve};
-use super::split::SlowSpots;
-use super::stretch::{Scrutiny, StretchFitter};
+use super::source::SourceCurve;
 use crate::map::{Jet, Map, RationalDegree};
 use crate::outline::Seg;
-use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
-use reach::{Reaches, RunFitter};
+use kurbo::{Point, Vec2};
+use reach::Reaches;
 use run::{RunSegment, SegmentRun};
 use search::{Leg, fewest_legs};
 
@@ -101,10 +101,9 @@ impl Merger<'_> {
                 let (into, away) = (last.to.into, segment.from.away);
                 into.cross(away).atan2(into.dot(away)).abs()
             };
-            if run.segments.last().is_some_and(|last| turn(last) > SMOOTH_JOINT) {
+            if run.segments.last().is_some_and(|last| turn(last) > SMOOTH_JOINT) || !run.push(segment)? {
                 break;
             }
-            run.push(segment);
         }
         Ok(run)
     }
@@ -121,42 +120,27 @@ impl Merger<'_> {
     }
 
     /// The fewest pieces for a run, and their largest error. `None` if they are not fewer than its segments have.
-    ///
-    /// Searches quickly, then checks the pieces found in every segment. Those that fail are left out of the next search.
     fn fewest(
         &self,
         run: &SegmentRun<'_>,
         pieces: &[FittedPiece],
         bounds: &[usize],
     ) -> Result<Option<(Vec<FittedPiece>, f64)>, Point> {
-        let slow = SlowSpots::default();
-        let mut fitter = StretchFitter {
-            source: run,
-            slow: &slow,
-            tolerance: MERGE_SHARE * self.options.tolerance,
-            form: None,
-            degree: None,
-            scrutiny: Scrutiny::Samples,
-            attempts: 0,
-        };
-        let mut reaches = Reaches::new(run, bounds, fitter.tolerance);
+        let tolerance = self.options.tolerance;
+        let proof = self.options.certify.then_some(tolerance);
+        let mut reaches = Reaches::new(run, bounds, MERGE_SHARE * tolerance, proof);
         for _ in 0..MERGE_SEARCHES {
-            fitter.scrutiny = Scrutiny::Samples;
-            let Some(legs) = fewest_legs(&mut reaches, &mut fitter)? else { return Ok(None) };
-            fitter.scrutiny = Scrutiny::EverySegment;
+            let Some(legs) = fewest_legs(&mut reaches)? else { return Ok(None) };
             let (mut out, mut worst) = (Vec::with_capacity(reaches.unmerged()), 0.0f64);
             let mut passed = true;
             for Leg { from, to, merged } in legs {
                 if !merged {
                     out.extend_from_slice(&pieces[bounds[from / MERGE_GRID]..bounds[to / MERGE_GRID]]);
-                    continue;
-                }
-                let (first, last) = (reaches.end(from)?, reaches.end(to)?);
-                if let Some((piece, error)) = self.checked(run, &mut fitter, &first, &last)? {
+                } else if let Some((piece, error)) = reaches.piece(from, to)? {
                     worst = worst.max(error);
                     out.push(piece);
                 } else {
-                    reaches.refuse(from, to);
+                    // It is left out of the next search.
                     passed = false;
                 }
             }
@@ -166,67 +150,4 @@ impl Merger<'_> {
         }
         Ok(None)
     }
-
-    /// A merged piece and its checked or proven error. `None` if it is not within the tolerance.
-    fn checked(
-        &self,
-        run: &SegmentRun<'_>,
-        fitter: &mut RunFitter<'_, '_>,
-        from: &BreakPoint,
-        to: &BreakPoint,
-    ) -> Result<Option<(FittedPiece, f64)>, Point> {
-        let FitOutcome::Fits { piece, mut error, .. } = fitter.attempt(from, to)? else { return Ok(None) };
-        if self.options.certify {
-            error = self.proven(run, from, to, piece)?;
-            if error > self.options.tolerance {
-                return Ok(None);
-            }
-        }
-        Ok(Some((piece, error)))
-    }
-
-    /// The proven distance of a piece over several segments: each segment is proven against its part of the piece, between
-    /// the foot points of the joints.
-    fn proven(
-        &self,
-        run: &SegmentRun<'_>,
-        from: &BreakPoint,
-        to: &BreakPoint,
-        piece: FittedPiece,
-    ) -> Result<f64, Point> {
-        let cubic = match piece {
-            FittedPiece::Line(l) => CubicBez::new(l.p0, l.p0.lerp(l.p1, 1.0 / 3.0), l.p0.lerp(l.p1, 2.0 / 3.0), l.p1),
-            FittedPiece::Cubic(c) => c,
-        };
-        let (mut s, mut worst) = (0.0, 0.0f64);
-        for (k, segment) in run.segments.iter().enumerate() {
-            let (first, last) = (run.starts[k], run.starts[k + 1]);
-            let (a, b) = (from.t.max(first), to.t.min(last));
-            let Some(form) = &segment.form else { return Ok(f64::INFINITY) };
-            if a >= b {
-                continue;
-            }
-            let next =
-                if b == to.t { 1.0 } else { foot_point(&cubic, segment.to.p, s + (1.0 - s) * (b - a) / (to.t - a)) };
-            if next <= s {
-                return Ok(f64::INFINITY);
-            }
-            let t0 = if a == first { 0.0 } else { segment.param(a - first).0 };
-            let t1 = if b == last { 1.0 } else { segment.param(b - first).0 };
-            let part = cubic.subsegment(s..next);
-            worst = worst.max(proof::stretch(&segment.source, form, [t0, t1], &part, self.options.tolerance)?);
-            s = next;
-        }
-        Ok(worst)
-    }
-}
-
-/// The parameter of the point of `c` nearest to `p`, by Newton steps from `s`.
-fn foot_point(c: &CubicBez, p: Point, mut s: f64) -> f64 {
-    let slope = c.deriv();
-    for _ in 0..8 {
-        let (r, v) = (c.eval(s) - p, slope.eval(s).to_vec2());
-        s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    }
-    s
 }

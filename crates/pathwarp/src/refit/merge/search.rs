@@ -4,7 +4,7 @@
 //! one. So the search keeps one place for each number of pieces, extends it as far as one cubic reaches, and compares with
 //! the segments' own pieces, which lead from joint to joint.
 
-use super::reach::{Reaches, RunFitter};
+use super::reach::Reaches;
 use crate::refit::limits::MERGE_GRID;
 use kurbo::Point;
 
@@ -28,7 +28,6 @@ struct Furthest {
 /// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have.
 pub(super) fn fewest_legs(
     reaches: &mut Reaches<'_, '_>,
-    fitter: &mut RunFitter<'_, '_>,
 ) -> Result<Option<Vec<Leg>>, Point> {
     let last = reaches.last();
     let mut furthest = vec![Furthest { place: 0, leg: None }];
@@ -40,16 +39,16 @@ pub(super) fn fewest_legs(
         // The leg to k may end at the joint before it as well.
         let at_joint = joint == k
             || match leg {
-                Some((from, true)) if from < joint => reaches.fits(fitter, from, joint)?,
+                Some((from, true)) if from < joint => reaches.fits(from, joint)?,
                 _ => false,
             };
         if at_joint && joint < last {
             by_own.push((count + reaches.pieces(joint / MERGE_GRID), joint + MERGE_GRID));
         }
-        let mut best = Furthest { place: reaches.furthest(fitter, k)?, leg: Some((k, true)) };
+        let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
         if let Some((from, true)) = leg {
             for earlier in [joint, k - 1] {
-                if let Some(place) = beyond(reaches, fitter, [from, earlier, k], best.place)? {
+                if let Some(place) = beyond(reaches, [from, earlier, k], best.place)? {
                     best = Furthest { place, leg: Some((earlier, true)) };
                 }
             }
@@ -71,17 +70,16 @@ pub(super) fn fewest_legs(
 /// that begins at `from` can be shortened: its end tangent may suit what follows better.
 fn beyond(
     reaches: &mut Reaches<'_, '_>,
-    fitter: &mut RunFitter<'_, '_>,
     [from, earlier, k]: [usize; 3],
     best: usize,
 ) -> Result<Option<usize>, Point> {
     let limit = reaches.limit(earlier);
     let possible = from < earlier && earlier < k && best < limit;
-    if !(possible && reaches.fits(fitter, earlier, best + 1)? && reaches.fits(fitter, from, earlier)?) {
+    if !(possible && reaches.fits(earlier, best + 1)? && reaches.fits(from, earlier)?) {
         return Ok(None);
     }
     let mut place = best + 1;
-    while place < limit && reaches.fits(fitter, earlier, place + 1)? {
+    while place < limit && reaches.fits(earlier, place + 1)? {
         place += 1;
     }
     Ok(Some(place))

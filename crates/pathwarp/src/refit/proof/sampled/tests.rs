@@ -6,7 +6,7 @@ use super::expand::FINE_GROWTH;
 use super::*;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
-use crate::refit::curve::ImageCurve;
+use crate::refit::source::SourceCurve;
 use crate::refit::frame::ChordFrame;
 use crate::refit::samples::{CHECKED, FITTED, between};
 use kurbo::{CubicBez, Line, ParamCurve, QuadBez, Vec2};
