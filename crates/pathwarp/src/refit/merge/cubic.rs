@@ -1,7 +1,7 @@
 //! One cubic for a stretch of a run, fitted to sixteen of the run's samples. Takes no further ones.
 
 use super::run::SegmentRun;
-use crate::refit::fit::{Fit, fit, lawson};
+use crate::refit::fit::{Fit, THOROUGH, fit_with, lawson};
 use crate::refit::frame::ChordFrame;
 use crate::refit::judge::settled;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
@@ -11,7 +11,7 @@ use crate::refit::limits::{
 };
 use crate::refit::piece::FittedPiece;
 use crate::refit::residuals::FitState;
-use crate::refit::samples::{ALL, CHECKED, Evenly, FITTED, UNIT, interleaved};
+use crate::refit::samples::{ALL, Evenly, UNIT, interleaved};
 use crate::refit::source::BreakPoint;
 use crate::refit::straight::straight;
 use kurbo::{CubicBez, Line, Point};
@@ -61,7 +61,7 @@ struct BestFit {
 
 /// A stretch of a run with its sixteen samples, relative to its first point.
 pub(super) struct Stretch {
-    tolerance: f64,
+    pub(super) tolerance: f64,
     ends: [BreakPoint; 2],
     samples: [usize; 2],
     frame: ChordFrame,
@@ -87,8 +87,8 @@ impl Stretch {
             (x[j], y[j]) = (run.x[i] - from.p.x, run.y[i] - from.p.y);
         }
         shares[ALL - 1] = 1.0;
-        let g = Lanes { x: picked(&x, &FITTED), y: picked(&y, &FITTED) };
-        let check = Lanes { x: picked(&x, &CHECKED), y: picked(&y, &CHECKED) };
+        let g = Lanes { x: picked(&x, &FITTED_AT), y: picked(&y, &FITTED_AT) };
+        let check = Lanes { x: picked(&x, &CHECKED_AT), y: picked(&y, &CHECKED_AT) };
         let q = to.p - from.p;
         let far = |i: usize| g.x[i] * g.x[i] + g.y[i] * g.y[i];
         let size = larger(larger(q.hypot2(), far(3)), far(6)).sqrt();
@@ -108,9 +108,9 @@ impl Stretch {
             return Trial { error, cubic: Some(self.with([third; 2], self.shares, true)) };
         }
         let [a, b] = self.frame.home;
-        let mut start = FitState { a, b, s: picked(&self.shares, &FITTED) };
+        let mut start = FitState { a, b, s: picked(&self.shares, &FITTED_AT) };
         self.frame.settle(&self.g, a, b, &mut start.s);
-        let mut best = self.judged(fit(&self.frame, &self.g, start, [GOOD_ENOUGH * self.tolerance, self.tolerance]));
+        let mut best = self.judged(self.least_squares(start, GOOD_ENOUGH));
         self.converge(&mut best);
         self.restart_along_valley(&mut best);
         self.minimax(&mut best);
@@ -119,10 +119,15 @@ impl Stretch {
 
     /// As [`fitted`](Self::fitted), but with the least error that can be reached.
     pub(super) fn fitted_closely(&self, from: &RunCubic) -> Trial {
-        let z = FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED) };
-        let mut best = self.judged(fit(&self.frame, &self.g, z, [0.0, self.tolerance]));
+        let z = FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) };
+        let mut best = self.judged(self.least_squares(z, 0.0));
         self.lawson(&mut best);
         self.trial(&best)
+    }
+
+    /// Least squares until the error is below a share of the tolerance.
+    fn least_squares(&self, start: FitState, enough: f64) -> Fit {
+        fit_with(&THOROUGH, &self.frame, &self.g, start, [enough * self.tolerance, self.tolerance])
     }
 
     fn trial(&self, best: &BestFit) -> Trial {
@@ -150,12 +155,14 @@ impl Stretch {
 
     /// Foot points of the checked samples between those of the fitted ones.
     fn between(&self, s: &Lane) -> Lane {
-        let (at, want) = (picked(&self.shares, &FITTED), picked(&self.shares, &CHECKED));
-        std::array::from_fn(|i| {
+        let (at, want) = (picked(&self.shares, &FITTED_AT), picked(&self.shares, &CHECKED_AT));
+        let mut out = [0.0; 8];
+        for i in 0..8 {
             let before = [0, 1, 2, 3, 3, 4, 5, 6][i];
             let (step, rest) = (at[before + 1] - at[before], want[i] - at[before]);
-            s[before] + if step > 0.0 { (s[before + 1] - s[before]) * (rest / step) } else { 0.0 }
-        })
+            out[i] = s[before] + if step > 0.0 { (s[before + 1] - s[before]) * (rest / step) } else { 0.0 };
+        }
+        out
     }
 
     /// Iterates to convergence a fit that stopped early but exceeds the tolerance at other samples.
@@ -163,7 +170,7 @@ impl Stretch {
         if best.error > self.tolerance && best.fit.error <= GOOD_ENOUGH * self.tolerance {
             let mut start = best.fit.z;
             self.frame.settle(&self.g, start.a, start.b, &mut start.s);
-            *best = self.judged(fit(&self.frame, &self.g, start, [0.0, self.tolerance]));
+            *best = self.judged(self.least_squares(start, 0.0));
         }
     }
 
@@ -185,7 +192,7 @@ impl Stretch {
             }
             let mut start = FitState { a, b, s: z.s };
             frame.settle(&self.g, a, b, &mut start.s);
-            let other = fit(frame, &self.g, start, [GOOD_ENOUGH * tol, tol]);
+            let other = self.least_squares(start, GOOD_ENOUGH);
             if other.reach < RESTART_GAIN * best.error {
                 let other = self.judged(other);
                 if other.error < best.error {
@@ -218,6 +225,14 @@ impl Stretch {
 }
 
 /// The values at some of the samples.
-fn picked(v: &Evenly, set: &Lane) -> Lane {
-    set.map(|j| v[j as usize])
+#[inline(always)]
+fn picked(v: &Evenly, set: &[usize; 8]) -> Lane {
+    let mut out = [0.0; 8];
+    for i in 0..8 {
+        out[i] = v[set[i]];
+    }
+    out
 }
+
+const FITTED_AT: [usize; 8] = [1, 3, 5, 7, 10, 12, 14, 16];
+const CHECKED_AT: [usize; 8] = [2, 4, 6, 8, 9, 11, 13, 15];

@@ -5,8 +5,8 @@ use super::cubic::{RunCubic, Stretch, Trial};
 use super::proven::proven;
 use super::run::SegmentRun;
 use crate::refit::limits::{
-    DENSE_ACCEPTED, JUMP_ERROR, LEAP_WITHIN, LEAPS, MAX_SPAN, MERGE_GRID, REACH_TARGET, REFUSED_ERROR,
-    SMALLEST_REACH_ERROR,
+    BETWEEN_TARGET, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN, MERGE_GRID, REACH_TARGET,
+    REFUSED_ERROR, SEARCH_SHARE, SMALLEST_REACH_ERROR,
 };
 use crate::refit::piece::FittedPiece;
 use crate::refit::source::BreakPoint;
@@ -44,6 +44,8 @@ pub(super) struct Reaches<'r, 'a> {
     /// The last entry of `tried` from each place.
     latest: Vec<usize>,
     distances: Distances,
+    /// Places reached from the start before: drawings change little along a curve.
+    last_reach: usize,
 }
 
 impl<'r, 'a> Reaches<'r, 'a> {
@@ -59,6 +61,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
             tried: Vec::new(),
             latest: vec![NONE; run.grid() + 1],
             distances: Distances::default(),
+            last_reach: 0,
         }
     }
 
@@ -121,7 +124,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
 
     /// The error of a cubic by the samples of all segments, or proven segment by segment. `None` if it is not within the tolerance.
     fn within(&mut self, cubic: &RunCubic) -> Result<Option<(FittedPiece, f64)>, Point> {
-        let enough = DENSE_ACCEPTED * self.tolerance;
+        let enough = self.tolerance;
         let checked = self.distances.measure(self.run, cubic, enough)?;
         let Some(mut error) = checked.filter(|e| *e <= enough) else { return Ok(None) };
         if let Some(tolerance) = self.proof {
@@ -135,7 +138,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
 
     fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, Point> {
         let ends = [self.end(k)?, self.end(m)?];
-        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], self.tolerance))
+        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], SEARCH_SHARE * self.tolerance))
     }
 
     /// The entry of the cubic from `k` to `m`, which is fitted on first use.
@@ -147,8 +150,9 @@ impl<'r, 'a> Reaches<'r, 'a> {
             }
             i = self.tried[i].next;
         }
-        let Trial { error, cubic } = self.stretch(k, m)?.fitted();
-        let relative = error / self.tolerance;
+        let stretch = self.stretch(k, m)?;
+        let Trial { error, cubic } = stretch.fitted();
+        let relative = error / stretch.tolerance;
         let error = if cubic.is_some() { relative.min(1.0) } else { relative.max(1.0 + f64::EPSILON) };
         self.tried.push(Tried { to: m, error, cubic, piece: None, next: self.latest[k] });
         self.latest[k] = self.tried.len() - 1;
@@ -190,11 +194,16 @@ impl<'r, 'a> Reaches<'r, 'a> {
     pub(super) fn furthest(&mut self, k: usize) -> Result<usize, Point> {
         let limit = self.limit(k);
         let joint = (k / MERGE_GRID + 1) * MERGE_GRID;
-        if limit <= joint && k.is_multiple_of(MERGE_GRID) && self.pieces(k / MERGE_GRID) == 1 {
+        // The segment's own single piece leads as far.
+        let own = if k.is_multiple_of(MERGE_GRID) && self.pieces(k / MERGE_GRID) == 1 { joint } else { k };
+        if limit <= own {
             return Ok(k);
         }
         loop {
-            let m = self.seek(k, joint, limit)?;
+            let m = self.seek(k, own, joint, limit)?;
+            if m > k {
+                self.last_reach = m - k;
+            }
             if m == k || self.piece(k, m)?.is_some() {
                 return Ok(m);
             }
@@ -202,26 +211,37 @@ impl<'r, 'a> Reaches<'r, 'a> {
     }
 
     /// The furthest place that one cubic reaches from `k` as far as its samples show.
-    fn seek(&mut self, k: usize, joint: usize, limit: usize) -> Result<usize, Point> {
+    fn seek(&mut self, k: usize, own: usize, joint: usize, limit: usize) -> Result<usize, Point> {
+        let start = self.run.place(k);
         let (mut low, mut high) = (k, limit + 1);
-        // Half a segment past the next joint: the least that is likely to save a piece.
-        let mut probe = (joint + MERGE_GRID / 2).min(limit);
-        while low + 1 < high {
-            let error = self.error(k, probe)?;
-            let (from, length) = (self.run.place(k), self.run.place(probe) - self.run.place(k));
-            let wanted = from + length * (REACH_TARGET / error.max(SMALLEST_REACH_ERROR)).powf(1.0 / 6.0);
+        // Errors at `low` and `high`, as far as they are known.
+        let (mut below, mut above) = (None, None);
+        let mut probe = (joint + LEAST_PAST_JOINT).max(k + self.last_reach).min(limit);
+        for step in 0.. {
+            let error = self.error(k, probe)?.max(SMALLEST_REACH_ERROR);
             if error <= 1.0 {
-                low = probe;
-                probe = low + 1;
-                while probe + 1 < high && self.run.place(probe + 1) <= wanted {
-                    probe += 1;
-                }
+                (low, below) = (probe, Some(error));
             } else {
-                high = probe;
-                probe = high.saturating_sub(1);
-                while probe > low + 1 && self.run.place(probe) > wanted {
-                    probe -= 1;
+                (high, above) = (probe, Some(error));
+            }
+            if high <= own + 1 {
+                return Ok(k);
+            }
+            if low + 1 >= high {
+                break;
+            }
+            let (l, h) = (self.run.place(low) - start, self.run.place(high.min(limit)) - start);
+            let wanted = match (below, above) {
+                (Some(below), None) => l * (REACH_TARGET / below).powf(1.0 / 6.0),
+                (None, Some(above)) => h * above.powf(-1.0 / 6.0),
+                (Some(below), Some(above)) if step < INTERPOLATIONS => {
+                    l * (h / l).powf(((BETWEEN_TARGET / below).ln() / (above / below).ln()).clamp(0.0, 1.0))
                 }
+                _ => 0.5 * (l + h),
+            };
+            probe = low + 1;
+            while probe + 1 < high && self.run.place(probe + 1) - start <= wanted {
+                probe += 1;
             }
         }
         self.leap(k, low, limit)
@@ -229,14 +249,15 @@ impl<'r, 'a> Reaches<'r, 'a> {
 
     /// Tries the places just beyond a near miss: a few longer stretches fit although the next one does not.
     fn leap(&mut self, k: usize, mut low: usize, limit: usize) -> Result<usize, Point> {
-        'further: while low < limit {
-            if self.error(k, low + 1)? > LEAP_WITHIN {
-                break;
-            }
-            for m in low + 1..=(low + 1 + LEAPS).min(limit) {
-                if self.fits(k, m)? {
+        'further: while low < limit && self.error(k, low + 1)? <= LEAP_WITHIN {
+            for m in low + 2..=(low + 1 + LEAPS).min(limit) {
+                let error = self.error(k, m)?;
+                if error <= 1.0 {
                     low = m;
                     continue 'further;
+                }
+                if error > LEAP_WITHIN {
+                    break;
                 }
             }
             break;

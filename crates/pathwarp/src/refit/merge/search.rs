@@ -36,15 +36,6 @@ pub(super) fn fewest_legs(
     for count in 0..reaches.unmerged() - 1 {
         let Furthest { place: k, leg } = furthest[count];
         let joint = k - k % MERGE_GRID;
-        // The leg to k may end at the joint before it as well.
-        let at_joint = joint == k
-            || match leg {
-                Some((from, true)) if from < joint => reaches.fits(from, joint)?,
-                _ => false,
-            };
-        if at_joint && joint < last {
-            by_own.push((count + reaches.pieces(joint / MERGE_GRID), joint + MERGE_GRID));
-        }
         let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
         if let Some((from, true)) = leg {
             for earlier in [joint, k - 1] {
@@ -53,8 +44,19 @@ pub(super) fn fewest_legs(
                 }
             }
         }
+        // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
+        let at_joint = best.place <= joint + MERGE_GRID
+            && joint < last
+            && (joint == k
+                || match leg {
+                    Some((from, true)) if from < joint => reaches.fits(from, joint)?,
+                    _ => false,
+                });
+        if at_joint {
+            by_own.push((count + reaches.pieces(joint / MERGE_GRID), joint + MERGE_GRID));
+        }
         for &(pieces, to) in &by_own {
-            if pieces == count + 1 && to > best.place {
+            if pieces == count + 1 && to >= best.place && to > k {
                 best = Furthest { place: to, leg: Some((to - MERGE_GRID, false)) };
             }
         }
