@@ -3,7 +3,7 @@
 use super::cubic::RunCubic;
 use super::run::SegmentRun;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
-use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
+use crate::refit::limits::{COARSE_CHECK, FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
 use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::{ALL, Evenly};
@@ -35,7 +35,13 @@ impl Distances {
             return Ok(None);
         }
         let [first, last] = c.samples;
+        let coarse = COARSE_CHECK * (run.length[last] - run.length[first]);
         for (i, [from, to]) in parts(run.per_segment, [first, last]) {
+            for k in from..to {
+                if run.length[k + 1] - run.length[k] > coarse {
+                    worst = worst.max(self.closely(run, c, i, [k, k + 1])?);
+                }
+            }
             let errors = &self.errors[from - first..=to - first];
             let end = errors.len() - 1;
             for k in 0..=end {

@@ -6,7 +6,7 @@ use crate::refit::frame::ChordFrame;
 use crate::refit::judge::settled;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
 use crate::refit::limits::{
-    GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN, RESTART_LONGER, RESTART_SHORTER,
+    COARSE, GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN, RESTART_LONGER, RESTART_SHORTER,
     RESTART_TURN, RESTART_WITHIN, RESTART_WITHIN_TURNED,
 };
 use crate::refit::piece::FittedPiece;
@@ -71,22 +71,39 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// Picks the samples nearest to seventeenths of the length between two samples.
-    pub(super) fn new(run: &SegmentRun<'_>, ends: [BreakPoint; 2], samples: [usize; 2], tolerance: f64) -> Self {
+    /// Picks the run's samples nearest to seventeenths of the length between two of them, or takes new ones if those are too coarse.
+    pub(super) fn new(
+        run: &SegmentRun<'_>,
+        ends: [BreakPoint; 2],
+        samples: [usize; 2],
+        tolerance: f64,
+    ) -> Result<Self, Point> {
         let [from, to] = ends;
-        let ([mut i, last], length) = (samples, to.t - from.t);
+        let ([first, last], length) = (samples, to.t - from.t);
         let mut shares = [0.0; ALL];
         let (mut x, mut y) = ([0.0; ALL], [0.0; ALL]);
-        i += 1;
+        let mut i = first + 1;
+        let mut furthest_off = 0.0;
         for j in 1..ALL - 1 {
-            let twice = 2.0 * (from.t + length * (UNIT * j as f64));
+            let share = UNIT * j as f64;
+            let twice = 2.0 * (from.t + length * share);
             while i + 1 < last && run.length[i] + run.length[i + 1] < twice {
                 i += 1;
             }
             shares[j] = (run.length[i] - from.t) / length;
             (x[j], y[j]) = (run.x[i] - from.p.x, run.y[i] - from.p.y);
+            furthest_off = larger(furthest_off, (shares[j] - share).abs());
         }
         shares[ALL - 1] = 1.0;
+        if furthest_off > COARSE * UNIT {
+            for j in 1..ALL - 1 {
+                shares[j] = UNIT * j as f64;
+            }
+            run.images_between(samples, &shares, [&mut x, &mut y])?;
+            for j in 1..ALL - 1 {
+                (x[j], y[j]) = (x[j] - from.p.x, y[j] - from.p.y);
+            }
+        }
         let g = Lanes { x: picked(&x, &FITTED_AT), y: picked(&y, &FITTED_AT) };
         let check = Lanes { x: picked(&x, &CHECKED_AT), y: picked(&y, &CHECKED_AT) };
         let q = to.p - from.p;
@@ -97,7 +114,7 @@ impl Stretch {
         let pull = (HANDLE_PULL * tolerance / size).powi(2);
         let frame =
             ChordFrame { q, t0: from.away, t1: to.into, floor: [floor; 2], size, home: [third; 2], pull };
-        Self { tolerance, ends, samples, frame, g, check, shares }
+        Ok(Self { tolerance, ends, samples, frame, g, check, shares })
     }
 
     /// Fits a cubic, by least squares first and in further ways as long as the error is above the tolerance.

@@ -1,8 +1,9 @@
 //! Segments in a row as one curve, known by samples at even parameters of each.
 
-use crate::refit::lanes::{Lane, Lanes};
+use crate::refit::lanes::{Lane, Lanes, sum};
 use crate::refit::limits::{MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
 use crate::refit::proof::RationalForm;
+use crate::refit::samples::Evenly;
 use crate::refit::source::{BreakPoint, SourceCurve};
 use crate::refit::split;
 use kurbo::{Point, Vec2};
@@ -138,6 +139,39 @@ impl<'a> SegmentRun<'a> {
         let (Some(before), Some(after)) = (before, self.segments.get(j)) else { return 0.0 };
         let (a, b) = (before.curvature[1], after.curvature[0]);
         ((a.value - b.value).abs() - a.uncertainty - b.uncertainty).max(0.0)
+    }
+
+    /// Images at shares of the length between two samples.
+    pub(super) fn images_between(
+        &self,
+        [first, last]: [usize; 2],
+        shares: &Evenly,
+        [x, y]: [&mut Evenly; 2],
+    ) -> Result<(), Point> {
+        let Some(map) = self.segments.first().map(|s| s.source.map) else { return Ok(()) };
+        let (start, length) = (self.length[first], self.length[last] - self.length[first]);
+        let n = self.per_segment;
+        let mut k = first;
+        for half in 0..2 {
+            let mut g = Lanes::default();
+            let mut at = Point::ORIGIN;
+            for i in 0..8 {
+                let wanted = start + length * shares[8 * half + i + 1];
+                while k + 1 < last && self.length[k + 1] <= wanted {
+                    k += 1;
+                }
+                let part = ((wanted - self.length[k]) / (self.length[k + 1] - self.length[k])).clamp(0.0, 1.0);
+                at = self.segments[k / n].source.point(((k % n) as f64 + part) / n as f64);
+                (g.x[i], g.y[i]) = (at.x, at.y);
+            }
+            map.lanes(&mut g.x, &mut g.y);
+            if !(sum(&g.x) + sum(&g.y)).is_finite() {
+                return Err(at);
+            }
+            x[8 * half + 1..8 * half + 9].copy_from_slice(&g.x);
+            y[8 * half + 1..8 * half + 9].copy_from_slice(&g.y);
+        }
+        Ok(())
     }
 
     /// Images at eight parameters of segment `i`.
