@@ -21,8 +21,8 @@
 use super::frame::ChordFrame;
 use super::lanes::{Lane, Lanes, clamp_unit, sum};
 use super::limits::{
-    FAR_MISS, GIVE_UP, LAWSON_FLOOR, MAX_EVALUATIONS, MIN_GAIN, PROMISE_AFTER, PROMISE_GAIN, RUN_EVALUATIONS,
-    RUN_TRUST_RADIUS, TRUST_RADIUS,
+    FAR_MISS, GIVE_UP, LAWSON_FLOOR, LAWSON_NEAR, MAX_EVALUATIONS, MIN_GAIN, PROMISE_AFTER, PROMISE_GAIN, RUN_EVALUATIONS,
+    RUN_LAWSON_STEPS, RUN_TRUST_RADIUS, TRUST_RADIUS,
 };
 use super::residuals::{FitState, Residuals, gauss_newton};
 
@@ -119,13 +119,20 @@ pub(super) fn fit_with(
 }
 
 /// Minimax fit to sixteen samples by Lawson's reweighting: weights grow with the residuals until the largest ones level out.
-/// Returns the best state of both halves, and its largest residual.
-pub(super) fn lawson(frame: &ChordFrame, g: [&Lanes; 2], start: [FitState; 2], steps: usize) -> ([FitState; 2], f64) {
+/// Returns the best state of both halves, and its largest residual. Goes on after `steps`, up to [`RUN_LAWSON_STEPS`], only towards
+/// an error of `wanted` and if it is near.
+pub(super) fn lawson(
+    frame: &ChordFrame,
+    g: [&Lanes; 2],
+    start: [FitState; 2],
+    steps: usize,
+    wanted: f64,
+) -> ([FitState; 2], f64) {
     let mut w = [[1.0; 8]; 2];
     let mut z = start;
     let mut best = (start, f64::INFINITY);
     let mut r = [Residuals::NONE; 2];
-    for k in 0..=steps {
+    for k in 0..=RUN_LAWSON_STEPS {
         for h in 0..2 {
             frame.residuals(g[h], &z[h], &w[h], &mut r[h]);
         }
@@ -137,7 +144,7 @@ pub(super) fn lawson(frame: &ChordFrame, g: [&Lanes; 2], start: [FitState; 2], s
         if error < best.1 {
             best = (z, error);
         }
-        if k == steps {
+        if best.1 <= wanted || k >= steps && best.1 > LAWSON_NEAR * wanted {
             break;
         }
         for (a, b) in sums.iter_mut().zip(more) {

@@ -126,7 +126,7 @@ impl StretchFitter<'_> {
         let z = best.fit.z;
         let other = FitState { s: between(&z.s), ..z };
         let check = *self.checked(request)?;
-        let (z, error) = lawson(&request.frame, [request.g, &check], [z, other], LAWSON_STEPS);
+        let (z, error) = lawson(&request.frame, [request.g, &check], [z, other], LAWSON_STEPS, 0.0);
         if error < best.error {
             let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
             *best = BestFit { fit, error };

@@ -465,6 +465,12 @@ pub(super) const SEARCH_SHARE: f64 = 0.99;
 /// pieces; 20: −0.05 %.
 pub(super) const RUN_EVALUATIONS: usize = 10;
 
+/// Steps of a minimax fit over several segments, as long as its error is near the tolerance. 4: +0.2 % pieces at 1.
+pub(super) const RUN_LAWSON_STEPS: usize = 16;
+
+/// … which means within this multiple after [`LAWSON_STEPS`].
+pub(super) const LAWSON_NEAR: f64 = 1.05;
+
 /// The trust radius of such a fit; see [`TRUST_RADIUS`]. 0.15: +0.4 % pieces at 1.
 pub(super) const RUN_TRUST_RADIUS: f64 = 1.0;
 

@@ -138,7 +138,7 @@ impl Stretch {
     pub(super) fn fitted_closely(&self, from: &RunCubic) -> Trial {
         let z = FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) };
         let mut best = self.judged(self.least_squares(z, 0.0));
-        self.lawson(&mut best);
+        self.lawson(&mut best, 0.0);
         self.trial(&best)
     }
 
@@ -225,14 +225,14 @@ impl Stretch {
     /// Minimax on all sixteen samples, where that may bring the error below the tolerance.
     fn minimax(&self, best: &mut BestFit) {
         if best.error > self.tolerance && best.error <= MINIMAX_WITHIN * self.tolerance {
-            self.lawson(best);
+            self.lawson(best, self.tolerance);
         }
     }
 
-    fn lawson(&self, best: &mut BestFit) {
+    fn lawson(&self, best: &mut BestFit, wanted: f64) {
         let z = best.fit.z;
         let other = FitState { s: self.between(&z.s), ..z };
-        let (z, error) = lawson(&self.frame, [&self.g, &self.check], [z, other], LAWSON_STEPS);
+        let (z, error) = lawson(&self.frame, [&self.g, &self.check], [z, other], LAWSON_STEPS, wanted);
         if error < best.error {
             let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
             let judged = self.judged(fit);
