@@ -11,6 +11,16 @@
 //! there. Other tests are named: those of `tests/refit_random.rs` as `random::…`, of `tests/refit_limits.rs` as `limits::…`, of
 //! `tests/refit.rs` and `tests/refit_report.rs` as `refit::…` and `report::…`.
 
+// Subpaths
+
+/// Segments refitted as one chunk: a multiple of [`MAX_RUN`], so that the runs of a curve without corners are the same as without
+/// chunks. Memory for the jets and samples of a chunk is released after it.
+pub(super) const CHUNK: usize = 1024;
+
+/// Segments of a subpath for which several threads are started: two milliseconds of work.
+#[cfg(feature = "parallel")]
+pub(super) const WORTH_THREADS: usize = 4 * CHUNK;
+
 // Segments
 
 /// A segment whose control polygon is shorter than this, relative to its coordinates, is a point: differences of equal

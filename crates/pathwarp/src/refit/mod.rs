@@ -38,6 +38,7 @@ mod limits;
 mod merge;
 mod options;
 mod outcome;
+mod parallel;
 mod path;
 mod peaks;
 mod piece;

@@ -36,6 +36,12 @@ impl Default for PathReport {
 }
 
 impl PathReport {
+    /// Adds the pieces of another part of the path.
+    pub(super) fn add(&mut self, part: Self) {
+        self.add_error(part.max_error, part.assurance);
+        self.over_budget.extend(part.over_budget);
+    }
+
     /// Accounts for a piece with this error.
     pub(super) fn add_error(&mut self, error: f64, assurance: Assurance) {
         self.max_error = self.max_error.max(error);

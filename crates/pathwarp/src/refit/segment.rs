@@ -15,6 +15,8 @@ use kurbo::{CubicBez, Line, Point};
 /// Fits the images of single segments.
 pub(super) struct SegmentFitter<'a> {
     pub(super) map: &'a dyn Map,
+    /// The map keeps lines.
+    pub(super) projective: bool,
     /// The map's degree, if it is a quotient of polynomials.
     pub(super) degree: Option<RationalDegree>,
     pub(super) creases: &'a Creases,
@@ -30,6 +32,10 @@ impl SegmentFitter<'_> {
         pieces: &mut Vec<FittedPiece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
+        if self.projective && matches!(seg, Seg::Line(_)) {
+            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+            return Ok(());
+        }
         let reversed;
         let flipped = split::is_backwards(seg);
         let canonical = if flipped {

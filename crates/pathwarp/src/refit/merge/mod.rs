@@ -8,40 +8,36 @@
 
 mod check;
 mod cubic;
+mod own;
 mod proven;
 mod reach;
 mod run;
 mod search;
 
 use super::limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
-use super::options::Options;
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
+use super::segment::SegmentFitter;
 use super::source::SourceCurve;
-use crate::map::{Jet, Map, RationalDegree};
+use crate::map::Jet;
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
+use own::OwnPieces;
 use reach::Reaches;
 use run::{RunSegment, SegmentRun};
 use search::{Leg, fewest_legs};
 
-/// Merges the pieces of one subpath.
+/// Merges the pieces of consecutive segments.
 pub(super) struct Merger<'a> {
-    pub(super) map: &'a dyn Map,
-    /// The map's degree, if it is a quotient of polynomials.
-    pub(super) degree: Option<RationalDegree>,
-    pub(super) options: &'a Options,
-}
-
-/// The segments of a subpath, each with its own pieces.
-pub(super) struct FittedSegments<'a> {
-    pub(super) segs: &'a [Seg],
-    /// `smooth[i]` is `false` if the image has a corner where segment i begins.
-    pub(super) smooth: &'a [bool],
-    pub(super) pieces: &'a [FittedPiece],
-    /// `bounds[i]..bounds[i + 1]` are the pieces of segment i.
-    pub(super) bounds: &'a [usize],
+    fitter: &'a SegmentFitter<'a>,
+    segs: &'a [Seg],
+    /// At the ends of each segment.
+    jets: &'a [[Jet; 2]],
+    pieces: Vec<FittedPiece>,
+    report: PathReport,
+    /// Places that the last merged piece reached.
+    last_reach: usize,
 }
 
 /// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jet where they meet.
@@ -56,47 +52,42 @@ pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
     dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
 }
 
-impl Merger<'_> {
-    /// The pieces of all segments, merged where that saves some.
-    pub(super) fn merged(
-        &self,
-        fitted: &FittedSegments<'_>,
-        report: &mut PathReport,
-    ) -> Result<Vec<FittedPiece>, Point> {
-        let FittedSegments { segs, smooth, pieces, bounds } = *fitted;
-        let mut out = Vec::with_capacity(pieces.len());
-        let mut i = 0;
-        while i < segs.len() {
-            let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
-            let run = self.run(if joined > 0 { &segs[i..=i + joined] } else { &[] })?;
-            // A segment that cannot be in a run keeps its pieces.
-            let end = i + run.segments.len().max(1);
-            let own = &pieces[bounds[i]..bounds[end]];
-            let better = if end - i > 1 { self.fewest(&run, pieces, &bounds[i..=end])? } else { None };
-            match better {
-                Some((merged, error)) => {
-                    let assurance = if self.options.certify { Assurance::Certified } else { Assurance::Checked };
-                    report.add_error(error, assurance);
-                    out.extend_from_slice(&merged);
-                }
-                None => out.extend_from_slice(own),
-            }
-            i = end;
-        }
-        Ok(out)
+impl<'a> Merger<'a> {
+    pub(super) fn new(fitter: &'a SegmentFitter<'a>, segs: &'a [Seg], jets: &'a [[Jet; 2]]) -> Self {
+        Self { fitter, segs, jets, pieces: Vec::with_capacity(segs.len()), report: PathReport::default(), last_reach: 0 }
     }
 
-    /// The longest run of smoothly joined segments at the start of `segs`.
-    fn run<'s>(&self, segs: &'s [Seg]) -> Result<SegmentRun<'s>, Point>
-    where
-        Self: 's,
-    {
-        let mut run = SegmentRun::new(self.degree.is_some());
-        for seg in segs {
-            if self.options.shared.contains(seg) {
+    /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
+    /// begins.
+    pub(super) fn merged(mut self, smooth: &[bool]) -> Result<(Vec<FittedPiece>, PathReport), Point> {
+        let mut i = 0;
+        while i < self.segs.len() {
+            let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
+            let run = if joined > 0 { Some(self.run(i, i + joined + 1)?) } else { None };
+            match run.filter(|r| r.segments.len() > 1) {
+                Some(run) => {
+                    self.merge(&run, i)?;
+                    i += run.segments.len();
+                }
+                None => {
+                    // A segment that cannot be in a run keeps its pieces.
+                    let [first, last] = &self.jets[i];
+                    self.fitter.fit(&self.segs[i], [first, last], &mut self.pieces, &mut self.report)?;
+                    i += 1;
+                }
+            }
+        }
+        Ok((self.pieces, self.report))
+    }
+
+    /// The longest run of smoothly joined segments from `start` up to `end`.
+    fn run(&self, start: usize, end: usize) -> Result<SegmentRun<'a>, Point> {
+        let mut run = SegmentRun::new(self.fitter.degree.is_some());
+        for i in start..end {
+            if self.fitter.options.shared.contains(&self.segs[i]) {
                 break;
             }
-            let Some(segment) = self.run_segment(seg)? else { break };
+            let Some(segment) = self.run_segment(i) else { break };
             let turn = |last: &RunSegment<'_>| {
                 let (into, away) = (last.to.into, segment.from.away);
                 into.cross(away).atan2(into.dot(away)).abs()
@@ -109,45 +100,63 @@ impl Merger<'_> {
     }
 
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
-    fn run_segment<'s>(&self, seg: &'s Seg) -> Result<Option<RunSegment<'s>>, Point>
-    where
-        Self: 's,
-    {
-        let certify = self.options.certify;
-        let source = SourceCurve::for_proof(seg, self.map, certify);
-        let form = if certify { RationalForm::new(&source, self.degree) } else { None };
-        if certify && form.is_none() { Ok(None) } else { RunSegment::new(source, form) }
+    fn run_segment(&self, i: usize) -> Option<RunSegment<'a>> {
+        let SegmentFitter { map, degree, options, .. } = *self.fitter;
+        let source = SourceCurve::for_proof(&self.segs[i], map, options.certify);
+        let form = if options.certify { Some(RationalForm::new(&source, degree)?) } else { None };
+        RunSegment::new(source, form, &self.jets[i])
     }
 
-    /// The fewest pieces for a run, and their largest error. `None` if they are not fewer than its segments have.
-    fn fewest(
-        &self,
-        run: &SegmentRun<'_>,
-        pieces: &[FittedPiece],
-        bounds: &[usize],
-    ) -> Result<Option<(Vec<FittedPiece>, f64)>, Point> {
-        let tolerance = self.options.tolerance;
-        let proof = self.options.certify.then_some(tolerance);
-        let mut reaches = Reaches::new(run, bounds, MERGE_SHARE * tolerance, proof);
-        for _ in 0..MERGE_SEARCHES {
-            let Some(legs) = fewest_legs(&mut reaches)? else { return Ok(None) };
-            let (mut out, mut worst) = (Vec::with_capacity(reaches.unmerged()), 0.0f64);
-            let mut passed = true;
-            for Leg { from, to, merged } in legs {
-                if !merged {
-                    out.extend_from_slice(&pieces[bounds[from / MERGE_GRID]..bounds[to / MERGE_GRID]]);
-                } else if let Some((piece, error)) = reaches.piece(from, to)? {
-                    worst = worst.max(error);
-                    out.push(piece);
-                } else {
-                    // It is left out of the next search.
-                    passed = false;
+    /// Appends the fewest pieces for a run that begins with segment `start`.
+    fn merge(&mut self, run: &SegmentRun<'a>, start: usize) -> Result<(), Point> {
+        let segments = start..start + run.segments.len();
+        let own = OwnPieces::new(self.fitter, &self.segs[segments.clone()], &self.jets[segments.clone()]);
+        let options = self.fitter.options;
+        let proof = options.certify.then_some(options.tolerance);
+        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, self.last_reach);
+        let assurance = if options.certify { Assurance::Certified } else { Assurance::Checked };
+        let legs = passed(&mut reaches)?;
+        self.last_reach = reaches.last_reach;
+        match legs {
+            Some(legs) => {
+                for (leg, piece) in legs {
+                    if let Some((piece, error)) = piece {
+                        self.report.add_error(error, assurance);
+                        self.pieces.push(piece);
+                    } else {
+                        let i = leg.from / MERGE_GRID;
+                        reaches.own.append(i, &mut self.pieces, &mut self.report)?;
+                    }
                 }
             }
-            if passed {
-                return Ok(Some((out, worst)));
+            None => {
+                for i in 0..segments.len() {
+                    reaches.own.append(i, &mut self.pieces, &mut self.report)?;
+                }
             }
         }
-        Ok(None)
+        Ok(())
     }
+}
+
+/// A leg with its piece and that one's error, if it is merged.
+type PassedLeg = (Leg, Option<(FittedPiece, f64)>);
+
+/// The way with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
+fn passed(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<PassedLeg>>, Point> {
+    for _ in 0..MERGE_SEARCHES {
+        let Some(legs) = fewest_legs(reaches)? else { return Ok(None) };
+        let mut out = Vec::with_capacity(legs.len());
+        for leg in &legs {
+            let piece = if leg.merged { reaches.piece(leg.from, leg.to)? } else { None };
+            // A piece that fails is left out of the next search.
+            if piece.is_some() || !leg.merged {
+                out.push((*leg, piece));
+            }
+        }
+        if out.len() == legs.len() {
+            return Ok(Some(out));
+        }
+    }
+    Ok(None)
 }

@@ -2,6 +2,7 @@
 
 use super::check::Distances;
 use super::cubic::{RunCubic, Stretch, Trial};
+use super::own::OwnPieces;
 use super::proven::proven;
 use super::run::SegmentRun;
 use crate::refit::limits::{
@@ -30,8 +31,7 @@ const NONE: usize = usize::MAX;
 /// Everything known about single cubics between the grid places of a run.
 pub(super) struct Reaches<'r, 'a> {
     run: &'r SegmentRun<'a>,
-    /// `bounds[i]..bounds[i + 1]` are the pieces of segment i.
-    bounds: &'r [usize],
+    pub(super) own: OwnPieces<'r>,
     tolerance: f64,
     /// The tolerance of proofs, if they are wanted.
     proof: Option<f64>,
@@ -45,15 +45,21 @@ pub(super) struct Reaches<'r, 'a> {
     latest: Vec<usize>,
     distances: Distances,
     /// Places reached from the start before: drawings change little along a curve.
-    last_reach: usize,
+    pub(super) last_reach: usize,
 }
 
 impl<'r, 'a> Reaches<'r, 'a> {
-    pub(super) fn new(run: &'r SegmentRun<'a>, bounds: &'r [usize], tolerance: f64, proof: Option<f64>) -> Self {
+    pub(super) fn new(
+        run: &'r SegmentRun<'a>,
+        own: OwnPieces<'r>,
+        tolerance: f64,
+        proof: Option<f64>,
+        last_reach: usize,
+    ) -> Self {
         let crossing = (0..=run.segments.len()).map(|j| (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt());
         Self {
             run,
-            bounds,
+            own,
             tolerance,
             proof,
             ends: vec![None; run.grid() + 1],
@@ -61,23 +67,13 @@ impl<'r, 'a> Reaches<'r, 'a> {
             tried: Vec::new(),
             latest: vec![NONE; run.grid() + 1],
             distances: Distances::default(),
-            last_reach: 0,
+            last_reach,
         }
     }
 
     /// The last grid place.
     pub(super) fn last(&self) -> usize {
         self.run.grid()
-    }
-
-    /// Number of pieces of segment `i`.
-    pub(super) fn pieces(&self, i: usize) -> usize {
-        self.bounds[i + 1] - self.bounds[i]
-    }
-
-    /// Number of pieces of all segments.
-    pub(super) fn unmerged(&self) -> usize {
-        self.bounds[self.bounds.len() - 1] - self.bounds[0]
     }
 
     /// The break point at place `k`. `Err`: the source point, if the map is not finite there.
@@ -194,13 +190,11 @@ impl<'r, 'a> Reaches<'r, 'a> {
     pub(super) fn furthest(&mut self, k: usize) -> Result<usize, Point> {
         let limit = self.limit(k);
         let joint = (k / MERGE_GRID + 1) * MERGE_GRID;
-        // The segment's own single piece leads as far.
-        let own = if k.is_multiple_of(MERGE_GRID) && self.pieces(k / MERGE_GRID) == 1 { joint } else { k };
-        if limit <= own {
+        if limit <= joint && self.own_leads_to(joint, k)? {
             return Ok(k);
         }
         loop {
-            let m = self.seek(k, own, joint, limit)?;
+            let m = self.seek(k, joint, limit)?;
             if m > k {
                 self.last_reach = m - k;
             }
@@ -210,8 +204,13 @@ impl<'r, 'a> Reaches<'r, 'a> {
         }
     }
 
+    /// Returns `true` if `k` is the joint before `joint`, and the segment between them has a single piece.
+    fn own_leads_to(&mut self, joint: usize, k: usize) -> Result<bool, Point> {
+        Ok(k + MERGE_GRID == joint && self.own.count(k / MERGE_GRID)? == 1)
+    }
+
     /// The furthest place that one cubic reaches from `k` as far as its samples show.
-    fn seek(&mut self, k: usize, own: usize, joint: usize, limit: usize) -> Result<usize, Point> {
+    fn seek(&mut self, k: usize, joint: usize, limit: usize) -> Result<usize, Point> {
         let start = self.run.place(k);
         let (mut low, mut high) = (k, limit + 1);
         // Errors at `low` and `high`, as far as they are known.
@@ -224,7 +223,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
             } else {
                 (high, above) = (probe, Some(error));
             }
-            if high <= own + 1 {
+            if high <= joint + 1 && self.own_leads_to(joint, k)? {
                 return Ok(k);
             }
             if low + 1 >= high {

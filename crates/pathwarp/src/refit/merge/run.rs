@@ -1,5 +1,6 @@
 //! Segments in a row as one curve, known by samples at even parameters of each.
 
+use crate::map::Jet;
 use crate::refit::lanes::{Lane, Lanes, sum};
 use crate::refit::limits::{MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
 use crate::refit::proof::RationalForm;
@@ -37,13 +38,13 @@ impl Curvature {
 }
 
 impl<'a> RunSegment<'a> {
-    /// `None` for a segment that cannot be in a run: one without length or with slow spots.
-    pub(super) fn new(source: SourceCurve<'a>, form: Option<RationalForm>) -> Result<Option<Self>, Point> {
+    /// A segment with the jets at its ends. `None` if it cannot be in a run, having no length or slow spots.
+    pub(super) fn new(source: SourceCurve<'a>, form: Option<RationalForm>, [first, last]: &[Jet; 2]) -> Option<Self> {
         if source.size() == 0.0 || !split::slow_spots(source.seg).all().is_empty() {
-            return Ok(None);
+            return None;
         }
-        let (from, to) = (source.end(0.0)?, source.end(1.0)?);
-        Ok(Some(Self { source, form, from, to, curvature: [Curvature::default(); 2] }))
+        let (from, to) = (source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last));
+        Some(Self { source, form, from, to, curvature: [Curvature::default(); 2] })
     }
 }
 

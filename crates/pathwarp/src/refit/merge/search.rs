@@ -33,7 +33,11 @@ pub(super) fn fewest_legs(
     let mut furthest = vec![Furthest { place: 0, leg: None }];
     // (number of pieces, joint) that a segment's own pieces lead to.
     let mut by_own = Vec::new();
-    for count in 0..reaches.unmerged() - 1 {
+    for count in 0.. {
+        // A segment has at least one piece.
+        if count + 1 >= reaches.own.segments() && count + 1 >= reaches.own.total()? {
+            break;
+        }
         let Furthest { place: k, leg } = furthest[count];
         let joint = k - k % MERGE_GRID;
         let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
@@ -46,6 +50,7 @@ pub(super) fn fewest_legs(
         }
         // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
         let at_joint = best.place <= joint + MERGE_GRID
+            && best.place < last
             && joint < last
             && (joint == k
                 || match leg {
@@ -53,7 +58,7 @@ pub(super) fn fewest_legs(
                     _ => false,
                 });
         if at_joint {
-            by_own.push((count + reaches.pieces(joint / MERGE_GRID), joint + MERGE_GRID));
+            by_own.push((count + reaches.own.count(joint / MERGE_GRID)?, joint + MERGE_GRID));
         }
         for &(pieces, to) in &by_own {
             if pieces == count + 1 && to >= best.place && to > k {
@@ -62,7 +67,7 @@ pub(super) fn fewest_legs(
         }
         furthest.push(if best.place > k { best } else { Furthest { place: k, leg: None } });
         if best.place == last {
-            return Ok(Some(legs(&furthest, reaches)));
+            return legs(&furthest, reaches).map(Some);
         }
     }
     Ok(None)
@@ -88,7 +93,7 @@ fn beyond(
 }
 
 /// Follows the legs back from the end.
-fn legs(furthest: &[Furthest], reaches: &Reaches<'_, '_>) -> Vec<Leg> {
+fn legs(furthest: &[Furthest], reaches: &mut Reaches<'_, '_>) -> Result<Vec<Leg>, Point> {
     let mut legs = Vec::new();
     let mut count = furthest.len() - 1;
     let mut to = reaches.last();
@@ -98,9 +103,9 @@ fn legs(furthest: &[Furthest], reaches: &Reaches<'_, '_>) -> Vec<Leg> {
             continue;
         };
         legs.push(Leg { from, to, merged });
-        count -= if merged { 1 } else { reaches.pieces(from / MERGE_GRID) };
+        count -= if merged { 1 } else { reaches.own.count(from / MERGE_GRID)? };
         to = from;
     }
     legs.reverse();
-    legs
+    Ok(legs)
 }
