@@ -82,16 +82,20 @@ impl Stretch {
         let ([first, last], length) = (samples, to.t - from.t);
         let mut shares = [0.0; ALL];
         let (mut x, mut y) = ([0.0; ALL], [0.0; ALL]);
-        let mut i = first + 1;
-        let mut furthest_off = 0.0;
+        let inner = first + 1..last;
+        let (lengths, xs, ys) = (&run.length[inner.clone()], &run.x[inner.clone()], &run.y[inner]);
+        let scale = 1.0 / length;
+        let (mut i, mut furthest_off) = (0, 0.0);
         for j in 1..ALL - 1 {
             let share = UNIT * j as f64;
             let twice = 2.0 * (from.t + length * share);
-            while i + 1 < last && run.length[i] + run.length[i + 1] < twice {
+            while let Some(next) = lengths.get(i + 1)
+                && lengths[i] + next < twice
+            {
                 i += 1;
             }
-            shares[j] = (run.length[i] - from.t) / length;
-            (x[j], y[j]) = (run.x[i] - from.p.x, run.y[i] - from.p.y);
+            shares[j] = (lengths[i] - from.t) * scale;
+            (x[j], y[j]) = (xs[i] - from.p.x, ys[i] - from.p.y);
             furthest_off = larger(furthest_off, (shares[j] - share).abs());
         }
         shares[ALL - 1] = 1.0;

@@ -82,7 +82,7 @@ impl<'a> Merger<'a> {
 
     /// The longest run of smoothly joined segments from `start` up to `end`.
     fn run(&self, start: usize, end: usize) -> Result<SegmentRun<'a>, Point> {
-        let mut run = SegmentRun::new(self.fitter.degree.is_some());
+        let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
         for i in start..end {
             if self.fitter.options.shared.contains(&self.segs[i]) {
                 break;

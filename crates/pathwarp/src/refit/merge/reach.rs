@@ -64,7 +64,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
             proof,
             ends: vec![None; run.grid() + 1],
             crossing: crossing.collect(),
-            tried: Vec::new(),
+            tried: Vec::with_capacity(2 * run.segments.len()),
             latest: vec![NONE; run.grid() + 1],
             distances: Distances::default(),
             last_reach,

@@ -50,7 +50,6 @@ impl<'a> RunSegment<'a> {
 
 /// Smoothly joined segments as one curve. Samples lie at even parameters of each segment; the last of one segment is the first
 /// of the next.
-#[derive(Default)]
 pub(super) struct SegmentRun<'a> {
     pub(super) segments: Vec<RunSegment<'a>>,
     /// Intervals between samples of a segment.
@@ -64,8 +63,10 @@ pub(super) struct SegmentRun<'a> {
 
 impl<'a> SegmentRun<'a> {
     /// A run without segments, under a map that is a quotient of polynomials or any other.
-    pub(super) fn new(rational: bool) -> Self {
-        Self { per_segment: if rational { RATIONAL_SAMPLES } else { OPAQUE_SAMPLES }, ..Self::default() }
+    pub(super) fn new(rational: bool, capacity: usize) -> Self {
+        let per_segment = if rational { RATIONAL_SAMPLES } else { OPAQUE_SAMPLES };
+        let samples = || Vec::with_capacity(capacity * per_segment + 1);
+        Self { segments: Vec::with_capacity(capacity), per_segment, x: samples(), y: samples(), length: samples() }
     }
 
     /// Samples a segment and appends it. Returns `false` if it does not move everywhere: a stretch without length has no direction
@@ -86,7 +87,8 @@ impl<'a> SegmentRun<'a> {
         }
         let mut moves = true;
         for k in start..start + n {
-            let step = (self.x[k + 1] - self.x[k]).hypot(self.y[k + 1] - self.y[k]);
+            let (dx, dy) = (self.x[k + 1] - self.x[k], self.y[k + 1] - self.y[k]);
+            let step = (dx * dx + dy * dy).sqrt();
             moves &= step > 0.0;
             self.length.push(self.length[k] + step);
         }
