@@ -451,7 +451,7 @@ pub(super) const REACH_TARGET: f64 = 3.0;
 /// work; 1e-12: unchanged.
 pub(super) const SMALLEST_REACH_ERROR: f64 = 1e-4;
 
-/// A stretch takes samples of its own if those of the run are off the wanted places by more than this share of the spacing.
+/// A stretch interpolates its samples if those of the run are off the wanted places by more than this share of the spacing.
 pub(super) const COARSE: f64 = 0.5;
 
 /// A check samples the run more closely where two samples are further apart than this share of the cubic's length.

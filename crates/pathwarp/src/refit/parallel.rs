@@ -3,17 +3,17 @@
 #[cfg(feature = "parallel")]
 use super::limits::WORTH_THREADS;
 
-/// Applies `f` to each chunk of `items`; the first error in their order ends it.
+/// Applies `f` to each chunk of `items` with its index; the first error in their order ends it.
 pub(super) fn in_parallel<T: Sync, R: Send, E: Send>(
     items: &[T],
     chunk: usize,
-    f: impl Fn(&[T]) -> Result<R, E> + Sync,
+    f: impl Fn(usize, &[T]) -> Result<R, E> + Sync,
 ) -> Result<Vec<R>, E> {
     #[cfg(feature = "parallel")]
     if items.len() >= WORTH_THREADS {
         use rayon::prelude::*;
-        let results: Vec<Result<R, E>> = items.par_chunks(chunk).map(&f).collect();
+        let results: Vec<Result<R, E>> = items.par_chunks(chunk).enumerate().map(|(i, c)| f(i, c)).collect();
         return results.into_iter().collect();
     }
-    items.chunks(chunk).map(f).collect()
+    items.chunks(chunk).enumerate().map(|(i, c)| f(i, c)).collect()
 }

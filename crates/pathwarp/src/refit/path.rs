@@ -63,7 +63,10 @@ pub(super) fn subpath(
     }
     let projective = matches!(map.class(), Class::Projective(_));
     let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, options };
-    let refitted = |segs: &[Seg]| if options.merge { merged(&fitter, segs) } else { unmerged(&fitter, segs) };
+    let refitted = |i: usize, segs: &[Seg]| {
+        let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
+        if options.merge { merged(&fitter, segs, nodes) } else { unmerged(&fitter, segs, nodes) }
+    };
     let mut pieces = Vec::new();
     for (more, report) in in_parallel(&sub.segs, CHUNK, refitted)? {
         out.report.add(report);
@@ -81,9 +84,8 @@ pub(super) fn subpath(
 type Refitted = Result<(Vec<FittedPiece>, PathReport), GeometryError>;
 
 /// Refits segments one by one.
-fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg]) -> Refitted {
+fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
     let (mut pieces, mut report) = (Vec::with_capacity(segs.len() + segs.len() / 2), PathReport::default());
-    let mut nodes = Nodes::new(fitter, segs);
     for seg in segs {
         let ends = nodes.next(seg)?;
         fitter.fit(seg, ends, &mut pieces, &mut report).map_err(infinity)?;
@@ -92,12 +94,11 @@ fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg]) -> Refitted {
 }
 
 /// Refits segments, with fewer pieces across smooth joints.
-fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg]) -> Refitted {
+fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
     // Across other creases than the domain's edge the image has corners.
     if fitter.creases.items().iter().any(|c| c.kind != CreaseKind::Edge) {
-        return unmerged(fitter, segs);
+        return unmerged(fitter, segs, nodes);
     }
-    let mut nodes = Nodes::new(fitter, segs);
     let mut jets = Vec::with_capacity(segs.len());
     // Joints of the image that may be smooth, by the index of the segment that begins there.
     let mut smooth = Vec::with_capacity(segs.len());
@@ -120,9 +121,15 @@ struct Nodes<'a> {
 }
 
 impl<'a> Nodes<'a> {
-    fn new(fitter: &'a SegmentFitter<'a>, segs: &[Seg]) -> Self {
+    /// From the node `at` on, which has this jet.
+    fn new(fitter: &'a SegmentFitter<'a>, at: Point, jet: Jet) -> Self {
+        Self { fitter, jets: [jet; 2], at, odd: false }
+    }
+
+    /// From the first of `segs` on.
+    fn inside(fitter: &'a SegmentFitter<'a>, segs: &[Seg]) -> Self {
         let at = segs.first().map_or(Point::ORIGIN, Seg::start);
-        Self { fitter, jets: [fitter.map.jet(at); 2], at, odd: false }
+        Self::new(fitter, at, fitter.map.jet(at))
     }
 
     #[inline(always)]

@@ -152,16 +152,6 @@ impl<'a> SourceCurve<'a> {
         self.size
     }
 
-    /// The source's point up to rounding: by the power basis, if there is one.
-    #[inline(always)]
-    pub(super) fn point(&self, t: f64) -> Point {
-        if matches!(self.seg, Seg::Arc(_)) {
-            return self.at(t);
-        }
-        let [c0, c1, c2, c3] = self.c;
-        Point::new(fma(fma(fma(c3.x, t, c2.x), t, c1.x), t, c0.x), fma(fma(fma(c3.y, t, c2.y), t, c1.y), t, c0.y))
-    }
-
     /// Source points at eight parameters.
     #[inline(always)]
     pub(super) fn points(&self, t: &Lane) -> Lanes {

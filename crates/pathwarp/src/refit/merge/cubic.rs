@@ -71,13 +71,8 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// Picks the run's samples nearest to seventeenths of the length between two of them, or takes new ones if those are too coarse.
-    pub(super) fn new(
-        run: &SegmentRun<'_>,
-        ends: [BreakPoint; 2],
-        samples: [usize; 2],
-        tolerance: f64,
-    ) -> Result<Self, Point> {
+    /// Picks the run's samples nearest to seventeenths of the length between two of them, or interpolates if those are too coarse.
+    pub(super) fn new(run: &SegmentRun<'_>, ends: [BreakPoint; 2], samples: [usize; 2], tolerance: f64) -> Self {
         let [from, to] = ends;
         let ([first, last], length) = (samples, to.t - from.t);
         let mut shares = [0.0; ALL];
@@ -103,7 +98,7 @@ impl Stretch {
             for j in 1..ALL - 1 {
                 shares[j] = UNIT * j as f64;
             }
-            run.images_between(samples, &shares, [&mut x, &mut y])?;
+            run.between(samples, &shares, [&mut x, &mut y]);
             for j in 1..ALL - 1 {
                 (x[j], y[j]) = (x[j] - from.p.x, y[j] - from.p.y);
             }
@@ -118,7 +113,7 @@ impl Stretch {
         let pull = (HANDLE_PULL * tolerance / size).powi(2);
         let frame =
             ChordFrame { q, t0: from.away, t1: to.into, floor: [floor; 2], size, home: [third; 2], pull };
-        Ok(Self { tolerance, ends, samples, frame, g, check, shares })
+        Self { tolerance, ends, samples, frame, g, check, shares }
     }
 
     /// Fits a cubic, by least squares first and in further ways as long as the error is above the tolerance.

@@ -134,7 +134,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
 
     fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, Point> {
         let ends = [self.end(k)?, self.end(m)?];
-        Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], SEARCH_SHARE * self.tolerance)
+        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], SEARCH_SHARE * self.tolerance))
     }
 
     /// The entry of the cubic from `k` to `m`, which is fitted on first use.

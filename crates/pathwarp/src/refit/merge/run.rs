@@ -1,7 +1,7 @@
 //! Segments in a row as one curve, known by samples at even parameters of each.
 
 use crate::map::Jet;
-use crate::refit::lanes::{Lane, Lanes, sum};
+use crate::refit::lanes::{Lane, Lanes};
 use crate::refit::limits::{MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
 use crate::refit::proof::RationalForm;
 use crate::refit::samples::Evenly;
@@ -144,41 +144,60 @@ impl<'a> SegmentRun<'a> {
         ((a.value - b.value).abs() - a.uncertainty - b.uncertainty).max(0.0)
     }
 
-    /// Images at shares of the length between two samples.
-    pub(super) fn images_between(
-        &self,
-        [first, last]: [usize; 2],
-        shares: &Evenly,
-        [x, y]: [&mut Evenly; 2],
-    ) -> Result<(), Point> {
-        let Some(map) = self.segments.first().map(|s| s.source.map) else { return Ok(()) };
+    /// Places at shares of the length between two samples, by polynomials of degree five through six samples of the same segment.
+    pub(super) fn between(&self, [first, last]: [usize; 2], shares: &Evenly, [x, y]: [&mut Evenly; 2]) {
         let (start, length) = (self.length[first], self.length[last] - self.length[first]);
         let n = self.per_segment;
         let mut k = first;
-        for half in 0..2 {
-            let mut g = Lanes::default();
-            let mut at = Point::ORIGIN;
-            for i in 0..8 {
-                let wanted = start + length * shares[8 * half + i + 1];
-                while k + 1 < last && self.length[k + 1] <= wanted {
-                    k += 1;
-                }
-                let part = ((wanted - self.length[k]) / (self.length[k + 1] - self.length[k])).clamp(0.0, 1.0);
-                at = self.segments[k / n].source.point(((k % n) as f64 + part) / n as f64);
-                (g.x[i], g.y[i]) = (at.x, at.y);
+        for j in 1..shares.len() - 1 {
+            let wanted = start + length * shares[j];
+            while k + 1 < last && self.length[k + 1] <= wanted {
+                k += 1;
             }
-            map.lanes(&mut g.x, &mut g.y);
-            if !(sum(&g.x) + sum(&g.y)).is_finite() {
-                return Err(at);
+            let part = (wanted - self.length[k]) / (self.length[k + 1] - self.length[k]);
+            let base = k - k % n + (k % n).saturating_sub(2).min(n - 5);
+            let w = lagrange((k - base) as f64 + part);
+            (x[j], y[j]) = (0.0, 0.0);
+            for (i, w) in w.into_iter().enumerate() {
+                x[j] += w * self.x[base + i];
+                y[j] += w * self.y[base + i];
             }
-            x[8 * half + 1..8 * half + 9].copy_from_slice(&g.x);
-            y[8 * half + 1..8 * half + 9].copy_from_slice(&g.y);
         }
-        Ok(())
     }
 
     /// Images at eight parameters of segment `i`.
     pub(super) fn images(&self, i: usize, t: &Lane) -> Result<Lanes, Point> {
         self.segments.get(i).map_or(Ok(Lanes::default()), |s| s.source.images(t))
+    }
+}
+
+/// Lagrange's weights of the values at 0, 1, …, 5 for the value at `u`.
+fn lagrange(u: f64) -> [f64; 6] {
+    const SCALE: [f64; 6] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
+    let mut w = SCALE;
+    let mut below = 1.0;
+    for (i, w) in w.iter_mut().enumerate() {
+        *w *= below;
+        below *= u - i as f64;
+    }
+    let mut above = 1.0;
+    for (i, w) in w.iter_mut().enumerate().rev() {
+        *w *= above;
+        above *= u - i as f64;
+    }
+    w
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lagrange;
+
+    #[test]
+    fn polynomials_of_degree_five_are_reproduced() {
+        let f = |u: f64| ((((0.3 * u - 1.0) * u + 2.0) * u - 0.7) * u + 1.5) * u - 4.0;
+        for u in [-0.2, 0.0, 0.4, 1.0, 2.5, 4.9, 5.0] {
+            let sum: f64 = lagrange(u).iter().enumerate().map(|(i, w)| w * f(i as f64)).sum();
+            assert!((sum - f(u)).abs() < 1e-12, "{u}: {sum}");
+        }
     }
 }
