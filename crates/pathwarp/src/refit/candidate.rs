@@ -1,8 +1,8 @@
 //! A fitted cubic with the stretch of the image it stands for: what checks and proofs are given.
 
-use super::source::SourceCurve;
 use super::frame::ChordFrame;
 use super::lanes::{Lane, Lanes};
+use super::source::SourceCurve;
 use kurbo::{Point, Vec2};
 
 /// A fitted cubic.

@@ -127,8 +127,7 @@ impl SegmentFitter<'_> {
         let form = form.map(|f| f.with_blur(blur));
         let degree = degree.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        StretchFitter { source, slow, tolerance, form, degree, attempts: 0 }
-            .cover(from, to, pieces, report)
+        StretchFitter { source, slow, tolerance, form, degree, attempts: 0 }.cover(from, to, pieces, report)
     }
 
     /// Splits a segment at the map's creases and covers each part under the branch of the map that holds there.

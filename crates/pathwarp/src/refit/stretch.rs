@@ -120,9 +120,7 @@ impl StretchFitter<'_> {
         }
         let error = match &self.form {
             None => 0.0,
-            Some(form) => {
-                proof::line(self.source, form, request.from, request.to, request.frame.size, self.tolerance)?
-            }
+            Some(form) => proof::line(self.source, form, request.from, request.to, request.frame.size, self.tolerance)?,
         };
         if error <= self.tolerance {
             return Ok(FitOutcome::Fits { piece, error, reach: error });

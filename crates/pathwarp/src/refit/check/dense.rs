@@ -3,12 +3,12 @@
 use super::probe::{Probe, probe};
 use super::thorough::thorough;
 use crate::refit::candidate::Candidate;
-use crate::refit::source::SourceCurve;
 use crate::refit::lanes::{Lane, largest};
 use crate::refit::limits::{DENSE_BATCHES, FOOT_ROUNDING, MAX_ZOOMS, PEAK_NEAR, WALK_DEPTH, ZOOM_RISE};
 use crate::refit::peaks::parabola_peak;
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::Evenly;
+use crate::refit::source::SourceCurve;
 use crate::refit::split::SlowSpots;
 use kurbo::{Point, Vec2};
 

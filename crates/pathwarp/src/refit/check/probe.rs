@@ -1,9 +1,9 @@
 //! Further samples of a piece whose foot points are known at sixteen.
 
 use crate::refit::candidate::Candidate;
-use crate::refit::source::SourceCurve;
 use crate::refit::lanes::{Lane, Lanes};
 use crate::refit::samples::{ALL, Evenly};
+use crate::refit::source::SourceCurve;
 use kurbo::Point;
 
 /// Eight samples with their foot points and squared distances.

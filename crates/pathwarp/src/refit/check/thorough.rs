@@ -1,9 +1,9 @@
 //! The thorough check: both one-sided distances, without the foot points of the fit.
 
 use crate::refit::candidate::Candidate;
-use crate::refit::source::SourceCurve;
 use crate::refit::lanes::Lane;
 use crate::refit::limits::THOROUGH_SAMPLES;
+use crate::refit::source::SourceCurve;
 use crate::refit::split::SlowSpots;
 use kurbo::{Point, Vec2};
 

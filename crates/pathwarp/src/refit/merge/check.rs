@@ -1,9 +1,10 @@
 //! The check of a cubic over several segments: the error is smooth along each segment, and may have corners at the joints.
 
 use super::cubic::RunCubic;
+use super::limits::COARSE_CHECK;
 use super::run::SegmentRun;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
-use crate::refit::limits::{COARSE_CHECK, FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
+use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
 use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::{ALL, Evenly};
@@ -21,12 +22,7 @@ impl Distances {
     /// The distance between the cubic and the run, by the run's samples and closer ones where it may exceed `enough` between them.
     /// `None` if the foot points do not advance along the cubic or it may turn by more than 60° from one to the next, so that
     /// the samples may have missed something.
-    pub(super) fn measure(
-        &mut self,
-        run: &SegmentRun<'_>,
-        c: &RunCubic,
-        enough: f64,
-    ) -> Result<Option<f64>, Point> {
+    pub(super) fn measure(&mut self, run: &SegmentRun<'_>, c: &RunCubic, enough: f64) -> Result<Option<f64>, Point> {
         let mut worst = self.at_samples(run, c, enough);
         if worst > enough {
             return Ok(Some(worst));

@@ -1,13 +1,14 @@
 //! One cubic for a stretch of a run, fitted to sixteen of the run's samples. Takes no further ones.
 
+use super::limits::COARSE;
 use super::run::SegmentRun;
 use crate::refit::fit::{Fit, THOROUGH, fit_with, lawson};
 use crate::refit::frame::ChordFrame;
 use crate::refit::judge::settled;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
 use crate::refit::limits::{
-    COARSE, GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN, RESTART_LONGER, RESTART_SHORTER,
-    RESTART_TURN, RESTART_WITHIN, RESTART_WITHIN_TURNED,
+    GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN, RESTART_LONGER,
+    RESTART_SHORTER, RESTART_TURN, RESTART_WITHIN, RESTART_WITHIN_TURNED,
 };
 use crate::refit::piece::FittedPiece;
 use crate::refit::residuals::FitState;
@@ -111,8 +112,7 @@ impl Stretch {
         let third = length * (1.0 / 3.0);
         let floor = third.min(HANDLE_FLOOR * size);
         let pull = (HANDLE_PULL * tolerance / size).powi(2);
-        let frame =
-            ChordFrame { q, t0: from.away, t1: to.into, floor: [floor; 2], size, home: [third; 2], pull };
+        let frame = ChordFrame { q, t0: from.away, t1: to.into, floor: [floor; 2], size, home: [third; 2], pull };
         Self { tolerance, ends, samples, frame, g, check, shares }
     }
 

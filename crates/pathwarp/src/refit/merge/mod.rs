@@ -8,13 +8,13 @@
 
 mod check;
 mod cubic;
+mod limits;
 mod own;
 mod proven;
 mod reach;
 mod run;
 mod search;
 
-use super::limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
@@ -23,6 +23,7 @@ use super::source::SourceCurve;
 use crate::map::Jet;
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
+use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
 use own::OwnPieces;
 use reach::Reaches;
 use run::{RunSegment, SegmentRun};
@@ -54,7 +55,14 @@ pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
 
 impl<'a> Merger<'a> {
     pub(super) fn new(fitter: &'a SegmentFitter<'a>, segs: &'a [Seg], jets: &'a [[Jet; 2]]) -> Self {
-        Self { fitter, segs, jets, pieces: Vec::with_capacity(segs.len()), report: PathReport::default(), last_reach: 0 }
+        Self {
+            fitter,
+            segs,
+            jets,
+            pieces: Vec::with_capacity(segs.len()),
+            report: PathReport::default(),
+            last_reach: 0,
+        }
     }
 
     /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i

@@ -49,7 +49,12 @@ impl<'a> OwnPieces<'a> {
     }
 
     /// Appends the pieces of segment `i`.
-    pub(super) fn append(&mut self, i: usize, out: &mut Vec<FittedPiece>, report: &mut PathReport) -> Result<(), Point> {
+    pub(super) fn append(
+        &mut self,
+        i: usize,
+        out: &mut Vec<FittedPiece>,
+        report: &mut PathReport,
+    ) -> Result<(), Point> {
         let (from, to, own) = self.fit(i)?;
         let (from, to) = (*from, *to);
         report.add(own.clone());

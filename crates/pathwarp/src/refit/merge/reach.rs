@@ -2,13 +2,13 @@
 
 use super::check::Distances;
 use super::cubic::{RunCubic, Stretch, Trial};
+use super::limits::{
+    BETWEEN_TARGET, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN, MERGE_GRID,
+    REACH_TARGET, REFUSED_ERROR, SEARCH_SHARE, SMALLEST_REACH_ERROR,
+};
 use super::own::OwnPieces;
 use super::proven::proven;
 use super::run::SegmentRun;
-use crate::refit::limits::{
-    BETWEEN_TARGET, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN, MERGE_GRID, REACH_TARGET,
-    REFUSED_ERROR, SEARCH_SHARE, SMALLEST_REACH_ERROR,
-};
 use crate::refit::piece::FittedPiece;
 use crate::refit::source::BreakPoint;
 use kurbo::Point;

@@ -1,8 +1,8 @@
 //! Segments in a row as one curve, known by samples at even parameters of each.
 
+use super::limits::{MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
 use crate::map::Jet;
 use crate::refit::lanes::{Lane, Lanes};
-use crate::refit::limits::{MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
 use crate::refit::proof::RationalForm;
 use crate::refit::samples::Evenly;
 use crate::refit::source::{BreakPoint, SourceCurve};

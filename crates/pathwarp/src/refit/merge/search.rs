@@ -4,8 +4,8 @@
 //! one. So the search keeps one place for each number of pieces, extends it as far as one cubic reaches, and compares with
 //! the segments' own pieces, which lead from joint to joint.
 
+use super::limits::MERGE_GRID;
 use super::reach::Reaches;
-use crate::refit::limits::MERGE_GRID;
 use kurbo::Point;
 
 /// A step between two grid places.
@@ -26,9 +26,7 @@ struct Furthest {
 }
 
 /// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have.
-pub(super) fn fewest_legs(
-    reaches: &mut Reaches<'_, '_>,
-) -> Result<Option<Vec<Leg>>, Point> {
+pub(super) fn fewest_legs(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<Leg>>, Point> {
     let last = reaches.last();
     let mut furthest = vec![Furthest { place: 0, leg: None }];
     // (number of pieces, joint) that a segment's own pieces lead to.
@@ -75,11 +73,7 @@ pub(super) fn fewest_legs(
 
 /// The place that a cubic from `earlier` reaches beyond `best`, if it does. `earlier` is a place before `k` to which the cubic
 /// that begins at `from` can be shortened: its end tangent may suit what follows better.
-fn beyond(
-    reaches: &mut Reaches<'_, '_>,
-    [from, earlier, k]: [usize; 3],
-    best: usize,
-) -> Result<Option<usize>, Point> {
+fn beyond(reaches: &mut Reaches<'_, '_>, [from, earlier, k]: [usize; 3], best: usize) -> Result<Option<usize>, Point> {
     let limit = reaches.limit(earlier);
     let possible = from < earlier && earlier < k && best < limit;
     if !(possible && reaches.fits(earlier, best + 1)? && reaches.fits(from, earlier)?) {
