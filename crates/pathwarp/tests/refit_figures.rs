@@ -179,7 +179,7 @@ fn proven_pieces_and_work_stay_at_their_figures() {
 #[test]
 fn merged_pieces_and_work_stay_at_their_figures() {
     let found = figures(&runs(), |t| Options::new(t).with_merge(true));
-    stay_at("merged", found, [[253, 16032], [399, 15492], [638, 16912], [892, 15627]]);
+    stay_at("merged", found, [[250, 4726], [398, 8099], [635, 11999], [890, 13716]]);
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! One attempt: fits a single piece to a stretch.
 
-use super::curve::ImageCurve;
 use super::lanes::Lanes;
 use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
@@ -8,7 +7,7 @@ use super::source::BreakPoint;
 use super::stretch::StretchFitter;
 use kurbo::Point;
 
-impl<C: ImageCurve> StretchFitter<'_, C> {
+impl StretchFitter<'_> {
     /// Fits one piece to a stretch: a line, the Hermite cubic, or the best cubic that [`improve`](Self::improve) finds.
     #[inline(never)]
     pub(super) fn attempt(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, Point> {

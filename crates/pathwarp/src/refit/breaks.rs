@@ -9,7 +9,6 @@
 //! has a much smaller error. So fewer pieces than the difficulty predicts are tried first, and near the limit single break
 //! points are moved by bisection.
 
-use super::curve::ImageCurve;
 use super::lanes::{Lanes, larger};
 use super::limits::{
     BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_ATTEMPTS, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE,
@@ -32,7 +31,7 @@ struct Plan {
     outcomes: [Option<FitOutcome>; MAX_PLANNED],
 }
 
-impl<C: ImageCurve> StretchFitter<'_, C> {
+impl StretchFitter<'_> {
     /// Appends pieces for the stretch between two break points. `Err`: a source point at which the map is not finite.
     #[inline(always)]
     pub(super) fn cover(

@@ -1,8 +1,8 @@
 //! A fitted cubic with the stretch of the image it stands for: what checks and proofs are given.
 
-use super::curve::ImageCurve;
 use super::frame::ChordFrame;
 use super::lanes::{Lane, Lanes};
+use super::source::SourceCurve;
 use kurbo::{Point, Vec2};
 
 /// A fitted cubic.
@@ -31,7 +31,7 @@ impl Candidate {
     }
 
     /// Images at `tau`, relative to the first point.
-    pub(super) fn images(&self, source: &impl ImageCurve, tau: &Lane) -> Result<Lanes, Point> {
+    pub(super) fn images(&self, source: &SourceCurve<'_>, tau: &Lane) -> Result<Lanes, Point> {
         let mut t = [0.0; 8];
         for i in 0..8 {
             t[i] = self.param(tau[i]);

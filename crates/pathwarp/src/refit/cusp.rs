@@ -1,6 +1,5 @@
 //! Finds the place where the image nearly stops.
 
-use super::curve::ImageCurve;
 use super::limits::{CUSP_MARGIN, CUSP_SPEED};
 use super::source::BreakPoint;
 use super::stretch::StretchFitter;
@@ -8,7 +7,7 @@ use super::stretch::StretchFitter;
 /// Samples of the search; golden sections then close in on the minimum.
 const SAMPLES: usize = 48;
 
-impl<C: ImageCurve> StretchFitter<'_, C> {
+impl StretchFitter<'_> {
     /// The parameter at which the image is slowest within the stretch of the given length, if it nearly stops there.
     #[cold]
     pub(super) fn cusp(&self, from: &BreakPoint, to: &BreakPoint, length: f64) -> Option<f64> {

@@ -21,7 +21,8 @@
 use super::frame::ChordFrame;
 use super::lanes::{Lane, Lanes, clamp_unit, sum};
 use super::limits::{
-    FAR_MISS, GIVE_UP, LAWSON_FLOOR, MAX_EVALUATIONS, MIN_GAIN, PROMISE_AFTER, PROMISE_GAIN, TRUST_RADIUS,
+    FAR_MISS, GIVE_UP, LAWSON_FLOOR, LAWSON_NEAR, MAX_EVALUATIONS, MIN_GAIN, PROMISE_AFTER, PROMISE_GAIN,
+    RUN_EVALUATIONS, RUN_LAWSON_STEPS, RUN_TRUST_RADIUS, TRUST_RADIUS,
 };
 use super::residuals::{FitState, Residuals, gauss_newton};
 
@@ -39,11 +40,41 @@ pub(super) struct Fit {
     pub(super) squares: Lane,
 }
 
+/// How long a fit goes on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Effort {
+    evaluations: usize,
+    /// Longest first step, as a share of twice the piece's size.
+    trust_radius: f64,
+    /// Ends a fit that is far above the tolerance: it only has to predict the number of pieces.
+    gives_up: bool,
+}
+
+/// For single segments, most of which one cubic fits.
+pub(super) const USUAL: Effort = Effort { evaluations: MAX_EVALUATIONS, trust_radius: TRUST_RADIUS, gives_up: true };
+
+/// For several segments under one cubic: it may turn much, so that the handles to start from are far off.
+pub(super) const THOROUGH: Effort =
+    Effort { evaluations: RUN_EVALUATIONS, trust_radius: RUN_TRUST_RADIUS, gives_up: false };
+
 /// Fits from `start` until the largest residual is at most `enough` or stops improving. If it stays far above `wanted`, a
 /// rough fit suffices: it only has to predict the number of pieces.
 ///
 /// The foot points of `start` must be within a Newton step of the right places; see [`ChordFrame::settle`].
-pub(super) fn fit(frame: &ChordFrame, g: &Lanes, start: FitState, [enough, wanted]: [f64; 2]) -> Fit {
+#[inline(always)]
+pub(super) fn fit(frame: &ChordFrame, g: &Lanes, start: FitState, wanted: [f64; 2]) -> Fit {
+    fit_with(&USUAL, frame, g, start, wanted)
+}
+
+/// As [`fit`], with another effort.
+#[inline(never)]
+pub(super) fn fit_with(
+    effort: &Effort,
+    frame: &ChordFrame,
+    g: &Lanes,
+    start: FitState,
+    [enough, wanted]: [f64; 2],
+) -> Fit {
     let (enough, far, beyond) = (enough * enough, (FAR_MISS * wanted).powi(2), (GIVE_UP * wanted).powi(2));
     // The best state so far and the trial state alternate between two slots. Errors are squared in this function.
     let mut z = [start, start];
@@ -51,7 +82,7 @@ pub(super) fn fit(frame: &ChordFrame, g: &Lanes, start: FitState, [enough, wante
     let (mut best, mut error) = (0, f64::INFINITY);
     let (mut sums, mut squares) = ([0.0; 5], f64::INFINITY);
     let (mut step, mut length) = ([0.0; 2], 0.0);
-    let mut trust = 0.5 * TRUST_RADIUS * frame.size;
+    let mut trust = 0.5 * effort.trust_radius * frame.size;
     let mut left = 1.0;
     for k in 1.. {
         let [z0, z1] = &mut z;
@@ -70,14 +101,14 @@ pub(super) fn fit(frame: &ChordFrame, g: &Lanes, start: FitState, [enough, wante
         } else {
             trust = 0.25 * length;
         }
-        if k == MAX_EVALUATIONS || error <= enough || (k > 4 && error > far) {
+        if k == effort.evaluations || error <= enough || (effort.gives_up && k > 4 && error > far) {
             break;
         }
         let Some((newton, gain)) = gauss_newton(&sums) else { break };
         if k > 1 && gain < MIN_GAIN * squares {
             break;
         }
-        let predictable = k > PROMISE_AFTER || k == PROMISE_AFTER && gain < PROMISE_GAIN * squares;
+        let predictable = effort.gives_up && (k > PROMISE_AFTER || k == PROMISE_AFTER && gain < PROMISE_GAIN * squares);
         if predictable && error * (squares - gain) > beyond * squares {
             left = 1.0 - gain / squares;
             break;
@@ -88,13 +119,20 @@ pub(super) fn fit(frame: &ChordFrame, g: &Lanes, start: FitState, [enough, wante
 }
 
 /// Minimax fit to sixteen samples by Lawson's reweighting: weights grow with the residuals until the largest ones level out.
-/// Returns the best state of both halves, and its largest residual.
-pub(super) fn lawson(frame: &ChordFrame, g: [&Lanes; 2], start: [FitState; 2], steps: usize) -> ([FitState; 2], f64) {
+/// Returns the best state of both halves, and its largest residual. Goes on after `steps`, up to [`RUN_LAWSON_STEPS`], only towards
+/// an error of `wanted` and if it is near.
+pub(super) fn lawson(
+    frame: &ChordFrame,
+    g: [&Lanes; 2],
+    start: [FitState; 2],
+    steps: usize,
+    wanted: f64,
+) -> ([FitState; 2], f64) {
     let mut w = [[1.0; 8]; 2];
     let mut z = start;
     let mut best = (start, f64::INFINITY);
     let mut r = [Residuals::NONE; 2];
-    for k in 0..=steps {
+    for k in 0..=RUN_LAWSON_STEPS {
         for h in 0..2 {
             frame.residuals(g[h], &z[h], &w[h], &mut r[h]);
         }
@@ -106,7 +144,7 @@ pub(super) fn lawson(frame: &ChordFrame, g: [&Lanes; 2], start: [FitState; 2], s
         if error < best.1 {
             best = (z, error);
         }
-        if k == steps {
+        if best.1 <= wanted || k >= steps && best.1 > LAWSON_NEAR * wanted {
             break;
         }
         for (a, b) in sums.iter_mut().zip(more) {

@@ -1,6 +1,5 @@
 //! Attempts to find a better cubic where the Hermite cubic does not fit.
 
-use super::curve::ImageCurve;
 use super::fit::{Fit, fit, lawson};
 use super::lanes::{clamp_unit, larger};
 use super::limits::{
@@ -13,7 +12,7 @@ use super::polyline::SamplePolygon;
 use super::request::FitRequest;
 use super::residuals::FitState;
 use super::samples::{CHECKED, FITTED, UNIT, between};
-use super::stretch::{Scrutiny, StretchFitter};
+use super::stretch::StretchFitter;
 use kurbo::Point;
 
 /// The best fit so far, and its error: judged if its fit came within the tolerance, else what that would have reached.
@@ -22,7 +21,7 @@ struct BestFit {
     error: f64,
 }
 
-impl<C: ImageCurve> StretchFitter<'_, C> {
+impl StretchFitter<'_> {
     /// Fits a cubic where the Hermite cubic does not fit. Each attempt starts only if the ones before it have failed.
     #[inline(never)]
     pub(super) fn improve(&mut self, request: &mut FitRequest<'_>) -> Result<FitOutcome, Point> {
@@ -127,7 +126,7 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         let z = best.fit.z;
         let other = FitState { s: between(&z.s), ..z };
         let check = *self.checked(request)?;
-        let (z, error) = lawson(&request.frame, [request.g, &check], [z, other], LAWSON_STEPS);
+        let (z, error) = lawson(&request.frame, [request.g, &check], [z, other], LAWSON_STEPS, 0.0);
         if error < best.error {
             let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
             *best = BestFit { fit, error };
@@ -150,9 +149,6 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         let piece = FittedPiece::Cubic(request.cubic(&fit.z));
         if error <= self.tolerance {
             return FitOutcome::Fits { piece, error, reach: fit.error };
-        }
-        if self.scrutiny == Scrutiny::Samples {
-            return FitOutcome::Misses { piece, error: error.max(fit.error), reach: error, cusp: None };
         }
         let polygon = SamplePolygon::new(request.g, request.frame.q);
         let cusp = if polygon.sharp { self.cusp(request.from, request.to, polygon.length) } else { None };

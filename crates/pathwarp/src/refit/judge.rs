@@ -1,8 +1,8 @@
 //! Judges a fit: its error by the cheapest test that can decide, from eight samples to a dense check or a proof.
 
 use super::check;
-use super::curve::{ImageCurve, PartSamples};
 use super::fit::Fit;
+use super::frame::ChordFrame;
 use super::lanes::{Lane, Lanes, clamp_unit, larger, largest};
 use super::limits::{DENSE_ACCEPTED, EIGHT_ACCEPTED, EIGHT_GROWTH, FOOT_DRIFT, PEAK_ACCEPTED, SMALL_ERROR};
 use super::peaks::highest_peak;
@@ -10,22 +10,43 @@ use super::request::FitRequest;
 use super::residuals::FitState;
 use super::resolution::{Resolution, steady};
 use super::samples::{Evenly, between, interleaved};
-use super::stretch::{Scrutiny, StretchFitter};
+use super::stretch::StretchFitter;
 use kurbo::Point;
 
 /// A state with foot points and squared distances of the fitted samples.
-struct Measured<'a> {
+pub(super) struct Measured<'a> {
     z: &'a FitState,
-    s: Lane,
+    pub(super) s: Lane,
     squares: Lane,
-    error: f64,
+    pub(super) error: f64,
 }
 
-impl<C: ImageCurve> StretchFitter<'_, C> {
+/// Moves the foot points by the Newton step that is left to do. A normal residual is the distance up to κδ²/2, with δ the rest
+/// of the way; if that is too much, measures the distances anew.
+#[inline(always)]
+pub(super) fn settled<'f>(frame: &ChordFrame, g: &Lanes, fit: &'f Fit, tolerance: f64) -> Measured<'f> {
+    let z = &fit.z;
+    let mut s = [0.0; 8];
+    let mut drift = [0.0; 8];
+    for i in 0..8 {
+        s[i] = clamp_unit(z.s[i] + fit.ds[i]);
+        drift[i] = fit.ds[i].abs();
+    }
+    let drift = largest(&drift);
+    let (mut error, mut squares) = (fit.error, fit.squares);
+    if drift * drift * frame.size > FOOT_DRIFT * tolerance {
+        s = z.s;
+        squares = frame.distances(g, z.a, z.b, &mut s, 2);
+        error = largest(&squares).sqrt();
+    }
+    Measured { z, s, squares, error }
+}
+
+impl StretchFitter<'_> {
     /// The error of a fit; above the tolerance if it must be rejected.
     #[inline(never)]
     pub(super) fn judge(&self, request: &mut FitRequest<'_>, fit: &Fit) -> Result<f64, Point> {
-        let fitted = self.settled(request, fit);
+        let fitted = settled(&request.frame, request.g, fit, self.tolerance);
         if let Some(error) = self.by_eight(request, &fitted) {
             return Ok(error);
         }
@@ -36,42 +57,15 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         if error > self.tolerance {
             return Ok(error);
         }
-        if self.scrutiny == Scrutiny::Samples {
-            return Ok(error);
-        }
         if self.form.is_some() {
             return self.proven(request, fitted.z, [&fitted.s, &s], error);
         }
         let checked = Measured { z: fitted.z, s, squares, error };
         let feet = interleaved(&fitted.s, &checked.s, 1.0);
-        if let Some(parts) = self.source.parts(request.from.t, request.to.t) {
-            return Ok(self.across_joints(request, fitted.z, &feet, &parts)?.max(checked.error));
-        }
         if let Some(error) = self.by_sixteen(request, &fitted, (&check, &checked), &feet)? {
             return Ok(error);
         }
         self.by_dense_check(request, fitted.z, &feet, error)
-    }
-
-    /// Moves the foot points by the Newton step that is left to do. A normal residual is the distance up to κδ²/2, with δ
-    /// the rest of the way; if that is too much, measures the distances anew.
-    #[inline(always)]
-    fn settled<'f>(&self, request: &FitRequest<'_>, fit: &'f Fit) -> Measured<'f> {
-        let z = &fit.z;
-        let mut s = [0.0; 8];
-        let mut drift = [0.0; 8];
-        for i in 0..8 {
-            s[i] = clamp_unit(z.s[i] + fit.ds[i]);
-            drift[i] = fit.ds[i].abs();
-        }
-        let drift = largest(&drift);
-        let (mut error, mut squares) = (fit.error, fit.squares);
-        if drift * drift * request.frame.size > FOOT_DRIFT * self.tolerance {
-            s = z.s;
-            squares = request.frame.distances(request.g, z.a, z.b, &mut s, 2);
-            error = largest(&squares).sqrt();
-        }
-        Measured { z, s, squares, error }
     }
 
     /// A small error under a map of low degree: eight samples determine the rest.
@@ -113,19 +107,6 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         }
         let closer = check::halfway(self.source, &request.candidate(z), feet, &errors, tol)?;
         Ok(closer.filter(|closer| *closer <= DENSE_ACCEPTED * tol).map(|closer| closer.max(error)))
-    }
-
-    /// Samples in each segment of a run. A cubic that they cannot judge is rejected: its segments have pieces already.
-    fn across_joints(
-        &self,
-        request: &FitRequest<'_>,
-        z: &FitState,
-        feet: &Evenly,
-        parts: &[PartSamples],
-    ) -> Result<f64, Point> {
-        let error = check::joined(self.source, &request.candidate(z), feet, parts, DENSE_ACCEPTED * self.tolerance)?
-            .unwrap_or(f64::INFINITY);
-        Ok(if error > DENSE_ACCEPTED * self.tolerance { error / DENSE_ACCEPTED } else { error })
     }
 
     /// Many samples.

@@ -11,6 +11,16 @@
 //! there. Other tests are named: those of `tests/refit_random.rs` as `random::…`, of `tests/refit_limits.rs` as `limits::…`, of
 //! `tests/refit.rs` and `tests/refit_report.rs` as `refit::…` and `report::…`.
 
+// Subpaths
+
+/// Segments refitted as one chunk: a multiple of the longest run that is merged at once, so that the runs of a curve without corners are the same as without
+/// chunks. Memory for the jets and samples of a chunk is released after it.
+pub(super) const CHUNK: usize = 1024;
+
+/// Segments of a subpath for which several threads are started: two milliseconds of work.
+#[cfg(feature = "parallel")]
+pub(super) const WORTH_THREADS: usize = 4 * CHUNK;
+
 // Segments
 
 /// A segment whose control polygon is shorter than this, relative to its coordinates, is a point: differences of equal
@@ -143,6 +153,21 @@ pub(super) const GIVE_UP: f64 = 2.0;
 /// higher: more that are rejected and fitted again. 0: −0.4 % pieces checked, +0.9 % certified; without: +0.15 % and +0.4 %.
 /// Test: *figures* (at 0 and 1e9).
 pub(super) const GOOD_ENOUGH: f64 = 0.85;
+
+// Fits over several segments: figures are those of merging
+
+/// Evaluations of a fit over several segments, which does not give up early: its error decides where to look next. 6: +0.1 to 0.2 %
+/// pieces; 20: −0.05 %.
+pub(super) const RUN_EVALUATIONS: usize = 10;
+
+/// The trust radius of such a fit; see [`TRUST_RADIUS`]. 0.15: +0.4 % pieces at 1.
+pub(super) const RUN_TRUST_RADIUS: f64 = 1.0;
+
+/// Steps of a minimax fit over several segments, as long as its error is near the tolerance. 4: +0.2 % pieces at 1.
+pub(super) const RUN_LAWSON_STEPS: usize = 16;
+
+/// … which means within this multiple after [`LAWSON_STEPS`].
+pub(super) const LAWSON_NEAR: f64 = 1.05;
 
 // Further attempts
 
@@ -379,84 +404,6 @@ pub(super) const BISECTIONS: usize = 5;
 /// % work, but more pieces at single tolerances; 0.5 (always the middle): +1.3 % work.
 /// Test: *figures* (at 0 and 0.5).
 pub(super) const BISECTION_MARGIN: f64 = 0.1;
-
-// Merging: figures are those of merging
-
-/// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree). 0: +19 % pieces.
-/// Tests: *figures* (at 0); `limits::merging_keeps_corners_that_the_tolerance_would_hide` (at 10).
-pub(super) const SMOOTH_JOINT: f64 = 0.0087;
-
-/// Joints that turn by more than this (as a tangent, a little above [`SMOOTH_JOINT`]) are corners at first sight, so that their
-/// segments are not sampled. 0: +20 % pieces. At 1e9 nothing changes but the time.
-/// Test: *figures* (at 0).
-pub(super) const SURE_CORNER: f64 = 0.009;
-
-/// … if both derivatives are above this share of their segment's chord, times the size of the Jacobian: far above
-/// [`VANISHING_DERIVATIVE`], below which one-sided tangents decide. Unchanged at 0 and 1e9: the sample has no joint in between.
-pub(super) const CLEAR_DERIVATIVE: f64 = 1e-6;
-
-/// Places per segment at which a merged piece may end. 1: +7.6 % pieces, −56.9 % work; 4: +2.0 % pieces, −25.4 % work; 16: −1.7 % pieces, +29.6 % work.
-/// Test: *figures* (at 1).
-pub(super) const MERGE_GRID: usize = 8;
-
-/// Segments under one cubic, which bounds the table of errors. 1: +19.1 % pieces, −40.7 % work; 6: unchanged here, on icons 0.1 % more pieces at 1; 30:
-/// unchanged.
-/// Test: *figures* (at 1).
-pub(super) const MAX_SPAN: usize = 12;
-
-/// Segments in one table, which bounds its memory. 1: no merging; 1000: unchanged.
-/// Test: *figures* (at 1).
-pub(super) const MAX_RUN: usize = 64;
-
-/// Share of the tolerance for merged pieces, which leaves room between the samples. 0.1: +15 % pieces; 1: −0.05 %; 2: errors above
-/// the tolerance.
-/// Tests: *figures* (at 0.1); *sample* (at 2).
-pub(super) const MERGE_SHARE: f64 = 0.99;
-
-/// Batches of eight samples in each segment that a merged piece covers, under a quotient of polynomials.
-pub(super) const RATIONAL_BATCHES: usize = 2;
-
-/// … and under any other map, whose error may swing several times within a segment. 2: errors between the samples in one of 16,000
-/// random cases; 8: +4 % work.
-/// Tests: `merge_random::waves_shorter_than_a_segment_are_seen` (at 2); *figures* (at 8).
-pub(super) const OPAQUE_BATCHES: usize = 4;
-
-/// Searches over one run, each without the pieces that the last one's checks refused. 1: +5.7 % pieces, −8.7 % work; 4: +0.5 %
-/// pieces, −2.4 % work; 100: unchanged.
-/// Test: *figures* (at 1).
-pub(super) const MERGE_SEARCHES: usize = 12;
-
-/// Error of the best cubic for a curve whose curvature jumps by 1, per square of the shorter side: that of x²/2 right of zero and
-/// 0 left of it, on −1..1, in the uniform norm. A joint with a larger jump than this allows is not crossed, so no fit is wasted
-/// on it. 0: −0.1 % pieces, +9.9 % work; 0.03: +1 % pieces, −10 % work.
-/// Test: *figures* (at 0.03 and 0).
-pub(super) const JUMP_ERROR: f64 = 0.0069;
-
-/// Error ÷ tolerance that the next guess of a reach aims at, by the sixth-order law: a little too far, as bisection comes back
-/// faster than galloping goes on. Only the order of trials depends on it. 0.95: +5 % work, +0.05 % pieces.
-/// Test: *figures* (at 0.3).
-pub(super) const REACH_TARGET: f64 = 3.0;
-
-/// Errors below this share of the tolerance are rounding to the guess of a reach, which then grows at most fivefold. 0.1: +0.2 %
-/// work; 1e-12: unchanged.
-pub(super) const SMALLEST_REACH_ERROR: f64 = 1e-4;
-
-/// Longer stretches are tried after a miss by less than this factor. 1: +0.6 % pieces, −15 % work; 3: +0.2 % pieces, −2.6 % work;
-/// 1e9: +1 % work.
-/// Test: *figures* (at 1).
-pub(super) const LEAP_WITHIN: f64 = 10.0;
-
-/// Number of places tried beyond a near miss. 0: +0.6 % pieces, −15 % work; 3: +0.1 % pieces, −6.8 % work; 40: +14 % work.
-/// Test: *figures* (at 0 and 40).
-pub(super) const LEAPS: usize = 6;
-
-/// Error recorded for a piece that failed the final check: a miss, but a near one. 1e9: unchanged.
-pub(super) const REFUSED_ERROR: f64 = 1.2;
-
-/// Intervals of a segment's table of lengths, two batches. More even parameters save little, as foot points follow the image
-/// anyway. Fixed by the loop that fills it.
-/// Not varied.
-pub(super) const LENGTH_TABLE: usize = 16;
 
 // Proofs: figures are those of certified pieces
 

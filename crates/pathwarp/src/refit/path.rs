@@ -1,19 +1,18 @@
 //! Whole paths, subpath by subpath.
 
-use super::merge::{FittedSegments, Merger, may_be_smooth};
+use super::limits::CHUNK;
+use super::merge::{Merger, may_be_smooth};
 use super::options::Options;
+use super::parallel::in_parallel;
 use super::piece::{FittedPiece, PathWriter, reverse};
-use super::report::Assurance;
+use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::split;
 use crate::budget::Limit;
 use crate::error::GeometryError;
-use crate::map::{Class, CreaseKind, Creases, Map};
+use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
-use kurbo::{Affine, Line, Point};
-
-/// Number of evaluations of the map after which they are counted in the budget.
-const COUNTED_TOGETHER: usize = 10_000;
+use kurbo::{Affine, Point};
 
 /// Moves control points. Only arcs are approximated, after the map, so that the tolerance holds in the image.
 pub(super) fn affine(
@@ -48,6 +47,9 @@ pub(super) fn affine(
 }
 
 /// Refits one subpath under a map that is not affine.
+///
+/// Long subpaths are divided into chunks, which are refitted on all threads. The chunks depend on the subpath alone, so the result
+/// does not depend on the number of threads.
 pub(super) fn subpath(
     sub: &Subpath,
     map: &dyn Map,
@@ -55,65 +57,105 @@ pub(super) fn subpath(
     options: &Options,
     out: &mut PathWriter,
 ) -> Result<(), GeometryError> {
-    let projective = matches!(map.class(), Class::Projective(_));
     sub.segs.first().map_or(Ok(()), finite)?;
-    // The jets at the last two nodes; each segment's last is the next one's first.
-    let mut jets = [map.jet(sub.start); 2];
-    let mut at = sub.start;
-    if !creases.defined_at(at) || !jets[0].is_finite() {
-        return Err(infinity(at));
+    let start = map.jet(sub.start);
+    if !creases.defined_at(sub.start) || !start.is_finite() {
+        return Err(infinity(sub.start));
     }
-    let start = jets[0].p;
-    let mut pieces = Vec::with_capacity(sub.segs.len() + sub.segs.len() / 2);
-    // The index of each segment's first piece.
-    let mut bounds = Vec::with_capacity(if options.merge { sub.segs.len() + 1 } else { 0 });
-    bounds.push(0);
+    let projective = matches!(map.class(), Class::Projective(_));
+    let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, options };
+    let refitted = |i: usize, segs: &[Seg]| {
+        let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
+        if options.merge { merged(&fitter, segs, nodes) } else { unmerged(&fitter, segs, nodes) }
+    };
+    let mut pieces = Vec::new();
+    for (more, report) in in_parallel(&sub.segs, CHUNK, refitted)? {
+        out.report.add(report);
+        if pieces.is_empty() {
+            pieces = more;
+        } else {
+            pieces.extend(more);
+        }
+    }
+    // Segments beyond the limit were not fitted.
+    options.budget.spend(Limit::Evaluations, 0).map_err(GeometryError::Limit)?;
+    out.subpath(start.p, &pieces, sub.closed);
+    Ok(())
+}
+
+/// The pieces of consecutive segments, and their report.
+type Refitted = Result<(Vec<FittedPiece>, PathReport), GeometryError>;
+
+/// Refits segments one by one.
+fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
+    let (mut pieces, mut report) = (Vec::with_capacity(segs.len() + segs.len() / 2), PathReport::default());
+    for seg in segs {
+        let ends = nodes.next(seg)?;
+        fitter.fit(seg, ends, &mut pieces, &mut report).map_err(infinity)?;
+    }
+    Ok((pieces, report))
+}
+
+/// Refits segments, with fewer pieces across smooth joints.
+fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
+    // Across other creases than the domain's edge the image has corners.
+    if fitter.creases.items().iter().any(|c| c.kind != CreaseKind::Edge) {
+        return unmerged(fitter, segs, nodes);
+    }
+    let mut jets = Vec::with_capacity(segs.len());
     // Joints of the image that may be smooth, by the index of the segment that begins there.
-    let mut smooth = Vec::with_capacity(bounds.capacity());
-    let fitter = SegmentFitter { map, degree: map.rational_degree(), creases, options };
-    let mut counted = out.report.evaluations;
-    for (i, seg) in sub.segs.iter().enumerate() {
+    let mut smooth = Vec::with_capacity(segs.len());
+    for (i, seg) in segs.iter().enumerate() {
+        let ends = nodes.next(seg)?.map(Clone::clone);
+        smooth.push(i > 0 && may_be_smooth(&segs[i - 1], seg, &ends[0]));
+        jets.push(ends);
+    }
+    Merger::new(fitter, segs, &jets).merged(&smooth).map_err(infinity)
+}
+
+/// The jets at the ends of one segment after the other.
+struct Nodes<'a> {
+    fitter: &'a SegmentFitter<'a>,
+    /// Those at the last two nodes; each segment's last is the next one's first.
+    jets: [Jet; 2],
+    /// The last node.
+    at: Point,
+    odd: bool,
+}
+
+impl<'a> Nodes<'a> {
+    /// From the node `at` on, which has this jet.
+    fn new(fitter: &'a SegmentFitter<'a>, at: Point, jet: Jet) -> Self {
+        Self { fitter, jets: [jet; 2], at, odd: false }
+    }
+
+    /// From the first of `segs` on.
+    fn inside(fitter: &'a SegmentFitter<'a>, segs: &[Seg]) -> Self {
+        let at = segs.first().map_or(Point::ORIGIN, Seg::start);
+        Self::new(fitter, at, fitter.map.jet(at))
+    }
+
+    #[inline(always)]
+    fn next(&mut self, seg: &Seg) -> Result<[&Jet; 2], GeometryError> {
         finite(seg)?;
+        let SegmentFitter { map, creases, .. } = self.fitter;
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
         }
-        let here = i % 2;
-        if seg.start() != at {
-            jets[here] = map.jet(seg.start());
+        let here = usize::from(self.odd);
+        if seg.start() != self.at {
+            self.jets[here] = map.jet(seg.start());
         }
-        if options.merge {
-            smooth.push(i > 0 && may_be_smooth(&sub.segs[i - 1], seg, &jets[here]));
-        }
-        at = seg.end();
-        jets[1 - here] = map.jet(at);
-        let [first, last] = [&jets[here], &jets[1 - here]];
-        if !first.is_finite() || !last.is_finite() {
-            return Err(infinity(if first.is_finite() { at } else { seg.start() }));
-        }
-        if projective && matches!(seg, Seg::Line(_)) {
-            pieces.push(FittedPiece::Line(Line::new(first.p, last.p)));
+        self.at = seg.end();
+        self.jets[1 - here] = map.jet(self.at);
+        self.odd = !self.odd;
+        let [first, last] = [&self.jets[here], &self.jets[1 - here]];
+        if first.is_finite() && last.is_finite() {
+            Ok([first, last])
         } else {
-            fitter.fit(seg, [first, last], &mut pieces, &mut out.report).map_err(infinity)?;
-        }
-        if options.merge {
-            bounds.push(pieces.len());
-        }
-        let evaluations = out.report.evaluations;
-        if evaluations >= counted + COUNTED_TOGETHER || i + 1 == sub.segs.len() {
-            let new = (evaluations - counted) as u64;
-            options.budget.spend(Limit::Evaluations, new).map_err(GeometryError::Limit)?;
-            counted = evaluations;
+            Err(infinity(if first.is_finite() { seg.end() } else { seg.start() }))
         }
     }
-    // Across other creases than the domain's edge the image has corners.
-    let uncreased = creases.items().iter().all(|c| c.kind == CreaseKind::Edge);
-    if options.merge && uncreased {
-        let merger = Merger { map, degree: fitter.degree, options };
-        let fitted = FittedSegments { segs: &sub.segs, smooth: &smooth, pieces: &pieces, bounds: &bounds };
-        pieces = merger.merged(&fitted, &mut out.report).map_err(infinity)?;
-    }
-    out.subpath(start, &pieces, sub.closed);
-    Ok(())
 }
 
 /// Name of a shape in errors, until its owner replaces it.

@@ -27,24 +27,21 @@ pub struct PathReport {
     pub assurance: Assurance,
     /// Places in the source at which the work budget ran out before the tolerance was met.
     pub over_budget: Vec<Point>,
-    /// Estimated number of evaluations of the map.
-    pub evaluations: usize,
 }
 
 impl Default for PathReport {
     fn default() -> Self {
-        Self {
-            segments_in: 0,
-            segments_out: 0,
-            max_error: 0.0,
-            assurance: Assurance::Exact,
-            over_budget: Vec::new(),
-            evaluations: 0,
-        }
+        Self { segments_in: 0, segments_out: 0, max_error: 0.0, assurance: Assurance::Exact, over_budget: Vec::new() }
     }
 }
 
 impl PathReport {
+    /// Adds the pieces of another part of the path.
+    pub(super) fn add(&mut self, part: Self) {
+        self.add_error(part.max_error, part.assurance);
+        self.over_budget.extend(part.over_budget);
+    }
+
     /// Accounts for a piece with this error.
     pub(super) fn add_error(&mut self, error: f64, assurance: Assurance) {
         self.max_error = self.max_error.max(error);

@@ -7,7 +7,8 @@ use super::proof::RationalForm;
 use super::report::PathReport;
 use super::source::{BreakPoint, SourceCurve};
 use super::split::{self, SlowSpots};
-use super::stretch::{Scrutiny, StretchFitter};
+use super::stretch::StretchFitter;
+use crate::budget::Limit;
 use crate::map::{Class, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::{CubicBez, Line, Point};
@@ -23,6 +24,8 @@ const HARD: usize = 64;
 /// Fits the images of single segments.
 pub(super) struct SegmentFitter<'a> {
     pub(super) map: &'a dyn Map,
+    /// The map keeps lines.
+    pub(super) projective: bool,
     /// The map's degree, if it is a quotient of polynomials.
     pub(super) degree: Option<RationalDegree>,
     pub(super) creases: &'a Creases,
@@ -38,6 +41,10 @@ impl SegmentFitter<'_> {
         pieces: &mut Vec<FittedPiece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
+        if self.projective && matches!(seg, Seg::Line(_)) {
+            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+            return Ok(());
+        }
         let reversed;
         let flipped = split::is_backwards(seg);
         let canonical = if flipped {
@@ -90,6 +97,10 @@ impl SegmentFitter<'_> {
         pieces: &mut Vec<FittedPiece>,
         report: &mut PathReport,
     ) -> Result<(), Point> {
+        if self.options.budget.left(Limit::Evaluations) <= 0.0 {
+            pieces.push(FittedPiece::Line(Line::new(jets[0].p, jets[1].p)));
+            return Ok(());
+        }
         let certify = self.options.certify;
         let mut source = SourceCurve::new(seg, self.map);
         if certify {
@@ -129,11 +140,11 @@ impl SegmentFitter<'_> {
         let form = form.map(|f| f.with_blur(blur));
         let degree = degree.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        let scrutiny = Scrutiny::Sufficient;
-        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, scrutiny, attempts: 0 };
+        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0 };
         let covered = fitter.cover(from, to, pieces, report);
         let each = if fitter.attempts > HARD { EVALUATIONS_HARD } else { EVALUATIONS };
-        report.evaluations += fitter.attempts * each;
+        // Too many are an error of the whole path, which ends by itself: `fit` does no more work.
+        let _ = self.options.budget.spend(Limit::Evaluations, (fitter.attempts * each) as u64);
         covered
     }
 

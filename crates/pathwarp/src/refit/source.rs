@@ -152,16 +152,6 @@ impl<'a> SourceCurve<'a> {
         self.size
     }
 
-    /// The source's point up to rounding: by the power basis, if there is one.
-    #[inline(always)]
-    pub(super) fn point(&self, t: f64) -> Point {
-        if matches!(self.seg, Seg::Arc(_)) {
-            return self.at(t);
-        }
-        let [c0, c1, c2, c3] = self.c;
-        Point::new(fma(fma(fma(c3.x, t, c2.x), t, c1.x), t, c0.x), fma(fma(fma(c3.y, t, c2.y), t, c1.y), t, c0.y))
-    }
-
     /// Source points at eight parameters.
     #[inline(always)]
     pub(super) fn points(&self, t: &Lane) -> Lanes {
@@ -203,6 +193,14 @@ impl<'a> SourceCurve<'a> {
             all[i] = g.x[i] + g.y[i];
         }
         if sum(&all).is_finite() { Ok(()) } else { Err(self.not_finite(t, g)) }
+    }
+
+    /// Returns the images at eight parameters. `Err`: the source point at which the map is not finite.
+    #[inline(always)]
+    pub(super) fn images(&self, t: &Lane) -> Result<Lanes, Point> {
+        let mut out = Lanes::default();
+        self.images_into(t, &mut out)?;
+        Ok(out)
     }
 
     #[cold]

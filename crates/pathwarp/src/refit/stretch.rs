@@ -1,6 +1,5 @@
 //! One stretch of a curve: its samples, and the two quick outcomes, a line and the Hermite cubic.
 
-use super::curve::ImageCurve;
 use super::frame::ChordFrame;
 use super::hermite::HermiteResiduals;
 use super::lanes::{Lane, Lanes, clamp_unit, fma, larger};
@@ -13,37 +12,25 @@ use super::proof::{self, RationalForm};
 use super::request::FitRequest;
 use super::residuals::FitState;
 use super::samples::{CHECKED, FITTED, UNIT};
-use super::source::BreakPoint;
+use super::source::{BreakPoint, SourceCurve};
 use super::split::SlowSpots;
 use super::straight::straight;
 use crate::map::RationalDegree;
 use kurbo::{Line, Point};
 
-/// The test that a piece must pass before it is accepted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scrutiny {
-    /// By its sixteen samples alone: for searches, whose result is examined again.
-    Samples,
-    /// By the cheapest test that can decide.
-    Sufficient,
-    /// By samples in every segment that the piece covers.
-    EverySegment,
-}
-
 /// Fits pieces to stretches of one smooth curve.
-pub(super) struct StretchFitter<'a, C> {
-    pub(super) source: &'a C,
+pub(super) struct StretchFitter<'a> {
+    pub(super) source: &'a SourceCurve<'a>,
     pub(super) slow: &'a SlowSpots,
     pub(super) tolerance: f64,
     /// The image as a quotient of polynomials, if proofs are wanted and possible.
     pub(super) form: Option<RationalForm>,
     /// The map's degree, if it is a quotient of polynomials and the ends of the pieces lie on its image.
     pub(super) degree: Option<RationalDegree>,
-    pub(super) scrutiny: Scrutiny,
     pub(super) attempts: usize,
 }
 
-impl<C: ImageCurve> StretchFitter<'_, C> {
+impl StretchFitter<'_> {
     /// Takes the fitted samples and sets up the frame.
     #[inline(always)]
     pub(super) fn start<'r>(
@@ -65,8 +52,7 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         let floor = home.map(|a| if a > 0.0 { a.min(HANDLE_FLOOR * size) } else { HANDLE_FLOOR_STOPPED * size });
         let pull = (HANDLE_PULL * tol / size).powi(2);
         let frame = ChordFrame { q, t0: from.away, t1: to.into, floor, size, home, pull };
-        let careful = self.scrutiny == Scrutiny::EverySegment
-            || !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
+        let careful = !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
         Ok(FitRequest { from, to, frame, g, check: None, ds: [0.0; 8], careful })
     }
 
@@ -132,11 +118,9 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         if self.form.is_none() || request.frame.size == 0.0 {
             return Ok(FitOutcome::Fits { piece, error: off, reach: off });
         }
-        let error = match (&self.form, self.source.single()) {
-            (None, _) | (_, None) => 0.0,
-            (Some(form), Some(source)) => {
-                proof::line(source, form, request.from, request.to, request.frame.size, self.tolerance)?
-            }
+        let error = match &self.form {
+            None => 0.0,
+            Some(form) => proof::line(self.source, form, request.from, request.to, request.frame.size, self.tolerance)?,
         };
         if error <= self.tolerance {
             return Ok(FitOutcome::Fits { piece, error, reach: error });
@@ -165,9 +149,9 @@ impl<C: ImageCurve> StretchFitter<'_, C> {
         feet: [&Lane; 2],
         error: f64,
     ) -> Result<f64, Point> {
-        let (Some(form), Some(source)) = (&self.form, self.source.single()) else { return Ok(error) };
+        let Some(form) = &self.form else { return Ok(error) };
         let check = *self.checked(request)?;
-        proof::piece(source, form, &request.candidate(z), [request.g, &check], feet, [error, self.tolerance])
+        proof::piece(self.source, form, &request.candidate(z), [request.g, &check], feet, [error, self.tolerance])
     }
 
     /// Images at the samples `set` of a stretch of length `h`, relative to its first point.

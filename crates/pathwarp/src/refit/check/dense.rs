@@ -3,12 +3,12 @@
 use super::probe::{Probe, probe};
 use super::thorough::thorough;
 use crate::refit::candidate::Candidate;
-use crate::refit::curve::ImageCurve;
 use crate::refit::lanes::{Lane, largest};
 use crate::refit::limits::{DENSE_BATCHES, FOOT_ROUNDING, MAX_ZOOMS, PEAK_NEAR, WALK_DEPTH, ZOOM_RISE};
 use crate::refit::peaks::parabola_peak;
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::Evenly;
+use crate::refit::source::SourceCurve;
 use crate::refit::split::SlowSpots;
 use kurbo::{Point, Vec2};
 
@@ -18,7 +18,7 @@ const STEP: f64 = 1.0 / (DENSE_BATCHES * 8) as f64;
 /// The distance between the candidate and the image over its stretch, by dense sampling, more densely around slow spots.
 /// `feet` are foot points of sixteen samples, to start from.
 pub(in crate::refit) fn dense(
-    source: &impl ImageCurve,
+    source: &SourceCurve<'_>,
     c: &Candidate,
     feet: &Evenly,
     slow: &SlowSpots,
@@ -60,8 +60,8 @@ struct FootPoint {
 }
 
 /// A walk along the image.
-struct Walk<'a, C> {
-    source: &'a C,
+struct Walk<'a> {
+    source: &'a SourceCurve<'a>,
     c: &'a Candidate,
     feet: &'a Evenly,
     /// Square of the largest distance so far.
@@ -69,7 +69,7 @@ struct Walk<'a, C> {
     last: FootPoint,
 }
 
-impl<C: ImageCurve> Walk<'_, C> {
+impl Walk<'_> {
     /// Measures the next eight samples. Where two consecutive foot points see the cubic turn by more than 60°, samples
     /// eight more places in between. Returns `false` if the foot points do not advance or the cubic between them remains
     /// unknown; and the eight squared distances.

@@ -2,10 +2,10 @@
 
 use super::probe::{Probe, probe};
 use crate::refit::candidate::Candidate;
-use crate::refit::curve::ImageCurve;
 use crate::refit::limits::{MAX_HALFWAY, PEAK_ACCEPTED, PEAK_FACTOR, SMALL_ERROR, SURPRISE};
 use crate::refit::peaks::predicted_peak;
 use crate::refit::samples::{ALL, Evenly};
+use crate::refit::source::SourceCurve;
 use kurbo::Point;
 
 /// The highest error predicted between sixteen samples, with eight to sixteen more wherever a sample or its prediction is
@@ -14,7 +14,7 @@ use kurbo::Point;
 /// `None` if nearly all samples are in doubt, or if an error halfway is far from the mean of its neighbours: then sixteen
 /// samples do not resolve the error.
 pub(in crate::refit) fn halfway(
-    source: &impl ImageCurve,
+    source: &SourceCurve<'_>,
     c: &Candidate,
     feet: &Evenly,
     errors: &Evenly,

@@ -2,16 +2,13 @@
 //!
 //! - [`halfway`]: samples halfway beside those whose error is in doubt.
 //! - [`dense`]: 64 samples, more where the cubic turns, and closer ones around every maximum.
-//! - [`joined`]: sixteen samples in each segment that a merged piece covers, the joints among them.
 //! - [`thorough`]: 160 samples each way, with a search for every nearest point. For curves whose foot points cannot be
 //!   followed along the cubic.
 
 mod dense;
 mod halfway;
-mod joined;
 mod probe;
 mod thorough;
 
 pub(super) use dense::dense;
 pub(super) use halfway::halfway;
-pub(super) use joined::joined;

@@ -1,9 +1,9 @@
 //! Further samples of a piece whose foot points are known at sixteen.
 
 use crate::refit::candidate::Candidate;
-use crate::refit::curve::ImageCurve;
 use crate::refit::lanes::{Lane, Lanes};
 use crate::refit::samples::{ALL, Evenly};
+use crate::refit::source::SourceCurve;
 use kurbo::Point;
 
 /// Eight samples with their foot points and squared distances.
@@ -15,7 +15,7 @@ pub(super) struct Probe {
 
 /// Samples the image at `tau` and measures its distance from the cubic, after `steps` Newton steps for the foot points.
 pub(super) fn probe(
-    source: &impl ImageCurve,
+    source: &SourceCurve<'_>,
     c: &Candidate,
     feet: &Evenly,
     tau: &Lane,

@@ -1,16 +1,16 @@
 //! The thorough check: both one-sided distances, without the foot points of the fit.
 
 use crate::refit::candidate::Candidate;
-use crate::refit::curve::ImageCurve;
 use crate::refit::lanes::Lane;
 use crate::refit::limits::THOROUGH_SAMPLES;
+use crate::refit::source::SourceCurve;
 use crate::refit::split::SlowSpots;
 use kurbo::{Point, Vec2};
 
 /// The Hausdorff distance between candidate and image, by sampling: the nearest sample by search, then Newton steps.
 #[cold]
 pub(in crate::refit) fn thorough(
-    source: &impl ImageCurve,
+    source: &SourceCurve<'_>,
     c: &Candidate,
     slow: &SlowSpots,
     tolerance: f64,
@@ -97,7 +97,7 @@ fn from_image(c: &Candidate, images: &[Vec2], curve: &[Vec2], enough: f64) -> f6
 
 /// The largest squared distance of a point of the cubic from the image, if larger than `worst`.
 fn from_cubic(
-    source: &impl ImageCurve,
+    source: &SourceCurve<'_>,
     c: &Candidate,
     [curve, images]: [&[Vec2]; 2],
     taus: &[f64],

@@ -6,42 +6,39 @@
 //! the segments' own pieces and every one has passed a check by samples in each of its segments or, if proofs are wanted, has
 //! been proven segment by segment.
 
+mod check;
+mod cubic;
+mod limits;
+mod own;
+mod proven;
 mod reach;
 mod run;
 mod search;
 
-use super::limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
-use super::options::Options;
-use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
-use super::proof::{self, RationalForm};
+use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
-use super::source::{BreakPoint, SourceCurve};
-use super::split::SlowSpots;
-use super::stretch::{Scrutiny, StretchFitter};
-use crate::map::{Jet, Map, RationalDegree};
+use super::segment::SegmentFitter;
+use super::source::SourceCurve;
+use crate::map::Jet;
 use crate::outline::Seg;
-use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
-use reach::{Reaches, RunFitter};
+use kurbo::{Point, Vec2};
+use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
+use own::OwnPieces;
+use reach::Reaches;
 use run::{RunSegment, SegmentRun};
 use search::{Leg, fewest_legs};
 
-/// Merges the pieces of one subpath.
+/// Merges the pieces of consecutive segments.
 pub(super) struct Merger<'a> {
-    pub(super) map: &'a dyn Map,
-    /// The map's degree, if it is a quotient of polynomials.
-    pub(super) degree: Option<RationalDegree>,
-    pub(super) options: &'a Options,
-}
-
-/// The segments of a subpath, each with its own pieces.
-pub(super) struct FittedSegments<'a> {
-    pub(super) segs: &'a [Seg],
-    /// `smooth[i]` is `false` if the image has a corner where segment i begins.
-    pub(super) smooth: &'a [bool],
-    pub(super) pieces: &'a [FittedPiece],
-    /// `bounds[i]..bounds[i + 1]` are the pieces of segment i.
-    pub(super) bounds: &'a [usize],
+    fitter: &'a SegmentFitter<'a>,
+    segs: &'a [Seg],
+    /// At the ends of each segment.
+    jets: &'a [[Jet; 2]],
+    pieces: Vec<FittedPiece>,
+    report: PathReport,
+    /// Places that the last merged piece reached.
+    last_reach: usize,
 }
 
 /// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jet where they meet.
@@ -56,177 +53,118 @@ pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
     dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
 }
 
-impl Merger<'_> {
-    /// The pieces of all segments, merged where that saves some.
-    pub(super) fn merged(
-        &self,
-        fitted: &FittedSegments<'_>,
-        report: &mut PathReport,
-    ) -> Result<Vec<FittedPiece>, Point> {
-        let FittedSegments { segs, smooth, pieces, bounds } = *fitted;
-        let mut out = Vec::with_capacity(pieces.len());
-        let mut i = 0;
-        while i < segs.len() {
-            let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
-            let run = self.run(if joined > 0 { &segs[i..=i + joined] } else { &[] })?;
-            // A segment that cannot be in a run keeps its pieces.
-            let end = i + run.segments.len().max(1);
-            let own = &pieces[bounds[i]..bounds[end]];
-            let better = if end - i > 1 { self.fewest(&run, pieces, &bounds[i..=end])? } else { None };
-            match better {
-                Some((merged, error)) => {
-                    let assurance = if self.options.certify { Assurance::Certified } else { Assurance::Checked };
-                    report.add_error(error, assurance);
-                    out.extend_from_slice(&merged);
-                }
-                None => out.extend_from_slice(own),
-            }
-            i = end;
+impl<'a> Merger<'a> {
+    pub(super) fn new(fitter: &'a SegmentFitter<'a>, segs: &'a [Seg], jets: &'a [[Jet; 2]]) -> Self {
+        Self {
+            fitter,
+            segs,
+            jets,
+            pieces: Vec::with_capacity(segs.len()),
+            report: PathReport::default(),
+            last_reach: 0,
         }
-        Ok(out)
     }
 
-    /// The longest run of smoothly joined segments at the start of `segs`.
-    fn run<'s>(&self, segs: &'s [Seg]) -> Result<SegmentRun<'s>, Point>
-    where
-        Self: 's,
-    {
-        let mut run = SegmentRun::new(self.degree.is_some());
-        for seg in segs {
-            if self.options.shared.contains(seg) {
+    /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
+    /// begins.
+    pub(super) fn merged(mut self, smooth: &[bool]) -> Result<(Vec<FittedPiece>, PathReport), Point> {
+        let mut i = 0;
+        while i < self.segs.len() {
+            let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
+            let run = if joined > 0 { Some(self.run(i, i + joined + 1)?) } else { None };
+            match run.filter(|r| r.segments.len() > 1) {
+                Some(run) => {
+                    self.merge(&run, i)?;
+                    i += run.segments.len();
+                }
+                None => {
+                    // A segment that cannot be in a run keeps its pieces.
+                    let [first, last] = &self.jets[i];
+                    self.fitter.fit(&self.segs[i], [first, last], &mut self.pieces, &mut self.report)?;
+                    i += 1;
+                }
+            }
+        }
+        Ok((self.pieces, self.report))
+    }
+
+    /// The longest run of smoothly joined segments from `start` up to `end`.
+    fn run(&self, start: usize, end: usize) -> Result<SegmentRun<'a>, Point> {
+        let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
+        for i in start..end {
+            if self.fitter.options.shared.contains(&self.segs[i]) {
                 break;
             }
-            let Some(segment) = self.run_segment(seg)? else { break };
+            let Some(segment) = self.run_segment(i) else { break };
             let turn = |last: &RunSegment<'_>| {
                 let (into, away) = (last.to.into, segment.from.away);
                 into.cross(away).atan2(into.dot(away)).abs()
             };
-            if run.segments.last().is_some_and(|last| turn(last) > SMOOTH_JOINT) {
+            if run.segments.last().is_some_and(|last| turn(last) > SMOOTH_JOINT) || !run.push(segment)? {
                 break;
             }
-            run.push(segment);
         }
         Ok(run)
     }
 
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
-    fn run_segment<'s>(&self, seg: &'s Seg) -> Result<Option<RunSegment<'s>>, Point>
-    where
-        Self: 's,
-    {
-        let certify = self.options.certify;
-        let source = SourceCurve::for_proof(seg, self.map, certify);
-        let form = if certify { RationalForm::new(&source, self.degree) } else { None };
-        if certify && form.is_none() { Ok(None) } else { RunSegment::new(source, form) }
+    fn run_segment(&self, i: usize) -> Option<RunSegment<'a>> {
+        let SegmentFitter { map, degree, options, .. } = *self.fitter;
+        let source = SourceCurve::for_proof(&self.segs[i], map, options.certify);
+        let form = if options.certify { Some(RationalForm::new(&source, degree)?) } else { None };
+        RunSegment::new(source, form, &self.jets[i])
     }
 
-    /// The fewest pieces for a run, and their largest error. `None` if they are not fewer than its segments have.
-    ///
-    /// Searches quickly, then checks the pieces found in every segment. Those that fail are left out of the next search.
-    fn fewest(
-        &self,
-        run: &SegmentRun<'_>,
-        pieces: &[FittedPiece],
-        bounds: &[usize],
-    ) -> Result<Option<(Vec<FittedPiece>, f64)>, Point> {
-        let slow = SlowSpots::default();
-        let mut fitter = StretchFitter {
-            source: run,
-            slow: &slow,
-            tolerance: MERGE_SHARE * self.options.tolerance,
-            form: None,
-            degree: None,
-            scrutiny: Scrutiny::Samples,
-            attempts: 0,
-        };
-        let mut reaches = Reaches::new(run, bounds, fitter.tolerance);
-        for _ in 0..MERGE_SEARCHES {
-            fitter.scrutiny = Scrutiny::Samples;
-            let Some(legs) = fewest_legs(&mut reaches, &mut fitter)? else { return Ok(None) };
-            fitter.scrutiny = Scrutiny::EverySegment;
-            let (mut out, mut worst) = (Vec::with_capacity(reaches.unmerged()), 0.0f64);
-            let mut passed = true;
-            for Leg { from, to, merged } in legs {
-                if !merged {
-                    out.extend_from_slice(&pieces[bounds[from / MERGE_GRID]..bounds[to / MERGE_GRID]]);
-                    continue;
-                }
-                let (first, last) = (reaches.end(from)?, reaches.end(to)?);
-                if let Some((piece, error)) = self.checked(run, &mut fitter, &first, &last)? {
-                    worst = worst.max(error);
-                    out.push(piece);
-                } else {
-                    reaches.refuse(from, to);
-                    passed = false;
+    /// Appends the fewest pieces for a run that begins with segment `start`.
+    fn merge(&mut self, run: &SegmentRun<'a>, start: usize) -> Result<(), Point> {
+        let segments = start..start + run.segments.len();
+        let own = OwnPieces::new(self.fitter, &self.segs[segments.clone()], &self.jets[segments.clone()]);
+        let options = self.fitter.options;
+        let proof = options.certify.then_some(options.tolerance);
+        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, self.last_reach);
+        let assurance = if options.certify { Assurance::Certified } else { Assurance::Checked };
+        let legs = passed(&mut reaches)?;
+        self.last_reach = reaches.last_reach;
+        match legs {
+            Some(legs) => {
+                for (leg, piece) in legs {
+                    if let Some((piece, error)) = piece {
+                        self.report.add_error(error, assurance);
+                        self.pieces.push(piece);
+                    } else {
+                        let i = leg.from / MERGE_GRID;
+                        reaches.own.append(i, &mut self.pieces, &mut self.report)?;
+                    }
                 }
             }
-            if passed {
-                return Ok(Some((out, worst)));
+            None => {
+                for i in 0..segments.len() {
+                    reaches.own.append(i, &mut self.pieces, &mut self.report)?;
+                }
             }
         }
-        Ok(None)
-    }
-
-    /// A merged piece and its checked or proven error. `None` if it is not within the tolerance.
-    fn checked(
-        &self,
-        run: &SegmentRun<'_>,
-        fitter: &mut RunFitter<'_, '_>,
-        from: &BreakPoint,
-        to: &BreakPoint,
-    ) -> Result<Option<(FittedPiece, f64)>, Point> {
-        let FitOutcome::Fits { piece, mut error, .. } = fitter.attempt(from, to)? else { return Ok(None) };
-        if self.options.certify {
-            error = self.proven(run, from, to, piece)?;
-            if error > self.options.tolerance {
-                return Ok(None);
-            }
-        }
-        Ok(Some((piece, error)))
-    }
-
-    /// The proven distance of a piece over several segments: each segment is proven against its part of the piece, between
-    /// the foot points of the joints.
-    fn proven(
-        &self,
-        run: &SegmentRun<'_>,
-        from: &BreakPoint,
-        to: &BreakPoint,
-        piece: FittedPiece,
-    ) -> Result<f64, Point> {
-        let cubic = match piece {
-            FittedPiece::Line(l) => CubicBez::new(l.p0, l.p0.lerp(l.p1, 1.0 / 3.0), l.p0.lerp(l.p1, 2.0 / 3.0), l.p1),
-            FittedPiece::Cubic(c) => c,
-        };
-        let (mut s, mut worst) = (0.0, 0.0f64);
-        for (k, segment) in run.segments.iter().enumerate() {
-            let (first, last) = (run.starts[k], run.starts[k + 1]);
-            let (a, b) = (from.t.max(first), to.t.min(last));
-            let Some(form) = &segment.form else { return Ok(f64::INFINITY) };
-            if a >= b {
-                continue;
-            }
-            let next =
-                if b == to.t { 1.0 } else { foot_point(&cubic, segment.to.p, s + (1.0 - s) * (b - a) / (to.t - a)) };
-            if next <= s {
-                return Ok(f64::INFINITY);
-            }
-            let t0 = if a == first { 0.0 } else { segment.param(a - first).0 };
-            let t1 = if b == last { 1.0 } else { segment.param(b - first).0 };
-            let part = cubic.subsegment(s..next);
-            worst = worst.max(proof::stretch(&segment.source, form, [t0, t1], &part, self.options.tolerance)?);
-            s = next;
-        }
-        Ok(worst)
+        Ok(())
     }
 }
 
-/// The parameter of the point of `c` nearest to `p`, by Newton steps from `s`.
-fn foot_point(c: &CubicBez, p: Point, mut s: f64) -> f64 {
-    let slope = c.deriv();
-    for _ in 0..8 {
-        let (r, v) = (c.eval(s) - p, slope.eval(s).to_vec2());
-        s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+/// A leg with its piece and that one's error, if it is merged.
+type PassedLeg = (Leg, Option<(FittedPiece, f64)>);
+
+/// The way with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
+fn passed(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<PassedLeg>>, Point> {
+    for _ in 0..MERGE_SEARCHES {
+        let Some(legs) = fewest_legs(reaches)? else { return Ok(None) };
+        let mut out = Vec::with_capacity(legs.len());
+        for leg in &legs {
+            let piece = if leg.merged { reaches.piece(leg.from, leg.to)? } else { None };
+            // A piece that fails is left out of the next search.
+            if piece.is_some() || !leg.merged {
+                out.push((*leg, piece));
+            }
+        }
+        if out.len() == legs.len() {
+            return Ok(Some(out));
+        }
     }
-    s
+    Ok(None)
 }

@@ -1,44 +1,73 @@
 //! Finds the furthest place that one cubic reaches along a run, by few fits, each remembered.
 
-use super::run::SegmentRun;
-use crate::refit::limits::{
-    JUMP_ERROR, LEAP_WITHIN, LEAPS, MAX_SPAN, MERGE_GRID, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
+use super::check::Distances;
+use super::cubic::{RunCubic, Stretch, Trial};
+use super::limits::{
+    BETWEEN_TARGET, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN, MERGE_GRID,
+    REACH_TARGET, REFUSED_ERROR, SEARCH_SHARE, SMALLEST_REACH_ERROR,
 };
-use crate::refit::outcome::FitOutcome;
+use super::own::OwnPieces;
+use super::proven::proven;
+use super::run::SegmentRun;
+use crate::refit::piece::FittedPiece;
 use crate::refit::source::BreakPoint;
-use crate::refit::stretch::StretchFitter;
 use kurbo::Point;
 
-/// The fitter of a run.
-pub(super) type RunFitter<'r, 'a> = StretchFitter<'r, SegmentRun<'a>>;
+/// A cubic that was tried from one place to another.
+struct Tried {
+    to: usize,
+    /// Error ÷ tolerance at the samples. At most 1 if the cubic fits.
+    error: f64,
+    cubic: Option<RunCubic>,
+    /// The piece with its error, once it has passed its check.
+    piece: Option<(FittedPiece, f64)>,
+    /// The next entry with the same start.
+    next: usize,
+}
 
-/// Places within reach of one cubic, with its start.
-const ROW: usize = MERGE_GRID * MAX_SPAN + 1;
+/// No entry.
+const NONE: usize = usize::MAX;
 
 /// Everything known about single cubics between the grid places of a run.
 pub(super) struct Reaches<'r, 'a> {
     run: &'r SegmentRun<'a>,
-    /// `bounds[i]..bounds[i + 1]` are the pieces of segment i.
-    bounds: &'r [usize],
+    pub(super) own: OwnPieces<'r>,
+    tolerance: f64,
+    /// The tolerance of proofs, if they are wanted.
+    proof: Option<f64>,
     /// Break points at the grid places, computed on first use.
     ends: Vec<Option<BreakPoint>>,
     /// For each joint, how far on either side of it a cubic may extend: the shorter side of a cubic that crosses it is at most
     /// this long.
     crossing: Vec<f64>,
-    /// Error ÷ tolerance of the best cubic found between two places. At most 1 if it fits.
-    /// Row by row for each start; NaN if not tried yet.
-    errors: Vec<f64>,
+    tried: Vec<Tried>,
+    /// The last entry of `tried` from each place.
+    latest: Vec<usize>,
+    distances: Distances,
+    /// Places reached from the start before: drawings change little along a curve.
+    pub(super) last_reach: usize,
 }
 
 impl<'r, 'a> Reaches<'r, 'a> {
-    pub(super) fn new(run: &'r SegmentRun<'a>, bounds: &'r [usize], tolerance: f64) -> Self {
+    pub(super) fn new(
+        run: &'r SegmentRun<'a>,
+        own: OwnPieces<'r>,
+        tolerance: f64,
+        proof: Option<f64>,
+        last_reach: usize,
+    ) -> Self {
         let crossing = (0..=run.segments.len()).map(|j| (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt());
         Self {
             run,
-            bounds,
+            own,
+            tolerance,
+            proof,
             ends: vec![None; run.grid() + 1],
             crossing: crossing.collect(),
-            errors: vec![f64::NAN; ROW * (run.grid() + 1)],
+            tried: Vec::with_capacity(2 * run.segments.len()),
+            latest: vec![NONE; run.grid() + 1],
+            distances: Distances::default(),
+            last_reach,
         }
     }
 
@@ -47,18 +76,8 @@ impl<'r, 'a> Reaches<'r, 'a> {
         self.run.grid()
     }
 
-    /// Number of pieces of segment `i`.
-    pub(super) fn pieces(&self, i: usize) -> usize {
-        self.bounds[i + 1] - self.bounds[i]
-    }
-
-    /// Number of pieces of all segments.
-    pub(super) fn unmerged(&self) -> usize {
-        self.bounds[self.bounds.len() - 1] - self.bounds[0]
-    }
-
     /// The break point at place `k`. `Err`: the source point, if the map is not finite there.
-    pub(super) fn end(&mut self, k: usize) -> Result<BreakPoint, Point> {
+    fn end(&mut self, k: usize) -> Result<BreakPoint, Point> {
         if let Some(end) = self.ends[k] {
             return Ok(end);
         }
@@ -67,28 +86,78 @@ impl<'r, 'a> Reaches<'r, 'a> {
         Ok(end)
     }
 
-    /// Rules out the cubic from `k` to `m`: it did not pass the final check.
-    pub(super) fn refuse(&mut self, k: usize, m: usize) {
-        self.errors[ROW * k + (m - k)] = REFUSED_ERROR;
+    /// Returns `true` if one cubic fits from place `k` to `m`, as far as its samples show.
+    pub(super) fn fits(&mut self, k: usize, m: usize) -> Result<bool, Point> {
+        Ok(m > k && self.error(k, m)? <= 1.0)
     }
 
-    /// Returns `true` if one cubic fits from place `k` to `m`.
-    pub(super) fn fits(&mut self, fitter: &mut RunFitter<'_, '_>, k: usize, m: usize) -> Result<bool, Point> {
-        Ok(m > k && self.error(fitter, k, m)? <= 1.0)
-    }
-
-    fn error(&mut self, fitter: &mut RunFitter<'_, '_>, k: usize, m: usize) -> Result<f64, Point> {
-        let known = self.errors[ROW * k + (m - k)];
-        if !known.is_nan() {
-            return Ok(known);
+    /// The piece from place `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
+    pub(super) fn piece(&mut self, k: usize, m: usize) -> Result<Option<(FittedPiece, f64)>, Point> {
+        let i = self.entry(k, m)?;
+        if let (Some(cubic), None) = (self.tried[i].cubic, self.tried[i].piece) {
+            let piece = self.checked(&cubic, k, m)?;
+            let tried = &mut self.tried[i];
+            tried.piece = piece;
+            if piece.is_none() {
+                (tried.error, tried.cubic) = (REFUSED_ERROR, None);
+            }
         }
-        let (from, to) = (self.end(k)?, self.end(m)?);
-        let error = match fitter.attempt(&from, &to)? {
-            FitOutcome::Fits { reach, .. } => (reach / fitter.tolerance).min(1.0),
-            FitOutcome::Misses { reach, .. } => (reach / fitter.tolerance).max(1.0 + f64::EPSILON),
-        };
-        self.errors[ROW * k + (m - k)] = error;
-        Ok(error)
+        Ok(self.tried[i].piece)
+    }
+
+    /// Checks a cubic and, if it is just outside the tolerance, one fitted more closely.
+    fn checked(&mut self, cubic: &RunCubic, k: usize, m: usize) -> Result<Option<(FittedPiece, f64)>, Point> {
+        let found = self.within(cubic)?;
+        if found.is_some() {
+            return Ok(found);
+        }
+        let stretch = self.stretch(k, m)?;
+        match stretch.fitted_closely(cubic).cubic {
+            Some(closer) => self.within(&closer),
+            None => Ok(None),
+        }
+    }
+
+    /// The error of a cubic by the samples of all segments, or proven segment by segment. `None` if it is not within the tolerance.
+    fn within(&mut self, cubic: &RunCubic) -> Result<Option<(FittedPiece, f64)>, Point> {
+        let enough = self.tolerance;
+        let checked = self.distances.measure(self.run, cubic, enough)?;
+        let Some(mut error) = checked.filter(|e| *e <= enough) else { return Ok(None) };
+        if let Some(tolerance) = self.proof {
+            error = proven(self.run, cubic, &self.distances.feet, tolerance)?;
+            if error > tolerance {
+                return Ok(None);
+            }
+        }
+        Ok(Some((cubic.piece(), error)))
+    }
+
+    fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, Point> {
+        let ends = [self.end(k)?, self.end(m)?];
+        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], SEARCH_SHARE * self.tolerance))
+    }
+
+    /// The entry of the cubic from `k` to `m`, which is fitted on first use.
+    fn entry(&mut self, k: usize, m: usize) -> Result<usize, Point> {
+        let mut i = self.latest[k];
+        while i != NONE {
+            if self.tried[i].to == m {
+                return Ok(i);
+            }
+            i = self.tried[i].next;
+        }
+        let stretch = self.stretch(k, m)?;
+        let Trial { error, cubic } = stretch.fitted();
+        let relative = error / stretch.tolerance;
+        let error = if cubic.is_some() { relative.min(1.0) } else { relative.max(1.0 + f64::EPSILON) };
+        self.tried.push(Tried { to: m, error, cubic, piece: None, next: self.latest[k] });
+        self.latest[k] = self.tried.len() - 1;
+        Ok(self.latest[k])
+    }
+
+    fn error(&mut self, k: usize, m: usize) -> Result<f64, Point> {
+        let i = self.entry(k, m)?;
+        Ok(self.tried[i].error)
     }
 
     /// The furthest place that jumps of curvature let a cubic from `k` reach.
@@ -99,7 +168,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
             if j * MERGE_GRID >= limit {
                 break;
             }
-            let (joint, most) = (self.run.starts[j], self.crossing[j]);
+            let (joint, most) = (self.run.place(j * MERGE_GRID), self.crossing[j]);
             if joint - start <= most {
                 continue;
             }
@@ -118,46 +187,76 @@ impl<'r, 'a> Reaches<'r, 'a> {
     ///
     /// A stretch that fails makes nearly all longer ones fail, so places are tried in the manner of a bisection, with the
     /// sixth-order law of the error as the guess.
-    pub(super) fn furthest(&mut self, fitter: &mut RunFitter<'_, '_>, k: usize) -> Result<usize, Point> {
+    pub(super) fn furthest(&mut self, k: usize) -> Result<usize, Point> {
         let limit = self.limit(k);
         let joint = (k / MERGE_GRID + 1) * MERGE_GRID;
-        if limit <= joint && k.is_multiple_of(MERGE_GRID) && self.pieces(k / MERGE_GRID) == 1 {
+        if limit <= joint && self.own_leads_to(joint, k)? {
             return Ok(k);
         }
-        let (mut low, mut high) = (k, limit + 1);
-        // Half a segment past the next joint: the least that is likely to save a piece.
-        let mut probe = (joint + MERGE_GRID / 2).min(limit);
-        while low + 1 < high {
-            let error = self.error(fitter, k, probe)?;
-            let (from, length) = (self.run.place(k), self.run.place(probe) - self.run.place(k));
-            let wanted = from + length * (REACH_TARGET / error.max(SMALLEST_REACH_ERROR)).powf(1.0 / 6.0);
-            if error <= 1.0 {
-                low = probe;
-                probe = low + 1;
-                while probe + 1 < high && self.run.place(probe + 1) <= wanted {
-                    probe += 1;
-                }
-            } else {
-                high = probe;
-                probe = high.saturating_sub(1);
-                while probe > low + 1 && self.run.place(probe) > wanted {
-                    probe -= 1;
-                }
+        loop {
+            let m = self.seek(k, joint, limit)?;
+            if m > k {
+                self.last_reach = m - k;
+            }
+            if m == k || self.piece(k, m)?.is_some() {
+                return Ok(m);
             }
         }
-        self.leap(fitter, k, low, limit)
+    }
+
+    /// Returns `true` if `k` is the joint before `joint`, and the segment between them has a single piece.
+    fn own_leads_to(&mut self, joint: usize, k: usize) -> Result<bool, Point> {
+        Ok(k + MERGE_GRID == joint && self.own.count(k / MERGE_GRID)? == 1)
+    }
+
+    /// The furthest place that one cubic reaches from `k` as far as its samples show.
+    fn seek(&mut self, k: usize, joint: usize, limit: usize) -> Result<usize, Point> {
+        let start = self.run.place(k);
+        let (mut low, mut high) = (k, limit + 1);
+        // Errors at `low` and `high`, as far as they are known.
+        let (mut below, mut above) = (None, None);
+        let mut probe = (joint + LEAST_PAST_JOINT).max(k + self.last_reach).min(limit);
+        for step in 0.. {
+            let error = self.error(k, probe)?.max(SMALLEST_REACH_ERROR);
+            if error <= 1.0 {
+                (low, below) = (probe, Some(error));
+            } else {
+                (high, above) = (probe, Some(error));
+            }
+            if high <= joint + 1 && self.own_leads_to(joint, k)? {
+                return Ok(k);
+            }
+            if low + 1 >= high {
+                break;
+            }
+            let (l, h) = (self.run.place(low) - start, self.run.place(high.min(limit)) - start);
+            let wanted = match (below, above) {
+                (Some(below), None) => l * (REACH_TARGET / below).powf(1.0 / 6.0),
+                (None, Some(above)) => h * above.powf(-1.0 / 6.0),
+                (Some(below), Some(above)) if step < INTERPOLATIONS => {
+                    l * (h / l).powf(((BETWEEN_TARGET / below).ln() / (above / below).ln()).clamp(0.0, 1.0))
+                }
+                _ => 0.5 * (l + h),
+            };
+            probe = low + 1;
+            while probe + 1 < high && self.run.place(probe + 1) - start <= wanted {
+                probe += 1;
+            }
+        }
+        self.leap(k, low, limit)
     }
 
     /// Tries the places just beyond a near miss: a few longer stretches fit although the next one does not.
-    fn leap(&mut self, fitter: &mut RunFitter<'_, '_>, k: usize, mut low: usize, limit: usize) -> Result<usize, Point> {
-        'further: while low < limit {
-            if self.error(fitter, k, low + 1)? > LEAP_WITHIN {
-                break;
-            }
-            for m in low + 1..=(low + 1 + LEAPS).min(limit) {
-                if self.fits(fitter, k, m)? {
+    fn leap(&mut self, k: usize, mut low: usize, limit: usize) -> Result<usize, Point> {
+        'further: while low < limit && self.error(k, low + 1)? <= LEAP_WITHIN {
+            for m in low + 2..=(low + 1 + LEAPS).min(limit) {
+                let error = self.error(k, m)?;
+                if error <= 1.0 {
                     low = m;
                     continue 'further;
+                }
+                if error > LEAP_WITHIN {
+                    break;
                 }
             }
             break;

@@ -1,9 +1,10 @@
-//! Segments in a row as one curve.
+//! Segments in a row as one curve, known by samples at even parameters of each.
 
-use crate::refit::curve::{ImageCurve, PartSamples};
+use super::limits::{MERGE_GRID, OPAQUE_SAMPLES, RATIONAL_SAMPLES};
+use crate::map::Jet;
 use crate::refit::lanes::{Lane, Lanes};
-use crate::refit::limits::{LENGTH_TABLE, MERGE_GRID, OPAQUE_BATCHES, RATIONAL_BATCHES};
 use crate::refit::proof::RationalForm;
+use crate::refit::samples::Evenly;
 use crate::refit::source::{BreakPoint, SourceCurve};
 use crate::refit::split;
 use kurbo::{Point, Vec2};
@@ -15,16 +16,12 @@ pub(super) struct RunSegment<'a> {
     pub(super) form: Option<RationalForm>,
     pub(super) from: BreakPoint,
     pub(super) to: BreakPoint,
-    /// Lengths of the image up to i/16 of the parameter.
-    table: [f64; LENGTH_TABLE + 1],
-    /// Parameter per length in each interval of the table.
-    slopes: [f64; LENGTH_TABLE],
     /// The curvature at both ends.
     curvature: [Curvature; 2],
 }
 
 /// A curvature and how far it may be off.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Curvature {
     value: f64,
     uncertainty: f64,
@@ -41,84 +38,73 @@ impl Curvature {
 }
 
 impl<'a> RunSegment<'a> {
-    /// `None` for a segment that cannot be in a run: one without length or with slow spots.
-    pub(super) fn new(source: SourceCurve<'a>, form: Option<RationalForm>) -> Result<Option<Self>, Point> {
+    /// A segment with the jets at its ends. `None` if it cannot be in a run, having no length or slow spots.
+    pub(super) fn new(source: SourceCurve<'a>, form: Option<RationalForm>, [first, last]: &[Jet; 2]) -> Option<Self> {
         if source.size() == 0.0 || !split::slow_spots(source.seg).all().is_empty() {
-            return Ok(None);
+            return None;
         }
-        let (from, to) = (source.end(0.0)?, source.end(1.0)?);
-        let mut table = [0.0; LENGTH_TABLE + 1];
-        let mut images = [from.p; LENGTH_TABLE + 1];
-        for half in 0..2 {
-            let t: Lane = std::array::from_fn(|i| (8 * half + i + 1) as f64 / LENGTH_TABLE as f64);
-            let g = source.images(&t)?;
-            for i in 0..8 {
-                let p = Point::new(g.x[i], g.y[i]);
-                let k = 8 * half + i + 1;
-                table[k] = table[k - 1] + (p - images[k - 1]).hypot();
-                images[k] = p;
-            }
-        }
-        // A stretch without length has no direction to be merged along.
-        let moves = table.windows(2).all(|w| w[1] > w[0]);
-        let n = LENGTH_TABLE;
-        let first = Curvature::new(from.away, from.p, [images[1], images[2]]);
-        let last = Curvature::new(-to.into, images[n], [images[n - 1], images[n - 2]]);
-        // Seen backwards, a curve bends to the other side.
-        let curvature = [first, Curvature { value: -last.value, ..last }];
-        let slopes = std::array::from_fn(|i| 1.0 / ((table[i + 1] - table[i]) * LENGTH_TABLE as f64));
-        Ok(moves.then_some(Self { source, form, from, to, table, slopes, curvature }))
-    }
-
-    pub(super) fn length(&self) -> f64 {
-        self.table[LENGTH_TABLE]
-    }
-
-    /// The length up to the segment's parameter `t`: the inverse of [`param`](Self::param).
-    fn length_to(&self, t: f64) -> f64 {
-        let at = t * LENGTH_TABLE as f64;
-        let k = (at as usize).min(LENGTH_TABLE - 1);
-        self.table[k] + (self.table[k + 1] - self.table[k]) * (at - k as f64)
-    }
-
-    /// The segment's parameter at a length, and its derivative.
-    pub(super) fn param(&self, length: f64) -> (f64, f64) {
-        // As if the speed were even; then the neighbouring intervals.
-        let mut k = ((length / self.length() * LENGTH_TABLE as f64) as usize).min(LENGTH_TABLE - 1);
-        while k + 1 < LENGTH_TABLE && self.table[k + 1] <= length {
-            k += 1;
-        }
-        while k > 0 && self.table[k] > length {
-            k -= 1;
-        }
-        let slope = self.slopes[k];
-        ((k as f64 / LENGTH_TABLE as f64 + (length - self.table[k]) * slope).clamp(0.0, 1.0), slope)
+        let (from, to) = (source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last));
+        Some(Self { source, form, from, to, curvature: [Curvature::default(); 2] })
     }
 }
 
-/// Smoothly joined segments as one curve. Its parameter is approximately the length of the image.
+/// Smoothly joined segments as one curve. Samples lie at even parameters of each segment; the last of one segment is the first
+/// of the next.
 pub(super) struct SegmentRun<'a> {
-    /// Batches of eight samples that a check takes in each segment.
-    batches: usize,
     pub(super) segments: Vec<RunSegment<'a>>,
-    /// Parameters at which the segments begin, and the end of the last.
-    pub(super) starts: Vec<f64>,
+    /// Intervals between samples of a segment.
+    pub(super) per_segment: usize,
+    /// Images of the samples.
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    /// Lengths of the polygon through the samples, up to each.
+    pub(super) length: Vec<f64>,
 }
 
 impl<'a> SegmentRun<'a> {
     /// A run without segments, under a map that is a quotient of polynomials or any other.
-    pub(super) fn new(rational: bool) -> Self {
-        let batches = if rational { RATIONAL_BATCHES } else { OPAQUE_BATCHES };
-        Self { batches, segments: Vec::new(), starts: Vec::new() }
+    pub(super) fn new(rational: bool, capacity: usize) -> Self {
+        let per_segment = if rational { RATIONAL_SAMPLES } else { OPAQUE_SAMPLES };
+        let samples = || Vec::with_capacity(capacity * per_segment + 1);
+        Self { segments: Vec::with_capacity(capacity), per_segment, x: samples(), y: samples(), length: samples() }
     }
 
-    pub(super) fn push(&mut self, segment: RunSegment<'a>) {
-        let at = self.starts.last().copied().unwrap_or_default();
-        if self.starts.is_empty() {
-            self.starts.push(0.0);
+    /// Samples a segment and appends it. Returns `false` if it does not move everywhere: a stretch without length has no direction
+    /// to be merged along.
+    pub(super) fn push(&mut self, mut segment: RunSegment<'a>) -> Result<bool, Point> {
+        let n = self.per_segment;
+        if self.x.is_empty() {
+            self.x.push(segment.from.p.x);
+            self.y.push(segment.from.p.y);
+            self.length.push(0.0);
         }
-        self.starts.push(at + segment.length());
+        let start = self.x.len() - 1;
+        for batch in 0..n / 8 {
+            let t: Lane = std::array::from_fn(|i| (8 * batch + i + 1) as f64 / n as f64);
+            let g = segment.source.images(&t)?;
+            self.x.extend(g.x);
+            self.y.extend(g.y);
+        }
+        let mut moves = true;
+        for k in start..start + n {
+            let (dx, dy) = (self.x[k + 1] - self.x[k], self.y[k + 1] - self.y[k]);
+            let step = (dx * dx + dy * dy).sqrt();
+            moves &= step > 0.0;
+            self.length.push(self.length[k] + step);
+        }
+        if !moves {
+            for samples in [&mut self.x, &mut self.y, &mut self.length] {
+                samples.truncate(start + 1);
+            }
+            return Ok(false);
+        }
+        let at = |i: usize| Point::new(self.x[start + i], self.y[start + i]);
+        let first = Curvature::new(segment.from.away, at(0), [at(1), at(2)]);
+        let last = Curvature::new(-segment.to.into, at(n), [at(n - 1), at(n - 2)]);
+        // Seen backwards, a curve bends to the other side.
+        segment.curvature = [first, Curvature { value: -last.value, ..last }];
         self.segments.push(segment);
+        Ok(true)
     }
 
     /// Number of grid intervals.
@@ -126,19 +112,28 @@ impl<'a> SegmentRun<'a> {
         MERGE_GRID * self.segments.len()
     }
 
-    /// The parameter of grid place `k`.
-    pub(super) fn place(&self, k: usize) -> f64 {
-        let (seg, i) = (k / MERGE_GRID, k % MERGE_GRID);
-        if i == 0 {
-            self.starts[seg]
-        } else {
-            self.starts[seg] + self.segments[seg].length() * i as f64 / MERGE_GRID as f64
-        }
+    /// The sample at grid place `k`.
+    pub(super) fn sample(&self, k: usize) -> usize {
+        k * (self.per_segment / MERGE_GRID)
     }
 
-    /// The break point at grid place `k`.
+    /// The length up to grid place `k`.
+    pub(super) fn place(&self, k: usize) -> f64 {
+        self.length[self.sample(k)]
+    }
+
+    /// The break point at grid place `k`, with the length as its parameter.
     pub(super) fn end_at(&self, k: usize) -> Result<BreakPoint, Point> {
-        self.end(self.place(k))
+        let (i, part) = (k / MERGE_GRID, k % MERGE_GRID);
+        let end = match (self.segments.get(i), i.checked_sub(1).and_then(|i| self.segments.get(i))) {
+            (Some(segment), _) if part > 0 => segment.source.end(part as f64 / MERGE_GRID as f64)?,
+            // A joint has the tangents of both its segments.
+            (Some(after), Some(before)) => BreakPoint { into: before.to.into, ..after.from },
+            (Some(after), None) => after.from,
+            (None, Some(before)) => before.to,
+            (None, None) => return Err(Point::ORIGIN),
+        };
+        Ok(BreakPoint { t: self.place(k), speed: 1.0, ..end })
     }
 
     /// The jump of the curvature at the start of segment `j`, as far as it is certain; 0 at the ends of the run.
@@ -149,85 +144,60 @@ impl<'a> SegmentRun<'a> {
         ((a.value - b.value).abs() - a.uncertainty - b.uncertainty).max(0.0)
     }
 
-    /// The segment at `u`, and the length from its start.
-    fn find(&self, u: f64) -> (&RunSegment<'a>, f64) {
-        let last = self.segments.len() - 1;
-        let k = self.starts.partition_point(|s| *s <= u).saturating_sub(1).min(last);
-        (&self.segments[k], u - self.starts[k])
+    /// Places at shares of the length between two samples, by polynomials of degree five through six samples of the same segment.
+    pub(super) fn between(&self, [first, last]: [usize; 2], shares: &Evenly, [x, y]: [&mut Evenly; 2]) {
+        let (start, length) = (self.length[first], self.length[last] - self.length[first]);
+        let n = self.per_segment;
+        let mut k = first;
+        for j in 1..shares.len() - 1 {
+            let wanted = start + length * shares[j];
+            while k + 1 < last && self.length[k + 1] <= wanted {
+                k += 1;
+            }
+            let part = (wanted - self.length[k]) / (self.length[k + 1] - self.length[k]);
+            let base = k - k % n + (k % n).saturating_sub(2).min(n - 5);
+            let w = lagrange((k - base) as f64 + part);
+            (x[j], y[j]) = (0.0, 0.0);
+            for (i, w) in w.into_iter().enumerate() {
+                x[j] += w * self.x[base + i];
+                y[j] += w * self.y[base + i];
+            }
+        }
+    }
+
+    /// Images at eight parameters of segment `i`.
+    pub(super) fn images(&self, i: usize, t: &Lane) -> Result<Lanes, Point> {
+        self.segments.get(i).map_or(Ok(Lanes::default()), |s| s.source.images(t))
     }
 }
 
-impl ImageCurve for SegmentRun<'_> {
-    fn images_into(&self, t: &Lane, out: &mut Lanes) -> Result<(), Point> {
-        let last = self.segments.len() - 1;
-        let mut k = 0;
-        for i in 0..8 {
-            // Parameters ascend, except that a batch may begin anywhere.
-            while k < last && self.starts[k + 1] <= t[i] {
-                k += 1;
-            }
-            while k > 0 && self.starts[k] > t[i] {
-                k -= 1;
-            }
-            let segment = &self.segments[k];
-            let p = segment.source.point(segment.param(t[i] - self.starts[k]).0);
-            (out.x[i], out.y[i]) = (p.x, p.y);
+/// Lagrange's weights of the values at 0, 1, …, 5 for the value at `u`.
+fn lagrange(u: f64) -> [f64; 6] {
+    const SCALE: [f64; 6] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
+    let mut w = SCALE;
+    let mut below = 1.0;
+    for (i, w) in w.iter_mut().enumerate() {
+        *w *= below;
+        below *= u - i as f64;
+    }
+    let mut above = 1.0;
+    for (i, w) in w.iter_mut().enumerate().rev() {
+        *w *= above;
+        above *= u - i as f64;
+    }
+    w
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lagrange;
+
+    #[test]
+    fn polynomials_of_degree_five_are_reproduced() {
+        let f = |u: f64| ((((0.3 * u - 1.0) * u + 2.0) * u - 0.7) * u + 1.5) * u - 4.0;
+        for u in [-0.2, 0.0, 0.4, 1.0, 2.5, 4.9, 5.0] {
+            let sum: f64 = lagrange(u).iter().enumerate().map(|(i, w)| w * f(i as f64)).sum();
+            assert!((sum - f(u)).abs() < 1e-12, "{u}: {sum}");
         }
-        let Some(first) = self.segments.first() else { return Ok(()) };
-        first.source.map.lanes(&mut out.x, &mut out.y);
-        match (0..8).find(|&i| !(out.x[i] + out.y[i]).is_finite()) {
-            Some(i) => Err(self.at(t[i])),
-            None => Ok(()),
-        }
-    }
-
-    fn image(&self, t: f64) -> (Point, Vec2) {
-        let (segment, length) = self.find(t);
-        let (s, slope) = segment.param(length);
-        let (p, d) = segment.source.image(s);
-        (p, d * slope)
-    }
-
-    fn end(&self, t: f64) -> Result<BreakPoint, Point> {
-        let joint = self.starts.iter().position(|s| *s == t);
-        let mut end = match joint {
-            // A joint has the tangents of both its segments.
-            Some(k) => match (k.checked_sub(1).map(|k| &self.segments[k]), self.segments.get(k)) {
-                (Some(a), Some(b)) => BreakPoint { into: a.to.into, ..b.from },
-                (Some(a), None) => a.to,
-                (None, Some(b)) => b.from,
-                (None, None) => return Err(Point::ORIGIN),
-            },
-            None => {
-                let (segment, length) = self.find(t);
-                segment.source.end(segment.param(length).0)?
-            }
-        };
-        // The parameter is the length.
-        (end.t, end.speed) = (t, 1.0);
-        Ok(end)
-    }
-
-    fn parts(&self, t0: f64, t1: f64) -> Option<Vec<PartSamples>> {
-        let ends = self.segments.iter().zip(self.starts.windows(2));
-        let inside = ends.filter(|(_, w)| w[1] > t0 && w[0] < t1);
-        let samples = inside.map(|(segment, w)| {
-            let (start, from, to) = (w[0], t0.max(w[0]), t1.min(w[1]));
-            let (s0, s1) = (segment.param(from - start).0, segment.param(to - start).0);
-            let n = 8 * self.batches;
-            let at = |i: usize| start + segment.length_to(s0 + (s1 - s0) * i as f64 / n as f64);
-            let lane = |k: usize| std::array::from_fn(|i| if 8 * k + i + 1 < n { at(8 * k + i + 1) } else { to });
-            (0..self.batches).map(lane).collect()
-        });
-        Some(samples.collect())
-    }
-
-    fn at(&self, t: f64) -> Point {
-        let (segment, length) = self.find(t);
-        segment.source.at(segment.param(length).0)
-    }
-
-    fn single(&self) -> Option<&SourceCurve<'_>> {
-        None
     }
 }

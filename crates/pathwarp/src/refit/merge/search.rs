@@ -4,8 +4,8 @@
 //! one. So the search keeps one place for each number of pieces, extends it as far as one cubic reaches, and compares with
 //! the segments' own pieces, which lead from joint to joint.
 
-use super::reach::{Reaches, RunFitter};
-use crate::refit::limits::MERGE_GRID;
+use super::limits::MERGE_GRID;
+use super::reach::Reaches;
 use kurbo::Point;
 
 /// A step between two grid places.
@@ -26,42 +26,46 @@ struct Furthest {
 }
 
 /// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have.
-pub(super) fn fewest_legs(
-    reaches: &mut Reaches<'_, '_>,
-    fitter: &mut RunFitter<'_, '_>,
-) -> Result<Option<Vec<Leg>>, Point> {
+pub(super) fn fewest_legs(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<Leg>>, Point> {
     let last = reaches.last();
     let mut furthest = vec![Furthest { place: 0, leg: None }];
     // (number of pieces, joint) that a segment's own pieces lead to.
     let mut by_own = Vec::new();
-    for count in 0..reaches.unmerged() - 1 {
+    for count in 0.. {
+        // A segment has at least one piece.
+        if count + 1 >= reaches.own.segments() && count + 1 >= reaches.own.total()? {
+            break;
+        }
         let Furthest { place: k, leg } = furthest[count];
         let joint = k - k % MERGE_GRID;
-        // The leg to k may end at the joint before it as well.
-        let at_joint = joint == k
-            || match leg {
-                Some((from, true)) if from < joint => reaches.fits(fitter, from, joint)?,
-                _ => false,
-            };
-        if at_joint && joint < last {
-            by_own.push((count + reaches.pieces(joint / MERGE_GRID), joint + MERGE_GRID));
-        }
-        let mut best = Furthest { place: reaches.furthest(fitter, k)?, leg: Some((k, true)) };
+        let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
         if let Some((from, true)) = leg {
             for earlier in [joint, k - 1] {
-                if let Some(place) = beyond(reaches, fitter, [from, earlier, k], best.place)? {
+                if let Some(place) = beyond(reaches, [from, earlier, k], best.place)? {
                     best = Furthest { place, leg: Some((earlier, true)) };
                 }
             }
         }
+        // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
+        let at_joint = best.place <= joint + MERGE_GRID
+            && best.place < last
+            && joint < last
+            && (joint == k
+                || match leg {
+                    Some((from, true)) if from < joint => reaches.fits(from, joint)?,
+                    _ => false,
+                });
+        if at_joint {
+            by_own.push((count + reaches.own.count(joint / MERGE_GRID)?, joint + MERGE_GRID));
+        }
         for &(pieces, to) in &by_own {
-            if pieces == count + 1 && to > best.place {
+            if pieces == count + 1 && to >= best.place && to > k {
                 best = Furthest { place: to, leg: Some((to - MERGE_GRID, false)) };
             }
         }
         furthest.push(if best.place > k { best } else { Furthest { place: k, leg: None } });
         if best.place == last {
-            return Ok(Some(legs(&furthest, reaches)));
+            return legs(&furthest, reaches).map(Some);
         }
     }
     Ok(None)
@@ -69,26 +73,21 @@ pub(super) fn fewest_legs(
 
 /// The place that a cubic from `earlier` reaches beyond `best`, if it does. `earlier` is a place before `k` to which the cubic
 /// that begins at `from` can be shortened: its end tangent may suit what follows better.
-fn beyond(
-    reaches: &mut Reaches<'_, '_>,
-    fitter: &mut RunFitter<'_, '_>,
-    [from, earlier, k]: [usize; 3],
-    best: usize,
-) -> Result<Option<usize>, Point> {
+fn beyond(reaches: &mut Reaches<'_, '_>, [from, earlier, k]: [usize; 3], best: usize) -> Result<Option<usize>, Point> {
     let limit = reaches.limit(earlier);
     let possible = from < earlier && earlier < k && best < limit;
-    if !(possible && reaches.fits(fitter, earlier, best + 1)? && reaches.fits(fitter, from, earlier)?) {
+    if !(possible && reaches.fits(earlier, best + 1)? && reaches.fits(from, earlier)?) {
         return Ok(None);
     }
     let mut place = best + 1;
-    while place < limit && reaches.fits(fitter, earlier, place + 1)? {
+    while place < limit && reaches.fits(earlier, place + 1)? {
         place += 1;
     }
     Ok(Some(place))
 }
 
 /// Follows the legs back from the end.
-fn legs(furthest: &[Furthest], reaches: &Reaches<'_, '_>) -> Vec<Leg> {
+fn legs(furthest: &[Furthest], reaches: &mut Reaches<'_, '_>) -> Result<Vec<Leg>, Point> {
     let mut legs = Vec::new();
     let mut count = furthest.len() - 1;
     let mut to = reaches.last();
@@ -98,9 +97,9 @@ fn legs(furthest: &[Furthest], reaches: &Reaches<'_, '_>) -> Vec<Leg> {
             continue;
         };
         legs.push(Leg { from, to, merged });
-        count -= if merged { 1 } else { reaches.pieces(from / MERGE_GRID) };
+        count -= if merged { 1 } else { reaches.own.count(from / MERGE_GRID)? };
         to = from;
     }
     legs.reverse();
-    legs
+    Ok(legs)
 }

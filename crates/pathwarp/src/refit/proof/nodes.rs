@@ -22,7 +22,6 @@
 use super::chebyshev::{ChebyshevTables, FEET, SAMPLES, SharedTables};
 use super::form::{CLEARING, NODES, PHI, RationalForm};
 use crate::refit::candidate::Candidate;
-use crate::refit::curve::ImageCurve;
 use crate::refit::frame::ChordFrame;
 use crate::refit::lanes::{Lane, fma, largest, sum};
 use crate::refit::limits::{MAX_DENOMINATOR_VARIATION, PROOF_ROUNDING};

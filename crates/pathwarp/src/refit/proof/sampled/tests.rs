@@ -6,9 +6,9 @@ use super::expand::FINE_GROWTH;
 use super::*;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
-use crate::refit::curve::ImageCurve;
 use crate::refit::frame::ChordFrame;
 use crate::refit::samples::{CHECKED, FITTED, between};
+use crate::refit::source::SourceCurve;
 use kurbo::{CubicBez, Line, ParamCurve, QuadBez, Vec2};
 
 /// Pseudo-random numbers in [−1, 1].

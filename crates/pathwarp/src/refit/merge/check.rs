@@ -1,0 +1,146 @@
+//! The check of a cubic over several segments: the error is smooth along each segment, and may have corners at the joints.
+
+use super::cubic::RunCubic;
+use super::limits::COARSE_CHECK;
+use super::run::SegmentRun;
+use crate::refit::lanes::{Lane, Lanes, larger, largest};
+use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
+use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
+use crate::refit::resolution::turns_little;
+use crate::refit::samples::{ALL, Evenly};
+use kurbo::{Point, Vec2};
+
+/// Distances and foot points of all samples under a cubic.
+#[derive(Default)]
+pub(super) struct Distances {
+    /// Distances, signed by the side of the cubic.
+    errors: Vec<f64>,
+    pub(super) feet: Vec<f64>,
+}
+
+impl Distances {
+    /// The distance between the cubic and the run, by the run's samples and closer ones where it may exceed `enough` between them.
+    /// `None` if the foot points do not advance along the cubic or it may turn by more than 60° from one to the next, so that
+    /// the samples may have missed something.
+    pub(super) fn measure(&mut self, run: &SegmentRun<'_>, c: &RunCubic, enough: f64) -> Result<Option<f64>, Point> {
+        let mut worst = self.at_samples(run, c, enough);
+        if worst > enough {
+            return Ok(Some(worst));
+        }
+        if self.feet.windows(2).any(|w| w[1] < w[0] - FOOT_ROUNDING) || !self.advances(run, c) {
+            return Ok(None);
+        }
+        let [first, last] = c.samples;
+        let coarse = COARSE_CHECK * (run.length[last] - run.length[first]);
+        for (i, [from, to]) in parts(run.per_segment, [first, last]) {
+            for k in from..to {
+                if run.length[k + 1] - run.length[k] > coarse {
+                    worst = worst.max(self.closely(run, c, i, [k, k + 1])?);
+                }
+            }
+            let errors = &self.errors[from - first..=to - first];
+            let end = errors.len() - 1;
+            for k in 0..=end {
+                let (before, after) = (k.max(1) - 1, (k + 1).min(end));
+                let peak = if k == 0 {
+                    predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR)
+                } else if k == end {
+                    predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], PEAK_FACTOR)
+                } else {
+                    predicted_peak([errors[before], errors[k], errors[after]], PEAK_FACTOR)
+                };
+                if peak > enough {
+                    worst = worst.max(self.closely(run, c, i, [from + before, from + after])?);
+                }
+            }
+        }
+        Ok(Some(worst))
+    }
+
+    /// The largest distance of a sample; too large a value if it is above `enough`.
+    fn at_samples(&mut self, run: &SegmentRun<'_>, c: &RunCubic, enough: f64) -> f64 {
+        let [first, last] = c.samples;
+        let origin = c.ends[0];
+        let scale = 1.0 / (run.length[last] - run.length[first]);
+        self.errors.clear();
+        self.feet.clear();
+        self.errors.push(0.0);
+        self.feet.push(0.0);
+        let (mut worst, mut knot) = (0.0, 0);
+        for start in (first + 1..last).step_by(8) {
+            let (mut g, mut s) = (Lanes::default(), [0.0; 8]);
+            for i in 0..8 {
+                let k = (start + i).min(last - 1);
+                (g.x[i], g.y[i]) = (run.x[k] - origin.x, run.y[k] - origin.y);
+                s[i] = interpolated(c, (run.length[k] - run.length[first]) * scale, &mut knot);
+            }
+            let mut squares = c.frame.distances(&g, c.a, c.b, &mut s, 1);
+            if largest(&squares) > enough * enough {
+                squares = c.frame.distances(&g, c.a, c.b, &mut s, 2);
+            }
+            worst = larger(worst, largest(&squares));
+            if worst > enough * enough {
+                break;
+            }
+            let count = (last - start).min(8);
+            self.errors.extend(&c.frame.signed_distances(&g, c.a, c.b, &s, &squares)[..count]);
+            self.feet.extend(&s[..count]);
+        }
+        self.errors.push(0.0);
+        self.feet.push(1.0);
+        worst.sqrt()
+    }
+
+    /// Returns `true` if the cubic turns by less than 60° between neighbouring samples.
+    fn advances(&self, run: &SegmentRun<'_>, c: &RunCubic) -> bool {
+        let power = c.frame.power(c.a, c.b);
+        let first = c.samples[0];
+        parts(run.per_segment, c.samples).all(|(_, [from, to])| {
+            let feet = &self.feet[from - first..=to - first];
+            let whole = [feet[0], feet[feet.len() - 1]];
+            turns_little_between(&power, whole) || feet.windows(2).all(|w| turns_little_between(&power, [w[0], w[1]]))
+        })
+    }
+
+    /// The largest distance between two samples of segment `i`, by eight more and the parabolas through them.
+    fn closely(&self, run: &SegmentRun<'_>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64, Point> {
+        let start = i * run.per_segment;
+        let param = |k: usize| (k - start) as f64 / run.per_segment as f64;
+        let feet = [self.feet[a - c.samples[0]], self.feet[b - c.samples[0]]];
+        let spread = |[a, b]: [f64; 2]| -> Lane { std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 9.0) };
+        let mut g = run.images(i, &spread([param(a), param(b)]))?;
+        for i in 0..8 {
+            g.x[i] -= c.ends[0].x;
+            g.y[i] -= c.ends[0].y;
+        }
+        let errors = c.frame.distances(&g, c.a, c.b, &mut spread(feet), 3).map(f64::sqrt);
+        let top = largest(&errors);
+        let tops = errors.windows(3).filter(|w| w[1] >= PEAK_NEAR * top && w[1] >= w[0] && w[1] >= w[2]);
+        Ok(tops.map(|w| parabola_peak(w[0], w[1], w[2])).fold(top, f64::max))
+    }
+}
+
+/// The segments between two samples, each with its first and last sample.
+pub(super) fn parts(per_segment: usize, [first, last]: [usize; 2]) -> impl Iterator<Item = (usize, [usize; 2])> {
+    let n = per_segment;
+    (first / n..last.div_ceil(n)).map(move |i| (i, [first.max(i * n), last.min((i + 1) * n)]))
+}
+
+/// Piecewise linear interpolation of the known foot points at a share of the length, from the knot of the share before.
+#[inline(always)]
+fn interpolated(c: &RunCubic, share: f64, knot: &mut usize) -> f64 {
+    let (at, feet): (&Evenly, &Evenly) = (&c.shares, &c.feet);
+    while *knot + 2 < ALL && at[*knot + 1] < share {
+        *knot += 1;
+    }
+    let (k, step) = (*knot, at[*knot + 1] - at[*knot]);
+    if step > 0.0 { feet[k] + (feet[k + 1] - feet[k]) * ((share - at[k]) / step) } else { feet[k] }
+}
+
+/// Returns `true` if the cubic C(s) = ((c₃s + c₂)s + c₁)s turns little between two parameters: if the three control vectors of its
+/// derivative there are pairwise less than 60° apart. The slopes at both ends alone would not see a hook between them.
+fn turns_little_between([c1, c2, c3]: &[Vec2; 3], [s, t]: [f64; 2]) -> bool {
+    let control = |u: f64, v: f64| *c1 + *c2 * (u + v) + *c3 * (3.0 * u * v);
+    let (first, middle, last) = (control(s, s), control(s, t), control(t, t));
+    turns_little(first, middle) && turns_little(middle, last) && turns_little(first, last)
+}

@@ -1,0 +1,95 @@
+//! Thresholds of merging. As in `refit::limits`, each entry says what it trades; figures are those of the merged runs of
+//! `tests/refit_figures.rs`, or of the icons of docs/benchmarks.md. *Trials* are fits of one cubic to one stretch.
+
+/// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree). 0: +19 % pieces.
+/// Tests: *figures* (at 0); `limits::merging_keeps_corners_that_the_tolerance_would_hide` (at 10).
+pub(super) const SMOOTH_JOINT: f64 = 0.0087;
+
+/// Joints that turn by more than this (as a tangent, a little above [`SMOOTH_JOINT`]) are corners at first sight, so that their
+/// segments are not sampled. 0: +20 % pieces. At 1e9 nothing changes but the time.
+/// Test: *figures* (at 0).
+pub(super) const SURE_CORNER: f64 = 0.009;
+
+/// … if both derivatives are above this share of their segment's chord, times the size of the Jacobian: far above
+/// `VANISHING_DERIVATIVE`, below which one-sided tangents decide. Unchanged at 0 and 1e9: the sample has no joint in between.
+pub(super) const CLEAR_DERIVATIVE: f64 = 1e-6;
+
+/// Places per segment at which a merged piece may end. 1: +7.6 % pieces, −56.9 % work; 4: +2.0 % pieces, −25.4 % work; 16: −1.7 % pieces, +29.6 % work.
+/// Test: *figures* (at 1).
+pub(super) const MERGE_GRID: usize = 8;
+
+/// Segments under one cubic, which bounds the table of errors. 1: +19.1 % pieces, −40.7 % work; 6: unchanged here, on icons 0.1 % more pieces at 1; 30:
+/// unchanged.
+/// Test: *figures* (at 1).
+pub(super) const MAX_SPAN: usize = 12;
+
+/// Segments in one table, which bounds its memory. 1: no merging; 1000: unchanged.
+/// Test: *figures* (at 1).
+pub(super) const MAX_RUN: usize = 64;
+
+/// Share of the tolerance for merged pieces, which leaves room between the samples. 0.1: +15 % pieces; 1: −0.05 %; 2: errors above
+/// the tolerance.
+/// Tests: *figures* (at 0.1); *sample* (at 2).
+pub(super) const MERGE_SHARE: f64 = 0.99;
+
+/// Intervals between samples of a segment in a run, under a quotient of polynomials. A multiple of eight and of [`MERGE_GRID`].
+pub(super) const RATIONAL_SAMPLES: usize = 16;
+
+/// … and under any other map, whose error may swing several times within a segment. 16: errors between the samples in one of 16,000
+/// random cases.
+/// Test: `merge_random::waves_shorter_than_a_segment_are_seen` (at 16).
+pub(super) const OPAQUE_SAMPLES: usize = 32;
+
+/// Searches over one run, each without the pieces that the last one's checks refused. 1: +5.7 % pieces, −8.7 % work; 4: +0.5 %
+/// pieces, −2.4 % work; 100: unchanged.
+/// Test: *figures* (at 1).
+pub(super) const MERGE_SEARCHES: usize = 12;
+
+/// Error of the best cubic for a curve whose curvature jumps by 1, per square of the shorter side: that of x²/2 right of zero and
+/// 0 left of it, on −1..1, in the uniform norm. A joint with a larger jump than this allows is not crossed, so no fit is wasted
+/// on it. 0: −0.1 % pieces, +9.9 % work; 0.03: +1 % pieces, −10 % work.
+/// Test: *figures* (at 0.03 and 0).
+pub(super) const JUMP_ERROR: f64 = 0.0069;
+
+/// Error ÷ tolerance that the next guess of a reach aims at, by the sixth-order law: a little too far, as interpolation comes
+/// back faster than galloping goes on. Only the order of trials depends on it. 1.2: +0.1 % pieces, +5 % trials.
+/// Test: *figures* (at 0.3).
+pub(super) const REACH_TARGET: f64 = 3.0;
+
+/// The same once a fit and a miss are known: between them the error's logarithm is taken as linear in that of the length.
+/// A little too far again, as a fit ends once its error is small enough. 1 and 2: within 0.1 % of pieces, +8 % trials at 2.
+pub(super) const BETWEEN_TARGET: f64 = 1.2;
+
+/// Steps of that kind before the interval is halved.
+pub(super) const INTERPOLATIONS: usize = 6;
+
+/// Errors below this share of the tolerance are rounding to the guess of a reach, which then grows at most fivefold. 0.1: +0.2 %
+/// work; 1e-12: unchanged.
+pub(super) const SMALLEST_REACH_ERROR: f64 = 1e-4;
+
+/// A stretch interpolates its samples if those of the run are off the wanted places by more than this share of the spacing. 0
+/// (always): −0.05 % pieces.
+pub(super) const COARSE: f64 = 0.5;
+
+/// A check samples the run more closely where two samples are further apart than this share of the cubic's length.
+/// Test: *sample* (at 1).
+pub(super) const COARSE_CHECK: f64 = 0.05;
+
+/// Places past the next joint at which the first trial ends, unless the last cubic reached further: half a segment, the least that is
+/// likely to save a piece.
+pub(super) const LEAST_PAST_JOINT: usize = MERGE_GRID / 2;
+
+/// Share of the tolerance for merged pieces that cubics of the search have to keep to at sixteen samples: a piece that then fails its
+/// check has cost time. 1: −0.1 % pieces, more refusals.
+pub(super) const SEARCH_SHARE: f64 = 0.99;
+
+/// Longer stretches are tried after a miss by less than this factor. 3: +0.2 % pieces, −4 % trials; 10: unchanged, +3 % trials.
+/// Test: *figures* (at 1).
+pub(super) const LEAP_WITHIN: f64 = 5.0;
+
+/// Number of places tried beyond the one that misses nearly. 0: +0.3 % pieces, −15 % trials; 6: −0.05 % pieces.
+/// Test: *figures* (at 0).
+pub(super) const LEAPS: usize = 3;
+
+/// Error recorded for a piece that failed the final check: a miss, but a near one. 1e9: unchanged.
+pub(super) const REFUSED_ERROR: f64 = 1.2;
