@@ -1,7 +1,7 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
 use crate::failure::Failure;
-use crate::options::rect;
+use crate::options::{self, rect};
 use crate::status::Status;
 use crate::{input, output, references, steps};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -22,6 +22,7 @@ pub(super) fn command(registry: &Registry) -> Command {
         .about("Map plain points, one x y per line, by a deformation")
         .subcommand_required(true)
         .arg_required_else_help(true)
+        .args(options::access_args())
         .after_help(
             "Every input line produces one output line: x' y', with --jacobian followed by the four partial derivatives \
              x'x y'x x'y y'y. Where the map is undefined, the line is nan nan and the exit code is 1. Empty lines and \

@@ -7,6 +7,7 @@ mod words;
 
 use super::file_args;
 use crate::failure::Failure;
+use crate::options;
 use crate::status::Status;
 use crate::{output, terminal};
 use clap::{ArgMatches, Command};
@@ -21,6 +22,7 @@ pub(super) fn command() -> Command {
     Command::new(NAME)
         .about("Set text as outlines, the artwork of any deformation")
         .args(args::args())
+        .args(options::access_args())
         .after_help(args::AFTER)
 }
 
