@@ -101,7 +101,7 @@ pub(super) fn subpath(
         let evaluations = out.report.evaluations;
         if evaluations >= counted + COUNTED_TOGETHER || i + 1 == sub.segs.len() {
             let new = (evaluations - counted) as u64;
-            options.budget.spend(Limit::Evaluations, new).map_err(GeometryError::Limit)?;
+            options.budget.spend_cut(Limit::Evaluations, new).map_err(GeometryError::Limit)?;
             counted = evaluations;
         }
     }
