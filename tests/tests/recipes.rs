@@ -53,7 +53,7 @@ fn a_saved_command_line_runs_to_the_same_bytes() {
     assert_eq!(first, out.stdout, "{}", text(&out.stderr));
     // Options on the command line override the recipe's.
     assert_ne!(first, ok(&["run", "r.toml", "--tolerance", "0.0001"]));
-    // A recipe written to another folder has absolute references.
+    // A recipe written to another folder refers to the same files.
     let moved = elsewhere.path().join("moved.toml").display().to_string();
     let mut line = line;
     line[8] = &moved;

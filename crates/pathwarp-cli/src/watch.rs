@@ -113,7 +113,7 @@ impl Watched {
     fn exceeded(&self) -> Option<Exceeded> {
         let inputs = self.more.max(1);
         let limits = self.limits.for_input(self.bytes / inputs);
-        let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err();
+        let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err().map(Exceeded::cut_short);
         let memory = || memory_stats().map_or(0, |m| m.physical_mem);
         check(Limit::Seconds, used().saturating_sub(self.since).as_secs_f64())
             .or_else(|| check(Limit::Memory, memory() as f64))

@@ -9,7 +9,7 @@
 
 use crate::error::Error;
 use crate::picture::header_size;
-use pathwarp::budget::{Limit, Limits};
+use pathwarp::budget::{Exceeded, Limit, Limits};
 use std::collections::HashMap;
 use std::sync::Arc;
 use tiny_skia::{Rect, Transform};
@@ -97,7 +97,7 @@ struct Load {
 impl Load {
     fn add(&mut self, work: f64) -> Result<(), Error> {
         self.work += work;
-        Ok(self.limits.check(Limit::Painting, self.work)?)
+        Ok(self.limits.check(Limit::Painting, self.work).map_err(Exceeded::cut_short)?)
     }
 
     /// The canvas with another surface of `area` pixels.

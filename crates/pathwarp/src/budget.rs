@@ -204,6 +204,12 @@ pub struct Exceeded {
 }
 
 impl Exceeded {
+    /// The same for a count that was cut short, so that the whole amount is not known.
+    #[must_use]
+    pub fn cut_short(self) -> Self {
+        Self { cut: true, ..self }
+    }
+
     /// A value of the limit that allows the amount, in two figures; ten times the limit if the amount is not known.
     #[must_use]
     pub fn enough(&self) -> f64 {
@@ -254,7 +260,7 @@ impl Budget {
     /// # Errors
     /// The sum of all amounts exceeds the limit.
     pub fn spend_cut(&self, limit: Limit, amount: u64) -> Result<(), Exceeded> {
-        self.spend(limit, amount).map_err(|e| Exceeded { cut: true, ..e })
+        self.spend(limit, amount).map_err(Exceeded::cut_short)
     }
 
     /// Checks a single amount, which is not counted.

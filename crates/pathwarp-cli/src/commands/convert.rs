@@ -127,17 +127,13 @@ fn bytes(format: Format, size: [f64; 2], paths: &[GimpPath], options: &CommonOpt
     }
 }
 
-/// Longest part of a file name that comes from a path's name, in characters of at most four bytes.
-const LONGEST_NAME: usize = 40;
-
 /// A file name for every path, distinct even on file systems that ignore case.
 fn names(out: &Path, format: Format, paths: &[GimpPath]) -> Vec<PathBuf> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let extension = out.extension().map_or_else(|| format.extension().into(), |e| e.to_string_lossy());
     let mut taken = HashSet::new();
     let mut unique = |p: &GimpPath| {
-        // File systems allow 255 bytes; the rest is for the stem, a number and the extension.
-        let name: String = input::file_name(&p.name).chars().take(LONGEST_NAME).collect();
+        let name = input::file_name(&p.name);
         let numbered = (2..).map(|n| format!("{name}-{n}"));
         let mut tries = std::iter::once(name.clone()).chain(numbered).filter(|n| !n.is_empty());
         tries.find(|n| taken.insert(n.to_lowercase())).unwrap_or(name)

@@ -1,7 +1,7 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
 use crate::failure::Failure;
-use crate::options::{Reading, rect};
+use crate::options::{Given, reading_args, rect};
 use crate::status::Status;
 use crate::{input, output, references, steps};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -22,6 +22,7 @@ pub(super) fn command(registry: &Registry) -> Command {
         .about("Map plain points, one x y per line, by a deformation")
         .subcommand_required(true)
         .arg_required_else_help(true)
+        .args(reading_args())
         .after_help(
             "Every input line produces one output line: x' y', with --jacobian followed by the four partial derivatives \
              x'x y'x x'y y'y. Where the map is undefined, the line is nan nan and the exit code is 1. Empty lines and \
@@ -60,10 +61,11 @@ pub(super) fn command(registry: &Registry) -> Command {
 
 /// Runs `map`; `later` holds the parts of the chain after each `+`.
 pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
+    let reading = Given::reading(m)?;
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, false)?.into_iter().map(|part| part.step));
-    references::resolve_files(registry, &mut recipe, &Reading::default())?;
+    references::resolve_files(registry, &mut recipe, &reading)?;
     references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;

@@ -183,7 +183,7 @@ impl Drawing {
             return far;
         }
         // As for the shapes.
-        let far = Far::of(self);
+        let far = Far::of(&self.source, self.scene(), self.shapes(), self.missed.range);
         self.far.get_or_init(|| far)
     }
 }

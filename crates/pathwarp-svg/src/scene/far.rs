@@ -1,8 +1,10 @@
 //! Parts of a drawing whose coordinates are out of range. They are not warped, and count in no bounding box.
 
-use super::drawing::Drawing;
+use super::model::Scene;
+use super::shape::Shape;
 use crate::source::range::{self, LARGEST};
 use crate::source::tags::ElementId;
+use crate::source::text::SourceText;
 use pathwarp::Outline;
 use std::collections::{BTreeSet, HashSet};
 
@@ -16,15 +18,13 @@ pub(crate) struct Far {
 }
 
 impl Far {
-    /// Finds the parts.
-    pub(super) fn of(drawing: &Drawing) -> Self {
-        let scene = drawing.scene();
-        let reach: Vec<bool> = drawing.shapes().iter().map(|s| !is_near(&s.outline)).collect();
-        if !drawing.missed.range && !reach.contains(&true) {
+    /// Finds the parts. `replaced`: the source has numbers that were replaced.
+    pub(super) fn of(source: &SourceText, scene: &Scene, shapes: &[Shape], replaced: bool) -> Self {
+        let reach: Vec<bool> = shapes.iter().map(|s| !is_near(&s.outline)).collect();
+        if !replaced && !reach.contains(&true) {
             return Self::default();
         }
-        let source = &drawing.source;
-        let numbers = if drawing.missed.range { range::elements(source) } else { Vec::new() };
+        let numbers = if replaced { range::elements(source) } else { Vec::new() };
         let named: HashSet<ElementId> = numbers.iter().map(|n| n.0).collect();
         let inside = |e: Option<ElementId>| e.is_some_and(|e| source.ancestors(e).any(|a| named.contains(&a)));
         let mut reasons: Vec<(String, String)> = numbers
@@ -34,7 +34,7 @@ impl Far {
             })
             .collect();
         let (mut parts, mut told) = (Vec::with_capacity(reach.len()), BTreeSet::new());
-        for ((p, shape), far) in scene.parts.iter().zip(drawing.shapes()).zip(reach) {
+        for ((p, shape), far) in scene.parts.iter().zip(shapes).zip(reach) {
             let by_number = inside(p.source) || inside(p.owner) || inside(p.drawn);
             if far && !by_number && told.insert(&shape.id) {
                 let why = format!("it extends beyond the range of coordinates, which ends at {LARGEST:e}");

@@ -91,7 +91,7 @@ const SVG: &str = "image/svg+xml";
 /// `None` for damaged images.
 fn checked(mime: &str, data: Arc<Vec<u8>>, place: &str, options: &ReadOptions) -> Result<Option<Arc<Vec<u8>>>, Error> {
     let budget = &options.budget;
-    let counted = budget.spend(Limit::ImageBytes, data.len() as u64);
+    let counted = budget.spend_cut(Limit::ImageBytes, data.len() as u64);
     counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))?;
     if mime != SVG {
         match imagesize::blob_size(&data) {

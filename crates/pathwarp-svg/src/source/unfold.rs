@@ -122,7 +122,7 @@ impl Size {
     }
 
     fn spend(self, budget: &Budget) -> Result<(), Exceeded> {
-        self.amounts().into_iter().try_for_each(|(limit, n)| budget.spend(limit, n))
+        self.amounts().into_iter().try_for_each(|(limit, n)| budget.spend_cut(limit, n))
     }
 }
 

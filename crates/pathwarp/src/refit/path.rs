@@ -78,7 +78,7 @@ pub(super) fn subpath(
         }
     }
     // Segments beyond the limit were not fitted.
-    options.budget.spend(Limit::Evaluations, 0).map_err(GeometryError::Limit)?;
+    options.budget.spend_cut(Limit::Evaluations, 0).map_err(GeometryError::Limit)?;
     out.subpath(start.p, &pieces, sub.closed);
     Ok(())
 }
