@@ -3,7 +3,7 @@
 use pathwarp::kurbo::Point;
 use pathwarp::map::Map;
 use resvg::tiny_skia::{Path, PathSegment, StrokeDash, Transform};
-use usvg::{Node, Tree};
+use resvg::usvg::{self, Node, Tree};
 
 /// An area as polygons, by the nonzero rule.
 pub struct Area(pub Vec<Vec<Point>>);
