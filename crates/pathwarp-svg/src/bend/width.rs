@@ -134,8 +134,7 @@ impl<'a> StrokeWidth<'a> {
     /// Largest distance between the stroke scaled by `s` and the exact one, in root user units, if the path is exact.
     pub(super) fn error(&self, s: f64) -> f64 {
         let edges = self.pairs.iter().map(|p| (p.exact - p.drawn * s).hypot2()).fold(0.0, f64::max).sqrt();
-        // Corners of dashes are off across the path and along it.
-        BETWEEN * (edges * self.half).hypot(self.drift(s)) * self.unit
+        BETWEEN * (edges * self.half + self.drift(s)) * self.unit
     }
 
     /// Factor by which an error of the bent path moves the corners of dashes. A cubic fitted to sixth order swings about the curve

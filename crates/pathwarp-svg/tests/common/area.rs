@@ -2,7 +2,7 @@
 
 use pathwarp::kurbo::Point;
 use pathwarp::map::Map;
-use resvg::tiny_skia::{Path, PathSegment};
+use resvg::tiny_skia::{Path, PathSegment, StrokeDash, Transform};
 use resvg::usvg::{self, Node, Tree};
 
 /// An area as polygons, by the nonzero rule.
@@ -51,21 +51,28 @@ fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {
         match n {
             Node::Group(g) => collect(g, out),
             Node::Path(p) => {
-                let painted = match p.stroke() {
-                    // Coordinates are enlarged: the stroker works to about a quarter of a unit of the enlarged ones.
-                    Some(s) => {
-                        let s = s.to_tiny_skia();
-                        let dashed =
-                            s.dash.as_ref().map_or_else(|| p.data().clone(), |d| p.data().dash(d, 1e3).unwrap());
-                        dashed.stroke(&s, 1e3).unwrap()
-                    }
-                    None => p.data().clone(),
-                };
+                let painted = p.stroke().map_or_else(|| p.data().clone(), |s| stroked(p.data(), s));
                 flatten(&painted.transform(p.abs_transform()).unwrap(), out);
             }
             Node::Image(_) | Node::Text(_) => {}
         }
     }
+}
+
+/// The outline of a stroke. The renderer's stroker takes what is shorter than 1/4096 for nothing and works to a quarter of a unit,
+/// so everything is enlarged.
+fn stroked(path: &Path, stroke: &usvg::Stroke) -> Path {
+    const LARGE: f32 = 64.0;
+    let scaled = |k: f32, path: Path| path.transform(Transform::from_scale(k, k)).unwrap();
+    let mut style = stroke.to_tiny_skia();
+    style.width *= LARGE;
+    style.dash = None;
+    let mut path = scaled(LARGE, path.clone());
+    if let Some(dashes) = stroke.dasharray() {
+        let dashes = dashes.iter().map(|d| d * LARGE).collect();
+        path = path.dash(&StrokeDash::new(dashes, stroke.dashoffset() * LARGE).unwrap(), 100.0).unwrap();
+    }
+    scaled(1.0 / LARGE, path.stroke(&style, 100.0).unwrap())
 }
 
 /// Points close enough for chords of images.
