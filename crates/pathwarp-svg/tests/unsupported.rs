@@ -56,6 +56,21 @@ fn what_the_renderer_does_not_know_is_reported() {
     assert!(w.skipped.is_empty(), "{:?}", w.skipped);
 }
 
+/// Illustrator would show what it stored beside the artwork.
+#[test]
+fn private_data_of_illustrator_is_reported() {
+    let namespace = "http://ns.adobe.com/AdobeIllustrator/10.0/";
+    let body =
+        format!("<switch><foreignObject requiredExtensions='{namespace}' width='1' height='1'/><g>{REST}</g></switch>");
+    let told = |w: &WarpedDocument| w.warnings.iter().filter(|w| w.contains("i:pgf")).count();
+    assert_eq!(told(&bent(&body)), 1);
+    assert_eq!(told(&bent(&body.replace(namespace, "urn:x"))), 0);
+    // Nothing has changed.
+    let none = Selection { exclude: vec!["#p".into()], ..Selection::default() };
+    let kept = read(&drawing(&body)).warp(&Bend, &warp_options().with_selection(none)).unwrap();
+    assert_eq!(told(&kept), 0);
+}
+
 /// Editors know their prefixes; the result declares them.
 #[test]
 fn undeclared_prefixes_are_declared() {

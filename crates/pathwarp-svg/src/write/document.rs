@@ -41,6 +41,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
         }
     };
     arrivals::note(input, &mut notes);
+    unsupported::note_private(input, &mut notes);
     out.warnings.extend(notes.lines());
     out.overhang = page::overhang(input);
     Ok(())

@@ -1,7 +1,7 @@
 //! Content that the renderer does not know, and that is therefore not warped: each such element is reported.
 
 use super::input::WriteInput;
-use crate::bend::outcome::Skipped;
+use crate::bend::outcome::{Notes, Skipped};
 use crate::source::cascade;
 use crate::source::tags::{ElementId, is_shape};
 use crate::source::text::SourceText;
@@ -28,6 +28,22 @@ fn content(source: &SourceText, e: ElementId) -> Option<&'static str> {
             Some("foreign content (HTML in a foreignObject) cannot be warped")
         }
         _ => None,
+    }
+}
+
+/// Notes private data from which its editor would restore the artwork as it was.
+pub(super) fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
+    let is_illustrator = |e: ElementId| {
+        input.source.elements[e].tag == "foreignObject"
+            && input.source.attr(e, "requiredExtensions").is_some_and(|x| x.contains("AdobeIllustrator"))
+    };
+    let all = 0..input.source.elements.len();
+    if all.into_iter().any(is_illustrator) && input.outcomes.iter().any(|o| o.warped().is_some()) {
+        notes.add(
+            "Illustrator opens the private data that the file holds (i:pgf) instead of the warped artwork; save the original \
+             without “Preserve Illustrator Editing Capabilities”",
+            "",
+        );
     }
 }
 
