@@ -275,8 +275,9 @@ fn examples_in_help_run() {
     for example in examples.iter().filter(|e| !e.contains("--font")) {
         let mut stages = stages(&format!("text {}", example.replace("| pathwarp", "|")));
         let last = stages.last_mut().unwrap();
-        assert!(last.pop().unwrap().ends_with(".svg"), "{example}");
-        last.push("-".to_owned());
+        let out = last.pop().unwrap();
+        let (_, format) = out.rsplit_once('.').unwrap();
+        last.extend(["-".to_owned(), "--format".to_owned(), format.to_owned()]);
         assert_eq!(pipeline(&stages).1, "", "{example}");
     }
 }

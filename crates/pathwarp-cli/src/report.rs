@@ -70,8 +70,8 @@ pub(crate) struct ReportedShape {
     /// Number of gradients that became pictures; omitted if none.
     #[serde(skip_serializing_if = "is_zero")]
     pub(crate) pictures: usize,
-    /// Largest distance between a stroke that is still a stroke and the exact one, in user units; null if unknown, omitted if
-    /// there is no such stroke or its width was to be kept.
+    /// Largest distance between a stroke that is still a stroke and the exact one, in user units, an estimate for dashes;
+    /// null if unknown, omitted if there is no such stroke or its width was to be kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) stroke_error: Option<f64>,
     /// Number of strokes that became outlines; omitted if none.

@@ -102,7 +102,7 @@ impl Limit {
             Self::Bytes => 16e6,
             Self::Elements => 40e3,
             Self::Comparisons => 15e6,
-            Self::Segments => 1e6,
+            Self::Segments => 2e6,
             Self::Letters => 30e3,
             Self::Pixels => 80e6,
             Self::Painting => 400e6,

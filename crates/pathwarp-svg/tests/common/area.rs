@@ -1,8 +1,8 @@
 //! Painted areas as polygons, with strokes expanded by the renderer's own stroker, and the distance between them.
 
-use pathwarp::kurbo::Point;
+use pathwarp::kurbo::{CubicBez, ParamCurve as _, Point, QuadBez};
 use pathwarp::map::Map;
-use resvg::tiny_skia::{Path, PathSegment, StrokeDash, Transform};
+use resvg::tiny_skia::{Path, PathBuilder, PathSegment, StrokeDash, Transform};
 use resvg::usvg::{self, Node, Tree};
 
 /// An area as polygons, by the nonzero rule.
@@ -60,7 +60,8 @@ fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {
 }
 
 /// The outline of a stroke. The renderer's stroker takes what is shorter than 1/4096 for nothing and works to a quarter of a unit,
-/// so everything is enlarged.
+/// so everything is enlarged; and it takes a cubic for a line if its middle is off by up to a 450th of its length, so curves are
+/// divided.
 fn stroked(path: &Path, stroke: &usvg::Stroke) -> Path {
     const LARGE: f32 = 64.0;
     let scaled = |k: f32, path: Path| path.transform(Transform::from_scale(k, k)).unwrap();
@@ -72,7 +73,47 @@ fn stroked(path: &Path, stroke: &usvg::Stroke) -> Path {
         let dashes = dashes.iter().map(|d| d * LARGE).collect();
         path = path.dash(&StrokeDash::new(dashes, stroke.dashoffset() * LARGE).unwrap(), 100.0).unwrap();
     }
-    scaled(1.0 / LARGE, path.stroke(&style, 100.0).unwrap())
+    scaled(1.0 / LARGE, divided(&path).stroke(&style, 100.0).unwrap())
+}
+
+/// The same path with each curve in sixteen parts.
+fn divided(path: &Path) -> Path {
+    const PARTS: u32 = 16;
+    let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
+    let mut out = PathBuilder::new();
+    let mut at = Point::ZERO;
+    let mut curve = |out: &mut PathBuilder, c: CubicBez| {
+        for i in 0..PARTS {
+            let part = c.subsegment(f64::from(i) / f64::from(PARTS)..f64::from(i + 1) / f64::from(PARTS));
+            let [b, c, d] = [part.p1, part.p2, part.p3].map(|p| (p.x as f32, p.y as f32));
+            out.cubic_to(b.0, b.1, c.0, c.1, d.0, d.1);
+        }
+    };
+    for s in path.segments() {
+        at = match s {
+            PathSegment::MoveTo(p) => {
+                out.move_to(p.x, p.y);
+                point(p)
+            }
+            PathSegment::LineTo(p) => {
+                out.line_to(p.x, p.y);
+                point(p)
+            }
+            PathSegment::QuadTo(b, c) => {
+                curve(&mut out, QuadBez::new(at, point(b), point(c)).raise());
+                point(c)
+            }
+            PathSegment::CubicTo(b, c, d) => {
+                curve(&mut out, CubicBez::new(at, point(b), point(c), point(d)));
+                point(d)
+            }
+            PathSegment::Close => {
+                out.close();
+                at
+            }
+        };
+    }
+    out.finish().unwrap()
 }
 
 /// Points close enough for chords of images.
