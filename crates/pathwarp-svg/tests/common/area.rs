@@ -82,7 +82,7 @@ fn divided(path: &Path) -> Path {
     let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
     let mut out = PathBuilder::new();
     let mut at = Point::ZERO;
-    let mut curve = |out: &mut PathBuilder, c: CubicBez| {
+    let curve = |out: &mut PathBuilder, c: CubicBez| {
         for i in 0..PARTS {
             let part = c.subsegment(f64::from(i) / f64::from(PARTS)..f64::from(i + 1) / f64::from(PARTS));
             let [b, c, d] = [part.p1, part.p2, part.p3].map(|p| (p.x as f32, p.y as f32));
