@@ -110,7 +110,7 @@ fn tolerance() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+    #![proptest_config(maps::cases(60))]
 
     #[test]
     fn merged_splines_under_bicubic_maps(segs in spline(), map in map(), tolerance in tolerance(), certify: bool) {

@@ -90,7 +90,7 @@ fn tolerance() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+    #![proptest_config(maps::cases(300))]
 
     #[test]
     fn within_the_tolerance_under_bicubic_maps(seg in seg(), map in map(), tolerance in tolerance(), certify: bool) {

@@ -3,7 +3,19 @@
 use crate::support::Bicubic;
 use pathwarp::map::{Formula, Real};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::f64::consts::TAU;
+
+/// The same `cases` at every run; others, and their number, by `PROPTEST_CASES`. A case in tens of thousands exceeds its tolerance
+/// (`docs/benchmarks.md`), which says nothing about a change under test.
+pub(crate) fn cases(cases: u32) -> ProptestConfig {
+    const SEED: u64 = 20;
+    let default = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    match std::env::var_os("PROPTEST_CASES") {
+        Some(_) => default,
+        None => ProptestConfig { cases, rng_seed: RngSeed::Fixed(SEED), ..default },
+    }
+}
 
 /// Control nets from the identity to folded over.
 pub(crate) fn map() -> impl Strategy<Value = Bicubic> {
