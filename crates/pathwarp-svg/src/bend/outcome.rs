@@ -48,8 +48,8 @@ pub struct ShapeReport {
     /// Number of gradients that became pictures.
     pub pictures: usize,
     /// Largest distance between a stroke that is still a stroke and the exact one, as painted areas, in root user units;
-    /// infinite if it is unknown. An estimate for dashes, which shift along the path: one
-    /// that ends beside a corner or at the end of the path may gain or lose a piece there. `None` if there is no such stroke, or its width is kept on request.
+    /// infinite if it is unknown. An estimate for dashes, which shift along the path: one that ends beside a corner or at the
+    /// end of the path may gain or lose a piece there. `None` if there is no such stroke, or its width is kept on request.
     pub stroke_error: Option<f64>,
     /// Number of strokes that became outlines.
     pub outlined_strokes: usize,
