@@ -99,6 +99,16 @@ pub(super) struct Footprint {
     shortest: f64,
 }
 
+/// The whole numbers from `from` to `to`, as a range within 0..`size`. Conversions are used, as rounding is a call of a function on
+/// some processors.
+#[inline]
+fn range(from: f64, to: f64, size: usize) -> (usize, usize) {
+    // Conversions take negative numbers for zero.
+    let first = from as usize;
+    let first = if (first as f64) < from { first.saturating_add(1) } else { first };
+    (first, if to >= 0.0 { (to as usize).saturating_add(1).min(size) } else { 0 })
+}
+
 impl Footprint {
     /// Returns `None` if no direction shrinks.
     #[inline]
@@ -145,9 +155,6 @@ impl Footprint {
         // Measure places from pixel centres.
         let (x, y) = (x * scale - 0.5, y * scale - 0.5);
         let (wide, high) = (2.0 * (sx.abs() + s.abs()), 2.0 * (s.abs() + sy.abs()));
-        let range = |from: f64, to: f64, size: usize| {
-            (from.ceil().max(0.0) as usize, ((to.floor() + 1.0).max(0.0) as usize).min(size))
-        };
         let (mut sum, mut total) = ([0.0; 4], 0.0);
         let (top, bottom) = range(y - high, y + high, level.height);
         if i.abs() * (wide + high) < 1e-3 {
@@ -207,4 +214,23 @@ fn strip(slope: f64, rest: f64) -> [f64; 2] {
     }
     let (a, b) = ((-2.0 - rest) / slope, (2.0 - rest) / slope);
     [a.min(b), a.max(b)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::range;
+
+    #[test]
+    fn ranges_hold_the_whole_numbers_between() {
+        let rounded = |from: f64, to: f64, size: usize| {
+            (from.ceil().max(0.0) as usize, ((to.floor() + 1.0).max(0.0) as usize).min(size))
+        };
+        let places =
+            [f64::NEG_INFINITY, -3.5, -1.0, -0.2, -0.0, 0.0, 0.3, 1.0, 6.5, 7.0, 9.9, 1e300, f64::INFINITY, f64::NAN];
+        for from in places {
+            for to in places {
+                assert_eq!(range(from, to, 8), rounded(from, to, 8), "{from} {to}");
+            }
+        }
+    }
 }
