@@ -18,7 +18,7 @@ const WIDE_STROKE: f64 = 0.5;
 /// A drawing in some format.
 pub(crate) struct Exported {
     pub(crate) bytes: Vec<u8>,
-    /// What the format could not take.
+    /// Messages about content that the format cannot express.
     pub(crate) warnings: Vec<String>,
 }
 
@@ -89,7 +89,7 @@ fn dxf(doc: &Document, options: &CommonOptions, tolerance: Option<f64>) -> Resul
     Ok(Exported { bytes: text.into_bytes(), warnings: lost_in_dxf(&plot) })
 }
 
-/// What outlines cannot show.
+/// Describes the content that outlines cannot show.
 fn lost_in_dxf(plot: &Plot) -> Vec<String> {
     let mut out = Vec::new();
     let lost = &plot.lost;

@@ -19,7 +19,7 @@ const INTERVAL: Duration = Duration::from_millis(4);
 /// The exit code: as for an input that cannot be read.
 const TOO_MUCH: i32 = 3;
 
-/// What is watched.
+/// The inputs under way and their limits.
 struct Watched {
     limits: Limits,
     /// Size of the inputs that are being worked on.

@@ -60,26 +60,21 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Ref {
         colors.extend([c.red(), c.green(), c.blue()]);
         opacities.push(c.alpha());
     }
-    let is_opaque = opacities.iter().all(|a| *a == u8::MAX);
-    let mask = (!is_opaque).then(|| {
+    let mut add = |bytes: &[u8], space: Name<'_>, mask: Option<Ref>| {
         let at = file.new_ref();
-        let bytes = deflated(&opacities);
+        let bytes = deflated(bytes);
         let mut out = file.pdf.image_xobject(at, &bytes);
         out.filter(Filter::FlateDecode);
         out.width(width as i32).height(height as i32).bits_per_component(8).interpolate(smooth);
-        out.color_space_name(Name(b"DeviceGray"));
+        out.color_space_name(space);
+        if let Some(mask) = mask {
+            out.s_mask(mask);
+        }
         at
-    });
-    let at = file.new_ref();
-    let bytes = deflated(&colors);
-    let mut out = file.pdf.image_xobject(at, &bytes);
-    out.filter(Filter::FlateDecode);
-    out.width(width as i32).height(height as i32).bits_per_component(8).interpolate(smooth);
-    out.color_space_name(Name(b"DeviceRGB"));
-    if let Some(mask) = mask {
-        out.s_mask(mask);
-    }
-    at
+    };
+    let is_opaque = opacities.iter().all(|a| *a == u8::MAX);
+    let mask = (!is_opaque).then(|| add(&opacities, Name(b"DeviceGray"), None));
+    add(&colors, Name(b"DeviceRGB"), mask)
 }
 
 /// Adds a JPEG as it is, if PDF programs show it as browsers do: grey or with three components of 8 bits.

@@ -94,7 +94,7 @@ fn two_thousand_degenerate_paths_have_outlines() {
         let reach = 0.5 * width * if join == "miter" { 4.0 } else { 2.0_f64.sqrt() };
         // The picture has single precision.
         assert!(out <= reach + TOLERANCE + 1e-3, "{d} {style}: {out} of {reach}");
-        // What is not dashed covers its centre line, except in turns tighter than half the width, as in the renderer.
+        // A stroke without dashes covers its centre line, except in turns tighter than half the width, as in the renderer.
         if dashes == "none" && inside > TOLERANCE + 1e-3 {
             let (_, bare) = extent(&d, &Area::of(&parse_tree(svg.as_bytes(), "the stroke", &options()).unwrap()));
             assert!(width > 2.0 && inside <= bare + 0.01 * width, "{d} {style}: {inside} is bare\n{}", w.svg);

@@ -237,7 +237,7 @@ fn similarities_scale_widths_exactly() {
     }
 }
 
-/// Where the outline would leave the map's domain, the stroke keeps one width, and a warning says so.
+/// A stroke keeps one width, with a warning, if its outline would leave the map's domain.
 #[test]
 fn strokes_at_the_edge_of_the_domain_are_reported() {
     struct HalfPlane;

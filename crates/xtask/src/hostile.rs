@@ -62,7 +62,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     if broken.is_empty() { Ok(table) } else { Err(format!("{table}\nthe promise is broken by {}", broken.join("; "))) }
 }
 
-/// What a run took.
+/// Exit code and cost of a run.
 struct Used {
     /// `None`: it was killed.
     code: Option<i32>,

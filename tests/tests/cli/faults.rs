@@ -161,7 +161,7 @@ fn full_and_read_only_file_systems() {
     let (whole, _) = undisturbed(dir.path());
     fs::create_dir_all(dir.path().join("out")).unwrap();
     fs::create_dir_all(dir.path().join("copy")).unwrap();
-    // What was written is copied out of the mount, which only this process sees.
+    // Only this process sees the mount, so its files are copied out.
     let script = "mount -t tmpfs -o size=48k none out || exit 77; \"$@\"; code=$?; cp -a out/. copy/; \
                   mount -o remount,ro none out || exit 77; \"$@\" 2>ro; echo $? $code; exit 0";
     let unshared = Command::new("unshare")

@@ -141,7 +141,7 @@ fn handles_are_unique_and_references_resolve() {
     assert!(file.entities.iter().all(|e| layers.contains(e.text(8).unwrap())));
 }
 
-/// What outlines cannot show is reported, in words and numbers; a clip path around everything is no loss.
+/// Messages name and count the content that outlines cannot show. A clip path that cuts nothing is not among it.
 #[test]
 fn losses_are_reported() {
     let dir = tempfile::tempdir().unwrap();
@@ -171,7 +171,7 @@ fn losses_are_reported() {
         assert_eq!(file.entities.len(), 1, "{body}");
         assert!(if part.is_empty() { said.is_empty() } else { said.contains(part) }, "{body}: {said}");
     }
-    // What a clip path hides altogether is left out.
+    // Shapes that a clip path hides entirely are left out.
     fs::write(dir.path().join("in.svg"), page("<g clip-path='url(#half)'><path d='M50,50H60V60Z'/></g>")).unwrap();
     let (file, said) = dxf(dir.path(), &["convert", "in.svg"], b"");
     assert!(file.entities.is_empty() && said.is_empty(), "{said}");

@@ -36,7 +36,7 @@ fn linked_pictures_are_read_beside_the_drawing_only() {
         );
         let (drawn, _) = folder.run(&[&["render", "art/a.svg", "-o", "out.png"], more].concat());
         let read = fs::read_to_string(folder.path().join("out.svg")).unwrap().contains(&secret);
-        // What is not read is reported, by both commands.
+        // Both commands report the files that they do not read.
         assert_eq!((code == 1, drawn == 1), (true, !read), "{link}: {said}");
         (read, said)
     };

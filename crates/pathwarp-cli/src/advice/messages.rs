@@ -36,7 +36,7 @@ fn geometry(e: &GeometryError, flags: &Flags) -> String {
     }
 }
 
-/// How to raise a limit.
+/// Names the option that raises a limit.
 pub(crate) fn raise(exceeded: &Exceeded) -> String {
     let enough = exceeded.enough();
     let value = if enough.is_finite() { format!("{enough:.0}") } else { "none".to_owned() };

@@ -112,15 +112,18 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     };
     let reading = Given::reading(m)?;
     watch::begin(reading.limits);
-    reading.check()?;
+    // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
     }
+    if name == run::NAME {
+        return run::run(registry, m);
+    }
+    reading.check()?;
     if name != map::NAME && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
-        run::NAME => run::run(registry, m),
         list::NAME => list::run(registry, m),
         map::NAME => map::run(registry, m, &later),
         unwarp::NAME => unwarp::run(m),

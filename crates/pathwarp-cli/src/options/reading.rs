@@ -1,4 +1,4 @@
-//! How drawings are read: with which fonts, within which limits, and from where.
+//! Options for reading drawings: fonts, limits on work, and access to linked files.
 
 use crate::failure::Failure;
 use pathwarp::budget::Limits;

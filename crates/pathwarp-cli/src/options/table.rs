@@ -27,6 +27,18 @@ const fn family(
     CommonOption { reading: true, ..stored(name, value, help) }
 }
 
+/// Fonts besides the installed ones.
+const fn fonts(name: &'static str, value: &'static str, help: &'static str) -> CommonOption {
+    let value = OptionValue::List {
+        name: value,
+        push: |o, path| {
+            o.reading.fonts.paths.push(path.into());
+            Ok(())
+        },
+    };
+    CommonOption { reading: true, ..of_the_run(name, value, help) }
+}
+
 /// All common options, in the order of help.
 pub(crate) static OPTIONS: &[CommonOption] = &[
     CommonOption {
@@ -195,34 +207,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             "Text: warp its outlines, or leave it unchanged",
         )
     },
-    CommonOption {
-        reading: true,
-        ..of_the_run(
-            "font-file",
-            OptionValue::List {
-                name: "FILE",
-                push: |o, file| {
-                    o.reading.fonts.paths.push(file.into());
-                    Ok(())
-                },
-            },
-            "Use this font for text, too; may be given several times",
-        )
-    },
-    CommonOption {
-        reading: true,
-        ..of_the_run(
-            "fonts-dir",
-            OptionValue::List {
-                name: "DIR",
-                push: |o, dir| {
-                    o.reading.fonts.paths.push(dir.into());
-                    Ok(())
-                },
-            },
-            "Use the fonts in this folder and the folders below, too; may be given several times",
-        )
-    },
+    fonts("font-file", "FILE", "Use this font for text, too; may be given several times"),
+    fonts("fonts-dir", "DIR", "Use the fonts in this folder and the folders below, too; may be given several times"),
     CommonOption {
         reading: true,
         ..stored(

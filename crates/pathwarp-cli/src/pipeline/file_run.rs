@@ -7,6 +7,7 @@ use crate::input::{Baseline, Input, WarpRequest, WarpedResult};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::report::{FileReport, ReportedShape};
+use crate::units::MM_PER_PX;
 use crate::{recipe_file, references};
 use pathwarp::deform::{Explanation, Registry};
 use pathwarp::kurbo::Rect;
@@ -109,7 +110,6 @@ impl Batch<'_> {
 
 /// The frame: the box, and the reason for it. `seen` is `true` if any artwork is visible.
 fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
-    const PX_PER_MM: f64 = 96.0 / 25.4;
     let [x, y] = frame.units_per_px;
     let Rect { x0, y0, .. } = frame.rect;
     let (width, height) = (frame.rect.width(), frame.rect.height());
@@ -126,12 +126,12 @@ fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
     let baseline = frame.baseline.map(|y| format!(", baseline at {y:.4}")).unwrap_or_default();
     format!(
         "frame: {width:.4} × {height:.4} user units at {x0:.4},{y0:.4} ({:.2} × {:.2} mm){baseline}: {why}",
-        width / x / PX_PER_MM,
-        height / y / PX_PER_MM,
+        width / x * MM_PER_PX,
+        height / y * MM_PER_PX,
     )
 }
 
-/// What became of the strokes.
+/// Counts the strokes that stayed strokes, with their error, and those that became outlines.
 fn strokes(shapes: &[ReportedShape]) -> Option<String> {
     let outlined: usize = shapes.iter().map(|s| s.outlined_strokes).sum();
     let scaled = || shapes.iter().filter_map(|s| Some((s.stroke_error?, &s.id)));

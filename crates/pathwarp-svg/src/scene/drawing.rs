@@ -2,7 +2,7 @@
 
 use super::affine::stretch;
 use super::far::Far;
-use super::geometry::GeometryReader;
+use super::geometry::{GeometryReader, MM_PER_INCH};
 use super::lettering::{self, line::TextLine};
 use super::letters;
 use super::model::{Part, Scene};
@@ -148,7 +148,6 @@ impl Drawing {
     /// A millimetre in root user units, if the file specifies the size of its page in physical units.
     pub(crate) fn millimetre(&self) -> Option<f64> {
         use LengthUnit::{Cm, In, Mm, Pc, Pt};
-        const MM_PER_INCH: f64 = 25.4;
         let physical = |name| {
             let length = Length::from_str(self.source.attr(0, name)?.trim()).ok()?;
             Some(matches!(length.unit, Mm | Cm | In | Pt | Pc))

@@ -12,6 +12,8 @@ use pathwarp::outline::Builder;
 use std::str::FromStr;
 use svgtypes::{Align, AspectRatio, Length, LengthUnit};
 
+pub(super) const MM_PER_INCH: f64 = 25.4;
+
 /// The dimension of the viewport that a percentage refers to.
 #[derive(Debug, Clone, Copy)]
 enum Dimension {
@@ -39,7 +41,7 @@ impl GeometryReader<'_> {
             LengthUnit::None | LengthUnit::Px => n,
             LengthUnit::In => n * self.dpi,
             LengthUnit::Cm => n * self.dpi / 2.54,
-            LengthUnit::Mm => n * self.dpi / 25.4,
+            LengthUnit::Mm => n * self.dpi / MM_PER_INCH,
             LengthUnit::Pt => n * self.dpi / 72.0,
             LengthUnit::Pc => n * self.dpi / 6.0,
             LengthUnit::Percent => {

@@ -138,7 +138,7 @@ fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
     Some(data)
 }
 
-/// Where a link leads.
+/// Target of a link.
 enum Place {
     Inside(PathBuf),
     /// To a file that must not be read.
@@ -154,7 +154,7 @@ fn allowed(link: &Path, options: &ReadOptions) -> Place {
     if options.external {
         return Place::Inside(file);
     }
-    // Whether a file exists elsewhere is not looked up, either.
+    // A path that leads elsewhere is refused without a look at the file system.
     if link.has_root() || link.is_absolute() || leaves(link) {
         return Place::Outside;
     }

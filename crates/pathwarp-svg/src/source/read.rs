@@ -126,7 +126,7 @@ pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, E
         bytes = Cow::Owned(out);
     }
     let size = bytes.len() as u64;
-    // What is packed is unpacked no further than the limit.
+    // Stop unpacking at the limit.
     let counted =
         if bytes.len() == data.len() { budget.spend(Limit::Bytes, size) } else { budget.spend_cut(Limit::Bytes, size) };
     counted.map_err(|e| Error::limit(name, "its text takes", e))?;

@@ -10,7 +10,7 @@ use pathwarp::Error;
 use std::sync::Arc;
 use usvg::roxmltree;
 
-/// What a drawing asked for and did not get.
+/// Fonts and images that a drawing asks for and that are missing, and other gaps.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Missed {
     /// Font families.

@@ -40,7 +40,7 @@ pub(super) struct Fit {
     pub(super) squares: Lane,
 }
 
-/// How long a fit goes on.
+/// Limits on the steps of a fit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Effort {
     evaluations: usize,

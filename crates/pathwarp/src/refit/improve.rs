@@ -2,10 +2,7 @@
 
 use super::fit::{Fit, fit, lawson};
 use super::lanes::{clamp_unit, larger};
-use super::limits::{
-    GOOD_ENOUGH, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN, RESTART_LONGER, RESTART_SHORTER, RESTART_TURN,
-    RESTART_WITHIN, RESTART_WITHIN_TURNED,
-};
+use super::limits::{GOOD_ENOUGH, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN};
 use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
 use super::polyline::SamplePolygon;
@@ -80,28 +77,13 @@ impl StretchFitter<'_> {
         Ok(())
     }
 
-    /// Starts again farther along the valley of equal area, where the sum of squares has up to three minima, as Levien's
-    /// quartic has roots. Only near misses profit; and on pieces that turn much, only very near ones. The handles are made
-    /// more even first, which more often succeeds.
+    /// Starts again farther along the valley of equal area.
     #[inline(always)]
     fn restart_along_valley(&self, request: &mut FitRequest<'_>, best: &mut BestFit) -> Result<(), Point> {
         let tol = self.tolerance;
         let frame = request.frame;
-        let within = if frame.t0.dot(frame.t1) > RESTART_TURN { RESTART_WITHIN } else { RESTART_WITHIN_TURNED };
-        if !(best.error > tol && best.error < within * tol) {
-            return Ok(());
-        }
-        let shorter_first = best.fit.z.a < best.fit.z.b;
-        let factors = [RESTART_LONGER, RESTART_SHORTER];
-        for k in if shorter_first { factors } else { [factors[1], factors[0]] } {
-            let z = best.fit.z;
-            let a = z.a * k;
-            let b = frame.slide(z.a, z.b, a);
-            if !(b > frame.floor[1] && b < frame.size) {
-                continue;
-            }
-            let mut start = FitState { a, b, s: z.s };
-            frame.settle(request.g, a, b, &mut start.s);
+        for factor in frame.restarts(&best.fit.z, best.error, tol).into_iter().flatten() {
+            let Some(start) = frame.along_valley(request.g, &best.fit.z, factor) else { continue };
             let other = fit(&frame, request.g, start, [GOOD_ENOUGH * tol, tol]);
             if other.reach < RESTART_GAIN * best.error {
                 let error = self.judged(request, &other)?;

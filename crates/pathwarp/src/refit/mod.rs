@@ -55,6 +55,7 @@ mod source;
 mod split;
 mod straight;
 mod stretch;
+mod valley;
 
 pub use options::Options;
 pub use report::{Assurance, PathReport, RefittedPath};

@@ -14,7 +14,7 @@ use crate::status::Status;
 use crate::{output, terminal};
 use clap::{ArgMatches, Command};
 use fonts::Wanted;
-use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, bundled_font, write_lettering};
+use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
 use pathwarp_text::{Font, layout};
 use std::path::{Path, PathBuf};
 use style::Em;
@@ -40,7 +40,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let style = style::style(m, &em)?;
     let weight = m.get_one::<String>("weight").map(|w| fonts::weight_of(w)).transpose()?;
     let (italic, synthesize) = (m.get_flag("italic"), m.get_flag("synthesize"));
-    let read = Given::reading(m)?.read_options();
+    let read = options.reading.read_options();
     let find = |name: &&str| fonts::find(name, weight.unwrap_or(fonts::REGULAR), italic, &read);
     let files: Vec<FontFile> = names.iter().map(find).collect::<Result<_, _>>()?;
     let mut chosen: Vec<Font<'_>> = Vec::with_capacity(files.len() + 1);
@@ -59,7 +59,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     if !set.missing.is_empty() && !m.get_flag("quiet") {
         terminal::warning(&missing(&set.missing, &names));
     }
-    let result = export::drawing(svg, format, &ReadOptions::default(), &options, None)?;
+    let result = export::drawing(svg, format, &read, &options, None)?;
     output::write(target, &result.bytes)?;
     Ok(Status::partial_if(!set.missing.is_empty()))
 }

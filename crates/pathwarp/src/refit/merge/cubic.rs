@@ -6,10 +6,7 @@ use crate::refit::fit::{Fit, THOROUGH, fit_with, lawson};
 use crate::refit::frame::ChordFrame;
 use crate::refit::judge::settled;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
-use crate::refit::limits::{
-    GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN, RESTART_LONGER,
-    RESTART_SHORTER, RESTART_TURN, RESTART_WITHIN, RESTART_WITHIN_TURNED,
-};
+use crate::refit::limits::{GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN};
 use crate::refit::piece::FittedPiece;
 use crate::refit::residuals::FitState;
 use crate::refit::samples::{ALL, Evenly, UNIT, interleaved};
@@ -190,24 +187,11 @@ impl Stretch {
         }
     }
 
-    /// Starts again farther along the valley of equal area; see `improve`.
+    /// Starts again farther along the valley of equal area.
     fn restart_along_valley(&self, best: &mut BestFit) {
-        let (tol, frame) = (self.tolerance, &self.frame);
-        let within = if frame.t0.dot(frame.t1) > RESTART_TURN { RESTART_WITHIN } else { RESTART_WITHIN_TURNED };
-        if !(best.error > tol && best.error < within * tol) {
-            return;
-        }
-        let shorter_first = best.fit.z.a < best.fit.z.b;
-        let factors = [RESTART_LONGER, RESTART_SHORTER];
-        for k in if shorter_first { factors } else { [factors[1], factors[0]] } {
-            let z = best.fit.z;
-            let a = z.a * k;
-            let b = frame.slide(z.a, z.b, a);
-            if !(b > frame.floor[1] && b < frame.size) {
-                continue;
-            }
-            let mut start = FitState { a, b, s: z.s };
-            frame.settle(&self.g, a, b, &mut start.s);
+        let tol = self.tolerance;
+        for factor in self.frame.restarts(&best.fit.z, best.error, tol).into_iter().flatten() {
+            let Some(start) = self.frame.along_valley(&self.g, &best.fit.z, factor) else { continue };
             let other = self.least_squares(start, GOOD_ENOUGH);
             if other.reach < RESTART_GAIN * best.error {
                 let other = self.judged(other);

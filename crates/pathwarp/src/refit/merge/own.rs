@@ -14,7 +14,7 @@ pub(super) struct OwnPieces<'a> {
     /// At the ends of each segment.
     jets: &'a [[Jet; 2]],
     pieces: Vec<FittedPiece>,
-    /// Where in `pieces` those of each segment are, and their report.
+    /// For each segment, its range of `pieces` and their report.
     known: Vec<Option<(usize, usize, PathReport)>>,
 }
 
