@@ -20,6 +20,7 @@ mod decimals;
 mod export;
 mod failure;
 mod format;
+mod inkscape;
 mod input;
 mod leftovers;
 mod options;
@@ -60,7 +61,13 @@ pub fn command(registry: &Registry) -> clap::Command {
 /// Runs the program on `args`, the first of which is the program's name.
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
-    match commands::dispatch(registry, &args.into_iter().collect::<Vec<_>>()) {
+    let args: Vec<OsString> = args.into_iter().collect();
+    let done = if inkscape::is_call(&args) {
+        inkscape::run(registry, &args, commands::dispatch)
+    } else {
+        commands::dispatch(registry, &args)
+    };
+    match done {
         Ok(Status::Complete) => ExitCode::SUCCESS,
         Ok(Status::Partial) => ExitCode::from(1),
         Err(failure) => {

@@ -89,6 +89,10 @@ fn table(entry: &dyn Deformation, faults: &mut Faults) {
     if info.examples.len() < 2 {
         faults.add("has fewer than two examples");
     }
+    let is_path = |name: &&'static str| info.params.iter().any(|p| p.name == *name && p.kind == Kind::Path);
+    if !info.guides.params.iter().all(is_path) || info.guides.usual > info.guides.params.len() {
+        faults.add("its guides are not path parameters, or fewer than is usual");
+    }
     for p in info.params {
         if !is_kebab(p.name) || names.contains(&p.name) {
             faults.add(format!("{} is not a new kebab-case name", p.name));
