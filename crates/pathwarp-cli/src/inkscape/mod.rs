@@ -20,6 +20,7 @@ mod words;
 use crate::advice::Flags;
 use crate::failure::Failure;
 use crate::output;
+use crate::plugins;
 use crate::status::Status;
 use call::{Call, Job};
 use pathwarp::deform::Registry;
@@ -34,7 +35,14 @@ pub(crate) fn is_call(args: &[OsString]) -> bool {
 /// Does what Inkscape asks for.
 pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) -> Result<Status, Failure> {
     let call = Call::read(args)?;
-    let stage = Stage { registry, dispatch, call: &call };
+    let word = match &call.job {
+        Job::Deformation(name) => name,
+        // Any may be in a recipe.
+        Job::Edit => "list",
+        Job::Release | Job::Convert(_) => "convert",
+    };
+    let (_, plugins) = plugins::load(registry, &["pathwarp".into(), word.into()], &[])?;
+    let stage = Stage { registry: &plugins.added_to(registry), dispatch, call: &call };
     let done = match &call.job {
         Job::Deformation(name) => effect::run(&stage, name),
         Job::Edit => again::edit(&stage),
