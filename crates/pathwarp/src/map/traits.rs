@@ -68,6 +68,12 @@ pub trait Map: Send + Sync {
         None
     }
 
+    /// The cost of one evaluation, relative to that of a bicubic net, for [`budget`](crate::budget): a map that takes longer the
+    /// more parts it has says so here. 1 or more.
+    fn work(&self) -> f64 {
+        1.0
+    }
+
     /// Maps a batch of points in place. See [`batch`](super::batch).
     #[doc(hidden)]
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
@@ -123,6 +129,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         (**self).inverse()
+    }
+    fn work(&self) -> f64 {
+        (**self).work()
     }
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         (**self).lanes(x, y);
@@ -182,6 +191,9 @@ mod tests {
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             self.record("inverse", None)
         }
+        fn work(&self) -> f64 {
+            self.record("work", 3.0)
+        }
         fn lanes(&self, _x: &mut Lane, _y: &mut Lane) {
             self.record("lanes", ());
         }
@@ -204,6 +216,7 @@ mod tests {
         let _ = map.rational_degree();
         let _ = map.denominator(p);
         let _ = map.inverse();
+        let _ = map.work();
         map.lanes(&mut [1.0; WIDTH], &mut [2.0; WIDTH]);
         let _ = map.denominators(&[1.0; WIDTH], &[2.0; WIDTH]);
     }
