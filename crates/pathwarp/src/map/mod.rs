@@ -67,6 +67,7 @@ pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
 pub use nets::{BicubicNet, Net, complete_net};
 pub use newton::NewtonInverse;
+pub(crate) use newton::INVERSE_WORK;
 pub use piecewise::{Coons, Sides};
 pub use projective::AffineMap;
 pub use rational_bezier::RationalBezier;

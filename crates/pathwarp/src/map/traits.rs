@@ -85,6 +85,12 @@ pub trait Map: Send + Sync {
     #[doc(hidden)]
     fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
 
+    /// The cost of one evaluation, relative to that of a bicubic net, for [`budget`](crate::budget): a map that takes longer the
+    /// more parts it has says so here. 1 or more.
+    fn work(&self) -> f64 {
+        1.0
+    }
+
     /// Maps a batch of points in place. See [`batch`](super::batch).
     #[doc(hidden)]
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
@@ -149,6 +155,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn prepare(&self, points: &[Point], jets: &[Point]) {
         (**self).prepare(points, jets);
+    }
+    fn work(&self) -> f64 {
+        (**self).work()
     }
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         (**self).lanes(x, y);
@@ -217,6 +226,9 @@ mod tests {
         fn prepare(&self, _points: &[Point], _jets: &[Point]) {
             self.record("prepare", ());
         }
+        fn work(&self) -> f64 {
+            self.record("work", 3.0)
+        }
         fn lanes(&self, _x: &mut Lane, _y: &mut Lane) {
             self.record("lanes", ());
         }
@@ -242,6 +254,7 @@ mod tests {
         let _ = map.prefers_batches();
         let _ = map.remembers();
         map.prepare(&[p], &[p]);
+        let _ = map.work();
         map.lanes(&mut [1.0; WIDTH], &mut [2.0; WIDTH]);
         let _ = map.denominators(&[1.0; WIDTH], &[2.0; WIDTH]);
     }
