@@ -241,7 +241,7 @@ impl Artwork for SvgArtwork {
             warped.svg = origin.embed(&warped.svg)?;
         }
         let (shapes, folds) = self.shape_reports(request, &options, &warped);
-        let mut warnings = warped.warnings;
+        let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         let empty = !self.doc.has_artwork(&self.selection);
         if empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());

@@ -1,9 +1,7 @@
 //! Attributes from which Inkscape computes a shape: whatever is warped loses them, everything else keeps them.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Bend, read, warp_options};
+use crate::common::{Bend, read, warp_options};
 use pathwarp_svg::{Selection, Strokes, Structure, WarpOptions};
 
 fn document(body: &str) -> String {

@@ -1,8 +1,6 @@
 //! Preservation of a file's text.
 
-mod common;
-
-use common::{Bend, Hidden, drawing, oblique, read, warp, warp_options};
+use crate::common::{Bend, Hidden, drawing, oblique, read, warp, warp_options};
 use pathwarp::kurbo::Affine;
 use pathwarp::map::AffineMap;
 use pathwarp_svg::{Selection, Structure};
@@ -89,7 +87,7 @@ fn what_cannot_be_patched_is_flattened_or_refused() {
     let svg = "<!DOCTYPE svg [<!ENTITY r \"<rect id='x' width='30' height='20'/>\">]><svg xmlns='http://www.w3.org/2000/svg' \
                viewBox='0 0 100 100'><title>E</title>&r;</svg>";
     let w = warp(svg, oblique());
-    assert!(w.warnings.iter().any(|w| w.contains("flattened")), "{:?}", w.warnings);
+    assert!(w.warnings.iter().any(|w| w.to_string().contains("flattened")), "{:?}", w.warnings);
     assert!(w.svg.contains("viewBox=\"0 0 100 100\"") && w.svg.contains("<title>E</title>"), "{}", w.svg);
     let keep = warp_options().with_structure(Structure::Keep);
     assert!(read(svg).warp(&Bend, &keep).is_err());
@@ -120,7 +118,11 @@ fn an_animation_of_the_geometry_is_named() {
     let body = "<circle id='c' r='9'><animate attributeName='r' to='20'/></circle><circle r='5'><animate \
                 attributeName='opacity' to='0'/></circle>";
     let w = warp(&drawing(body), oblique());
-    assert!(w.warnings.iter().any(|w| w.contains("animations") && w.ends_with(": c")), "{:?}", w.warnings);
+    assert!(
+        w.warnings.iter().any(|w| w.to_string().contains("animations") && w.to_string().ends_with(": c")),
+        "{:?}",
+        w.warnings
+    );
 }
 
 #[test]
@@ -129,7 +131,7 @@ fn flattened_filters_saturate_beyond_one() {
     let flat = warp_options().with_structure(Structure::Flatten);
     let out = read(&svg).warp(&AffineMap(Affine::IDENTITY), &flat).unwrap().svg;
     let middle = |svg: &str| {
-        let tree = pathwarp_svg::usvg_tree::parse_tree(svg.as_bytes(), "test", &common::options()).unwrap();
+        let tree = pathwarp_svg::usvg_tree::parse_tree(svg.as_bytes(), "test", &crate::common::options()).unwrap();
         let mut p = resvg::tiny_skia::Pixmap::new(100, 100).unwrap();
         resvg::render(&tree, resvg::tiny_skia::Transform::identity(), &mut p.as_mut());
         let c = p.pixel(45, 45).unwrap();
@@ -146,7 +148,7 @@ fn the_caps_of_dots_follow_the_map() {
         let d = "M50 50h0M20 20l0 0l0 0M80 30l0 0";
         let svg =
             drawing(&format!("<path d='{d}' fill='none' stroke='red' stroke-width='16' stroke-linecap='{cap}'/>"));
-        common::check(cap, &svg, oblique(), &warp_options());
+        crate::common::check(cap, &svg, oblique(), &warp_options());
     }
 }
 
@@ -157,7 +159,7 @@ fn names_inside_clip_paths_and_masks_stay() {
                 opacity='.5'/></mask><clipPath id='k' clipPathUnits='objectBoundingBox'><path id='p' d='M0 0h1L.5 \
                 1z'/></clipPath><rect width='80' height='60' mask='url(#m)'/><rect y='50' width='80' height='40' fill='red' \
                 mask='url(#m)' clip-path='url(#k)'/>";
-    let w = common::check("names", &drawing(body), oblique(), &warp_options());
+    let w = crate::common::check("names", &drawing(body), oblique(), &warp_options());
     for id in ["m", "r", "c", "k", "p"] {
         let found = w.svg.matches(&format!(" id='{id}'")).count() + w.svg.matches(&format!(" id=\"{id}\"")).count();
         assert_eq!(found, 1, "{id}: {}", w.svg);

@@ -1,9 +1,7 @@
 //! Reports content that cannot be warped, and repairs small faults of a file.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Bend, drawing, options, read, same, warp_options};
+use crate::common::{Bend, drawing, options, read, same, warp_options};
 use pathwarp_svg::{Document, Selection, Structure, WarpedDocument};
 
 fn bent(body: &str) -> WarpedDocument {
@@ -62,7 +60,7 @@ fn private_data_of_illustrator_is_reported() {
     let namespace = "http://ns.adobe.com/AdobeIllustrator/10.0/";
     let body =
         format!("<switch><foreignObject requiredExtensions='{namespace}' width='1' height='1'/><g>{REST}</g></switch>");
-    let told = |w: &WarpedDocument| w.warnings.iter().filter(|w| w.contains("i:pgf")).count();
+    let told = |w: &WarpedDocument| w.warnings.iter().filter(|w| w.to_string().contains("i:pgf")).count();
     assert_eq!(told(&bent(&body)), 1);
     assert_eq!(told(&bent(&body.replace(namespace, "urn:x"))), 0);
     // Nothing has changed.
@@ -79,7 +77,7 @@ fn undeclared_prefixes_are_declared() {
     let bare = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
     let d = Document::read(bare.as_bytes(), "bare.svg", &options()).unwrap();
     let w = d.warp(&Bend, &warp_options()).unwrap();
-    assert!(w.warnings.iter().any(|w| w.contains("foo, inkscape, sodipodi, xlink")), "{:?}", w.warnings);
+    assert!(w.warnings.iter().any(|w| w.to_string().contains("foo, inkscape, sodipodi, xlink")), "{:?}", w.warnings);
     assert!(w.svg.contains("inkscape:label='Layer'") && !w.svg.contains("sodipodi:type"), "{}", w.svg);
     let declared =
         drawing(body).replace("<svg ", "<svg xmlns:foo='urn:x' xmlns:inkscape='urn:y' xmlns:sodipodi='urn:z' ");

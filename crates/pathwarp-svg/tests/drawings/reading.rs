@@ -1,8 +1,6 @@
 //! Reading files: names, boxes, errors, and malicious files.
 
-mod common;
-
-use common::{Bend, drawing, options, read, warp_options};
+use crate::common::{Bend, drawing, options, read, warp_options};
 use pathwarp::Error;
 use pathwarp::kurbo::Rect;
 use pathwarp::outline::Seg;
@@ -84,7 +82,7 @@ fn compressed_files_are_read() {
 fn a_missing_font_is_named() {
     let d = read(&drawing("<text y='50' font-family='Nowhere Sans'>x</text>"));
     let w = d.warp(&Bend, &warp_options()).unwrap();
-    assert!(w.warnings.iter().any(|w| w.contains("Nowhere Sans")), "{:?}", w.warnings);
+    assert!(w.warnings.iter().any(|w| w.to_string().contains("Nowhere Sans")), "{:?}", w.warnings);
 }
 
 #[test]

@@ -1,9 +1,7 @@
 //! Adapting the page to the warped artwork. The reference is the set of pixels the renderer paints.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Hidden, read, rendered, warp_options};
+use crate::common::{Hidden, read, rendered, warp_options};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_svg::{Document, PageFit, Selection};
 
@@ -57,8 +55,8 @@ const DRAWINGS: &[(&str, &str)] = &[
 #[test]
 fn the_page_becomes_the_marks_box() {
     for (name, body) in DRAWINGS {
-        for map in [common::oblique(), Affine::translate((40.0, -30.0)) * Affine::scale(1.3)] {
-            let d = fitted(&common::drawing(body), map, PageFit::Page);
+        for map in [crate::common::oblique(), Affine::translate((40.0, -30.0)) * Affine::scale(1.3)] {
+            let d = fitted(&crate::common::drawing(body), map, PageFit::Page);
             let (page, marks) = (d.view_box(), marks(&d));
             assert!(near(page, marks), "{name}: {page:?} is not {marks:?}");
             assert!(!near(page, Rect::new(0.0, 0.0, 100.0, 100.0)), "{name}");
@@ -70,10 +68,10 @@ fn the_page_becomes_the_marks_box() {
 fn it_grows_to_hold_them_and_no_further() {
     let whole = Rect::new(0.0, 0.0, 100.0, 100.0);
     for (name, body) in DRAWINGS {
-        let d = fitted(&common::drawing(body), Affine::translate((45.0, -35.0)), PageFit::Grow);
+        let d = fitted(&crate::common::drawing(body), Affine::translate((45.0, -35.0)), PageFit::Grow);
         let (page, marks) = (d.view_box(), marks(&d));
         assert!(near(page, whole.union(marks)) && !near(page, whole), "{name}: {page:?} for {marks:?}");
-        let svg = common::drawing(body);
+        let svg = crate::common::drawing(body);
         let d = fitted(&svg, Affine::rotate_about(0.1, (50.0, 50.0)), PageFit::Grow);
         assert_eq!(d.view_box(), whole, "{name}");
     }
@@ -84,7 +82,7 @@ fn it_grows_to_hold_them_and_no_further() {
 fn what_a_filter_paints_is_held() {
     let body = "<filter id='f'><feGaussianBlur stdDeviation='3'/></filter><rect x='30' y='30' width='30' height='30' \
                 filter='url(#f)'/>";
-    let d = fitted(&common::drawing(body), common::oblique(), PageFit::Page);
+    let d = fitted(&crate::common::drawing(body), crate::common::oblique(), PageFit::Page);
     let (page, marks) = (d.view_box(), marks(&d));
     assert!(near(page.union(marks), page), "{page:?} does not hold {marks:?}");
 }
@@ -117,7 +115,7 @@ fn guides_and_what_is_hidden_do_not_count() {
                 height='9' visibility='hidden'/><path d='M-80 0h9v9z' fill='none'/>";
     let selection = Selection { guides: vec!["cage".into()], ..Selection::default() };
     let options = warp_options().with_page(PageFit::Page).with_selection(selection);
-    let w = read(&common::drawing(body)).warp(&Hidden(Affine::translate((5.0, 0.0))), &options).unwrap();
+    let w = read(&crate::common::drawing(body)).warp(&Hidden(Affine::translate((5.0, 0.0))), &options).unwrap();
     assert!(w.svg.contains("viewBox=\"25 30 60 40\""), "{}", w.svg);
 }
 
@@ -129,7 +127,7 @@ fn beyond(marks: Rect) -> [f64; 4] {
 #[test]
 fn what_leaves_the_page_is_measured() {
     for (name, body) in DRAWINGS {
-        let svg = common::drawing(body);
+        let svg = crate::common::drawing(body);
         for map in [Affine::translate((45.0, -35.0)), Affine::translate((-50.0, 52.0))] {
             let w = read(&svg).warp(&Hidden(map), &warp_options()).unwrap();
             let out = beyond(marks(&read(&w.svg)));
@@ -155,7 +153,7 @@ fn what_left_the_page_before_is_not_told() {
     };
     // It extends 30 past the left side, strokes included, and ends 10 inside the right side.
     let body = "<path d='M-28,40H88' stroke='black' stroke-width='4' stroke-linecap='square'/>";
-    let svg = common::drawing(body);
+    let svg = crate::common::drawing(body);
     assert_eq!(moved(&svg, 5.0, 0.0), None);
     assert_eq!(moved(&svg, 10.0, 3.0), None);
     assert_eq!(moved(&svg, 17.0, 0.0), Some([0.0, 0.0, 7.0, 0.0]));
@@ -173,7 +171,7 @@ fn what_left_the_page_before_is_not_told() {
 /// The page is adapted even if nothing moves.
 #[test]
 fn the_identity_fits_the_page() {
-    let svg = common::drawing("<rect x='20' y='30' width='60' height='40'/>");
+    let svg = crate::common::drawing("<rect x='20' y='30' width='60' height='40'/>");
     let map = pathwarp::map::AffineMap(Affine::IDENTITY);
     let options = warp_options().with_page(PageFit::Page);
     let w = read(&svg).warp(&map, &options).unwrap();
@@ -212,7 +210,7 @@ const FILTERS: &[(&str, &str)] = &[
 fn the_page_follows_what_filters_paint() {
     for (name, body) in FILTERS {
         for map in [Affine::translate((40.0, -30.0)) * Affine::scale(1.3), Affine::translate((45.0, 5.0))] {
-            let d = fitted(&common::drawing(body), map, PageFit::Page);
+            let d = fitted(&crate::common::drawing(body), map, PageFit::Page);
             let (page, marks) = (d.view_box(), marks(&d));
             assert!(
                 page.inflate(0.1, 0.1).union(marks) == page.inflate(0.1, 0.1),

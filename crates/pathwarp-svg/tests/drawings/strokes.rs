@@ -2,10 +2,8 @@
 //! stroker gives the exact stroke of the source, which the map bends point by point, and the area of the result.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::area::Area;
-use common::{Bend, Hidden, options, read};
+use crate::common::area::Area;
+use crate::common::{Bend, Hidden, options, read};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Formula, Map, Real};
 use pathwarp::refit;
@@ -248,7 +246,8 @@ fn strokes_at_the_edge_of_the_domain_are_reported() {
     }
     let body = "<path id='p' d='M20 21H80V70' fill='none' stroke='red' stroke-width='4'/>";
     let w = read(&page(body, "")).warp(&HalfPlane, &tolerance(1e-2)).unwrap();
-    let said = w.warnings.iter().any(|w| w.contains("the stroke of p") && w.contains("off by up to"));
+    let said =
+        w.warnings.iter().any(|w| w.to_string().contains("the stroke of p") && w.to_string().contains("off by up to"));
     assert!(said, "{:?}", w.warnings);
     assert!(w.shapes[0].stroke_error.unwrap() > 1.0, "{:?}", w.shapes);
     let keep = tolerance(1e-2).with_strokes(Strokes::Keep);

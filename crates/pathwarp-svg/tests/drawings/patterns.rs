@@ -1,9 +1,7 @@
 //! Patterns as geometry. The reference is the original's rendering, resampled through the inverse of a curved map.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Bend, Hidden, curved, drawing, oblique, read, warp_options};
+use crate::common::{Bend, Hidden, curved, drawing, oblique, read, warp_options};
 use pathwarp::kurbo::Affine;
 use pathwarp_svg::{Patterns, Strokes, Structure, WarpOptions};
 
@@ -75,7 +73,7 @@ fn under_a_curved_map_tiles_bend() {
         assert!(bent.mean <= 1.0, "{name}: {} of 255", bent.mean);
         assert!(fitted.mean > 10.0 * bent.mean, "{name}: {} and {} of 255", fitted.mean, bent.mean);
         // A pattern as small as that within the last tile follows the affine fit without a visible error.
-        assert!(w.warnings.iter().all(|w| w.ends_with("their tiles are not bent: q")), "{:?}", w.warnings);
+        assert!(w.warnings.iter().all(|w| w.to_string().ends_with("their tiles are not bent: q")), "{:?}", w.warnings);
         assert!(!w.svg.contains("fill=\"url(#p") && w.svg.contains("-edge"), "{name}: {}", w.svg);
     }
 }
@@ -118,7 +116,11 @@ fn too_much_follows_as_a_whole_and_says_so() {
                   fill='url(#masked)'/>";
     for (id, body, why) in [("tiny", tiny, "too many"), ("masked", masked, "masks")] {
         let w = read(&drawing(body)).warp(&Bend, &instantiate()).unwrap();
-        assert!(w.warnings.iter().any(|w| w.contains(why) && w.contains(id)), "{:?}", w.warnings);
+        assert!(
+            w.warnings.iter().any(|w| w.to_string().contains(why) && w.to_string().contains(id)),
+            "{:?}",
+            w.warnings
+        );
         assert!(w.svg.contains("<pattern id=\""), "{}", w.svg);
     }
 }
@@ -131,7 +133,7 @@ fn copies_repeat_their_tiles() {
     let w = read(&drawing(body)).warp(&Hidden(Affine::IDENTITY), &warp_options().with_copies(copies)).unwrap();
     let twice =
         drawing(&format!("{body}<g transform='translate(30 0)'><rect width='20' height='20' fill='url(#p)'/></g>"));
-    common::same("copies", &w.svg, &twice);
+    crate::common::same("copies", &w.svg, &twice);
 }
 
 #[test]

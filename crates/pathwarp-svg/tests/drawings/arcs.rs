@@ -1,9 +1,7 @@
 //! Arcs stay arcs where their images are arcs.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Bend, Hidden, drawing, read, warp_options};
+use crate::common::{Bend, Hidden, drawing, read, warp_options};
 use pathwarp::deform::Mobius;
 use pathwarp::kurbo::{Affine, ParamCurveNearest as _, Point, Rect};
 use pathwarp::map::{AffineMap, Map};

@@ -1,10 +1,8 @@
 //! Outlines of strokes along random degenerate paths, with every join and cap and with dashes.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::area::Area;
-use common::{Hidden, drawing, options, read};
+use crate::common::area::Area;
+use crate::common::{Hidden, drawing, options, read};
 use pathwarp::kurbo::{Affine, ParamCurve as _, ParamCurveNearest as _, Point};
 use pathwarp::{Outline, Seg, refit};
 use pathwarp_svg::usvg_tree::parse_tree;

@@ -1,8 +1,6 @@
 //! Lettering is recognised in text and in outlines with data attributes.
 
-mod common;
-
-use common::{Bend, drawing, read, warp_options};
+use crate::common::{Bend, drawing, read, warp_options};
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp_svg::{LetterPlaces, LetteringFrame, LetteringFrameError, Selection};
 

@@ -1,9 +1,7 @@
 //! Only what is seen counts, for the frame and for the page.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Hidden, drawing, read, warp_options};
+use crate::common::{Hidden, drawing, read, warp_options};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_svg::{PageFit, Selection};
 
@@ -78,7 +76,7 @@ fn what_comes_onto_the_page_is_reported() {
     let came = |body: &str| {
         let all =
             read(&drawing(body)).warp(&Hidden(Affine::translate((0.0, -40.0))), &warp_options()).unwrap().warnings;
-        all.into_iter().filter(|w| w.contains("lay off the page")).collect::<Vec<_>>()
+        all.iter().map(ToString::to_string).filter(|w| w.contains("lay off the page")).collect::<Vec<_>>()
     };
     let note = "<rect id='n' x='20' y='110' width='50' height='10'/>";
     assert_eq!(came(note), ["artwork that lay off the page has moved onto it: n"]);

@@ -1,9 +1,7 @@
 //! The report counts what is in the file: every segment of every path that is written.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Bend, drawing, read, warp_options};
+use crate::common::{Bend, drawing, read, warp_options};
 use pathwarp::Outline;
 use pathwarp_svg::{Patterns, Strokes, Structure, WarpOptions};
 

@@ -2,9 +2,7 @@
 //! the same drawing with the line drawn.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Bend, difference, drawing, options, read, warp_options};
+use crate::common::{Bend, difference, drawing, options, read, warp_options};
 use pathwarp_svg::usvg_tree::parse_tree;
 use pathwarp_svg::{Strokes, Structure, WarpOptions};
 use resvg::tiny_skia::{Pixmap, Transform};

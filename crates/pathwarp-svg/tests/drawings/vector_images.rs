@@ -2,9 +2,7 @@
 //! rendering bent pixel by pixel.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
-use common::{Bend, check, curved, drawing, oblique, options, read, warp, warp_options};
+use crate::common::{Bend, check, curved, drawing, oblique, options, read, warp, warp_options};
 use pathwarp::kurbo::Affine;
 use pathwarp_svg::{Document, Selection, Structure};
 
@@ -136,7 +134,7 @@ fn they_are_cut_at_their_edge() {
          clip-path='url(#c)'>{body}</g></g>"
     );
     let [image, group] = [image, group].map(|b| warp(&drawing(&b), oblique()).svg);
-    common::same("edge", &image, &group);
+    crate::common::same("edge", &image, &group);
     let cut = read(&group).shapes().len();
     assert_eq!(cut, 2, "a shape and its clip path");
 }
@@ -146,7 +144,7 @@ fn they_are_cut_at_their_edge() {
 fn an_affine_place_would_be_seen() {
     let (_, body) = drawings().swap_remove(0);
     let svg = drawing(&body);
-    let placed = read(&svg).warp(&common::Hidden(Affine::translate((0.0, 4.0))), &warp_options()).unwrap();
-    let gap = common::gap(&svg, &placed.svg);
+    let placed = read(&svg).warp(&crate::common::Hidden(Affine::translate((0.0, 4.0))), &warp_options()).unwrap();
+    let gap = crate::common::gap(&svg, &placed.svg);
     assert!(gap.mean > 10.0, "{gap:?}");
 }

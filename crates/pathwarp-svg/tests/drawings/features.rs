@@ -1,9 +1,7 @@
 //! One drawing per feature, warped by the identity and by an oblique affine map, both of which are treated as nonlinear: the
 //! result must look like the original, transformed by the renderer.
 
-mod common;
-
-use common::{check, drawing, oblique, warp_options};
+use crate::common::{check, drawing, oblique, warp_options};
 use pathwarp::kurbo::Affine;
 use pathwarp_svg::{Strokes, Structure};
 
@@ -174,7 +172,7 @@ const FEATURES: &[(&str, &str)] = &[
 fn identity_looks_the_same() {
     for (name, body) in FEATURES {
         let w = check(name, &drawing(body), Affine::IDENTITY, &warp_options());
-        assert!(!w.warnings.iter().any(|w| w.contains("flattened")), "{name}: {:?}", w.warnings);
+        assert!(!w.warnings.iter().any(|w| w.to_string().contains("flattened")), "{name}: {:?}", w.warnings);
     }
 }
 

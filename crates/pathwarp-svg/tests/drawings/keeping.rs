@@ -2,10 +2,8 @@
 //! fonts.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests may fail as tests do")]
 
-mod common;
-
+use crate::common::{Bend, drawing, oblique, options, read, warp, warp_options};
 use base64::Engine as _;
-use common::{Bend, drawing, oblique, options, read, warp, warp_options};
 use pathwarp_svg::{
     BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpedDocument,
     compressed,
@@ -64,17 +62,23 @@ fn animations_stay_where_they_still_fit() {
     for (n, kept) in [false, true, true, false, false, false, false, true, true, false].into_iter().enumerate() {
         assert_eq!(w.svg.contains(&format!("id='a{}'", n + 1)), kept, "a{}: {}", n + 1, w.svg);
     }
-    let said = |what: &str, whom: &str| w.warnings.iter().any(|w| w.contains(what) && w.contains(whom));
+    let said = |what: &str, whom: &str| {
+        w.warnings.iter().any(|w| w.to_string().contains(what) && w.to_string().contains(whom))
+    };
     assert!(said("geometry are dropped", "c, p"), "{:?}", w.warnings);
     assert!(said("move warped shapes", "g") && said("fill and stroke are dropped", "p"), "{:?}", w.warnings);
     assert!(Document::read(w.svg.as_bytes(), "again", &options()).is_ok());
     // Nothing is warped, so nothing is dropped.
     let still = pathwarp_svg::Selection { select: vec!["#none".into()], ..pathwarp_svg::Selection::default() };
     let w = read(&drawing(body)).warp(&Bend, &warp_options().with_selection(still)).unwrap();
-    assert!(!w.warnings.iter().any(|w| w.contains("animations")), "{:?}", w.warnings);
+    assert!(!w.warnings.iter().any(|w| w.to_string().contains("animations")), "{:?}", w.warnings);
     assert_eq!(w.svg, drawing(body));
     let w = flat(body);
-    assert!(!w.svg.contains("<animate") && w.warnings.iter().any(|w| w.contains("animations")), "{:?}", w.warnings);
+    assert!(
+        !w.svg.contains("<animate") && w.warnings.iter().any(|w| w.to_string().contains("animations")),
+        "{:?}",
+        w.warnings
+    );
 }
 
 #[test]
@@ -151,7 +155,7 @@ fn compressed_files_come_back() {
     assert_eq!(d.warp(&pathwarp::map::AffineMap(pathwarp::kurbo::Affine::IDENTITY), &warp_options()).unwrap().svg, svg);
 }
 
-const FONT: &[u8] = include_bytes!("../fonts/NotoSans-Regular.subset.ttf");
+const FONT: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
 
 /// The bundled font with another number of units per em, for letters of another size.
 fn resized(units: u16) -> Vec<u8> {
@@ -205,7 +209,7 @@ fn embedded_fonts_set_the_text() {
         (b.width(), d.warp(&Bend, &warp_options()).unwrap().warnings)
     };
     let (plain, warnings) = width(&text(""));
-    assert!(warnings.iter().any(|w| w.contains("My Face")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.to_string().contains("My Face")), "{warnings:?}");
     for (kind, data) in [("ttf", resized(units * 2)), ("woff", woff(&resized(units * 2)))] {
         let data = base64::engine::general_purpose::STANDARD.encode(data);
         let css = format!(
@@ -238,6 +242,9 @@ fn embedded_fonts_set_the_text() {
     for bad in ["d09GRgABAAAA", "AAEAAAAA", "%%%%", "d09GMgABAAAA"] {
         let css = format!("<style>@font-face{{font-family:'My Face';src:url('data:font/x;base64,{bad}')}}</style>");
         let (same, warnings) = width(&text(&css));
-        assert!(same == plain && warnings.iter().any(|w| w.contains("My Face")), "{bad}: {same} {warnings:?}");
+        assert!(
+            same == plain && warnings.iter().any(|w| w.to_string().contains("My Face")),
+            "{bad}: {same} {warnings:?}"
+        );
     }
 }
