@@ -52,6 +52,7 @@ pub(crate) mod piecewise;
 pub(crate) mod polynomial;
 mod projective;
 mod rational_bezier;
+mod rounds;
 mod traits;
 
 pub use birational::{Birational, BirationalInverse, Rows};
