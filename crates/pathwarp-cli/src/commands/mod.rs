@@ -15,6 +15,7 @@ mod paths;
 mod render;
 mod run;
 mod schema;
+mod solid;
 mod text;
 mod unwarp;
 
@@ -82,10 +83,11 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 14] = [
+const OTHERS: [(&str, Declare); 15] = [
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
+    (solid::NAME, |_| solid::command()),
     (unwarp::NAME, |_| unwarp::command()),
     (schema::NAME, |_| schema::command()),
     (text::NAME, |_| text::command()),
@@ -120,12 +122,13 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return run::run(registry, m);
     }
     reading.check()?;
-    if name != map::NAME && !later.is_empty() {
+    if name != map::NAME && name != solid::NAME && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
         list::NAME => list::run(registry, m),
         map::NAME => map::run(registry, m, &later),
+        solid::NAME => solid::run(m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
         text::NAME => text::run(m),

@@ -63,7 +63,7 @@ pub use formula::Formula;
 pub use homography::Homography;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
-pub use nets::{BicubicNet, Net, complete_net};
+pub use nets::{BicubicNet, Net, bspline, complete_net};
 pub use newton::NewtonInverse;
 pub use piecewise::{Coons, Sides};
 pub use projective::AffineMap;
