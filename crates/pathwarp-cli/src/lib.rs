@@ -15,6 +15,7 @@
 
 mod advice;
 mod bitmap;
+mod catalogue;
 mod commands;
 mod decimals;
 mod export;
@@ -41,6 +42,7 @@ pub use bitmap::Bender;
 
 use failure::Failure;
 use pathwarp::deform::Registry;
+use pathwarp_solid::deform::Registry3;
 use status::Status;
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -71,7 +73,7 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
         Ok(Status::Complete) => ExitCode::SUCCESS,
         Ok(Status::Partial) => ExitCode::from(1),
         Err(failure) => {
-            failure.show(&advice::Flags::of(registry));
+            failure.show(&advice::Flags::of(registry).and(advice::Flags::of(&Registry3::builtin())));
             ExitCode::from(failure.code())
         }
     }

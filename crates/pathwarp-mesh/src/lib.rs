@@ -28,6 +28,7 @@ mod shape;
 mod tessellate;
 
 pub use error::Error;
+pub use tessellate::FlatMesh;
 pub use shape::{NamedShape, Point3, SurfaceFn};
 
 use obj::ObjWriter;
@@ -53,6 +54,15 @@ pub fn filled(
         out.mesh(s.name, &mesh);
     }
     Ok(out.finish())
+}
+
+/// Fills a shape with triangles in the plane of the drawing, within `tolerance` (user units) of its outline.
+///
+/// # Errors
+/// The shape needs too many points, or cannot be filled.
+pub fn flat(shape: &NamedShape<'_>, tolerance: f64) -> Result<FlatMesh, Error> {
+    let polygons = flatten::polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance)?;
+    tessellate::fill(shape, &polygons)
 }
 
 /// Returns the outlines of the shapes as polylines in OBJ format, within `tolerance` (user units) of their images in space.

@@ -17,6 +17,7 @@ mod paths;
 mod render;
 mod run;
 mod schema;
+mod solid;
 mod text;
 mod unwarp;
 
@@ -92,10 +93,11 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 16] = [
+const OTHERS: [(&str, Declare); 17] = [
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
+    (solid::NAME, |_| solid::command()),
     (unwarp::NAME, |_| unwarp::command()),
     (schema::NAME, |_| schema::command()),
     (text::NAME, |_| text::command()),
@@ -136,7 +138,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return run::run(registry, m);
     }
     reading.check()?;
-    if name != map::NAME && !later.is_empty() {
+    if name != map::NAME && name != solid::NAME && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
@@ -144,6 +146,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         check::NAME => check::run(registry, &plugins, m),
         new_plugin::NAME => new_plugin::run(m),
         map::NAME => map::run(registry, m, &later),
+        solid::NAME => solid::run(m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
         text::NAME => text::run(m),

@@ -66,7 +66,7 @@ pub use gathered::Gathered;
 pub use homography::Homography;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
-pub use nets::{BicubicNet, Net, complete_net};
+pub use nets::{BicubicNet, Net, bspline, complete_net};
 pub use newton::NewtonInverse;
 pub(crate) use newton::INVERSE_WORK;
 pub use piecewise::{Coons, Sides};
