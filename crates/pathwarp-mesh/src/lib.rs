@@ -60,8 +60,8 @@ pub fn filled(
 ///
 /// # Errors
 /// The shape needs too many points, or cannot be filled.
-pub fn flat(shape: &NamedShape<'_>, tolerance: f64) -> Result<FlatMesh, Error> {
-    let polygons = flatten::polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance)?;
+pub fn flat(shape: &NamedShape<'_>, tolerance: f64, budget: &Budget) -> Result<FlatMesh, Error> {
+    let polygons = flatten::polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance, budget)?;
     tessellate::fill(shape, &polygons)
 }
 

@@ -28,7 +28,7 @@ pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, F
             continue;
         }
         let named = NamedShape { name: &shape.id, outline: &shape.outline, even_odd: shape.even_odd };
-        let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit)
+        let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit, doc.budget())
             .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface(&e))))?;
         let points = flat.points.iter().map(|p| {
             let p: Point = to_mm * *p;
