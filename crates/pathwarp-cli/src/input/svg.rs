@@ -81,6 +81,7 @@ impl SvgArtwork {
             .with_gradients(gradients)
             .with_patterns(options.patterns)
             .with_page(options.page)
+            .with_clones(options.clones)
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep })

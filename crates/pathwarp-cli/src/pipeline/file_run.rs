@@ -49,6 +49,7 @@ impl Batch<'_> {
         let bounds = artwork.bounding_box();
         let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
         let frame = frame.with_units_per_px(artwork.units_per_px());
+        let (frame_box, baseline) = (frame.rect, frame.baseline);
         let framed = frame_note(options.frame, &frame, bounds.is_some());
         let tolerance = options.tolerance_for(bounds, &frame)?;
         let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
@@ -83,6 +84,8 @@ impl Batch<'_> {
             output: target.or(options.into.as_deref()).map(|t| t.display().to_string()),
             error: None,
             tolerance: Some(tolerance),
+            frame: Some([frame_box.x0, frame_box.y0, frame_box.width(), frame_box.height()]),
+            baseline,
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings,
