@@ -51,7 +51,9 @@ impl Batch<'_> {
         let frame = frame.with_units_per_px(artwork.units_per_px());
         let framed = frame_note(options.frame, &frame, bounds.is_some());
         let tolerance = options.tolerance_for(bounds, &frame)?;
-        let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
+        let built = recipe
+            .build_within(registry, frame, &artwork.outlines().iter().copied(), artwork.budget())
+            .map_err(Failure::of_recipe)?;
 
         let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
