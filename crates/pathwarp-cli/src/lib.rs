@@ -25,6 +25,7 @@ mod leftovers;
 mod options;
 mod output;
 mod pipeline;
+mod plugins;
 mod recipe_file;
 mod references;
 mod report;

@@ -159,6 +159,12 @@ fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), E
 }
 
 impl BuiltRecipe {
+    /// Returns the failure of a step's map, if one has failed. Results computed with it are not to be used.
+    #[must_use]
+    pub fn failure(&self) -> Option<Error> {
+        self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()))
+    }
+
     /// Returns the bounding box of the artwork's image under the steps so far.
     fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>, letters: &[Letter]) -> Option<Rect> {
         if self.placement.letters.is_empty() {

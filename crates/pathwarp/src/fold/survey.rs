@@ -3,7 +3,7 @@
 use super::interior::interior;
 use super::orientation::Orientation;
 use super::sign;
-use crate::map::{Class, Creases, Jet, Map};
+use crate::map::{Class, Creases, Gathered, Jet, Map};
 use crate::outline::{Outline, Seg};
 use kurbo::{Affine, Point, Rect};
 
@@ -103,11 +103,16 @@ impl<'a> Survey<'a> {
     }
 
     fn sampled(&self, outline: &Outline, filled: bool) -> Orientation {
+        let gathered = self.map.prefers_batches().then(|| Gathered::new(self.map));
+        let map = gathered.as_ref().map_or(self.map, |g| g as &dyn Map);
+        if gathered.is_some() {
+            map.prepare(&[], &self.samples_of(outline, filled));
+        }
         let mut out = Orientation::default();
         let mut jets = [Jet::default(); PER_SEGMENT + 1];
         for seg in outline.segs() {
             let points: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
-            self.map.jets(&points, &mut jets);
+            map.jets(&points, &mut jets);
             out.add(&points, &jets);
         }
         if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
@@ -115,9 +120,19 @@ impl<'a> Survey<'a> {
             for mut row in interior(outline, bounds, GRID) {
                 row.retain(|p| self.creases.defined_at(*p));
                 let jets = &mut jets[..row.len()];
-                self.map.jets(&row, jets);
+                map.jets(&row, jets);
                 out.add(&row, jets);
             }
+        }
+        out
+    }
+
+    /// All points that are sampled.
+    fn samples_of(&self, outline: &Outline, filled: bool) -> Vec<Point> {
+        let along = |seg: Seg| (0..=PER_SEGMENT).map(move |i| seg.eval(i as f64 / PER_SEGMENT as f64));
+        let mut out: Vec<Point> = outline.segs().flat_map(|seg| along(*seg)).collect();
+        if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
+            out.extend(interior(outline, bounds, GRID).into_iter().flatten().filter(|p| self.creases.defined_at(*p)));
         }
         out
     }

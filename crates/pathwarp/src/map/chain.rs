@@ -102,6 +102,15 @@ impl Map for Chain {
         };
         first.jets(ps, out);
         for m in rest {
+            if m.prefers_batches() {
+                let at: Vec<Point> = out.iter().map(|j| j.p).collect();
+                let mut outer = vec![Jet::default(); at.len()];
+                m.jets(&at, &mut outer);
+                for (j, o) in out.iter_mut().zip(&outer) {
+                    *j = j.then(o);
+                }
+                continue;
+            }
             for chunk in out.chunks_mut(BATCH) {
                 let (mut at, mut outer) = ([Point::ORIGIN; BATCH], [Jet::default(); BATCH]);
                 let n = chunk.len();
@@ -123,6 +132,10 @@ impl Map for Chain {
         };
         first.points(ps, out);
         for m in rest {
+            if m.prefers_batches() {
+                m.points(&out.to_vec(), out);
+                continue;
+            }
             for chunk in out.chunks_mut(BATCH) {
                 let mut at = [Point::ORIGIN; BATCH];
                 at[..chunk.len()].copy_from_slice(chunk);
@@ -187,6 +200,10 @@ impl Map for Chain {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let back: Option<Vec<_>> = self.steps.iter().rev().map(Map::inverse).collect();
         back.map(|steps| Arc::new(Self::new(steps)) as Arc<dyn Map>)
+    }
+
+    fn prefers_batches(&self) -> bool {
+        self.steps.iter().any(Map::prefers_batches)
     }
 
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {

@@ -15,6 +15,7 @@ mod reach;
 mod run;
 mod search;
 
+use super::gather;
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
@@ -91,6 +92,7 @@ impl<'a> Merger<'a> {
     /// The longest run of smoothly joined segments from `start` up to `end`.
     fn run(&self, start: usize, end: usize) -> Result<SegmentRun<'a>, Point> {
         let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
+        self.announce(&run, start, end);
         for i in start..end {
             if self.fitter.options.shared.contains(&self.segs[i]) {
                 break;
@@ -105,6 +107,17 @@ impl<'a> Merger<'a> {
             }
         }
         Ok(run)
+    }
+
+    /// Announces the samples of a run up to `end`, and the places where its pieces may end.
+    fn announce(&self, run: &SegmentRun<'_>, start: usize, end: usize) {
+        let SegmentFitter { map, options, .. } = *self.fitter;
+        if map.prefers_batches() {
+            let sources: Vec<_> =
+                self.segs[start..end].iter().map(|s| SourceCurve::for_proof(s, map, options.certify)).collect();
+            let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+            gather::announce_all(map, &sources, run.lanes(), ends);
+        }
     }
 
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
