@@ -52,7 +52,9 @@ impl Batch<'_> {
         let (frame_box, baseline) = (frame.rect, frame.baseline);
         let framed = frame_note(options.frame, &frame, bounds.is_some());
         let tolerance = options.tolerance_for(bounds, &frame)?;
-        let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
+        let built = recipe
+            .build_within(registry, frame, &artwork.outlines().iter().copied(), artwork.budget())
+            .map_err(Failure::of_recipe)?;
         // The map of a plug-in may fail at any time. Nothing that was computed with it is used, not even another error.
         let sound = || built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
         sound()?;

@@ -23,9 +23,14 @@ pub(super) fn affine(
 ) -> Result<(), GeometryError> {
     outline.segs().try_for_each(finite)?;
     for sub in &outline.subpaths {
+        if !(m * sub.start).is_finite() {
+            return Err(infinity(sub.start));
+        }
         let mut pieces = Vec::with_capacity(sub.segs.len());
         for seg in &sub.segs {
-            match seg.transformed(m) {
+            let image = seg.transformed(m);
+            finite(&image)?;
+            match image {
                 Seg::Line(l) => pieces.push(FittedPiece::Line(l)),
                 Seg::Arc(a) => {
                     let (canonical, flipped) = split::canonical(seg);
