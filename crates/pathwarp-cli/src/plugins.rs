@@ -154,7 +154,8 @@ mod tests {
         for line in ["pathwarp shaper a.svg", "pathwarp shaper a.svg + wave --height 3", "pathwarp render a.svg"] {
             assert!(!need(line), "{line}");
         }
-        for line in ["pathwarp list", "pathwarp ripple a.svg", "pathwarp shaper a.svg + ripple", "pathwarp run a.toml"] {
+        for line in ["pathwarp list", "pathwarp ripple a.svg", "pathwarp shaper a.svg + ripple", "pathwarp run a.toml"]
+        {
             assert!(need(line), "{line}");
         }
     }

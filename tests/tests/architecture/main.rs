@@ -45,6 +45,7 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
+    allowed("pathwarp-plugin", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
     allowed("pathwarp-pdf", &["pathwarp-raster"]);
@@ -54,6 +55,7 @@ fn dependencies_run_one_way() {
         "pathwarp-gimp",
         "pathwarp-mesh",
         "pathwarp-pdf",
+        "pathwarp-plugin",
         "pathwarp-psd",
         "pathwarp-svg",
         "pathwarp-raster",
