@@ -46,6 +46,7 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
     allowed("pathwarp-solid", &["pathwarp"]);
+    allowed("pathwarp-plugin", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
     allowed("pathwarp-pdf", &["pathwarp-raster"]);
@@ -55,6 +56,7 @@ fn dependencies_run_one_way() {
         "pathwarp-gimp",
         "pathwarp-mesh",
         "pathwarp-pdf",
+        "pathwarp-plugin",
         "pathwarp-psd",
         "pathwarp-svg",
         "pathwarp-raster",

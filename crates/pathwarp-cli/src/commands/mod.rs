@@ -27,8 +27,8 @@ use crate::options::Given;
 use crate::plugins::{self, Plugins};
 use crate::status::Status;
 use crate::watch;
-use clap::{Arg, Command};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command};
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
 
@@ -121,10 +121,9 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
-    let matches =
-        build_for(registry, first.get(1))
-            .try_get_matches_from(first)
-            .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
+    let matches = build_for(registry, first.get(1))
+        .try_get_matches_from(first)
+        .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
