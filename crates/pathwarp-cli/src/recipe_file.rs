@@ -53,6 +53,16 @@ pub(crate) fn read(registry: &Registry, file: &Path, external: bool) -> Result<S
     parse(registry, &text, &place).map_err(|e| Failure::file(file, e))
 }
 
+/// Reads the text of a recipe that stands in the file of a drawing. Paths as in [`read`].
+pub(crate) fn from_text(
+    registry: &Registry,
+    text: &str,
+    folder: &Path,
+    external: bool,
+) -> Result<SavedRecipe, String> {
+    parse(registry, text, &Folder { path: folder, external })
+}
+
 /// The folder of a recipe.
 struct Folder<'a> {
     path: &'a Path,

@@ -47,10 +47,12 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-mesh", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
+    allowed("pathwarp-editor", &["pathwarp", "pathwarp-svg"]);
     allowed("pathwarp-pdf", &["pathwarp-raster"]);
     let below_cli = [
         "pathwarp",
         "pathwarp-dxf",
+        "pathwarp-editor",
         "pathwarp-gimp",
         "pathwarp-mesh",
         "pathwarp-pdf",

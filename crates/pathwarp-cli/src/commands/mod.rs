@@ -5,6 +5,7 @@ mod compare;
 mod completions;
 mod convert;
 mod deformation;
+mod edit;
 mod file_args;
 mod gallery;
 mod install;
@@ -82,7 +83,8 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 14] = [
+const OTHERS: [(&str, Declare); 15] = [
+    (edit::NAME, |_| edit::command()),
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
@@ -111,7 +113,10 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
     let reading = Given::reading(m)?;
-    watch::begin(reading.limits);
+    // An editor may be open for hours; it counts the work of every picture.
+    if name != edit::NAME {
+        watch::begin(reading.limits);
+    }
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
@@ -124,6 +129,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
+        edit::NAME => edit::run(registry, m),
         list::NAME => list::run(registry, m),
         map::NAME => map::run(registry, m, &later),
         unwarp::NAME => unwarp::run(m),
