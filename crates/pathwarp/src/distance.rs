@@ -133,7 +133,8 @@ impl<'a> Targets<'a> {
             }
             if node < leaves {
                 let children = [2 * node, 2 * node + 1];
-                let nearer = usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
+                let nearer =
+                    usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
                 self.pending.extend([children[1 - nearer], children[nearer]]);
                 continue;
             }
@@ -224,10 +225,15 @@ mod tests {
             Outline::from_points(&points, false)
         };
         let budget = Budget::new(Limits::default().with(Limit::Comparisons, 20e6));
-        assert!((symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12);
+        assert!(
+            (symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12
+        );
         // Every part of the star is as far from the centre.
         let star: Vec<Point> = (0..30_000).map(|i| Point::new(1e3 * f64::from(i % 2 * 2 - 1), 0.0)).collect();
         let few = Budget::new(Limits::default().with(Limit::Comparisons, 1e3));
-        assert_eq!(symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit, Limit::Comparisons);
+        assert_eq!(
+            symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit,
+            Limit::Comparisons
+        );
     }
 }

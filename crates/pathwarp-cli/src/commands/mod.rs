@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod convert;
 mod deformation;
+mod edit;
 mod file_args;
 mod gallery;
 mod install;
@@ -93,7 +94,8 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 17] = [
+const OTHERS: [(&str, Declare); 18] = [
+    (edit::NAME, |_| edit::command()),
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
@@ -128,7 +130,10 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
     let reading = Given::reading(m)?;
-    watch::begin(reading.limits);
+    // An editor may be open for hours; it counts the work of every picture.
+    if name != edit::NAME {
+        watch::begin(reading.limits);
+    }
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
@@ -141,6 +146,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
+        edit::NAME => edit::run(registry, m),
         list::NAME => list::run(registry, &plugins, m),
         check::NAME => check::run(registry, &plugins, m),
         new_plugin::NAME => new_plugin::run(m),

@@ -155,7 +155,7 @@ fn strokes(shapes: &[ReportedShape]) -> Option<String> {
 }
 
 /// Adds to an error where the map is undefined which operation is, if a step can say so.
-fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
+pub(crate) fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
     let Some((shape, at)) = failure.infinity() else { return failure };
     let mut p = at;
     for step in &built.steps {
@@ -171,7 +171,7 @@ fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
 }
 
 /// The baseline of a recipe's first step.
-fn first_baseline(registry: &Registry, recipe: &Recipe) -> Baseline {
+pub(crate) fn first_baseline(registry: &Registry, recipe: &Recipe) -> Baseline {
     let Some(step) = recipe.steps.first() else { return Baseline::None };
     let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
     match info.baseline {
