@@ -15,6 +15,7 @@
 
 mod advice;
 mod bitmap;
+mod catalogue;
 mod commands;
 mod decimals;
 mod export;
@@ -40,9 +41,12 @@ mod watch;
 
 pub use bitmap::Bender;
 
+use failure::Failure;
 use pathwarp::deform::Registry;
+use pathwarp_solid::deform::Registry3;
 use status::Status;
 use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 /// Runs the program on the process's arguments.
@@ -63,16 +67,21 @@ pub fn command(registry: &Registry) -> clap::Command {
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
-    let done = if inkscape::is_call(&args) {
-        inkscape::run(registry, &args, commands::dispatch)
-    } else {
-        commands::dispatch(registry, &args)
+    let dispatch = || {
+        if inkscape::is_call(&args) {
+            inkscape::run(registry, &args, commands::dispatch)
+        } else {
+            commands::dispatch(registry, &args)
+        }
     };
-    match done {
+    // A panic of a library is an error of the file that caused it. Temporary files are removed on the way.
+    let outcome = catch_unwind(AssertUnwindSafe(dispatch))
+        .unwrap_or_else(|_| Err(Failure::Input("the program failed (see the message above); please report it".into())));
+    match outcome {
         Ok(Status::Complete) => ExitCode::SUCCESS,
         Ok(Status::Partial) => ExitCode::from(1),
         Err(failure) => {
-            failure.show(&advice::Flags::of(registry));
+            failure.show(&advice::Flags::of(registry).and(advice::Flags::of(&Registry3::builtin())));
             ExitCode::from(failure.code())
         }
     }

@@ -152,10 +152,21 @@ mod tests {
     fn commands_without_plug_ins_do_not_look_for_them() {
         let registry = Registry::builtin();
         let need = |line: &str| need_installed(&registry, &words(line));
-        for line in ["pathwarp shaper a.svg", "pathwarp shaper a.svg + wave --height 3", "pathwarp render a.svg", "pathwarp install gimp"] {
+        for line in [
+            "pathwarp shaper a.svg",
+            "pathwarp shaper a.svg + wave --height 3",
+            "pathwarp render a.svg",
+            "pathwarp install gimp",
+        ] {
             assert!(!need(line), "{line}");
         }
-        for line in ["pathwarp list", "pathwarp ripple a.svg", "pathwarp install inkscape", "pathwarp shaper a.svg + ripple", "pathwarp run a.toml"] {
+        for line in [
+            "pathwarp list",
+            "pathwarp ripple a.svg",
+            "pathwarp install inkscape",
+            "pathwarp shaper a.svg + ripple",
+            "pathwarp run a.toml",
+        ] {
             assert!(need(line), "{line}");
         }
     }

@@ -1,7 +1,7 @@
 //! The description of a deformation: its names, texts, and the defaults of its parameters.
 
-use super::outcome::Check;
 use super::frame::frame;
+use super::outcome::Check;
 use crate::deform::Deformation;
 use crate::param::{Args, Kind, Settings};
 
