@@ -5,15 +5,18 @@ use super::line::{allowed, elsewhere, existing, referred};
 use super::quoting;
 use super::stage::{Scope, Stage, temporary};
 use crate::failure::Failure;
-use pathwarp::Subpath;
 use pathwarp::kurbo::{Affine, Point};
 use pathwarp_svg::objects::{self, Guides, Memory, RestoredObject};
 use pathwarp_svg::{Document, Selection};
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Areas that change by less than this share keep their size: coordinates are rounded to eight digits.
 const UNSCALED: f64 = 1e-3;
+
+/// Distance below which two nodes are one, as a share of the object's size.
+const SAME_NODE: f64 = 1e-6;
 
 /// A drawing with sources in place of warped objects.
 pub(super) struct Restoration {
@@ -110,8 +113,20 @@ pub(super) fn read(stage: &Stage<'_>, svg: &str) -> Result<Document, Failure> {
 /// The nodes of an object in root user space.
 pub(super) fn nodes(doc: &Document, id: &str) -> Nodes {
     let selection = Selection { select: vec![format!("[id={id}]")], ..Selection::default() };
-    let subpaths = |s: &pathwarp_svg::Shape| s.outline.subpaths.iter().flat_map(Subpath::anchors).collect::<Vec<_>>();
-    Nodes::of(&doc.selected(&selection).flat_map(subpaths).collect::<Vec<Point>>())
+    let outlines: Vec<_> = doc.selected(&selection).map(|s| Arc::clone(&s.outline)).collect();
+    let boxes = outlines.iter().filter_map(|o| o.bounding_box());
+    let size = boxes.reduce(|a, b| a.union(b)).map_or(0.0, |b| b.width().hypot(b.height()));
+    let subpaths = outlines.iter().flat_map(|o| &o.subpaths);
+    Nodes::of(&subpaths.flat_map(|p| apart(p.anchors(), SAME_NODE * size)).collect::<Vec<Point>>())
+}
+
+/// Nodes of a contour without those at the place of the one before: relative coordinates leave a gap before the end.
+fn apart(mut nodes: Vec<Point>, near: f64) -> Vec<Point> {
+    nodes.dedup_by(|b, a| a.distance(*b) <= near);
+    while nodes.len() > 1 && nodes.first().zip(nodes.last()).is_some_and(|(a, b)| a.distance(*b) <= near) {
+        nodes.pop();
+    }
+    nodes
 }
 
 /// Makes objects of a result remember their sources, in `before`.

@@ -47,5 +47,11 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count, "{name}: a name occurs twice");
         }
+        // Inkscape 1.2 takes the first option of a choice.
+        let bend = &all.iter().find(|(name, _)| name == "pathwarp-bend.inx").unwrap().1;
+        for (choice, first) in [("align", "middle"), ("clones", "follow"), ("offset_unit", "user")] {
+            let options = bend.split(&format!("name=\"{choice}\"")).nth(1).unwrap();
+            assert!(options.split("<option value=\"").nth(1).unwrap().starts_with(first), "{choice}");
+        }
     }
 }

@@ -34,7 +34,7 @@ impl Widget<'_> {
     }
 }
 
-/// A choice: pairs of value and label.
+/// A choice: pairs of value and label. The default comes first: Inkscape 1.2 takes the first option whatever is marked.
 pub(super) fn choice<'a>(
     name: &str,
     title: &str,
@@ -43,10 +43,9 @@ pub(super) fn choice<'a>(
     default: &str,
 ) -> String {
     let mut content = String::from("\n");
-    for (value, label) in options {
-        let is_default = if value == default { " default=\"true\"" } else { "" };
-        let _ =
-            writeln!(content, "        <option value=\"{}\"{is_default}>{}</option>", escaped(value), escaped(&label));
+    let (first, others): (Vec<_>, Vec<_>) = options.partition(|(value, _)| *value == default);
+    for (value, label) in first.iter().chain(&others) {
+        let _ = writeln!(content, "        <option value=\"{}\">{}</option>", escaped(value), escaped(label));
     }
     content += "      ";
     let mut out = String::new();

@@ -8,6 +8,7 @@ use crate::bend::outcome::Skipped;
 use crate::scene::model::{Group, Node};
 use crate::source::live::is_live;
 use crate::source::tags::{ElementId, Namespace};
+use crate::write::input::WriteInput;
 use crate::write::values::{bent_attributes, bent_url};
 use pathwarp::kurbo::Affine;
 
@@ -45,15 +46,28 @@ pub(super) fn drawing(k: &mut Keeper<'_, '_>, e: ElementId, n: &Node, g: &Group)
     }
 }
 
+/// Returns `false` if the original of a `use` may have been warped.
+fn is_original_unchanged(k: &Keeper<'_, '_>, e: ElementId) -> bool {
+    let WriteInput { source, scene, outcomes, options, .. } = k.input;
+    if options.selection.is_everything() {
+        return true;
+    }
+    let originals: Vec<ElementId> =
+        source.href(e).and_then(|id| source.by_id().get(&id)).into_iter().flatten().copied().collect();
+    // One that shows others is taken to have changed with anything.
+    let shows_others = |o: &ElementId| k.tag(*o) == "use" || source.descendants(*o).any(|d| k.tag(d) == "use");
+    let ranges: Vec<_> = originals.iter().map(|&o| &source.elements[o].range).collect();
+    let inside = |o: ElementId| ranges.iter().any(|r| r.contains(&source.elements[o].range.start));
+    let anywhere = originals.is_empty() || originals.iter().any(shows_others);
+    let warped = scene.parts.iter().zip(outcomes).filter(|(_, o)| o.warped().is_some());
+    !warped.map(|(p, _)| p.element()).any(|o| anywhere || o.is_none_or(inside))
+}
+
 /// Replaces a `use` by a group with the resolved content, if that is no longer a copy of the original.
 pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
-    // The original may have been warped.
-    let original_unchanged = || {
-        k.input.options.clones == Clones::Follow
-            || k.input.options.selection.is_everything()
-            || k.input.outcomes.iter().all(|o| o.warped().is_none())
-    };
-    if !g.children.iter().any(|n| k.changed(n)) && original_unchanged() {
+    if !g.children.iter().any(|n| k.changed(n))
+        && (k.input.options.clones == Clones::Follow || is_original_unchanged(k, e))
+    {
         return;
     }
     let source = k.source;
