@@ -2,9 +2,11 @@
 
 use crate::error::Error;
 use crate::load;
-use pathwarp::budget::Limits;
+use crate::pixmap::new_pixmap;
+use pathwarp::budget::{Budget, Limit, Limits};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tiny_skia::{Pixmap, Transform};
+use usvg::{Group, Node};
 
 /// Draws `tree` on a picture.
 ///
@@ -22,4 +24,25 @@ pub(crate) fn draw(
     // A failure leaves the picture half painted; it is then dropped.
     let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render(tree, transform, &mut picture.as_mut())));
     drawn.map_err(|_| Error::Renderer)
+}
+
+/// Draws a group with its filters, clip path, mask and opacity as a picture, and counts the work in `budget`. `transform` leads from
+/// the corner of the group's layer to pixels, as in `resvg::render_node`. `None` if the group shows nothing.
+///
+/// # Errors
+/// As for [`RenderOptions::render_within`](crate::RenderOptions::render_within).
+pub fn render_group(
+    group: &Group,
+    transform: Transform,
+    [width, height]: [f64; 2],
+    budget: &Budget,
+) -> Result<Option<Pixmap>, Error> {
+    let mut pixmap = new_pixmap(width, height, budget.limits())?;
+    #[expect(clippy::cast_possible_truncation, reason = "an estimate")]
+    let work = load::of_group(group, transform, [width as f32, height as f32], budget.limits())?;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    budget.spend(Limit::Painting, work as u64)?;
+    let node = Node::Group(Box::new(group.clone()));
+    let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render_node(&node, transform, &mut pixmap.as_mut())));
+    Ok(drawn.map_err(|_| Error::Renderer)?.map(|()| pixmap))
 }

@@ -52,9 +52,23 @@ pub(crate) fn check(
     [width, height]: [f32; 2],
     limits: &Limits,
 ) -> Result<(), Error> {
+    of_group(tree.root(), transform, [width, height], limits).map(drop)
+}
+
+/// The work of drawing a group.
+///
+/// # Errors
+/// As for [`check`].
+pub(crate) fn of_group(
+    group: &Group,
+    transform: Transform,
+    [width, height]: [f32; 2],
+    limits: &Limits,
+) -> Result<f64, Error> {
     let mut load = Load { limits: *limits, work: 0.0, sizes: HashMap::new() };
-    let canvas = f64::from(width) * f64::from(height);
-    load.group(tree.root(), transform, &Canvas { width, height, held: canvas })
+    let held = f64::from(width) * f64::from(height);
+    load.group(group, transform, &Canvas { width, height, held })?;
+    Ok(load.work)
 }
 
 /// The surface that is painted on.

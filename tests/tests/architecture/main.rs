@@ -46,6 +46,7 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
+    allowed("pathwarp-solid", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
     allowed("pathwarp-pdf", &["pathwarp-raster"]);
@@ -58,6 +59,7 @@ fn dependencies_run_one_way() {
         "pathwarp-psd",
         "pathwarp-svg",
         "pathwarp-raster",
+        "pathwarp-solid",
         "pathwarp-text",
     ];
     allowed("pathwarp-cli", &below_cli);

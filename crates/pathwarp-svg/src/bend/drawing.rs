@@ -15,7 +15,7 @@ use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::source::parallel::map_parallel;
 use crate::source::tags::ElementId;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::{Class, Map};
+use pathwarp::map::{Class, Gathered, Map};
 use pathwarp::{Error, GeometryError};
 use std::collections::HashMap;
 
@@ -112,6 +112,8 @@ fn warp_parts(
     let identity = is_identity(map, options);
     let warp = |i: usize| {
         let p = &parts[i];
+        let gathered = map.prefers_batches().then(|| Gathered::new(map));
+        let context = PartContext { map: gathered.as_ref().map_or(map, |g| g as &dyn Map), ..context };
         let write = written(scene, slots, p.slot, p.frame);
         (selected[i] && !identity && is_invertible(p.frame) && is_invertible(write))
             .then(|| part::warp(&PartTask::new(p, shapes[i].outline.clone(), write, &context, &pieces[i])))

@@ -147,8 +147,10 @@ fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
         let first = all.is_empty().then_some(Affine::IDENTITY);
         all.iter().copied().chain(first).map(move |c| c * q)
     };
-    let images = (0..(N + 1) * (N + 1)).flat_map(|k| copies(point(k))).map(|q| input.map.point(q));
-    images.filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
+    let places: Vec<Point> = (0..(N + 1) * (N + 1)).flat_map(|k| copies(point(k))).collect();
+    let mut images = places.clone();
+    input.map.points(&places, &mut images);
+    images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
 }
 
 fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> {

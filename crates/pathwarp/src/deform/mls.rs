@@ -318,7 +318,14 @@ impl MlsMap {
     }
 }
 
+/// Handles that take as long as a net.
+const HANDLES: f64 = 4.0;
+
 impl Formula for MlsMap {
+    fn work(&self) -> f64 {
+        1.0 + self.handles.len() as f64 / HANDLES
+    }
+
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         /// Squared distance below which a point counts as on the handle, relative to that of the next handle.
         const ON: f64 = 1e-28;

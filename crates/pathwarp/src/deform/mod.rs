@@ -43,7 +43,7 @@ pub use anamorph::{Anamorph, Onto};
 pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
 pub use birational::Birational;
-pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined};
+pub use built::{Built, Explanation, Failure, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined};
 pub use bulge::Bulge;
 pub use entry::{Case, Deformation, Example, Gallery, Info, Law, Pairs};
 pub use envelope::{Envelope, Keep, Spread};
