@@ -1,4 +1,15 @@
-//! The Hausdorff distance between two paths.
+//! The Hausdorff distance between two paths: how far two drawings of the same shape are apart.
+//!
+//! ```
+//! use pathwarp::{Outline, distance};
+//!
+//! let circle = Outline::from_svg("M90,50 A40,40 0 1 1 10,50 A40,40 0 1 1 90,50 Z")?;
+//! let octagon = Outline::from_svg("M90,50 L78,78 L50,90 L22,78 L10,50 L22,22 L50,10 L78,22 Z")?;
+//! let apart = distance::symmetric(&circle, &octagon).unwrap_or_default();
+//! // In the middle of each side.
+//! assert!((3.0..3.3).contains(&apart), "{apart}");
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
 
 use crate::budget::{Budget, Exceeded, Limit, Limits};
 use crate::outline::{Outline, Seg};
