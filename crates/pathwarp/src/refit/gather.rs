@@ -12,31 +12,19 @@ use super::samples::{CHECKED, FITTED, spaced};
 use super::source::SourceCurve;
 use super::split;
 use crate::map::Map;
-use crate::outline::Outline;
+use crate::outline::Seg;
 use kurbo::Point;
 
-/// Values announced at once. A longer path is announced in parts, by what comes after.
-const MOST_ANNOUNCED: usize = 1 << 17;
-
-/// Announces the nodes of an outline and the sixteen samples of every segment.
-pub(super) fn announce_outline(outline: &Outline, map: &dyn Map, options: &Options) {
-    if !map.prefers_batches() {
-        return;
-    }
+/// Announces the nodes and the sixteen samples of every segment.
+pub(super) fn announce_segments<'a>(segs: impl Iterator<Item = &'a Seg>, map: &dyn Map, options: &Options) {
     let (mut points, mut jets) = (Vec::new(), Vec::new());
-    for sub in &outline.subpaths {
-        jets.push(sub.start);
-        for seg in sub.segs.iter().filter(|s| s.is_finite()) {
-            jets.extend([seg.start(), seg.end()]);
-            let (canonical, _) = split::canonical(seg);
-            let source = SourceCurve::for_proof(&canonical, map, options.certify);
-            samples(&source, [&FITTED, &CHECKED].map(|set| spaced(0.0, 1.0, set)), &mut points);
-        }
-        // A long path is announced by and by.
-        if points.len() > MOST_ANNOUNCED {
-            break;
-        }
+    for seg in segs.filter(|s| s.is_finite()) {
+        jets.extend([seg.start(), seg.end()]);
+        let (canonical, _) = split::canonical(seg);
+        let source = SourceCurve::for_proof(&canonical, map, options.certify);
+        samples(&source, [&FITTED, &CHECKED].map(|set| spaced(0.0, 1.0, set)), &mut points);
     }
+    // Each segment begins where the one before ends.
     jets.dedup();
     map.prepare(&points, &jets);
 }
@@ -65,6 +53,13 @@ pub(super) fn announce_all(
         jets.extend(ends.clone().map(|t| source.at(t)));
     }
     map.prepare(&points, &jets);
+}
+
+/// Announces values at eight parameters of each of several curves.
+pub(super) fn announce_each<'a, 's: 'a>(map: &dyn Map, lanes: impl Iterator<Item = (&'a SourceCurve<'s>, Lane)>) {
+    let mut points = Vec::new();
+    lanes.for_each(|(source, t)| samples(source, [t], &mut points));
+    map.prepare(&points, &[]);
 }
 
 /// Announces the break points `places` of the stretch from `first` to `last`, and sixteen samples of each part.
