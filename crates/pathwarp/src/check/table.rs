@@ -24,6 +24,10 @@ pub(super) fn help(entry: &dyn Deformation) -> Check {
     if info.examples.len() < 2 {
         faults.fault("has fewer than two examples");
     }
+    let is_path = |name: &&'static str| info.params.iter().any(|p| p.name == *name && p.kind == Kind::Path);
+    if !info.guides.params.iter().all(is_path) || info.guides.usual > info.guides.params.len() {
+        faults.fault("its guides are not path parameters, or fewer than is usual");
+    }
     faults
 }
 

@@ -82,6 +82,10 @@ fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
 }
 
 impl Map for Chain {
+    fn work(&self) -> f64 {
+        self.steps.iter().map(Map::work).sum::<f64>().max(1.0)
+    }
+
     fn jet(&self, p: Point) -> Jet {
         let mut it = self.steps.iter();
         let Some(first) = it.next() else { return AffineMap::IDENTITY.jet(p) };

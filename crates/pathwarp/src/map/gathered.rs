@@ -136,6 +136,10 @@ impl Map for Gathered<'_> {
         self.map.inverse()
     }
 
+    fn work(&self) -> f64 {
+        self.map.work()
+    }
+
     fn prefers_batches(&self) -> bool {
         true
     }

@@ -267,7 +267,14 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
     out.is_finite().then_some(out)
 }
 
+/// Evaluations of the map for a point of the inverse.
+pub(crate) const INVERSE_WORK: f64 = 32.0;
+
 impl Map for NewtonInverse {
+    fn work(&self) -> f64 {
+        INVERSE_WORK * self.map.work()
+    }
+
     fn jet(&self, q: Point) -> Jet {
         self.solve(q).unwrap_or(Jet::UNDEFINED)
     }

@@ -12,8 +12,7 @@
 use super::gather;
 use super::lanes::{Lanes, larger};
 use super::limits::{
-    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_ATTEMPTS, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE,
-    REPORT_MARGIN,
+    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE, REPORT_MARGIN,
 };
 use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
@@ -86,7 +85,7 @@ impl StretchFitter<'_> {
                 FitOutcome::Misses { piece, error, cusp, .. } => (piece, error, cusp),
             };
             let h = to.t - from.t;
-            if self.attempts >= MAX_ATTEMPTS || h < MIN_STRETCH {
+            if self.attempts >= self.most_attempts || h < MIN_STRETCH {
                 report.over_budget.push(self.source.at(0.5 * (from.t + to.t)));
                 report.add_error(error, Assurance::Checked);
                 out.push(piece);
@@ -149,7 +148,7 @@ impl StretchFitter<'_> {
             placements += 1;
             let has_cusp = |o: &FitOutcome| matches!(o, FitOutcome::Misses { cusp: Some(_), .. });
             let cusp = plan.outcomes[..n].iter().flatten().any(has_cusp);
-            if fits || cusp || self.attempts >= MAX_ATTEMPTS {
+            if fits || cusp || self.attempts >= self.most_attempts {
                 break;
             }
             let mut next = n;
