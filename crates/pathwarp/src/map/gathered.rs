@@ -140,10 +140,6 @@ impl Map for Gathered<'_> {
         self.map.work()
     }
 
-    fn work(&self) -> f64 {
-        self.map.work()
-    }
-
     fn prefers_batches(&self) -> bool {
         true
     }
