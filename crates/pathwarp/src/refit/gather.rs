@@ -32,8 +32,8 @@ pub(super) fn announce_segments<'a>(segs: impl Iterator<Item = &'a Seg>, map: &d
 /// Announces values of one curve at `lanes`, and jets at `ends`.
 pub(super) fn announce(
     source: &SourceCurve<'_>,
-    lanes: impl Iterator<Item = Lane> + Clone,
-    ends: impl Iterator<Item = f64> + Clone,
+    lanes: &(impl Iterator<Item = Lane> + Clone),
+    ends: &(impl Iterator<Item = f64> + Clone),
 ) {
     if source.map.prefers_batches() {
         announce_all(source.map, std::slice::from_ref(source), lanes, ends);
@@ -44,8 +44,8 @@ pub(super) fn announce(
 pub(super) fn announce_all(
     map: &dyn Map,
     sources: &[SourceCurve<'_>],
-    lanes: impl Iterator<Item = Lane> + Clone,
-    ends: impl Iterator<Item = f64> + Clone,
+    lanes: &(impl Iterator<Item = Lane> + Clone),
+    ends: &(impl Iterator<Item = f64> + Clone),
 ) {
     let (mut points, mut jets) = (Vec::new(), Vec::new());
     for source in sources {
@@ -66,7 +66,7 @@ pub(super) fn announce_each<'a, 's: 'a>(map: &dyn Map, lanes: impl Iterator<Item
 pub(super) fn announce_parts(
     source: &SourceCurve<'_>,
     first: f64,
-    places: impl Iterator<Item = f64> + Clone,
+    places: &(impl Iterator<Item = f64> + Clone),
     last: f64,
 ) {
     if !source.map.prefers_batches() {
@@ -75,7 +75,7 @@ pub(super) fn announce_parts(
     let starts = std::iter::once(first).chain(places.clone());
     let ends = places.clone().chain([last]);
     let parts = starts.zip(ends).flat_map(|(a, b)| [&FITTED, &CHECKED].map(|set| spaced(a, b - a, set)));
-    announce(source, parts, places);
+    announce(source, &parts, places);
 }
 
 fn samples(source: &SourceCurve<'_>, lanes: impl IntoIterator<Item = Lane>, out: &mut Vec<Point>) {

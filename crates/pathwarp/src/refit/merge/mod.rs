@@ -69,7 +69,8 @@ pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
     }
     let sources: Vec<_> = sources.iter().map(|seg| SourceCurve::for_proof(seg, map, options.certify)).collect();
     let lanes = SegmentRun::new(map.rational_degree().is_some(), 0).lanes();
-    gather::announce_all(map, &sources, lanes, (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64));
+    let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+    gather::announce_all(map, &sources, &lanes, &ends);
 }
 
 impl<'a> Merger<'a> {
