@@ -162,7 +162,10 @@ app.listen((change) => {
     const note = !has ? "Use the settings on the right" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
     byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
   }
-  if (change === "link") byId("gone").hidden = app.isConnected;
+  if (change === "link") {
+    byId("gone").hidden = app.isConnected;
+    byId("gone-kept").textContent = state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing.";
+  }
   if (change === "state" && state?.restored && !announced) {
     announced = true;
     toast("Your last, unsaved steps are here again");

@@ -121,12 +121,12 @@ export const presets_fit_other_drawings = () => within(null, async ({ page }) =>
   const editor = await edit(`${dir}/badge.svg`);
   const other = await open(editor.address);
   try {
-    const before = await paths(other);
+    const width = () => other.$eval("#stage .line.path", (cage) => cage.getBoundingClientRect().width);
+    const [before, cage] = [await paths(other), await width()];
     await other.locator(".preset", { hasText: "My wave" }).click();
     await quiet(other);
     check((await paths(other)) !== before, "the preset does nothing");
-    const [box, cage] = await other.evaluate(() => ["#stage .art:not([visibility=hidden])", "#stage .line.path"].map((q) => document.querySelector(q).getBoundingClientRect().toJSON()));
-    check(Math.abs(box.width - cage.width) < 0.1 * cage.width, `the cage is ${cage.width} px wide, the artwork ${box.width}`);
+    check(Math.abs((await width()) - cage) < 0.05 * cage, `the cage is ${await width()} px wide, that of the artwork ${cage}`);
     await other.click(".presets .small");
     await other.waitForFunction(() => document.querySelectorAll(".preset").length === 0);
   } finally {
