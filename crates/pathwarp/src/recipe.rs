@@ -1,12 +1,14 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
 
 use crate::ambiguity::ambiguity;
+use crate::budget::{Budget, Limit};
 use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
-use crate::error::{Error, show};
+use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
 use crate::param::{Args, Frame, Letter};
 use kurbo::{Affine, Point, Rect, Vec2};
+use std::cell::LazyCell;
 use std::sync::Arc;
 
 /// A deformation with its arguments.
@@ -51,6 +53,27 @@ pub struct BuiltRecipe {
 }
 
 impl Recipe {
+    /// Builds every step within a budget, which counts the evaluations that find out where the artwork is after each step. See
+    /// [`Recipe::build`].
+    ///
+    /// # Errors
+    /// As for [`Recipe::build`], and [`GeometryError::Limit`] if the budget does not allow so many.
+    pub fn build_within<'a>(
+        &self,
+        registry: &Registry,
+        frame: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        budget: &Budget,
+    ) -> Result<BuiltRecipe, Error> {
+        let samples = LazyCell::new(|| (artwork.clone().flat_map(Outline::segs).count() * (PER_SEGMENT + 1)) as f64);
+        let count = |out: &BuiltRecipe| {
+            let places = out.placement.copies.len().max(1) as f64;
+            let work = SAMPLE * places * *samples * out.map.work();
+            budget.spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)
+        };
+        self.built(registry, frame, artwork, &count)
+    }
+
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
     /// as it is by then.
     ///
@@ -61,6 +84,17 @@ impl Recipe {
         registry: &Registry,
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+    ) -> Result<BuiltRecipe, Error> {
+        self.built(registry, frame, artwork, &|_| Ok(()))
+    }
+
+    /// Builds every step; `count` is called before the artwork's image under the steps so far is sampled.
+    fn built<'a>(
+        &self,
+        registry: &Registry,
+        frame: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
     ) -> Result<BuiltRecipe, Error> {
         let mut out = BuiltRecipe {
             map: Chain::default(),
@@ -78,6 +112,7 @@ impl Recipe {
                 Error::input(format!("step {}", i + 1), problem)
             })?;
             if i > 0 {
+                count(&out)?;
                 let units_per_px = frame.units_per_px;
                 let image = out.image_box(artwork.clone(), &letters);
                 frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
@@ -88,6 +123,7 @@ impl Recipe {
                 out.placement.clone_from(&built.placement);
             }
             if step.inverse {
+                count(&out)?;
                 if let Some(warning) = out.torn_seam(artwork.clone(), &built, &step.deformation) {
                     built.warn(warning);
                 }
@@ -127,6 +163,12 @@ fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), E
 }
 
 impl BuiltRecipe {
+    /// Returns the failure of a step's map, if one has failed. Results computed with it are not to be used.
+    #[must_use]
+    pub fn failure(&self) -> Option<Error> {
+        self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()))
+    }
+
     /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
     /// `letters` are those of the first frame. `None` if nothing of the artwork is in the map's domain.
     #[must_use]
@@ -185,6 +227,9 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
 
 /// Intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
+
+/// The work of a sample, which is taken in a batch, in evaluations of the budget.
+const SAMPLE: f64 = 0.25;
 
 /// Samples the image of every segment of the artwork: accurate enough for percentages and warnings, not for proofs.
 fn images<'a>(

@@ -45,6 +45,8 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
+    allowed("pathwarp-solid", &["pathwarp"]);
+    allowed("pathwarp-plugin", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
     allowed("pathwarp-editor", &["pathwarp", "pathwarp-svg"]);
@@ -56,9 +58,11 @@ fn dependencies_run_one_way() {
         "pathwarp-gimp",
         "pathwarp-mesh",
         "pathwarp-pdf",
+        "pathwarp-plugin",
         "pathwarp-psd",
         "pathwarp-svg",
         "pathwarp-raster",
+        "pathwarp-solid",
         "pathwarp-text",
     ];
     allowed("pathwarp-cli", &below_cli);

@@ -49,14 +49,22 @@ impl Batch<'_> {
         let bounds = artwork.bounding_box();
         let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
         let frame = frame.with_units_per_px(artwork.units_per_px());
+        let (frame_box, baseline) = (frame.rect, frame.baseline);
         let framed = frame_note(options.frame, &frame, bounds.is_some());
         let tolerance = options.tolerance_for(bounds, &frame)?;
-        let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
+        let built = recipe
+            .build_within(registry, frame, &artwork.outlines().iter().copied(), artwork.budget())
+            .map_err(Failure::of_recipe)?;
+        // The map of a plug-in may fail at any time. Nothing that was computed with it is used, not even another error.
+        let sound = || built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
+        sound()?;
 
-        let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
+        let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
         let request = WarpRequest { built: &built, options, bounds, tolerance, embedded_recipe };
-        let warped = artwork.warp(&request).map_err(|f| explained(f, &built))?;
+        let warped = artwork.warp(&request);
+        sound()?;
+        let warped = warped.map_err(|f| explained(f, &built))?;
 
         let mut files = Vec::new();
         match (warped.result, target) {
@@ -78,6 +86,8 @@ impl Batch<'_> {
             output: target.or(options.into.as_deref()).map(|t| t.display().to_string()),
             error: None,
             tolerance: Some(tolerance),
+            frame: Some([frame_box.x0, frame_box.y0, frame_box.width(), frame_box.height()]),
+            baseline,
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings,

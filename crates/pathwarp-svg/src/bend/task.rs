@@ -17,6 +17,7 @@ use std::sync::Arc;
 const ROUNDING: f64 = 0.01;
 
 /// The surroundings of a part.
+#[derive(Clone, Copy)]
 pub(super) struct PartContext<'a> {
     pub(super) map: &'a dyn Map,
     pub(super) options: &'a WarpOptions,

@@ -56,7 +56,7 @@ impl EditedArtwork {
     /// Looks up references, chooses the frame and builds the steps.
     fn ready(&mut self, recipe: &Recipe) -> Result<Ready, Failure> {
         let mut resolved = recipe.clone();
-        references::resolve_files(&self.registry, &mut resolved, &self.options.reading)?;
+        references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
         let guides = references::resolve_names(&self.registry, &mut resolved, |name| self.svg.path_named(name))?;
         let Framed { bounds, frame, .. } = self.framed(guides, pipeline::first_baseline(&self.registry, &resolved))?;
         let tolerance = self.options.tolerance_for(bounds, &frame)?;
@@ -80,7 +80,7 @@ impl EditedArtwork {
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
         let Ready { resolved, built, bounds, tolerance } = self.ready(recipe)?;
-        let text = || recipe_file::write(&self.registry, recipe, &self.given, Path::new(""));
+        let text = || recipe_file::write(&*self.registry, recipe, &self.given, Path::new(""));
         let embedded_recipe = (fineness == Fineness::Saved).then(text).transpose()?;
         let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
         let request = WarpRequest { built: &built, options: &self.options, bounds, tolerance, embedded_recipe };
@@ -138,6 +138,6 @@ impl Artwork for EditedArtwork {
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        self.said(recipe_file::write(&self.registry, recipe, &self.given, Path::new("")))
+        self.said(recipe_file::write(&*self.registry, recipe, &self.given, Path::new("")))
     }
 }

@@ -45,7 +45,7 @@ impl EditorHost {
         let folder = file.parent().unwrap_or(Path::new(""));
         let (source, saved) = match &origin {
             Some(origin) => {
-                let saved = recipe_file::from_text(&self.registry, &origin.recipe, folder, reading.external);
+                let saved = recipe_file::from_text(&*self.registry, &origin.recipe, folder, reading.external);
                 (origin.source.as_slice(), Some(saved.map_err(|e| Failure::file(file, e))?))
             }
             None => (bytes, None),
