@@ -96,6 +96,23 @@ export const the_program_ends_with_the_page = () => within(null, async ({ page, 
   check(code === 0, `exit ${code}`);
 });
 
+export const a_port_is_chosen_and_ctrl_c_ends = async () => {
+  const dir = folder({ "logo.svg": sample("logo.svg") });
+  // A port that is free: another server had it a moment ago.
+  const { createServer } = await import("node:net");
+  const port = await new Promise((done) => {
+    const server = createServer().listen(0, "127.0.0.1", () => {
+      const { port } = server.address();
+      server.close(() => done(port));
+    });
+  });
+  const editor = await edit(`${dir}/logo.svg`, "--port", String(port));
+  check(new URL(editor.address).port === String(port), editor.address);
+  editor.child.kill("SIGINT");
+  const code = await Promise.race([editor.ended, new Promise((r) => setTimeout(() => r("still running"), 5000))]);
+  check(code === 130, `exit ${code}`);
+};
+
 export const a_dropped_file_is_opened = () => within(null, async ({ page, dir }) => {
   const text = readFileSync(sample("badge.svg"), "utf8");
   await page.evaluate((svg) => {
