@@ -358,7 +358,8 @@
         }
         at = to;
       }
-      out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed });
+      const isQuadrangle = sub.segments.length === 3 && sub.segments.every((seg) => seg.length === 2);
+      out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed || isQuadrangle });
     }
     /** Writes the values of a parameter into the step. */
     write(name) {
@@ -567,7 +568,10 @@
         this.take(answer);
         return true;
       });
-      if (!done && this.state && this.isConnected) await this.load(this.state).then(() => this.fail(this.problem));
+      if (done || !this.state || !this.isConnected) return;
+      const { problem } = this;
+      await this.load(this.state);
+      this.fail(problem);
     }
     /** Undoes or redoes. */
     async turn(direction) {
@@ -1414,9 +1418,12 @@
     /** Shows the whole page. */
     fit() {
       const { state } = this.app;
-      const [width, height] = this.size;
+      const [width, whole] = this.size;
+      const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
+      const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
+      const height = Math.max(whole - covered, whole / 4);
       if (!state || width === 0 || height === 0) return;
-      this.camera.fit(state.page, this.size, Math.min(MARGIN, width / 10));
+      this.camera.fit(state.page, [width, height], Math.min(MARGIN, width / 10));
       this.isFitted = true;
       this.layout();
     }
@@ -1785,8 +1792,16 @@
   on("zoom-out", () => stage.zoom(1 / ZOOM));
   on("fit", () => stage.fit());
   on("start-over", () => void app.arrange([], 0));
-  on("open-shapes", () => document.body.classList.toggle("shapes-open"));
-  on("open-settings", () => document.body.classList.toggle("settings-open"));
+  function sheet(name) {
+    const { classList } = document.body;
+    const opens = name !== null && !classList.contains(name);
+    if (!opens && !classList.contains("shapes-open") && !classList.contains("settings-open")) return;
+    classList.remove("shapes-open", "settings-open");
+    if (opens) classList.add(name);
+    stage.fit();
+  }
+  on("open-shapes", () => sheet("shapes-open"));
+  on("open-settings", () => sheet("settings-open"));
   stage.onZoom = () => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
@@ -1843,7 +1858,9 @@
       if (key === "escape") stage.pick(null);
     }
   });
-  byId("stage").addEventListener("pointerdown", () => document.body.classList.remove("shapes-open", "settings-open"));
+  byId("stage").addEventListener("pointerdown", (e) => {
+    if (!e.target.closest(".knob")) sheet(null);
+  });
   window.addEventListener("keyup", (e) => {
     if (e.key.toLowerCase() === "b") void stage.before(false);
   });
@@ -1893,11 +1910,11 @@
     if (change === "handles") {
       const grows = app.handles?.grows ?? false;
       const has = (app.handles?.handles.length ?? 0) > 0;
-      const isCurve = app.handles?.handles.some((h2) => h2.shape === "control") ?? false;
+      const isCurve = app.handles?.handles.some((h2) => /\/(in|out)$/.test(h2.key)) ?? false;
       byId("smooth").hidden = !isCurve;
       byId("mirror").hidden = !has;
       byId("snap").hidden = !has;
-      const note = !has ? "Use the settings on the right" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
+      const note = !has ? "Change the settings" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
       byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
     }
     if (change === "link") {

@@ -206,7 +206,9 @@ export class Handles {
       }
       at = to;
     }
-    out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed });
+    // Four points without curves are corners.
+    const isQuadrangle = sub.segments.length === 3 && sub.segments.every((seg) => seg.length === 2);
+    out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed || isQuadrangle });
   }
 
   /** Writes the values of a parameter into the step. */
