@@ -17,6 +17,7 @@ mod advice;
 mod bitmap;
 mod commands;
 mod decimals;
+pub mod embed;
 mod export;
 mod failure;
 mod format;

@@ -49,8 +49,13 @@ pub(crate) struct SavedRecipe {
 /// Reads a recipe file. Relative paths in it refer to the file's folder; absolute ones are allowed only if `external`.
 pub(crate) fn read(registry: &Registry, file: &Path, external: bool) -> Result<SavedRecipe, Failure> {
     let text = std::fs::read_to_string(file).map_err(|e| Failure::file(file, format!("cannot be read: {e}")))?;
-    let place = Folder { path: file.parent().unwrap_or(Path::new("")), external };
-    parse(registry, &text, &place).map_err(|e| Failure::file(file, e))
+    let folder = file.parent().unwrap_or(Path::new(""));
+    parse_in(registry, &text, folder, external).map_err(|e| Failure::file(file, e))
+}
+
+/// Reads the text of a recipe file in `folder`; otherwise as [`read`].
+pub(crate) fn parse_in(registry: &Registry, text: &str, folder: &Path, external: bool) -> Result<SavedRecipe, String> {
+    parse(registry, text, &Folder { path: folder, external })
 }
 
 /// The folder of a recipe.

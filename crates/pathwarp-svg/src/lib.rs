@@ -47,6 +47,7 @@ pub use bend::letter_places::LetterPlaces;
 pub use bend::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
 pub use bend::outcome::{Overhang, ShapeReport, Skipped, WarpedDocument};
 pub use bend::picture::{BentImage, PictureError};
+pub use bend::plain::{WarpedPath, warp_path};
 pub use document::Document;
 pub use embed::Origin;
 pub use scene::lettering::selected::{Lettering, LetteringFrame, LetteringFrameError};

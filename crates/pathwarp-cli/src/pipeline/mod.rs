@@ -4,6 +4,7 @@
 mod file_run;
 mod folders;
 mod inputs;
+mod memory;
 mod messages;
 mod naming;
 mod plan;
@@ -21,6 +22,7 @@ use crate::{recipe_file, references, temporaries, watch};
 use file_run::{Batch, FileRun};
 use folders::Folders;
 use indicatif::ProgressBar;
+pub(crate) use memory::warp_bytes;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use plan::Job;
