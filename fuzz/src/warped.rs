@@ -124,7 +124,10 @@ fn distance(pieces: &[PathSeg], p: Point, accuracy: f64, enough: f64) -> f64 {
 fn sampled(c: &CubicBez, p: Point) -> f64 {
     const STEPS: usize = 64;
     let at = |t: f64| c.eval(t).distance(p);
-    let (near, _) = (0..=STEPS).map(|i| i as f64 / STEPS as f64).map(|t| (t, at(t))).fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
+    let (near, _) = (0..=STEPS)
+        .map(|i| i as f64 / STEPS as f64)
+        .map(|t| (t, at(t)))
+        .fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
     let (mut low, mut high) = ((near - 1.0 / STEPS as f64).max(0.0), (near + 1.0 / STEPS as f64).min(1.0));
     for _ in 0..60 {
         let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);

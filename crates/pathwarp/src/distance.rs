@@ -9,9 +9,10 @@ const PER_SEGMENT: usize = 64;
 /// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
 
-/// Work of looking at a box, and at a segment, in comparisons of the budget.
-const BOX: f64 = 0.1;
-const SEGMENT: f64 = 8.0;
+/// Work of looking at a box, at a line and at a curve, in comparisons of the budget.
+const BOX: f64 = 0.05;
+const LINE: f64 = 0.2;
+const CURVE: f64 = 3.0;
 
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
@@ -40,7 +41,7 @@ fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<
     if targets.all.is_empty() {
         return Ok(None);
     }
-    let samples = from.segs().map(|s| Target::Seg(s));
+    let samples = from.segs().map(Target::Seg);
     let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut most = None;
     for sampled in samples.chain(alone) {
@@ -71,6 +72,11 @@ impl Target<'_> {
 
     fn intervals(&self) -> usize {
         if matches!(self, Self::Seg(_)) { PER_SEGMENT } else { 0 }
+    }
+
+    /// The work of [`distance`](Self::distance).
+    fn work(&self) -> f64 {
+        if matches!(self, Self::Seg(Seg::Quad(_) | Seg::Cubic(_) | Seg::Arc(_))) { CURVE } else { LINE }
     }
 
     fn eval(&self, t: f64) -> Point {
@@ -120,7 +126,7 @@ impl<'a> Targets<'a> {
     fn distance(&mut self, p: Point, enough: f64, work: &mut f64) -> f64 {
         let leaves = self.boxes.len() / 2;
         let mut best = self.all[self.last].distance(p, f64::INFINITY);
-        *work += SEGMENT;
+        *work += self.all[self.last].work();
         self.pending.clear();
         self.pending.push(1);
         while let Some(node) = self.pending.pop()
@@ -133,12 +139,13 @@ impl<'a> Targets<'a> {
             }
             if node < leaves {
                 let children = [2 * node, 2 * node + 1];
-                let nearer = usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
+                let nearer =
+                    usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
                 self.pending.extend([children[1 - nearer], children[nearer]]);
                 continue;
             }
             let Some(target) = self.all.get(node - leaves) else { continue };
-            *work += SEGMENT;
+            *work += target.work();
             let d = target.distance(p, best);
             if d < best {
                 (best, self.last) = (d, node - leaves);
@@ -224,10 +231,15 @@ mod tests {
             Outline::from_points(&points, false)
         };
         let budget = Budget::new(Limits::default().with(Limit::Comparisons, 20e6));
-        assert!((symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12);
+        assert!(
+            (symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12
+        );
         // Every part of the star is as far from the centre.
         let star: Vec<Point> = (0..30_000).map(|i| Point::new(1e3 * f64::from(i % 2 * 2 - 1), 0.0)).collect();
         let few = Budget::new(Limits::default().with(Limit::Comparisons, 1e3));
-        assert_eq!(symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit, Limit::Comparisons);
+        assert_eq!(
+            symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit,
+            Limit::Comparisons
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
 
 use crate::ambiguity::ambiguity;
-use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::budget::{Budget, Limit};
+use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;

@@ -43,7 +43,10 @@ fn filters_become_pictures_within_bounds() {
         assert!([0, 3].contains(&compared.0), "{name}: {compared:?}");
     }
     // One that fits is drawn at the wanted resolution, without a word about it.
-    let small = Folder::with(&[("a.svg", &svg(&format!("<filter id='f'><feOffset dx='3'/></filter><g filter='url(#f)'>{RECT}</g>")))]);
+    let small = Folder::with(&[(
+        "a.svg",
+        &svg(&format!("<filter id='f'><feOffset dx='3'/></filter><g filter='url(#f)'>{RECT}</g>")),
+    )]);
     let (code, said) = small.run(&["convert", "a.svg", "-o", "o.pdf"]);
     assert_eq!((code, said.contains("fewer")), (0, false), "{said}");
 }

@@ -60,7 +60,8 @@ fn huge_coordinates_and_pins_end() {
 fn long_formulas_chains_and_skeletons_end_by_the_budget() {
     let folder = Folder::with(&[("a.svg", &fs::read(sample("logo.svg")).unwrap())]);
     let sum = (1..300).map(|i| format!("+sin(x*{i})")).collect::<String>();
-    let pairs: Vec<String> = (0..990).map(|i| format!("{},{}:{},{}", i, i * 7 % 100, i * 3 % 100, i * 11 % 100)).collect();
+    let pairs: Vec<String> =
+        (0..990).map(|i| format!("{},{}:{},{}", i, i * 7 % 100, i * 3 % 100, i * 11 % 100)).collect();
     let mls: Vec<&str> = ["mls"].into_iter().chain(pairs.iter().flat_map(|p| ["--pair", p])).collect();
     let waves: Vec<&str> = ["wave"].into_iter().chain(["+", "wave"].repeat(60)).collect();
     for args in [

@@ -14,7 +14,9 @@ fn path() -> Vec<u8> {
     let mut content = words(&[1, 0, 1, 2]);
     content.extend(b"p\0");
     content.extend(words(&[1, 1, 0, 0, 1, 1, 0, 2, 6]));
-    for (i, [x, y]) in [[1.0, 2.0], [1.0, 2.0], [3.0, 9.0], [40.0, 5.0], [50.0, 60.0], [50.0, 60.0_f32]].iter().enumerate() {
+    for (i, [x, y]) in
+        [[1.0, 2.0], [1.0, 2.0], [3.0, 9.0], [40.0, 5.0], [50.0, 60.0], [50.0, 60.0_f32]].iter().enumerate()
+    {
         content.extend(words(&[u32::from(i % 3 != 1), x.to_bits(), y.to_bits()]));
     }
     [words(&[25, u32::try_from(content.len()).unwrap()]), content].concat()
@@ -70,7 +72,7 @@ fn overlapping_layers_are_damage() {
     let folder = Folder::with(&[("a.xcf", &file)]);
     for command in COMMANDS {
         let (code, said) = folder.run(command);
-        let rewrites = command[3..].contains(&"o.xcf");
+        let rewrites = command.last() == Some(&"o.xcf");
         assert_eq!(code != 0, rewrites, "{command:?}: {code} {said}");
     }
     assert!(!folder.path().join("o.xcf").exists());

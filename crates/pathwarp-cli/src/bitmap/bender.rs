@@ -50,8 +50,8 @@ impl ImageWarper for Bender {
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
-        let picture =
-            Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len())).map_err(|e| e.to_string())?;
+        let picture = Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len()))
+            .map_err(|e| e.to_string())?;
         let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;

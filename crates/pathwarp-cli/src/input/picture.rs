@@ -52,7 +52,13 @@ impl PictureArtwork {
         let picture = Picture::read_within(bytes, &limits)?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
-        Ok(Self { name, picture, format, budget: Arc::new(Budget::new(limits)), outline: Outline::from_points(&corners, true) })
+        Ok(Self {
+            name,
+            picture,
+            format,
+            budget: Arc::new(Budget::new(limits)),
+            outline: Outline::from_points(&corners, true),
+        })
     }
 
     fn area(&self) -> Rect {

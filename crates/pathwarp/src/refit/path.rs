@@ -70,7 +70,10 @@ pub(super) fn subpath(
     let projective = matches!(map.class(), Class::Projective(_));
     let work = map.work();
     // Values at the nodes.
-    options.budget.spend_cut(Limit::Evaluations, (work * sub.segs.len() as f64) as u64).map_err(GeometryError::Limit)?;
+    options
+        .budget
+        .spend_cut(Limit::Evaluations, (work * sub.segs.len() as f64) as u64)
+        .map_err(GeometryError::Limit)?;
     let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
     let refitted = |i: usize, segs: &[Seg]| {
         let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
