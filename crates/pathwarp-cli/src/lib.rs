@@ -15,11 +15,13 @@
 
 mod advice;
 mod bitmap;
+mod catalogue;
 mod commands;
 mod decimals;
 mod export;
 mod failure;
 mod format;
+mod inkscape;
 mod input;
 mod leftovers;
 mod options;
@@ -41,6 +43,7 @@ pub use bitmap::Bender;
 
 use failure::Failure;
 use pathwarp::deform::Registry;
+use pathwarp_solid::deform::Registry3;
 use status::Status;
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -64,14 +67,21 @@ pub fn command(registry: &Registry) -> clap::Command {
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
+    let dispatch = || {
+        if inkscape::is_call(&args) {
+            inkscape::run(registry, &args, commands::dispatch)
+        } else {
+            commands::dispatch(registry, &args)
+        }
+    };
     // A panic of a library is an error of the file that caused it. Temporary files are removed on the way.
-    let outcome = catch_unwind(AssertUnwindSafe(|| commands::dispatch(registry, &args)))
+    let outcome = catch_unwind(AssertUnwindSafe(dispatch))
         .unwrap_or_else(|_| Err(Failure::Input("the program failed (see the message above); please report it".into())));
     match outcome {
         Ok(Status::Complete) => ExitCode::SUCCESS,
         Ok(Status::Partial) => ExitCode::from(1),
         Err(failure) => {
-            failure.show(&advice::Flags::of(registry));
+            failure.show(&advice::Flags::of(registry).and(advice::Flags::of(&Registry3::builtin())));
             ExitCode::from(failure.code())
         }
     }

@@ -29,6 +29,7 @@ mod tessellate;
 
 pub use error::Error;
 pub use shape::{NamedShape, Point3, SurfaceFn};
+pub use tessellate::FlatMesh;
 
 use obj::ObjWriter;
 use pathwarp::budget::Budget;
@@ -53,6 +54,15 @@ pub fn filled(
         out.mesh(s.name, &mesh);
     }
     Ok(out.finish())
+}
+
+/// Fills a shape with triangles in the plane of the drawing, within `tolerance` (user units) of its outline.
+///
+/// # Errors
+/// The shape needs too many points, or cannot be filled.
+pub fn flat(shape: &NamedShape<'_>, tolerance: f64, budget: &Budget) -> Result<FlatMesh, Error> {
+    let polygons = flatten::polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance, budget)?;
+    tessellate::fill(shape, &polygons)
 }
 
 /// Returns the outlines of the shapes as polylines in OBJ format, within `tolerance` (user units) of their images in space.

@@ -27,7 +27,7 @@ pub(super) fn command() -> Command {
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
-        .args(some_options(&["format", "dxf-curves", "tolerance"]))
+        .args(some_options(&["format", "dxf-curves", "tolerance", "quiet"]))
         .arg(
             Arg::new("split")
                 .long("split")
@@ -67,7 +67,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
         None => drawing(file, &options.reading)?,
     };
-    if let Some(d) = &damage {
+    if let Some(d) = damage.as_ref().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {d}", input::display(file)));
     }
     match target {
@@ -105,7 +105,7 @@ fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOpt
     let Exported { bytes, warnings } =
         export::drawing(doc.text().to_owned(), format, &input::read_options(file, &options.reading), options, None)?;
     let warnings: Vec<String> = doc.missing().into_iter().chain(warnings).collect();
-    for warning in &warnings {
+    for warning in warnings.iter().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {warning}", input::display(file)));
     }
     output::write(target, &bytes)?;

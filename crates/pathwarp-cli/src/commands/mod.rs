@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod convert;
 mod deformation;
+mod edit;
 mod file_args;
 mod gallery;
 mod install;
@@ -17,6 +18,7 @@ mod paths;
 mod render;
 mod run;
 mod schema;
+mod solid;
 mod text;
 mod unwarp;
 
@@ -26,8 +28,8 @@ use crate::options::Given;
 use crate::plugins::{self, Plugins};
 use crate::status::Status;
 use crate::watch;
-use clap::{Arg, Command};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command};
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
 
@@ -92,10 +94,12 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 16] = [
+const OTHERS: [(&str, Declare); 18] = [
+    (edit::NAME, |_| edit::command()),
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
+    (solid::NAME, |_| solid::command()),
     (unwarp::NAME, |_| unwarp::command()),
     (schema::NAME, |_| schema::command()),
     (text::NAME, |_| text::command()),
@@ -119,15 +123,17 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
-    let matches =
-        build_for(registry, first.get(1))
-            .try_get_matches_from(first)
-            .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
+    let matches = build_for(registry, first.get(1))
+        .try_get_matches_from(first)
+        .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
     let reading = Given::reading(m)?;
-    watch::begin(reading.limits);
+    // An editor may be open for hours; it counts the work of every picture.
+    if name != edit::NAME {
+        watch::begin(reading.limits);
+    }
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
@@ -136,14 +142,16 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return run::run(registry, m);
     }
     reading.check()?;
-    if name != map::NAME && !later.is_empty() {
+    if name != map::NAME && name != solid::NAME && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
+        edit::NAME => edit::run(registry, m),
         list::NAME => list::run(registry, &plugins, m),
         check::NAME => check::run(registry, &plugins, m),
         new_plugin::NAME => new_plugin::run(m),
         map::NAME => map::run(registry, m, &later),
+        solid::NAME => solid::run(m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
         text::NAME => text::run(m),
@@ -152,7 +160,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         render::NAME => render::run(m),
         gallery::NAME => gallery::run(registry, m),
         compare::NAME => compare::run(m),
-        install::NAME => install::run(m),
+        install::NAME => install::run(registry, m),
         completions::NAME => completions::run(build(registry), m),
         man::NAME => man::run(build(registry), m),
         other => Err(Failure::usage(format!("there is no command {other}"))),

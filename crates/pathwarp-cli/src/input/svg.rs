@@ -32,6 +32,9 @@ use std::sync::Arc;
 /// With fewer segments, starting threads takes longer than looking for folds.
 const WORTH_THREADS: usize = 5000;
 
+/// Resolution of bitmaps in a draft.
+const DRAFT_DPI: f64 = 24.0;
+
 /// An SVG drawing. Its plane is root user space.
 pub(crate) struct SvgArtwork {
     name: String,
@@ -40,10 +43,12 @@ pub(crate) struct SvgArtwork {
     selection: Selection,
     /// The format of the result.
     format: Format,
+    /// The drawing is bent again and again: the work of each time is counted anew.
+    is_bent_often: bool,
 }
 
 impl SvgArtwork {
-    pub(super) fn read(
+    pub(crate) fn read(
         bytes: &[u8],
         input: &Path,
         options: &CommonOptions,
@@ -55,7 +60,34 @@ impl SvgArtwork {
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
         doc.check_selection(&selection)?;
-        Ok(Self { name, doc, read, selection, format })
+        Ok(Self { name, doc, read, selection, format, is_bent_often: false })
+    }
+
+    /// The same, to be bent any number of times: limits on work then hold for each of them.
+    pub(crate) fn to_be_bent_often(self) -> Self {
+        Self { is_bent_often: true, ..self }
+    }
+
+    pub(crate) fn document(&self) -> &Document {
+        &self.doc
+    }
+
+    /// The result for a look at it while something is dragged: within the tolerance, but not merged into few nodes, and with gradients
+    /// and bitmaps in the coarse.
+    pub(crate) fn draft(&self, request: &WarpRequest<'_>) -> Result<String, Failure> {
+        let WarpRequest { built, .. } = request;
+        let mut options = self.warp_options(request).with_gradients(Gradients::Fit);
+        options.refit = options.refit.with_merge(false);
+        if let Images::Warp(_) = options.images {
+            let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
+            options.images = Images::Warp(Arc::new(bender.with_limits(*self.doc.budget().limits())));
+        }
+        Ok(self.doc.warp(&built.map, &options)?.svg)
+    }
+
+    fn budget(&self) -> Arc<Budget> {
+        let budget = self.doc.budget();
+        if self.is_bent_often { Arc::new(Budget::new(*budget.limits())) } else { budget.clone() }
     }
 
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
@@ -70,7 +102,7 @@ impl SvgArtwork {
         };
         let letters = LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
-        let refit = refit.with_budget(self.doc.budget().clone());
+        let refit = refit.with_budget(self.budget());
         WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)
@@ -81,6 +113,7 @@ impl SvgArtwork {
             .with_gradients(gradients)
             .with_patterns(options.patterns)
             .with_page(options.page)
+            .with_clones(options.clones)
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep })
@@ -252,7 +285,7 @@ impl Artwork for SvgArtwork {
             warped.svg = origin.embed(&warped.svg)?;
         }
         let (shapes, folds) = self.shape_reports(request, &options, &warped)?;
-        let mut warnings = warped.warnings;
+        let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         let empty = !self.doc.has_artwork(&self.selection);
         if empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());

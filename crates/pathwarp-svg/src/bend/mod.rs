@@ -21,4 +21,5 @@ mod stroke;
 mod stubs;
 mod task;
 pub(crate) mod tiles;
+pub(crate) mod warning;
 mod width;

@@ -52,6 +52,7 @@ pub(crate) mod piecewise;
 pub(crate) mod polynomial;
 mod projective;
 mod rational_bezier;
+mod rounds;
 mod traits;
 
 pub use birational::{Birational, BirationalInverse, Rows};
@@ -65,7 +66,7 @@ pub use gathered::Gathered;
 pub use homography::Homography;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
-pub use nets::{BicubicNet, Net, complete_net};
+pub use nets::{BicubicNet, Net, bspline, complete_net};
 pub(crate) use newton::INVERSE_WORK;
 pub use newton::NewtonInverse;
 pub use piecewise::{Coons, Sides};

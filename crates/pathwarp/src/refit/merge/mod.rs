@@ -69,6 +69,7 @@ impl<'a> Merger<'a> {
     /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
     /// begins.
     pub(super) fn merged(mut self, smooth: &[bool]) -> Result<(Vec<FittedPiece>, PathReport), Point> {
+        self.announce(smooth);
         let mut i = 0;
         while i < self.segs.len() {
             let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
@@ -92,7 +93,6 @@ impl<'a> Merger<'a> {
     /// The longest run of smoothly joined segments from `start` up to `end`.
     fn run(&self, start: usize, end: usize) -> Result<SegmentRun<'a>, Point> {
         let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
-        self.announce(&run, start, end);
         for i in start..end {
             if self.fitter.options.shared.contains(&self.segs[i]) {
                 break;
@@ -109,15 +109,17 @@ impl<'a> Merger<'a> {
         Ok(run)
     }
 
-    /// Announces the samples of a run up to `end`, and the places where its pieces may end.
-    fn announce(&self, run: &SegmentRun<'_>, start: usize, end: usize) {
-        let SegmentFitter { map, options, .. } = *self.fitter;
-        if map.prefers_batches() {
-            let sources: Vec<_> =
-                self.segs[start..end].iter().map(|s| SourceCurve::for_proof(s, map, options.certify)).collect();
-            let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
-            gather::announce_all(map, &sources, run.lanes(), ends);
+    /// Announces the samples of all segments that may be in a run, and the places where pieces may end.
+    fn announce(&self, smooth: &[bool]) {
+        let SegmentFitter { map, degree, options, .. } = *self.fitter;
+        if !map.prefers_batches() {
+            return;
         }
+        let joined = |i: usize| smooth[i] || smooth.get(i + 1) == Some(&true);
+        let in_runs = (0..self.segs.len()).filter(|i| joined(*i));
+        let sources: Vec<_> = in_runs.map(|i| SourceCurve::for_proof(&self.segs[i], map, options.certify)).collect();
+        let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+        gather::announce_all(map, &sources, SegmentRun::new(degree.is_some(), 0).lanes(), ends);
     }
 
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
