@@ -2,7 +2,7 @@
 
 use crate::limits;
 use pathwarp::budget::Budget;
-use pathwarp::kurbo::{CubicBez, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point};
+use pathwarp::kurbo::{CubicBez, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp::refit::{Assurance, Options, RefittedPath, warp_path};
@@ -17,6 +17,8 @@ const MOST_SEGMENTS: usize = 100;
 const ACCURACY: f64 = 1e-3;
 /// Rounding of coordinates, relative to the largest one.
 const ROUNDING: f64 = 1e-12;
+/// The finest tolerance, relative to the largest coordinate, that rounding allows for: the program refuses finer ones.
+const FINEST: f64 = 1e-13;
 /// By how much a sampled error may be exceeded: the error between samples is an estimate.
 const ESTIMATED: f64 = 1.25;
 
@@ -42,12 +44,18 @@ pub fn check_map(path: &Outline, map: &dyn Map, options: &Options) {
     assert!(warped.path.is_finite(), "{:?}", warped.path);
     let report = &warped.report;
     assert!(report.max_error >= 0.0, "{report:?}");
-    if !report.over_budget.is_empty() {
+    let size = largest(path.bounding_box()).max(largest(Some(warped.path.control_box())));
+    if !report.over_budget.is_empty() || options.tolerance < FINEST * size {
         return;
     }
     let allowed = if report.assurance == Assurance::Exact { f64::INFINITY } else { options.tolerance };
     assert!(report.max_error <= allowed, "{report:?}");
     measure(path, map, &warped, options.tolerance);
+}
+
+/// The largest coordinate of a box.
+fn largest(bounds: Option<Rect>) -> f64 {
+    bounds.map_or(0.0, |b| [b.x0, b.y0, b.x1, b.y1].iter().fold(0.0, |a: f64, v| a.max(v.abs())))
 }
 
 /// The same bits, also for numbers that are not equal to themselves.

@@ -21,6 +21,7 @@ mod decimals;
 mod export;
 mod failure;
 mod format;
+mod inkscape;
 mod input;
 mod leftovers;
 mod options;
@@ -66,8 +67,15 @@ pub fn command(registry: &Registry) -> clap::Command {
 #[must_use]
 pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
+    let dispatch = || {
+        if inkscape::is_call(&args) {
+            inkscape::run(registry, &args, commands::dispatch)
+        } else {
+            commands::dispatch(registry, &args)
+        }
+    };
     // A panic of a library is an error of the file that caused it. Temporary files are removed on the way.
-    let outcome = catch_unwind(AssertUnwindSafe(|| commands::dispatch(registry, &args)))
+    let outcome = catch_unwind(AssertUnwindSafe(dispatch))
         .unwrap_or_else(|_| Err(Failure::Input("the program failed (see the message above); please report it".into())));
     match outcome {
         Ok(Status::Complete) => ExitCode::SUCCESS,

@@ -28,8 +28,8 @@ mod shape;
 mod tessellate;
 
 pub use error::Error;
-pub use tessellate::FlatMesh;
 pub use shape::{NamedShape, Point3, SurfaceFn};
+pub use tessellate::FlatMesh;
 
 use obj::ObjWriter;
 use pathwarp::budget::Budget;
@@ -124,9 +124,13 @@ mod tests {
         let truth = std::f64::consts::PI * (900.0 - 225.0);
         let mut last = f64::INFINITY;
         for tolerance in [1.0, 0.1, 0.01] {
-            let obj =
-                filled(&[NamedShape { name: "ring", outline: &ring, even_odd: false }], &roll, tolerance, &Budget::default())
-                    .unwrap();
+            let obj = filled(
+                &[NamedShape { name: "ring", outline: &ring, even_odd: false }],
+                &roll,
+                tolerance,
+                &Budget::default(),
+            )
+            .unwrap();
             let (v, f) = read(&obj);
             let got: f64 = f.iter().map(|t| area(v[t[0]], v[t[1]], v[t[2]])).sum();
             let off = (got - truth).abs() / truth;
@@ -163,7 +167,9 @@ mod tests {
     fn outlines_follow_the_surface() {
         let wave = |p: Point| Some([p.x, p.y, 5.0 * (p.x / 8.0).sin()]);
         let line = Outline::from_svg("M0,0 H60").unwrap();
-        let obj = outlines(&[NamedShape { name: "line", outline: &line, even_odd: false }], &wave, 0.01, &Budget::default()).unwrap();
+        let obj =
+            outlines(&[NamedShape { name: "line", outline: &line, even_odd: false }], &wave, 0.01, &Budget::default())
+                .unwrap();
         let (v, _) = read(&obj);
         assert!(v.len() > 10 && obj.lines().filter(|l| l.starts_with("l ")).count() == 1);
         assert!(v.iter().all(|q| (q[2] - 5.0 * (q[0] / 8.0).sin()).abs() < 1e-6));
@@ -174,7 +180,9 @@ mod tests {
         let hole = |p: Point| (p.x < 20.0).then_some([p.x, p.y, 0.0]);
         let ring = Outline::from_svg(RING).unwrap();
         let shapes = [NamedShape { name: "ring", outline: &ring, even_odd: true }];
-        assert!(matches!(filled(&shapes, &hole, 0.1, &Budget::default()), Err(Error::NoPlace { shape, .. }) if shape == "ring"));
+        assert!(
+            matches!(filled(&shapes, &hole, 0.1, &Budget::default()), Err(Error::NoPlace { shape, .. }) if shape == "ring")
+        );
         let rough = |p: Point| Some([p.x, p.y, (p.x * 1e4).sin() * 1e3]);
         assert!(matches!(filled(&shapes, &rough, 1e-6, &Budget::default()), Err(Error::TooMany { .. })));
     }

@@ -35,7 +35,8 @@ pub(crate) fn to_surface(
     budget: &Budget,
 ) -> Result<TriangleMesh, Error> {
     let too_many = |exceeded| Error::TooMany { shape: name.to_owned(), exceeded };
-    let count = |triangles: usize| budget.spend_cut(Limit::Segments, (SIDES * triangles as f64) as u64).map_err(too_many);
+    let count =
+        |triangles: usize| budget.spend_cut(Limit::Segments, (SIDES * triangles as f64) as u64).map_err(too_many);
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: name.to_owned(), at: p });
     let mut plane = flat.points;
     let placed: Result<Vec<Point3>, Error> = plane.iter().map(|p| place(*p)).collect();

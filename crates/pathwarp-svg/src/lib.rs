@@ -50,6 +50,7 @@
 mod bend;
 mod document;
 mod embed;
+pub mod objects;
 mod scene;
 pub mod sheet;
 mod source;
@@ -60,7 +61,7 @@ mod write;
 pub use bend::gradient::{GradientPainter, GradientRequest, SeenColor};
 pub use bend::image::{ImageRequest, ImageWarper, Images};
 pub use bend::letter_places::LetterPlaces;
-pub use bend::options::{Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
+pub use bend::options::{Clones, Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
 pub use bend::outcome::{Overhang, ShapeReport, Skipped, WarpedDocument};
 pub use bend::picture::{BentImage, PictureError};
 pub use bend::warning::Warning;

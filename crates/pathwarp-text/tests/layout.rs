@@ -6,8 +6,8 @@ mod common;
 use common::{bundled, file};
 use kurbo::{BezPath, Point, Shape};
 use pathwarp_text::{
-    Align, Direction, Error, Font, LetteringLine, Ligatures, OutlinedText, Quantity, TextStyle, Variation, features, layout,
-    variations,
+    Align, Direction, Error, Font, LetteringLine, Ligatures, OutlinedText, Quantity, TextStyle, Variation, features,
+    layout, variations,
 };
 use proptest::prelude::*;
 

@@ -22,7 +22,7 @@ const STRETCHES: usize = 16;
 
 /// Work of looking at a box, and at a segment, in comparisons of the budget.
 const BOX: f64 = 0.1;
-const SEGMENT: f64 = 6.0;
+const SEGMENT: f64 = 8.0;
 
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
@@ -144,7 +144,8 @@ impl<'a> Targets<'a> {
             }
             if node < leaves {
                 let children = [2 * node, 2 * node + 1];
-                let nearer = usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
+                let nearer =
+                    usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
                 self.pending.extend([children[1 - nearer], children[nearer]]);
                 continue;
             }
@@ -173,10 +174,15 @@ fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
         let foot = if t.is_nan() { l.p0 } else { l.p0.lerp(l.p1, t) };
         return foot.distance(p).min(known);
     }
-    let mut best = known;
-    for i in 0..=STRETCHES {
-        let mut t = i as f64 / STRETCHES as f64;
-        let mut d = seg.eval(t).distance(p);
+    let at: [f64; STRETCHES + 1] = std::array::from_fn(|i| seg.eval(i as f64 / STRETCHES as f64).distance(p));
+    let mut best = at.iter().copied().fold(known, f64::min);
+    // No point is farther than this from the nearest of those.
+    let reach = most_speed(seg) * 0.5 / STRETCHES as f64;
+    for (i, d) in at.into_iter().enumerate() {
+        if d - reach >= best {
+            continue;
+        }
+        let (mut t, mut d) = (i as f64 / STRETCHES as f64, d);
         // Gauss–Newton for the foot point.
         for _ in 0..6 {
             let v = seg.deriv(t);
@@ -194,6 +200,16 @@ fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
         best = best.min(d);
     }
     best
+}
+
+/// A bound for the length of the derivative.
+fn most_speed(seg: &Seg) -> f64 {
+    match seg {
+        Seg::Line(l) => l.p0.distance(l.p1),
+        Seg::Quad(q) => 2.0 * q.p0.distance(q.p1).max(q.p1.distance(q.p2)),
+        Seg::Cubic(c) => 3.0 * c.p0.distance(c.p1).max(c.p1.distance(c.p2)).max(c.p2.distance(c.p3)),
+        Seg::Arc(a) => a.a.hypot().hypot(a.b.hypot()) * a.sweep.abs(),
+    }
 }
 
 #[cfg(test)]
@@ -220,10 +236,15 @@ mod tests {
             Outline::from_points(&points, false)
         };
         let budget = Budget::new(Limits::default().with(Limit::Comparisons, 20e6));
-        assert!((symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12);
+        assert!(
+            (symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12
+        );
         // Every part of the star is as far from the centre.
         let star: Vec<Point> = (0..30_000).map(|i| Point::new(1e3 * f64::from(i % 2 * 2 - 1), 0.0)).collect();
         let few = Budget::new(Limits::default().with(Limit::Comparisons, 1e3));
-        assert_eq!(symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit, Limit::Comparisons);
+        assert_eq!(
+            symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit,
+            Limit::Comparisons
+        );
     }
 }

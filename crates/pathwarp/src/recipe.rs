@@ -23,8 +23,8 @@
 //! ```
 
 use crate::ambiguity::ambiguity;
-use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::budget::{Budget, Limit};
+use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
@@ -70,6 +70,8 @@ pub struct BuiltRecipe {
     pub placement: Placement,
     /// The steps after the first, composed: the map for letters that were placed.
     pub after: Chain,
+    /// For every step, the frame that its percentages refer to.
+    pub frames: Vec<Frame>,
 }
 
 impl Recipe {
@@ -121,6 +123,7 @@ impl Recipe {
             steps: Vec::with_capacity(self.steps.len()),
             placement: Placement::default(),
             after: Chain::default(),
+            frames: Vec::with_capacity(self.steps.len()),
         };
         let letters = Arc::clone(&frame.letters);
         let mut frame = frame;
@@ -153,6 +156,7 @@ impl Recipe {
             }
             out.map.push(Arc::clone(&built.map));
             out.steps.push(built);
+            out.frames.push(frame.clone());
         }
         Ok(out)
     }
@@ -187,8 +191,10 @@ impl BuiltRecipe {
         self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()))
     }
 
-    /// Returns the bounding box of the artwork's image under the steps so far.
-    fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>, letters: &[Letter]) -> Option<Rect> {
+    /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
+    /// `letters` are those of the first frame. `None` if nothing of the artwork is in the map's domain.
+    #[must_use]
+    pub fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>, letters: &[Letter]) -> Option<Rect> {
         if self.placement.letters.is_empty() {
             return image_box(artwork, &self.placement.copies, &self.map);
         }
@@ -301,6 +307,8 @@ mod tests {
             .unwrap();
         assert_eq!(built.map.point(Point::new(10.0, 5.0)), Point::new(120.0, 5.0));
         assert_eq!(built.map.steps().len(), 1);
+        let frames: Vec<Rect> = built.frames.iter().map(|f| f.rect).collect();
+        assert_eq!(frames, [Rect::new(0.0, 0.0, 100.0, 50.0), Rect::new(0.0, 0.0, 200.0, 50.0)]);
         let unknown = Recipe { steps: vec![step("wobble", &[])] };
         let e = unknown.build(&Registry::builtin(), Frame::new(Rect::ZERO), &std::iter::once(&art)).err().unwrap();
         assert!(e.to_string().contains("shaper"), "{e}");

@@ -44,7 +44,9 @@ impl Map {
             values.get(name).iter().flat_map(|v| v.split(' ')).filter_map(|v| v.parse().ok()).collect()
         };
         match (numbers("center").as_slice(), numbers("height").as_slice(), numbers("wavelength").as_slice()) {
-            (&[x, y], &[height], &[length]) => Ok(Self { center: [x, y], height, waves: std::f64::consts::TAU / length }),
+            (&[x, y], &[height], &[length]) => {
+                Ok(Self { center: [x, y], height, waves: std::f64::consts::TAU / length })
+            }
             _ => Err("center, height and wavelength are needed".to_owned()),
         }
     }

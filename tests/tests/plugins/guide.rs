@@ -134,7 +134,8 @@ fn the_road_in_rust() {
     assert!(scratch.file("swollen-fast.svg").exists());
     // The check sees a wrong derivative.
     let source = scratch.file("pathwarp-swell-fast/src/main.rs");
-    let wrong = fs::read_to_string(&source).unwrap().replace("(y - self.middle) * slope, 0.0, growth]", "0.0, 0.0, growth]");
+    let wrong =
+        fs::read_to_string(&source).unwrap().replace("(y - self.middle) * slope, 0.0, growth]", "0.0, 0.0, growth]");
     fs::write(&source, wrong).unwrap();
     shell(&scratch, "cargo build -q --release --manifest-path pathwarp-swell-fast/Cargo.toml");
     let (report, _) = scratch.expect(1, &["check", file]);

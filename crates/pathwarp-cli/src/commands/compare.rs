@@ -121,7 +121,7 @@ fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure
     let unpaired = paths_b.iter().enumerate().filter(|(i, p)| !paired.contains(i) && !repeated(p));
     let only_in_b = unpaired.map(|(_, p)| p.id.clone()).collect();
     let options = RenderOptions { size, background: Some(Color::WHITE) };
-    let render = |d: &Document| options.render_within(usvg_tree::tree(d), d.budget().limits());
+    let render = |d: &Document| options.render_counted(usvg_tree::tree(d), a.budget());
     let pixels = match pathwarp_raster::compare(&render(a)?, &render(b)?) {
         Ok(difference) => Some(Pixels {
             width: difference.width,

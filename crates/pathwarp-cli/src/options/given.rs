@@ -12,7 +12,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 /// Common options with their values as given.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Given {
     inputs: Vec<PathBuf>,
     /// In the order of the table. A switch has the value `true`.

@@ -144,7 +144,9 @@ fn with_pointers(input: &mut ByteSource<'_>, xcf: &Xcf, mut edits: Vec<ByteEdit>
             new.to_be_bytes().to_vec()
         } else {
             let new = u32::try_from(new);
-            new.map_err(|_| Error::new(ErrorKind::TooLarge, at, "the file would exceed its 32-bit pointers"))?.to_be_bytes().to_vec()
+            new.map_err(|_| Error::new(ErrorKind::TooLarge, at, "the file would exceed its 32-bit pointers"))?
+                .to_be_bytes()
+                .to_vec()
         };
         adjusted.push(ByteEdit { span: at..at + bytes.len() as u64, bytes });
     }

@@ -76,7 +76,11 @@ mod tests {
         fn jet(&self, p: Point) -> Jet {
             self.calls.fetch_add(1, Ordering::Relaxed);
             let (s, c) = (0.3 * p.y).sin_cos();
-            Jet { p: Point::new(p.x + s, p.y + 0.1 * p.x * p.x), dx: Vec2::new(1.0, 0.2 * p.x), dy: Vec2::new(0.3 * c, 1.0) }
+            Jet {
+                p: Point::new(p.x + s, p.y + 0.1 * p.x * p.x),
+                dx: Vec2::new(1.0, 0.2 * p.x),
+                dy: Vec2::new(0.3 * c, 1.0),
+            }
         }
         fn jets(&self, ps: &[Point], out: &mut [Jet]) {
             ps.iter().zip(out).for_each(|(p, o)| *o = self.jet(*p));
@@ -89,7 +93,8 @@ mod tests {
 
     #[test]
     fn an_inverse_by_rounds_is_the_same_in_fewer_calls() {
-        let qs: Vec<Point> = (0..300).map(|i| Point::new(0.02 * f64::from(i) - 3.5, 1.5 - 0.011 * f64::from(i))).collect();
+        let qs: Vec<Point> =
+            (0..300).map(|i| Point::new(0.02 * f64::from(i) - 3.5, 1.5 - 0.011 * f64::from(i))).collect();
         let run = |batches: bool| {
             let map = Arc::new(Bend { batches, ..Bend::default() });
             let inverse = NewtonInverse::over(Arc::clone(&map) as Arc<dyn Map>, Rect::new(-2.0, -2.0, 2.0, 2.0), 0.1);

@@ -68,6 +68,12 @@ pub trait Map: Send + Sync {
         None
     }
 
+    /// The cost of one evaluation, relative to that of a bicubic net, for [`budget`](crate::budget): a map that takes longer the
+    /// more parts it has says so here. 1 or more.
+    fn work(&self) -> f64 {
+        1.0
+    }
+
     /// Returns `true` if a call costs much and a point little, as where another program is asked. Callers then collect the points
     /// they need.
     fn prefers_batches(&self) -> bool {
@@ -84,12 +90,6 @@ pub trait Map: Send + Sync {
     /// [prefers batches](Map::prefers_batches).
     #[doc(hidden)]
     fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
-
-    /// The cost of one evaluation, relative to that of a bicubic net, for [`budget`](crate::budget): a map that takes longer the
-    /// more parts it has says so here. 1 or more.
-    fn work(&self) -> f64 {
-        1.0
-    }
 
     /// Maps a batch of points in place. See [`batch`](super::batch).
     #[doc(hidden)]
@@ -147,6 +147,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         (**self).inverse()
     }
+    fn work(&self) -> f64 {
+        (**self).work()
+    }
     fn prefers_batches(&self) -> bool {
         (**self).prefers_batches()
     }
@@ -155,9 +158,6 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn prepare(&self, points: &[Point], jets: &[Point]) {
         (**self).prepare(points, jets);
-    }
-    fn work(&self) -> f64 {
-        (**self).work()
     }
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         (**self).lanes(x, y);
@@ -217,6 +217,9 @@ mod tests {
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             self.record("inverse", None)
         }
+        fn work(&self) -> f64 {
+            self.record("work", 3.0)
+        }
         fn prefers_batches(&self) -> bool {
             self.record("prefers_batches", true)
         }
@@ -225,9 +228,6 @@ mod tests {
         }
         fn prepare(&self, _points: &[Point], _jets: &[Point]) {
             self.record("prepare", ());
-        }
-        fn work(&self) -> f64 {
-            self.record("work", 3.0)
         }
         fn lanes(&self, _x: &mut Lane, _y: &mut Lane) {
             self.record("lanes", ());
@@ -251,10 +251,10 @@ mod tests {
         let _ = map.rational_degree();
         let _ = map.denominator(p);
         let _ = map.inverse();
+        let _ = map.work();
         let _ = map.prefers_batches();
         let _ = map.remembers();
         map.prepare(&[p], &[p]);
-        let _ = map.work();
         map.lanes(&mut [1.0; WIDTH], &mut [2.0; WIDTH]);
         let _ = map.denominators(&[1.0; WIDTH], &[2.0; WIDTH]);
     }

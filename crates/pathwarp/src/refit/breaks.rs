@@ -12,8 +12,7 @@
 use super::gather;
 use super::lanes::{Lanes, larger};
 use super::limits::{
-    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE,
-    REPORT_MARGIN,
+    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE, REPORT_MARGIN,
 };
 use super::outcome::FitOutcome;
 use super::piece::FittedPiece;

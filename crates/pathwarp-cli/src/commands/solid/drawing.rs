@@ -18,7 +18,8 @@ const TOLERANCE: f64 = 0.01;
 pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, Failure> {
     let doc = input::document(file, reading)?;
     let page = doc.user_to_px().transform_rect_bbox(doc.view_box());
-    let to_mm = Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
+    let to_mm =
+        Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
     let unit = to_mm.determinant().abs().sqrt();
     let mut mesh = Mesh::default();
     let mut unfilled = 0;

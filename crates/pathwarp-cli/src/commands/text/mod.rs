@@ -54,10 +54,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
     let limits = options.reading.limits.for_input(text.len());
-    let most = TextLimits {
-        letters: limits.of(Limit::Letters) as usize,
-        segments: limits.of(Limit::Segments) as usize,
-    };
+    let most =
+        TextLimits { letters: limits.of(Limit::Letters) as usize, segments: limits.of(Limit::Segments) as usize };
     let set = layout_within(&text, &chosen, &style, &most).map_err(|e| failure(&e, &most))?;
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
     let margin = em.length(m, "margin")?.unwrap_or(0.0);
@@ -80,8 +78,12 @@ fn failure(e: &pathwarp_text::Error, most: &TextLimits) -> Failure {
             // Only letters are counted before work begins.
             let enough = match quantity {
                 Quantity::Letters => Exceeded { limit: Limit::Letters, most: 0.0, needed: needed as f64, cut: false },
-                Quantity::Segments => Exceeded { limit: Limit::Segments, most: most.segments as f64, needed: 0.0, cut: true },
-                Quantity::Glyphs => Exceeded { limit: Limit::Letters, most: most.letters as f64, needed: 0.0, cut: true },
+                Quantity::Segments => {
+                    Exceeded { limit: Limit::Segments, most: most.segments as f64, needed: 0.0, cut: true }
+                }
+                Quantity::Glyphs => {
+                    Exceeded { limit: Limit::Letters, most: most.letters as f64, needed: 0.0, cut: true }
+                }
             };
             Failure::Input(format!("{e}; {}", advice::raise(&enough)))
         }
