@@ -46,6 +46,7 @@ pub mod outline;
 pub mod param;
 pub mod recipe;
 pub mod refit;
+pub mod solve;
 
 pub use error::{Error, GeometryError};
 pub use kurbo;

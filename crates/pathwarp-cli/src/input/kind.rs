@@ -21,7 +21,7 @@ pub(crate) enum Input {
 impl Input {
     /// Opens an input and checks that the options and the target suit its kind.
     pub(crate) fn open(input: &Path, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
-        if let Some(file) = GimpFile::open(input, options.salvage)? {
+        if let Some(file) = GimpFile::open(input, options.salvage, &options.reading.limits)? {
             return Ok(Self::Gimp(GimpArtwork::new(file, options, target)?));
         }
         if options.into.is_some() {

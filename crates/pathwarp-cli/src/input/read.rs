@@ -53,9 +53,10 @@ pub(crate) fn document(input: &Path, reading: &Reading) -> Result<Document, Fail
 
 /// Options for reading `input` as SVG: linked images are looked up relative to its folder.
 pub(crate) fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
-    let folder = match input.parent() {
+    let own = || match input.parent() {
         Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
         other => other.map(Path::to_path_buf),
     };
+    let folder = reading.base.clone().or_else(own);
     reading.read_options().with_base_dir(folder)
 }

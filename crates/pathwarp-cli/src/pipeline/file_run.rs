@@ -85,14 +85,22 @@ impl Batch<'_> {
         let bounds = artwork.bounding_box();
         let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
         let frame = frame.with_units_per_px(artwork.units_per_px());
+        let (frame_box, baseline) = (frame.rect, frame.baseline);
         let framed = frame_note(options.frame, &frame, bounds.is_some());
         let tolerance = options.tolerance_for(bounds, &frame)?;
-        let built = recipe.build(registry, frame, &artwork.outlines().iter().copied()).map_err(Failure::of_recipe)?;
+        let built = recipe
+            .build_within(registry, frame, &artwork.outlines().iter().copied(), artwork.budget())
+            .map_err(Failure::of_recipe)?;
+        // The map of a plug-in may fail at any time. Nothing that was computed with it is used, not even another error.
+        let sound = || built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
+        sound()?;
 
-        let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
+        let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
         let request = WarpRequest { built: &built, options, bounds, tolerance, embedded_recipe };
-        let warped = artwork.warp(&request).map_err(|f| explained(f, &built))?;
+        let warped = artwork.warp(&request);
+        sound()?;
+        let warped = warped.map_err(|f| explained(f, &built))?;
 
         let mut warnings: Vec<String> = self.in_flags(&built, |e| &e.warnings).chain(warped.warnings).collect();
         warnings.extend(warped.overhang.map(advice::overhang));
@@ -101,6 +109,8 @@ impl Batch<'_> {
             output: None,
             error: None,
             tolerance: Some(tolerance),
+            frame: Some([frame_box.x0, frame_box.y0, frame_box.width(), frame_box.height()]),
+            baseline,
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings,
@@ -177,7 +187,7 @@ fn strokes(shapes: &[ReportedShape]) -> Option<String> {
 }
 
 /// Adds to an error where the map is undefined which operation is, if a step can say so.
-fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
+pub(crate) fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
     let Some((shape, at)) = failure.infinity() else { return failure };
     let mut p = at;
     for step in &built.steps {
@@ -193,7 +203,7 @@ fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
 }
 
 /// The baseline of a recipe's first step.
-fn first_baseline(registry: &Registry, recipe: &Recipe) -> Baseline {
+pub(crate) fn first_baseline(registry: &Registry, recipe: &Recipe) -> Baseline {
     let Some(step) = recipe.steps.first() else { return Baseline::None };
     let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
     match info.baseline {

@@ -20,6 +20,7 @@ use crate::output::{self, Draft, PendingFile};
 use crate::status::Status;
 use crate::{recipe_file, references, temporaries, watch};
 use file_run::{Batch, FileRun};
+pub(crate) use file_run::{explained, first_baseline};
 use folders::Folders;
 use indicatif::ProgressBar;
 pub(crate) use memory::warp_bytes;

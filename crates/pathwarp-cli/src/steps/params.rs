@@ -1,7 +1,8 @@
 //! A deformation's own parameters: as clap arguments, and read back into a step.
 
+use crate::catalogue::Catalogue;
 use clap::{Arg, ArgAction, ArgMatches};
-use pathwarp::deform::{Info, Registry};
+use pathwarp::deform::Info;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::Step;
 use std::fmt::Write as _;
@@ -42,9 +43,9 @@ fn arg(p: &Param) -> Arg {
 }
 
 /// The step that the parsed subcommand of the deformation `name` asks for.
-pub(crate) fn step(registry: &Registry, name: &str, m: &ArgMatches) -> Step {
+pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Step {
     let mut args = Args::new();
-    for p in registry.get(name).map_or(&[][..], |e| e.info().params) {
+    for p in catalogue.info(name).map_or(&[][..], |i| i.params) {
         if p.kind == Kind::Flag {
             if m.get_flag(p.name) {
                 args.push(p.name, "true");

@@ -22,4 +22,5 @@ mod stroke;
 mod stubs;
 mod task;
 pub(crate) mod tiles;
+pub(crate) mod warning;
 mod width;

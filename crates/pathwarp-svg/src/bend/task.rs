@@ -36,6 +36,7 @@ pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
 }
 
 /// The surroundings of a part.
+#[derive(Clone, Copy)]
 pub(super) struct PartContext<'a> {
     pub(super) map: &'a dyn Map,
     pub(super) options: &'a WarpOptions,

@@ -23,9 +23,14 @@ pub(super) fn affine(
 ) -> Result<(), GeometryError> {
     outline.segs().try_for_each(finite)?;
     for sub in &outline.subpaths {
+        if !(m * sub.start).is_finite() {
+            return Err(infinity(sub.start));
+        }
         let mut pieces = Vec::with_capacity(sub.segs.len());
         for seg in &sub.segs {
-            match seg.transformed(m) {
+            let image = seg.transformed(m);
+            finite(&image)?;
+            match image {
                 Seg::Line(l) => pieces.push(FittedPiece::Line(l)),
                 Seg::Arc(a) => {
                     let (canonical, flipped) = split::canonical(seg);
@@ -63,7 +68,13 @@ pub(super) fn subpath(
         return Err(infinity(sub.start));
     }
     let projective = matches!(map.class(), Class::Projective(_));
-    let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, options };
+    let work = map.work();
+    // Values at the nodes.
+    options
+        .budget
+        .spend_cut(Limit::Evaluations, (work * sub.segs.len() as f64) as u64)
+        .map_err(GeometryError::Limit)?;
+    let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
     let refitted = |i: usize, segs: &[Seg]| {
         let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
         if options.merge { merged(&fitter, segs, nodes) } else { unmerged(&fitter, segs, nodes) }

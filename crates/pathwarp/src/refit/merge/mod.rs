@@ -15,6 +15,7 @@ mod reach;
 mod run;
 mod search;
 
+use super::gather;
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
@@ -68,6 +69,7 @@ impl<'a> Merger<'a> {
     /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
     /// begins.
     pub(super) fn merged(mut self, smooth: &[bool]) -> Result<(Vec<FittedPiece>, PathReport), Point> {
+        self.announce(smooth);
         let mut i = 0;
         while i < self.segs.len() {
             let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
@@ -105,6 +107,19 @@ impl<'a> Merger<'a> {
             }
         }
         Ok(run)
+    }
+
+    /// Announces the samples of all segments that may be in a run, and the places where pieces may end.
+    fn announce(&self, smooth: &[bool]) {
+        let SegmentFitter { map, degree, options, .. } = *self.fitter;
+        if !map.prefers_batches() {
+            return;
+        }
+        let joined = |i: usize| smooth[i] || smooth.get(i + 1) == Some(&true);
+        let in_runs = (0..self.segs.len()).filter(|i| joined(*i));
+        let sources: Vec<_> = in_runs.map(|i| SourceCurve::for_proof(&self.segs[i], map, options.certify)).collect();
+        let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+        gather::announce_all(map, &sources, SegmentRun::new(degree.is_some(), 0).lanes(), ends);
     }
 
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
