@@ -56,7 +56,7 @@ impl Batch<'_> {
         let sound = || built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
         sound()?;
 
-        let embed = || recipe_file::write(registry, &recipe, self.given, Path::new(""));
+        let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
         let request = WarpRequest { built: &built, options, bounds, tolerance, embedded_recipe };
         let warped = artwork.warp(&request);
