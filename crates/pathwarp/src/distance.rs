@@ -51,7 +51,7 @@ fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<
     if targets.all.is_empty() {
         return Ok(None);
     }
-    let samples = from.segs().map(|s| Target::Seg(s));
+    let samples = from.segs().map(Target::Seg);
     let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut most = None;
     for sampled in samples.chain(alone) {
