@@ -30,7 +30,7 @@ fn c_type(t: &Type, returned: bool) -> String {
     match t {
         Type::Ptr(p) => {
             let inner = c_type(&p.elem, false);
-            let constant = p.mutability.is_none();
+            let constant = matches!(p.mutability, syn::PointerMutability::Const(_));
             match (inner.strip_suffix('*'), constant) {
                 (Some(_), true) => format!("{inner}const *"),
                 (Some(_), false) => format!("{inner}*"),

@@ -1,4 +1,15 @@
-//! The Hausdorff distance between two paths.
+//! The Hausdorff distance between two paths: how far two drawings of the same shape are apart.
+//!
+//! ```
+//! use pathwarp::{Outline, distance};
+//!
+//! let circle = Outline::from_svg("M90,50 A40,40 0 1 1 10,50 A40,40 0 1 1 90,50 Z")?;
+//! let octagon = Outline::from_svg("M90,50 L78,78 L50,90 L22,78 L10,50 L22,22 L50,10 L78,22 Z")?;
+//! let apart = distance::symmetric(&circle, &octagon).unwrap_or_default();
+//! // In the middle of each side.
+//! assert!((3.0..3.3).contains(&apart), "{apart}");
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
 
 use crate::budget::{Budget, Exceeded, Limit, Limits};
 use crate::outline::{Outline, Seg};
@@ -40,7 +51,7 @@ fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<
     if targets.all.is_empty() {
         return Ok(None);
     }
-    let samples = from.segs().map(|s| Target::Seg(s));
+    let samples = from.segs().map(Target::Seg);
     let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut most = None;
     for sampled in samples.chain(alone) {

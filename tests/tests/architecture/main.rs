@@ -1,6 +1,7 @@
 //! The structure that ARCHITECTURE.md describes, checked: crates depend one way, files never import in a circle, the rooms of
 //! pathwarp-svg follow one another, and files and functions stay short.
 
+mod features;
 mod graph;
 #[path = "../support/mod.rs"]
 mod support;

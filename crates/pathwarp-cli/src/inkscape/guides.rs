@@ -101,8 +101,8 @@ fn without<'a>(objects: &'a [Object], ids: impl Iterator<Item = &'a str>, guides
         if guides.contains(id) {
             continue;
         }
-        let holds = |g: &&str| objects.iter().any(|o| o.id == **g && o.inside.iter().any(|i| i == id));
-        if guides.iter().any(|g| holds(&g)) {
+        let holds = |g: &str| objects.iter().any(|o| o.id == g && o.inside.iter().any(|i| i == id));
+        if guides.iter().any(|g| holds(g)) {
             let children = objects.iter().filter(|o| o.inside.first().is_some_and(|p| p == id));
             out.extend(without(objects, children.map(|o| o.id.as_str()), guides));
         } else {

@@ -47,15 +47,15 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) ->
         Job::Deformation(name) => effect::run(&stage, name),
         Job::Edit => again::edit(&stage),
         Job::Release => again::release(&stage),
-        Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, f)),
+        Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
-    let svg = done.map_err(|f| in_a_window(&stage, f))?;
+    let svg = done.map_err(|f| in_a_window(&stage, &f))?;
     output::to_stdout(svg.as_bytes())?;
     Ok(Status::Complete)
 }
 
 /// A message for the window that Inkscape opens: parameters as the dialog labels them, and without the temporary file.
-fn in_a_window(stage: &Stage<'_>, failure: Failure) -> Failure {
+fn in_a_window(stage: &Stage<'_>, failure: &Failure) -> Failure {
     let plain = stage.without_file(failure, &stage.call.file);
     Failure::Input(inx::labelled(&plain.message(&Flags::of(stage.registry))))
 }

@@ -5,6 +5,7 @@ use super::line::{allowed, elsewhere, existing, referred};
 use super::quoting;
 use super::stage::{Scope, Stage, temporary};
 use crate::failure::Failure;
+use pathwarp::Subpath;
 use pathwarp::kurbo::{Affine, Point};
 use pathwarp_svg::objects::{self, Guides, Memory, RestoredObject};
 use pathwarp_svg::{Document, Selection};
@@ -109,7 +110,7 @@ pub(super) fn read(stage: &Stage<'_>, svg: &str) -> Result<Document, Failure> {
 /// The nodes of an object in root user space.
 pub(super) fn nodes(doc: &Document, id: &str) -> Nodes {
     let selection = Selection { select: vec![format!("[id={id}]")], ..Selection::default() };
-    let subpaths = |s: &pathwarp_svg::Shape| s.outline.subpaths.iter().flat_map(|p| p.anchors()).collect::<Vec<_>>();
+    let subpaths = |s: &pathwarp_svg::Shape| s.outline.subpaths.iter().flat_map(Subpath::anchors).collect::<Vec<_>>();
     Nodes::of(&doc.selected(&selection).flat_map(subpaths).collect::<Vec<Point>>())
 }
 

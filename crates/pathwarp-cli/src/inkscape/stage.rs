@@ -93,7 +93,7 @@ impl Stage<'_> {
         }
         all.extend(scope.ids.iter().map(|id| format!("--select=[id={id}]").into()));
         all.extend(rest.iter().map(OsString::from));
-        let status = (self.dispatch)(self.registry, &all).map_err(|f| self.without_file(f, source.path()))?;
+        let status = (self.dispatch)(self.registry, &all).map_err(|f| self.without_file(&f, source.path()))?;
         let svg = text(result.path())?;
         let report: Report =
             serde_json::from_str(&text(report.path())?).map_err(|e| Failure::Input(format!("the report: {e}")))?;
@@ -120,7 +120,7 @@ impl Stage<'_> {
     }
 
     /// The failure without the name of a temporary file.
-    pub(super) fn without_file(&self, failure: Failure, file: &Path) -> Failure {
+    pub(super) fn without_file(&self, failure: &Failure, file: &Path) -> Failure {
         let file = file.display().to_string();
         let message = failure.message(&Flags::of(self.registry));
         Failure::Input(message.replace(&format!("{file}: "), "").replace(&file, "the drawing"))

@@ -12,6 +12,8 @@ const browserPath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin
 const FLAGS = [
   "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync",
+  // A page that is swapped in counts as one from elsewhere.
+  ...(process.env.ASSETS ? ["--disable-features=LocalNetworkAccessChecks"] : []),
 ];
 
 /** A new folder with copies of files, or with a text as a file. */
@@ -58,6 +60,13 @@ export async function open(address, options = {}) {
     if (m.type() === "error" && !/WebSocket|ERR_CONNECTION/.test(m.text())) page.problems.push(m.text());
   });
   page.on("request", (r) => page.requests.push(r.url()));
+  // ASSETS=FOLDER tries a page that is not built into the program yet.
+  for (const name of process.env.ASSETS ? ["editor.js", "editor.css"] : []) {
+    await page.route(`**/${name}`, (route) => route.fulfill({ path: join(process.env.ASSETS, name) }));
+  }
+  if (process.env.ASSETS) {
+    await page.route((url) => url.pathname === "/", (route) => route.fulfill({ path: join(process.env.ASSETS, "index.html") }));
+  }
   await page.goto(address);
   await page.waitForSelector("#stage .art *", { state: "attached" });
   return page;

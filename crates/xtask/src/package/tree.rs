@@ -66,7 +66,7 @@ impl Tree {
         let libraries = format!("usr/lib/{}-linux-gnu", std::env::consts::ARCH);
         let places = [("gimp", libraries + "/gimp/3.0/plug-ins"), ("inkscape", "usr/share/inkscape/extensions".into())];
         for (host, place) in places {
-            let folder = self.at(&place)?.join(".");
+            let folder = self.at(&place)?;
             if !String::from_utf8_lossy(&self.run(&["help", "install"])?).contains(host) {
                 continue;
             }
@@ -74,6 +74,8 @@ impl Tree {
             // The copy of the program that is beside a plug-in for one user.
             for copy in files::below(&folder, |f| f.file_name().is_some_and(|n| n == "pathwarp"))? {
                 fs::remove_file(&copy).map_err(at(&copy))?;
+                // Its folder, unless there is more in it.
+                let _ = fs::remove_dir(copy.parent().unwrap_or(&folder));
             }
         }
         Ok(())

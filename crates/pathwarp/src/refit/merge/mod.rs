@@ -16,12 +16,13 @@ mod run;
 mod search;
 
 use super::gather;
+use super::options::Options;
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::source::SourceCurve;
-use crate::map::Jet;
+use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
@@ -54,6 +55,24 @@ pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
     dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
 }
 
+/// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
+/// batches and knows the jets at the joints.
+pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
+    let mut sources = Vec::new();
+    for segs in runs {
+        let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
+            (Some(before), Some(after)) => may_be_smooth(before, after, &map.jet(after.start())),
+            _ => false,
+        };
+        let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
+        sources.extend(segs.iter().enumerate().filter_map(in_run));
+    }
+    let sources: Vec<_> = sources.iter().map(|seg| SourceCurve::for_proof(seg, map, options.certify)).collect();
+    let lanes = SegmentRun::new(map.rational_degree().is_some(), 0).lanes();
+    let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+    gather::announce_all(map, &sources, &lanes, &ends);
+}
+
 impl<'a> Merger<'a> {
     pub(super) fn new(fitter: &'a SegmentFitter<'a>, segs: &'a [Seg], jets: &'a [[Jet; 2]]) -> Self {
         Self {
@@ -69,7 +88,6 @@ impl<'a> Merger<'a> {
     /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
     /// begins.
     pub(super) fn merged(mut self, smooth: &[bool]) -> Result<(Vec<FittedPiece>, PathReport), Point> {
-        self.announce(smooth);
         let mut i = 0;
         while i < self.segs.len() {
             let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
@@ -107,19 +125,6 @@ impl<'a> Merger<'a> {
             }
         }
         Ok(run)
-    }
-
-    /// Announces the samples of all segments that may be in a run, and the places where pieces may end.
-    fn announce(&self, smooth: &[bool]) {
-        let SegmentFitter { map, degree, options, .. } = *self.fitter;
-        if !map.prefers_batches() {
-            return;
-        }
-        let joined = |i: usize| smooth[i] || smooth.get(i + 1) == Some(&true);
-        let in_runs = (0..self.segs.len()).filter(|i| joined(*i));
-        let sources: Vec<_> = in_runs.map(|i| SourceCurve::for_proof(&self.segs[i], map, options.certify)).collect();
-        let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
-        gather::announce_all(map, &sources, SegmentRun::new(degree.is_some(), 0).lanes(), ends);
     }
 
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
