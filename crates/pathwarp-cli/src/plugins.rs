@@ -13,8 +13,7 @@ use std::path::{Path, PathBuf};
 pub(crate) const OPTION: &str = "plugin";
 
 /// Commands for which no plug-in of the folder matters.
-const WITHOUT: [&str; 9] =
-    ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "install", "new-plugin"];
+const WITHOUT: [&str; 8] = ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
 
 /// Names of arguments that a deformation's parameter cannot have, besides the common options.
 const ARGUMENTS: [&str; 7] = [INVERSE, OPTION, "help", "version", "points", "jacobian", "INPUT"];
@@ -124,6 +123,8 @@ fn need_installed(registry: &Registry, args: &[OsString]) -> bool {
     let known = |word: &OsStr| word.to_str().is_some_and(|w| registry.get(w).is_some());
     match args.get(1) {
         None => false,
+        // A dialog for each.
+        Some(word) if word == "install" => args.get(2).is_some_and(|what| what == "inkscape"),
         Some(word) if WITHOUT.iter().any(|w| *w == word.as_os_str()) => false,
         // A chain of built-in deformations.
         Some(word) if known(word) => args.windows(2).any(|w| w[0] == "+" && !known(&w[1])),
@@ -151,10 +152,21 @@ mod tests {
     fn commands_without_plug_ins_do_not_look_for_them() {
         let registry = Registry::builtin();
         let need = |line: &str| need_installed(&registry, &words(line));
-        for line in ["pathwarp shaper a.svg", "pathwarp shaper a.svg + wave --height 3", "pathwarp render a.svg"] {
+        for line in [
+            "pathwarp shaper a.svg",
+            "pathwarp shaper a.svg + wave --height 3",
+            "pathwarp render a.svg",
+            "pathwarp install gimp",
+        ] {
             assert!(!need(line), "{line}");
         }
-        for line in ["pathwarp list", "pathwarp ripple a.svg", "pathwarp shaper a.svg + ripple", "pathwarp run a.toml"] {
+        for line in [
+            "pathwarp list",
+            "pathwarp ripple a.svg",
+            "pathwarp install inkscape",
+            "pathwarp shaper a.svg + ripple",
+            "pathwarp run a.toml",
+        ] {
             assert!(need(line), "{line}");
         }
     }

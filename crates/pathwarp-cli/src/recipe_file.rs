@@ -58,6 +58,16 @@ pub(crate) fn read(catalogue: &dyn Catalogue, file: &Path, external: bool) -> Re
     parse(catalogue, &text, &place).map_err(|e| Failure::file(file, e))
 }
 
+/// Reads the text of a recipe that stands in the file of a drawing. Paths as in [`read`].
+pub(crate) fn from_text(
+    catalogue: &dyn Catalogue,
+    text: &str,
+    folder: &Path,
+    external: bool,
+) -> Result<SavedRecipe, String> {
+    parse(catalogue, text, &Folder { path: folder, external })
+}
+
 /// The folder of a recipe.
 struct Folder<'a> {
     path: &'a Path,
@@ -72,7 +82,9 @@ fn parse(catalogue: &dyn Catalogue, text: &str, folder: &Folder<'_>) -> Result<S
     }
     match (file.solid, catalogue.is_solid()) {
         (true, false) => return Err("deforms solids (solid = true); run it with `pathwarp solid run`".into()),
-        (false, true) => return Err("deforms drawings; run it with `pathwarp run` (one for solids has solid = true)".into()),
+        (false, true) => {
+            return Err("deforms drawings; run it with `pathwarp run` (one for solids has solid = true)".into());
+        }
         _ => {}
     }
     if file.step.is_empty() {

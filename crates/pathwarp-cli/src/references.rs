@@ -78,7 +78,7 @@ pub(crate) fn files_written<'a>(
 /// Looks up `FILE#NAME` or `FILE`.
 fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
     let (file, name) = split_reference(reference);
-    if let Some(gimp) = GimpFile::read(&file, false)? {
+    if let Some(gimp) = GimpFile::read(&file, false, &reading.limits)? {
         return Ok(match name {
             Some(name) => gimp.path_named(name)?.outline(),
             None => gimp.only_path()?.outline(),

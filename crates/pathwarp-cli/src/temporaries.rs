@@ -55,6 +55,11 @@ impl Temporary {
         Self(Some(path))
     }
 
+    /// The file.
+    pub(crate) fn path(&self) -> &Path {
+        self.0.as_deref().unwrap_or(Path::new(""))
+    }
+
     /// Renames the file, over an existing one.
     pub(crate) fn rename(mut self, to: &Path) -> io::Result<()> {
         let Some(path) = self.0.take() else { return Ok(()) };

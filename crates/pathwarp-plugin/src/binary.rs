@@ -59,9 +59,10 @@ pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &str) -> Resul
     let garbage = || Err(Fault::Garbage { expected: expected.to_owned(), found: beginning(bytes) });
     match (kind, body) {
         (DONE, Some(body)) if length == body + 1 => Ok(Some(length + 4)),
-        (DONE, Some(body)) if length % 16 == 1 && length < 100 * (body + 16) => {
-            Err(Fault::Count { expected: expected.to_owned(), found: format!("{} bytes of numbers", length - 1) })
-        }
+        (DONE, Some(body)) if length % 16 == 1 && length < 100 * (body + 16) => Err(Fault::Count {
+            expected: expected.to_owned(),
+            found: format!("has {} bytes of numbers instead of {body}", length - 1),
+        }),
         (DONE, None) | (REFUSED, _) if (1..=MESSAGE_BYTES).contains(&length) => Ok(Some(length + 4)),
         _ => garbage(),
     }

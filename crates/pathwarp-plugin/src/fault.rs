@@ -83,11 +83,11 @@ pub enum Fault {
         found: String,
     },
     /// An answer has the wrong number of points.
-    #[error("answered {found} for {expected}")]
+    #[error("answered too much or too little: {expected} {found}")]
     Count {
         /// The expected answer.
         expected: String,
-        /// The number it gave.
+        /// What it has instead: the end of a sentence.
         found: String,
     },
     /// A value is not a number.

@@ -58,8 +58,8 @@ impl Pipes {
     ) -> Result<Vec<u8>, Fault> {
         let (mut rest, until) = (request, Instant::now() + time());
         loop {
-            if let Some(length) = whole(&self.incoming)? {
-                let later = self.incoming.split_off(length.min(self.incoming.len()));
+            if let Some(length) = whole(&self.incoming)?.filter(|n| *n <= self.incoming.len()) {
+                let later = self.incoming.split_off(length);
                 return Ok(std::mem::replace(&mut self.incoming, later));
             }
             if self.incoming.len() > limit {

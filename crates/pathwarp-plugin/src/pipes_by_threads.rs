@@ -71,8 +71,8 @@ impl Pipes {
             ended = Some("input");
         }
         loop {
-            if let Some(length) = whole(&self.incoming)? {
-                let later = self.incoming.split_off(length.min(self.incoming.len()));
+            if let Some(length) = whole(&self.incoming)?.filter(|n| *n <= self.incoming.len()) {
+                let later = self.incoming.split_off(length);
                 return Ok(std::mem::replace(&mut self.incoming, later));
             }
             if self.incoming.len() > limit {
@@ -151,4 +151,39 @@ fn reading(
             let _ = happened.send(Event::Ended(name));
         }
     })
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::os::unix::fs::PermissionsExt;
+
+    /// Runs a script, sends it `request`, and waits for an answer of `length` bytes and at most 1000.
+    fn ask(script: &str, request: &[u8], length: usize) -> Result<Vec<u8>, Fault> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("script");
+        fs::write(&file, format!("#!/bin/sh\n{script}\n")).unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).unwrap();
+        let mut running = Running::start(&file)?;
+        let mut pipes = Pipes::new(&running)?;
+        let answer =
+            pipes.exchange(&mut running, request, ("an answer", 1000), |b| Ok((b.len() >= length).then_some(length)));
+        assert!(answer.is_err() || pipes.left_over().is_empty());
+        answer
+    }
+
+    #[test]
+    fn answers_arrive_and_faults_are_told() {
+        // More than a pipe holds.
+        let request = vec![b'x'; 300_000];
+        assert_eq!(ask("head -c 300000 | wc -c | tr -d ' \n'", &request, 6), Ok(b"300000".to_vec()));
+        let ended = ask("echo sorry >&2; exit 5", b"", 1).unwrap_err();
+        assert!(matches!(&ended, Fault::Ended { said, .. } if said == "sorry"), "{ended:?}");
+        assert!(ended.to_string().contains("exit status: 5"), "{ended}");
+        assert!(matches!(ask("exec yes", b"", 100_000), Err(Fault::Flood { limit: 1000, .. })));
+        assert!(matches!(ask("exec yes >&2", b"", 1), Err(Fault::ErrorFlood(_))));
+        assert!(matches!(ask("exec >&-; exec sleep 100", b"", 1), Err(Fault::Closed { .. })));
+        assert!(matches!(ask("sleep 100 & exit 4", b"", 1), Err(Fault::Ended { .. })));
+    }
 }

@@ -72,7 +72,9 @@ impl Program {
         let mut state = self.state();
         loop {
             if state.silent >= MOST_SILENT {
-                return Err(Fault::Refused(format!("gave no answer in time {MOST_SILENT} times; it is not asked again")));
+                return Err(Fault::Refused(format!(
+                    "gave no answer in time {MOST_SILENT} times; it is not asked again"
+                )));
             }
             let same = state.idle.iter().position(|s| s.instance == id);
             if let Some(i) = same.or_else(|| state.idle.len().checked_sub(1)) {

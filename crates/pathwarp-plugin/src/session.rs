@@ -78,7 +78,7 @@ impl Session {
         out: &mut Vec<f64>,
     ) -> Result<(), Fault> {
         let count = points.len();
-        let expected = format!("{count} {}", if count == 1 { "point" } else { "points" });
+        let expected = format!("the answer for {count} {}", if count == 1 { "point" } else { "points" });
         let must_build = self.instance != instance.id;
         let mut request = if must_build { instance.request.clone() } else { Vec::new() };
         match protocol {
@@ -123,7 +123,7 @@ impl Session {
         match self.pipes.left_over() {
             [] => Ok(()),
             more => {
-                let found = format!("more than that: after it comes {}", beginning(more));
+                let found = format!("is followed by {}", beginning(more));
                 Err(Fault::Count { expected: expected.to_owned(), found })
             }
         }

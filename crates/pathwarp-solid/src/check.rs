@@ -49,7 +49,8 @@ pub fn entry(entry: &dyn Deformation3) -> Vec<String> {
                 let got = map.point(DVec3::from_array(case.at));
                 let off = got.distance(DVec3::from_array(case.to));
                 if off.is_nan() || off > case.tolerance {
-                    faults.push(format!("{:?} takes {:?} to {got}, {off:e} away from {:?}", case.args, case.at, case.to));
+                    faults
+                        .push(format!("{:?} takes {:?} to {got}, {off:e} away from {:?}", case.args, case.at, case.to));
                 }
             }
             Err(e) => faults.push(format!("{:?} does not build: {e}", case.args)),

@@ -162,9 +162,8 @@ impl Canvas {
         for y in 0..side {
             for x in 0..side {
                 for k in 0..3 {
-                    let sample = |i: usize| {
-                        self.color[(y * SAMPLES + i / SAMPLES) * self.side + x * SAMPLES + i % SAMPLES][k]
-                    };
+                    let sample =
+                        |i: usize| self.color[(y * SAMPLES + i / SAMPLES) * self.side + x * SAMPLES + i % SAMPLES][k];
                     let mean = (0..SAMPLES * SAMPLES).map(sample).sum::<f64>() / (SAMPLES * SAMPLES) as f64;
                     out.push((mean.clamp(0.0, 1.0) * 255.0).round() as u8);
                 }

@@ -35,7 +35,8 @@ pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVe
     for (i, step) in recipe.steps.iter().enumerate() {
         let entry = registry.get(&step.deformation).ok_or_else(|| {
             let known: Vec<_> = registry.entries().iter().map(|e| e.about().info.name).collect();
-            let problem = format!("there is no deformation of space `{}`; known are {}", step.deformation, known.join(", "));
+            let problem =
+                format!("there is no deformation of space `{}`; known are {}", step.deformation, known.join(", "));
             Error::input(format!("step {}", i + 1), problem)
         })?;
         if i > 0 {

@@ -218,7 +218,10 @@ mod tests {
     #[test]
     fn points_lengths_and_boxes() {
         const PARAMS: [Param; 1] = [Param::new("region", pathwarp::param::Kind::Text("B"), "A box.")];
-        let frame = Frame3 { bounds: Box3::new(DVec3::new(10.0, 20.0, 30.0), DVec3::new(20.0, 40.0, 34.0)), units_per_mm: 0.001 };
+        let frame = Frame3 {
+            bounds: Box3::new(DVec3::new(10.0, 20.0, 30.0), DVec3::new(20.0, 40.0, 34.0)),
+            units_per_mm: 0.001,
+        };
         let (args, front) = (Args::from_pairs(&[("region", "50%,1,0%,10mm,50%,25%")]), frame.front());
         let s = Settings3::new(&PARAMS, &args, &frame, &front).unwrap();
         let b = s.box_if("region").unwrap().unwrap();

@@ -116,13 +116,27 @@ fn lattice(
 fn polynomial_and_rational_lattices() {
     let degree = [3, 2, 4];
     for weight in [1.0, 3.5] {
-        let changed = [([1, 2, 0], [5.0, -3.0, 2.0], 1.0), ([2, 1, 3], [-4.0, 1.0, 6.0], weight), ([3, 0, 4], [1.0, 2.0, 3.0], 1.0)];
+        let changed = [
+            ([1, 2, 0], [5.0, -3.0, 2.0], 1.0),
+            ([2, 1, 3], [-4.0, 1.0, 6.0], weight),
+            ([3, 0, 4], [1.0, 2.0, 3.0], 1.0),
+        ];
         let map = build(
             "ffd",
-            &[("degree", "3x2x4"), ("move", "1,2,0:5,-3,2 2,1,3:-4,1,6 3,0,4:1,2,3"), ("weight", &format!("2,1,3:{weight}"))],
+            &[
+                ("degree", "3x2x4"),
+                ("move", "1,2,0:5,-3,2 2,1,3:-4,1,6 3,0,4:1,2,3"),
+                ("weight", &format!("2,1,3:{weight}")),
+            ],
         );
         compare(&map, |p| {
-            lattice(p, degree.map(|d| d + 1), |a, i, t| bernstein(degree[a], i, t), |a, i| i as f64 / degree[a] as f64, &changed)
+            lattice(
+                p,
+                degree.map(|d| d + 1),
+                |a, i, t| bernstein(degree[a], i, t),
+                |a, i| i as f64 / degree[a] as f64,
+                &changed,
+            )
         });
     }
 }
@@ -180,7 +194,8 @@ const TETRAHEDRON: &str = "-20,0,20 70,0,20 0,90,20 20,20,110";
 
 #[test]
 fn tetrahedra_of_degree_one_and_two() {
-    let map = build("anamorph", &[("eye", "20,30,300"), ("reference", TETRAHEDRON), ("push", "0,0,0,1:1.25 0,1,0,0:0.8")]);
+    let map =
+        build("anamorph", &[("eye", "20,30,300"), ("reference", TETRAHEDRON), ("push", "0,0,0,1:1.25 0,1,0,0:0.8")]);
     compare(&map, |p| {
         let u = barycentric(p, CORNERS);
         radial(EYE, p, u[0] + u[1] / 0.8 + u[2] + u[3] / 1.25)
@@ -188,7 +203,12 @@ fn tetrahedra_of_degree_one_and_two() {
     assert!(map.collineation().is_some());
     let map = build(
         "anamorph",
-        &[("eye", "20,30,300"), ("reference", TETRAHEDRON), ("degree", "2"), ("push", "0,1,0,1:1.25 2,0,0,0:0.9 1,1,0,0:1.1")],
+        &[
+            ("eye", "20,30,300"),
+            ("reference", TETRAHEDRON),
+            ("degree", "2"),
+            ("push", "0,1,0,1:1.25 2,0,0,0:0.9 1,1,0,0:1.1"),
+        ],
     );
     compare(&map, |p| {
         // De Casteljau's algorithm: the values on the six edges' ends and middles, by twice the same affine combination.
@@ -232,7 +252,8 @@ fn cuboids_and_sheets() {
     );
     compare(&map, |p| {
         let [x, y] = on_plane(p);
-        let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let area =
+            |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         let [a, b, c] = [[-20.0, 0.0], [60.0, 0.0], [0.0, 80.0]];
         let u = [area([x, y], b, c), area(a, [x, y], c), area(a, b, [x, y])].map(|v| v / area(a, b, c));
         radial(EYE, p, 1.0 + (1.0 / 1.5 - 1.0) * 2.0 * u[0] * u[2])

@@ -62,25 +62,38 @@ fn then(commands: &str) -> String {
 fn crashes() {
     fails_in_use("at once", &then("echo 'no such file' >&2; exit 7"), &["exit status: 7", "no such file"]);
     fails_in_use("by a signal", &then("read -r line; kill -SEGV $$"), &["signal: 11"]);
-    fails_in_use("mid-batch", &script("bad", "echo $line; [ $i -gt 3 ] && kill -9 $$"), &["points was expected", "signal: 9"]);
+    fails_in_use(
+        "mid-batch",
+        &script("bad", "echo $line; [ $i -gt 3 ] && kill -9 $$"),
+        &["points was expected", "signal: 9"],
+    );
     fails_at_start("before its entry", "#!/bin/sh\nexit 3\n", 0o755, &["its entry as JSON", "exit status: 3"]);
 }
 
 #[test]
 fn hangs() {
     fails_in_use("at build", &then("exec sh -c 'read x; sleep 1000; : MARK'"), &["`build` within 2 seconds"]);
-    fails_in_use("at points", &script("bad", "sleep 1000 # MARK"), &["points within 2 seconds"]);
-    fails_at_start("before its entry", "#!/bin/sh\nsh -c 'sleep 1000; : MARK'\n", 0o755, &["entry as JSON", "2 seconds"]);
+    fails_in_use("at points", &script("bad", "sh -c 'sleep 1000; : MARK'"), &["points within 2 seconds"]);
+    fails_at_start(
+        "before its entry",
+        "#!/bin/sh\nsh -c 'sleep 1000; : MARK'\n",
+        0o755,
+        &["entry as JSON", "2 seconds"],
+    );
     // Signals that can be caught do not matter.
     fails_in_use("stubbornly", &then("trap '' TERM INT HUP; sh -c 'sleep 1000; : MARK'"), &["within 2 seconds"]);
 }
 
 #[test]
 fn floods() {
-    fails_in_use("in an answer", &script("bad", "yes 1 2"), &["points", "bytes"]);
+    fails_in_use("in an answer", &script("bad", "yes 1 2"), &["points is followed by `1 2"]);
     fails_in_use("at build", &then("exec yes xyz"), &["bytes where the answer to `build`"]);
     fails_in_use("of errors", &then("read x; exec yes 'oh no' >&2"), &["bytes to standard error", "oh no"]);
-    fails_in_use("of errors beside answers", &script("bad", "echo $line; head -c 2000000 /dev/zero >&2"), &["standard error"]);
+    fails_in_use(
+        "of errors beside answers",
+        &script("bad", "echo $line; head -c 2000000 /dev/zero >&2"),
+        &["standard error"],
+    );
     fails_at_start("instead of an entry", "#!/bin/sh\necho '{'; exec yes\n", 0o755, &["bytes where its entry"]);
 }
 
@@ -106,8 +119,16 @@ fn wrong_entries() {
     at_start("of another name", &entry("worse"), &["its name is `worse`"]);
     at_start("with an unknown field", &good.replace("\"about\"", "\"colour\": 1, \"about\""), &["colour"]);
     let with_param = |p: &str| good.replace("\"title\"", &format!("\"parameters\": [{p}], \"title\""));
-    at_start("with an unknown kind", &with_param(r#"{"name": "a", "help": "A.", "kind": "colour"}"#), &["`colour`", "kinds are"]);
-    at_start("with an option's name", &with_param(r#"{"name": "tolerance", "help": "A.", "kind": "number"}"#), &["`tolerance`"]);
+    at_start(
+        "with an unknown kind",
+        &with_param(r#"{"name": "a", "help": "A.", "kind": "colour"}"#),
+        &["`colour`", "kinds are"],
+    );
+    at_start(
+        "with an option's name",
+        &with_param(r#"{"name": "tolerance", "help": "A.", "kind": "number"}"#),
+        &["`tolerance`"],
+    );
     let scratch = Scratch::new();
     scratch.install("pathwarp-wave", &script("wave", "echo $line"));
     let (list, _) = scratch.expect(0, &["list"]);
@@ -118,7 +139,7 @@ fn wrong_entries() {
 
 #[test]
 fn wrong_counts_and_values() {
-    fails_in_use("too many", &script("bad", "echo $line; [ $i = 0 ] && echo 5 5"), &["more than that"]);
+    fails_in_use("too many", &script("bad", "echo $line; [ $i = 0 ] && echo 5 5"), &["is followed by"]);
     fails_in_use("too few", &script("bad", "[ $i = 0 ] || echo $line"), &["within 2 seconds"]);
     fails_in_use("NaN", &script("bad", "echo nan 3"), &["NaN or infinity for the point"]);
     fails_in_use("infinity", &script("bad", "echo 3 inf"), &["NaN or infinity for the point"]);
@@ -127,20 +148,33 @@ fn wrong_counts_and_values() {
 
 #[test]
 fn closed_pipes_and_children() {
-    fails_in_use("closes its input", &then("exec <&-; exec sh -c 'sleep 1000; : MARK'"), &["closed its standard input"]);
-    fails_in_use("closes its output", &then("exec >&-; exec sh -c 'sleep 1000; : MARK'"), &["closed its standard output"]);
+    fails_in_use(
+        "closes its input",
+        &then("exec <&-; exec sh -c 'sleep 1000; : MARK'"),
+        &["closed its standard input"],
+    );
+    fails_in_use(
+        "closes its output",
+        &then("exec >&-; exec sh -c 'sleep 1000; : MARK'"),
+        &["closed its standard output"],
+    );
     let forks = then("sh -c 'sleep 1000; : MARK' & exit 4");
     fails_in_use("leaves a child that holds the pipes", &forks, &["exit status: 4"]);
 }
 
 #[test]
 fn never_starts() {
-    fails_at_start("not executable", &script("bad", "echo $line"), 0o644, &["is not executable; allow it with chmod +x"]);
+    fails_at_start(
+        "not executable",
+        &script("bad", "echo $line"),
+        0o644,
+        &["is not executable; allow it with chmod +x"],
+    );
     fails_at_start("no interpreter", "#!/no/such/interpreter\n", 0o755, &["cannot be started"]);
     fails_at_start("no program", "\u{7f}ELF and then nothing", 0o755, &["cannot be started"]);
     let scratch = Scratch::new();
     let (_, stderr) = scratch.expect(3, &["bad", "in.svg", "--plugin", "./nothing.py"]);
-    assert!(stderr.contains("nothing.py is not a file"), "{stderr}");
+    assert!(stderr.contains("nothing.py: is not a file"), "{stderr}");
 }
 
 /// A shape or an input that fails because of a plug-in does not count as skipped.

@@ -42,7 +42,8 @@ fn a_program_gives_what_the_compiled_in_deformation_gives() {
     let scratch = Scratch::new();
     for drawing in ["logo.svg", "lettering.svg", "lineart.svg"] {
         let (drawing, expected) = (sample(drawing), scratch.file("expected.svg"));
-        let args = ["ripple", drawing.to_str().unwrap(), "--wavelength", "60%", "--height", "2%", "--tolerance", "0.01", "-q"];
+        let args =
+            ["ripple", drawing.to_str().unwrap(), "--wavelength", "60%", "--height", "2%", "--tolerance", "0.01", "-q"];
         let mut own = Command::new(compiled_in());
         assert!(own.args(args).arg("-o").arg(&expected).status().unwrap().success());
         for program in ripples() {
@@ -66,7 +67,9 @@ fn the_examples_and_built_in_deformations_pass_the_check() {
     all.extend(["wave".to_owned(), "shaper".to_owned()]);
     for what in all {
         let (report, _) = scratch.expect(0, &["check", &what]);
-        for word in ["ok    help", "ok    values", "ok    inverse", "ok    laws", "ok    cases", "ok    speed", "is sound"] {
+        for word in
+            ["ok    help", "ok    values", "ok    inverse", "ok    laws", "ok    cases", "ok    speed", "is sound"]
+        {
             assert!(report.contains(word), "{what}: `{word}` not in:\n{report}");
         }
     }
@@ -79,7 +82,15 @@ fn the_check_names_the_law_that_fails_and_where() {
     let moves = script("bad", r#"set -- $line; echo "$1$2 $2" | tr -d '.' | sed 's/^/1/'"#);
     scratch.install("pathwarp-bad", &moves.replace("\"title\"", laws));
     let (report, _) = scratch.expect(1, &["check", "bad"]);
-    for word in ["FAIL  help", "fewer than two examples", "FAIL  laws", "should be the identity", "FAIL  cases", "(1.0, 2.0)", "fails"] {
+    for word in [
+        "FAIL  help",
+        "fewer than two examples",
+        "FAIL  laws",
+        "should be the identity",
+        "FAIL  cases",
+        "(1.0, 2.0)",
+        "fails",
+    ] {
         assert!(report.contains(word), "`{word}` not in:\n{report}");
     }
     scratch.install("pathwarp-bad", &script("bad", "echo nan nan"));
@@ -91,7 +102,8 @@ fn the_check_names_the_law_that_fails_and_where() {
 
 /// A plug-in that moves everything by `x`, and writes a line to the file `starts` whenever it is started.
 fn shift(scratch: &Scratch) -> String {
-    let params = r#""parameters": [{"name": "x", "kind": "length", "axis": "x", "default": "10%", "help": "Shift."}], "title""#;
+    let params =
+        r#""parameters": [{"name": "x", "kind": "length", "axis": "x", "default": "10%", "help": "Shift."}], "title""#;
     let starts = format!("echo started >> {}\necho '", scratch.file("starts").display());
     let awk = r#"exec awk '/^build/ { n = $2; b = 1; next } /^points/ { n = $2; b = 0; next }
         b { v[$1] = $2; if (--n == 0) { print "ok"; fflush() } next }
@@ -107,7 +119,14 @@ fn a_plug_in_is_a_deformation_everywhere() {
     let (list, _) = scratch.expect(0, &["list"]);
     assert!(list.contains("Plug-ins\n  shift") && starts() == 1, "{list}");
     // The entry is remembered from now on.
-    for args in [&["list", "--json"][..], &["help", "shift"], &["shift", "--help"], &["schema"], &["--help"], &["completions", "bash"]] {
+    for args in [
+        &["list", "--json"][..],
+        &["help", "shift"],
+        &["shift", "--help"],
+        &["schema"],
+        &["--help"],
+        &["completions", "bash"],
+    ] {
         let (out, _) = scratch.expect(0, args);
         assert!(out.contains("shift"), "{args:?}: {out}");
     }
@@ -127,7 +146,12 @@ fn a_plug_in_is_a_deformation_everywhere() {
     assert!((x("out.svg") - 5.0).abs() < 0.02);
     scratch.expect(0, &["run", "r.toml", "in.svg", "--x", "3", "-o", "out.svg", "-q"]);
     assert!((x("out.svg") - 13.0).abs() < 0.02);
-    let mut map = scratch.command(&["map", "shift", "--x", "2", "--jacobian"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut map = scratch
+        .command(&["map", "shift", "--x", "2", "--jacobian"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
     std::io::Write::write_all(&mut map.stdin.take().unwrap(), b"1 1\n5 7\n").unwrap();
     let mapped = text(&map.wait_with_output().unwrap().stdout);
     let numbers: Vec<f64> = mapped.split_whitespace().map(|n| n.parse().unwrap()).collect();
@@ -144,7 +168,11 @@ fn a_recipe_starts_no_program_by_its_path() {
         fs::write(scratch.file("r.toml"), format!("pathwarp = 1\n[[step]]\n{step}\n")).unwrap();
         scratch.expect(3, &["run", "r.toml", "in.svg", "-o", "out.svg"]);
     }
-    fs::write(scratch.file("r.toml"), format!("pathwarp = 1\n[options]\nplugin = \"{file}\"\n[[step]]\ndeformation = \"shift\"\n")).unwrap();
+    fs::write(
+        scratch.file("r.toml"),
+        format!("pathwarp = 1\n[options]\nplugin = \"{file}\"\n[[step]]\ndeformation = \"shift\"\n"),
+    )
+    .unwrap();
     scratch.expect(3, &["run", "r.toml", "in.svg", "-o", "out.svg"]);
     assert!(!elsewhere.file("starts").exists());
     // The user may name it beside the recipe.
@@ -158,7 +186,11 @@ fn logo(n: usize) -> String {
     let mut d = "M0,0".to_owned();
     for i in 0..n {
         let (x, y) = ((i % 25) as f64 * 36.0, (i / 25) as f64 * 40.0);
-        d += &if i % 25 == 24 { format!(" M0,{}", y + 40.0) } else { format!(" C{},{} {},{} {},{}", x + 9.0, y + 20.0, x + 27.0, y - 20.0, x + 36.0, y) };
+        d += &if i % 25 == 24 {
+            format!(" M0,{}", y + 40.0)
+        } else {
+            format!(" C{},{} {},{} {},{}", x + 9.0, y + 20.0, x + 27.0, y - 20.0, x + 36.0, y)
+        };
     }
     format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 900 800'><path d='{d}'/></svg>")
 }
@@ -172,7 +204,8 @@ fn five_hundred_segments_in_python_take_less_than_a_second() {
     let scratch = Scratch::new();
     fs::write(scratch.file("logo.svg"), logo(520)).unwrap();
     let plugin = root().join("examples/plug-ins/pathwarp-ripple.py").display().to_string();
-    let args = ["ripple", "logo.svg", "-o", "out.svg", "--wavelength", "60%", "--height", "2%", "-q", "--plugin", &plugin];
+    let args =
+        ["ripple", "logo.svg", "-o", "out.svg", "--wavelength", "60%", "--height", "2%", "-q", "--plugin", &plugin];
     let mut child = scratch.command(&args).spawn().unwrap();
     let used = wait4::Wait4::wait4(&mut child).unwrap();
     assert!(used.status.success());
@@ -204,7 +237,11 @@ for line in sys.stdin:
 "#;
     let entry = entry("fold").replace("\"title\"", "\"jacobian\": true, \"title\"");
     scratch.install("pathwarp-fold", &script.replace("ENTRY", &entry));
-    fs::write(scratch.file("line.svg"), "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M0,10 H100' stroke='red'/></svg>").unwrap();
+    fs::write(
+        scratch.file("line.svg"),
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M0,10 H100' stroke='red'/></svg>",
+    )
+    .unwrap();
     let (_, notes) = scratch.expect(0, &["fold", "line.svg", "-o", "out.svg", "--explain", "--strokes", "keep"]);
     assert!(notes.contains("a kink"), "{notes}");
     let svg = fs::read_to_string(scratch.file("out.svg")).unwrap();

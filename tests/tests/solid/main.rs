@@ -65,7 +65,11 @@ fn points_chains_inverses_and_jacobians() {
     assert_eq!(numbers(&got), [51.0, 48.0, 53.0]);
     // A chain, and the same backwards.
     let twist = ["bend", "--preset", "twist", "--along", "z"];
-    let there = ok(dir.path(), &[&["map"], &ffd[..], &frame[..], &["+"], &twist[..], &["--through", "50,50,50"]].concat(), "30 40 60\n80 20 10\n");
+    let there = ok(
+        dir.path(),
+        &[&["map"], &ffd[..], &frame[..], &["+"], &twist[..], &["--through", "50,50,50"]].concat(),
+        "30 40 60\n80 20 10\n",
+    );
     assert_ne!(there, "30 40 60\n80 20 10\n");
     let back = ok(dir.path(), &[&["map"], &ffd[..], &frame[..], &["--inverse"]].concat(), &got);
     assert!(numbers(&back).iter().all(|v| (v - 50.0).abs() < 1e-9), "{back}");
@@ -83,7 +87,22 @@ fn a_model_keeps_everything_but_its_coordinates() {
     let dir = tempfile::tempdir().unwrap();
     let cube = "mtllib paint.mtl\no cube\nv 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nvt 0 0\nvt 1 0\nvn 0 0 1\nusemtl red\n\
                 f 1/1/1 2/2/1 3//1 4//1\nl 1 3\n";
-    let out = ok(dir.path(), &["ffd", "--degree", "1", "--move", "1,0,0:0,0,10", "--move", "1,1,0:0,0,10", "--region", "0,0,-5,10,10,10", "--extend"], cube);
+    let out = ok(
+        dir.path(),
+        &[
+            "ffd",
+            "--degree",
+            "1",
+            "--move",
+            "1,0,0:0,0,10",
+            "--move",
+            "1,1,0:0,0,10",
+            "--region",
+            "0,0,-5,10,10,10",
+            "--extend",
+        ],
+        cube,
+    );
     for line in ["mtllib paint.mtl", "o cube", "usemtl red", "v 0 0 0", "vt 1 0", "f 1/1/1 2/2/2 3//3 4//4", "l 1 3"] {
         assert!(out.lines().any(|l| l == line), "{line} not in\n{out}");
     }
@@ -92,7 +111,8 @@ fn a_model_keeps_everything_but_its_coordinates() {
     assert_eq!(model.vertices[1], [10.0, 0.0, 5.0]);
     let n = out.lines().filter(|l| l.starts_with("vn ")).count();
     assert_eq!(n, 4);
-    let normal: Vec<f64> = out.lines().find(|l| l.starts_with("vn ")).unwrap().split(' ').skip(1).map(|w| w.parse().unwrap()).collect();
+    let normal: Vec<f64> =
+        out.lines().find(|l| l.starts_with("vn ")).unwrap().split(' ').skip(1).map(|w| w.parse().unwrap()).collect();
     assert!((normal[0] * 10.0 + normal[2] * 5.0).abs() < 1e-6 && normal[2] > 0.0, "{normal:?}");
 }
 
@@ -106,8 +126,28 @@ fn the_picture_from_the_eye_is_unchanged() {
     let eye = [10.0, 35.0, 260.0];
     for args in [
         &["--reference", "-60,-10,40;60,-10,40;0,90,40;0,20,-60", "--push", "0,0,0,1:160%"][..],
-        &["--reference", "-60,-10,60;60,-10,60;0,120,60;0,20,-90", "--degree", "2", "--push", "0,0,0,2:150%", "--push", "1,0,0,1:70%"],
-        &["--degree", "3x1x1", "--push", "1,0,0:1.3", "--push", "1,1,0:1.3", "--push", "2,0,1:0.8", "--push", "2,1,1:0.8"],
+        &[
+            "--reference",
+            "-60,-10,60;60,-10,60;0,120,60;0,20,-90",
+            "--degree",
+            "2",
+            "--push",
+            "0,0,0,2:150%",
+            "--push",
+            "1,0,0,1:70%",
+        ],
+        &[
+            "--degree",
+            "3x1x1",
+            "--push",
+            "1,0,0:1.3",
+            "--push",
+            "1,1,0:1.3",
+            "--push",
+            "2,0,1:0.8",
+            "--push",
+            "2,1,1:0.8",
+        ],
         &["--reference", "-60,-10,0;60,60,0", "--degree", "2x1x1", "--push", "1,0,0:1.4", "--push", "1,1,0:0.8"],
         &["--local", "--reference", "30.1,-50,-175;30.1,-50,204;30.1,200,0;63.8,30,0", "--point", "48,35,0:125%"],
     ] {
@@ -126,7 +166,18 @@ fn reports_recipes_explanations_and_saved_lattices() {
     let dir = tempfile::tempdir().unwrap();
     fs::copy(sample("solid/teapot.obj"), dir.path().join("in.obj")).unwrap();
     let line = [
-        "ffd", "in.obj", "--move", "1,2,1:0,60%,0", "--write-recipe", "r.toml", "--report", "r.json", "--save-lattice", "l.json", "-o", "out.obj",
+        "ffd",
+        "in.obj",
+        "--move",
+        "1,2,1:0,60%,0",
+        "--write-recipe",
+        "r.toml",
+        "--report",
+        "r.json",
+        "--save-lattice",
+        "l.json",
+        "-o",
+        "out.obj",
     ];
     ok(dir.path(), &line, "");
     let read = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
@@ -134,7 +185,11 @@ fn reports_recipes_explanations_and_saved_lattices() {
     let report: Value = serde_json::from_str(&read("r.json")).unwrap();
     for side in ["before", "after"] {
         // Four closed shells.
-        assert_eq!((&report[side]["closed"], &report[side]["euler"]), (&Value::Bool(true), &Value::from(8)), "{report}");
+        assert_eq!(
+            (&report[side]["closed"], &report[side]["euler"]),
+            (&Value::Bool(true), &Value::from(8)),
+            "{report}"
+        );
         assert!(report[side]["volume"].as_f64().unwrap() > 1000.0);
     }
     assert!(report["moved"].as_u64().unwrap() > 500 && report["folded"] == 0 && report["torn"] == 0);
@@ -149,7 +204,8 @@ fn reports_recipes_explanations_and_saved_lattices() {
     // There and back, with the box of the source.
     let b = &report["before"]["bounds"];
     let n = |i: usize, k: usize| b[i][k].as_f64().unwrap();
-    let size: Vec<String> = (0..3).map(|k| n(0, k).to_string()).chain((0..3).map(|k| (n(1, k) - n(0, k)).to_string())).collect();
+    let size: Vec<String> =
+        (0..3).map(|k| n(0, k).to_string()).chain((0..3).map(|k| (n(1, k) - n(0, k)).to_string())).collect();
     ok(dir.path(), &["run", "r.toml", "out.obj", "--inverse", "--box", &size.join(","), "-o", "back.obj"], "");
     let (back, source) = (Model::read(&read("back.obj")), Model::read(&read("in.obj")));
     let off = back.vertices.iter().zip(&source.vertices).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
@@ -171,12 +227,41 @@ fn warnings_and_exit_codes() {
     assert!(fold.contains("inside out"), "{fold}");
     let tear = warning(&["ffd", "in.obj", "--region", "0,0,-60,120,60,120", "--move", "0,1,1:5,0,0", "-o", "o.obj"], 0);
     assert!(tear.contains("torn apart along"), "{tear}");
-    let kept = ["ffd", "in.obj", "--region", "0,0,-60,120,60,120", "--degree", "3", "--freeze", "left:1,right:1,top:1,bottom:1,back:1,front:1",
-        "--move", "1,1,1:5,0,0", "-o", "o.obj"];
+    let kept = [
+        "ffd",
+        "in.obj",
+        "--region",
+        "0,0,-60,120,60,120",
+        "--degree",
+        "3",
+        "--freeze",
+        "left:1,right:1,top:1,bottom:1,back:1,front:1",
+        "--move",
+        "1,1,1:5,0,0",
+        "-o",
+        "o.obj",
+    ];
     assert_eq!(warning(&kept, 0), "");
-    let infinite = warning(&["anamorph", "in.obj", "--eye", "0,30,-200", "--reference", "-9,0,0;9,0,0;0,9,0;0,0,9", "--push", "0,0,0,1:3", "-o", "o.obj"], 4);
+    let infinite = warning(
+        &[
+            "anamorph",
+            "in.obj",
+            "--eye",
+            "0,30,-200",
+            "--reference",
+            "-9,0,0;9,0,0;0,9,0;0,0,9",
+            "--push",
+            "0,0,0,1:3",
+            "-o",
+            "o.obj",
+        ],
+        4,
+    );
     assert!(infinite.contains("has no image") && infinite.contains("vertex"), "{infinite}");
-    assert!(warning(&["ffd", "in.obj", "--move", "9,9,9:1,1,1", "-o", "o.obj"], 2).contains("--move: `9,9,9` is not a control point"));
+    assert!(
+        warning(&["ffd", "in.obj", "--move", "9,9,9:1,1,1", "-o", "o.obj"], 2)
+            .contains("--move: `9,9,9` is not a control point")
+    );
     assert!(warning(&["anamorph", "in.obj"], 2).contains("--eye is needed"));
     assert!(warning(&["ffd", "in.obj", "-o", "in.obj"], 2).contains("overwritten"));
     assert!(warning(&["ffd", "missing.obj"], 3).contains("missing.obj: cannot be read"));
@@ -221,7 +306,22 @@ fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     close(&after["bounds"][0][1], 5.0, 1e-4);
     close(&after["bounds"][1][2], 3.0, 0.011);
     // An STL is a model like any other; unwrapped it is the plate again.
-    let back = report(dir.path(), &["wrap", "mug.stl", "--radius", "41mm", "--surface", "0", "--inverse", "--box", "5,5,0,50,20,3", "-o", "back.stl"]);
+    let back = report(
+        dir.path(),
+        &[
+            "wrap",
+            "mug.stl",
+            "--radius",
+            "41mm",
+            "--surface",
+            "0",
+            "--inverse",
+            "--box",
+            "5,5,0,50,20,3",
+            "-o",
+            "back.stl",
+        ],
+    );
     assert_eq!(back["after"]["closed"], true);
     close(&back["after"]["bounds"][0][0], 5.0, 1e-4);
     close(&back["after"]["bounds"][1][2], 3.0, 1e-4);

@@ -41,11 +41,9 @@ pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Res
     let Some(entry) = entry else {
         return Err(match plugins.broken.iter().find(|b| b.name == what) {
             Some(b) => b.fault.of(&b.path).into(),
-            None => Failure::usage(advice::unknown(
-                "deformation",
-                what,
-                registry.entries().iter().map(|e| e.info().name),
-            )),
+            None => {
+                Failure::usage(advice::unknown("deformation", what, registry.entries().iter().map(|e| e.info().name)))
+            }
         });
     };
     let name = entry.info().name;

@@ -41,8 +41,7 @@ fn kind(p: &Param) -> &'static str {
 /// The deformations with their parameters, and the plug-ins that are broken.
 fn json(registry: &Registry, plugins: &Plugins) -> Value {
     let param = |p: &Param| {
-        let mut v =
-            json!({ "name": p.name, "kind": kind(p), "help": p.help, "needed": p.needed, "repeat": p.repeat });
+        let mut v = json!({ "name": p.name, "kind": kind(p), "help": p.help, "needed": p.needed, "repeat": p.repeat });
         if let Kind::Length(axis) = p.kind {
             v["axis"] = match axis {
                 Axis::X => json!("x"),
@@ -84,7 +83,8 @@ fn json(registry: &Registry, plugins: &Plugins) -> Value {
 
 pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
     if m.get_flag("json") {
-        let text = serde_json::to_string_pretty(&json(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
+        let text =
+            serde_json::to_string_pretty(&json(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
         output::to_stdout((text + "\n").as_bytes())?;
         return Ok(Status::Complete);
     }

@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod convert;
 mod deformation;
+mod edit;
 mod file_args;
 mod gallery;
 mod install;
@@ -27,8 +28,8 @@ use crate::options::Given;
 use crate::plugins::{self, Plugins};
 use crate::status::Status;
 use crate::watch;
-use clap::{Arg, Command};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command};
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
 
@@ -93,7 +94,8 @@ fn root() -> Command {
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 17] = [
+const OTHERS: [(&str, Declare); 18] = [
+    (edit::NAME, |_| edit::command()),
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
@@ -121,15 +123,17 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
-    let matches =
-        build_for(registry, first.get(1))
-            .try_get_matches_from(first)
-            .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
+    let matches = build_for(registry, first.get(1))
+        .try_get_matches_from(first)
+        .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
     let reading = Given::reading(m)?;
-    watch::begin(reading.limits);
+    // An editor may be open for hours; it counts the work of every picture.
+    if name != edit::NAME {
+        watch::begin(reading.limits);
+    }
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
@@ -142,6 +146,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
+        edit::NAME => edit::run(registry, m),
         list::NAME => list::run(registry, &plugins, m),
         check::NAME => check::run(registry, &plugins, m),
         new_plugin::NAME => new_plugin::run(m),
@@ -155,7 +160,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         render::NAME => render::run(m),
         gallery::NAME => gallery::run(registry, m),
         compare::NAME => compare::run(m),
-        install::NAME => install::run(m),
+        install::NAME => install::run(registry, m),
         completions::NAME => completions::run(build(registry), m),
         man::NAME => man::run(build(registry), m),
         other => Err(Failure::usage(format!("there is no command {other}"))),

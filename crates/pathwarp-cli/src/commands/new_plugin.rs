@@ -70,7 +70,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     for (file, _) in &files {
         let _ = writeln!(text, "wrote {}", file.display());
     }
-    let _ = write!(text, "next:\n{build}  pathwarp check {file}\n  pathwarp {name} IN.svg -o OUT.svg --plugin {file}\n");
+    let _ =
+        write!(text, "next:\n{build}  pathwarp check {file}\n  pathwarp {name} IN.svg -o OUT.svg --plugin {file}\n");
     if let Some(folder) = pathwarp_plugin::folder() {
         let _ = writeln!(text, "to install it, copy {file} to {}", folder.display());
     }

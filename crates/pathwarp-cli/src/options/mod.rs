@@ -14,6 +14,7 @@ mod typed_box;
 
 pub(crate) use args::{INPUT, args, options_without_inputs, reading_args, some_options};
 pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
+pub(crate) use definition::{CommonOption, OptionValue};
 pub(crate) use given::Given;
 pub(crate) use parse::rect;
 pub(crate) use reading::Reading;

@@ -16,7 +16,11 @@ pub(crate) struct ChainPart {
 }
 
 /// Parses the parts after each `+`, which take these common options.
-pub(crate) fn parts(catalogue: &dyn Catalogue, words: &[&[OsString]], options: &[Arg]) -> Result<Vec<ChainPart>, Failure> {
+pub(crate) fn parts(
+    catalogue: &dyn Catalogue,
+    words: &[&[OsString]],
+    options: &[Arg],
+) -> Result<Vec<ChainPart>, Failure> {
     words.iter().map(|words| part(catalogue, words, options)).collect()
 }
 

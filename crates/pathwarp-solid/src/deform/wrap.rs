@@ -71,7 +71,10 @@ impl Wrap3 {
         };
         let (length, around) = (self.bounds.size()[across], std::f64::consts::TAU * self.radius);
         let mut built = Built3::new(Arc::new(map));
-        built.note(format!("wrapped through {:.4}°, on a circumference of {around:.6}", (length / self.radius).to_degrees()));
+        built.note(format!(
+            "wrapped through {:.4}°, on a circumference of {around:.6}",
+            (length / self.radius).to_degrees()
+        ));
         if length > around {
             built.warn(format!("the model is {length:.6} long and the circumference {around:.6}: its ends overlap; use a larger `radius`"));
         }

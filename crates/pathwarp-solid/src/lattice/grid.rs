@@ -168,7 +168,8 @@ impl Lattice3 {
             let moves: Vec<[f64; 3]> = self.moves.iter().map(DVec3::to_array).collect();
             Piece::Displacement(Tensor::bernstein(size, self.bezier(cell, &matrices, &moves)))
         } else {
-            let weighted = |node: [usize; 3]| (self.point(node) * self.weight(node)).extend(self.weight(node)).to_array();
+            let weighted =
+                |node: [usize; 3]| (self.point(node) * self.weight(node)).extend(self.weight(node)).to_array();
             let all: Vec<[f64; 4]> = self.nodes().map(weighted).collect();
             Piece::Quotient(Tensor::bernstein(size, self.bezier(cell, &matrices, &all)))
         }

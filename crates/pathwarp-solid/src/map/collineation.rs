@@ -123,7 +123,8 @@ mod tests {
     #[test]
     fn batches_agree_with_single_points() {
         let map = perspective(DVec3::new(0.1, -0.03, 0.05), 1.3);
-        let ps: Vec<DVec3> = (0..37).map(|i| DVec3::new(f64::from(i), 0.3 * f64::from(i % 5), -0.1 * f64::from(i))).collect();
+        let ps: Vec<DVec3> =
+            (0..37).map(|i| DVec3::new(f64::from(i), 0.3 * f64::from(i % 5), -0.1 * f64::from(i))).collect();
         let mut out = ps.clone();
         map.points(&mut out);
         assert!(ps.iter().zip(&out).all(|(p, q)| (map.point(*p) - *q).length() <= 1e-15 * (1.0 + q.length())));

@@ -148,7 +148,8 @@ mod tests {
     fn values_and_derivatives_are_those_of_the_bernstein_form() {
         for size in [[2, 2, 2], [3, 3, 3], [4, 4, 4], [1, 4, 2], [11, 2, 5]] {
             let count = size.iter().product::<usize>();
-            let c: Vec<[f64; 2]> = (0..count).map(|i| [((i * 37 + 11) % 17) as f64 - 8.0, ((i * 5) % 13) as f64]).collect();
+            let c: Vec<[f64; 2]> =
+                (0..count).map(|i| [((i * 37 + 11) % 17) as f64 - 8.0, ((i * 5) % 13) as f64]).collect();
             let tensor = Tensor::bernstein(size, c.clone());
             let slow = |t: DVec3| -> [f64; 2] {
                 let bezier = |c: &[[f64; 2]], t: f64| {

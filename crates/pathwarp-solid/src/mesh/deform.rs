@@ -46,11 +46,12 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     map.creases(&mut creases);
     let bounded = creases.items().iter().any(|c| c.kind == CreaseKind::Edge);
     let before = mesh.positions.clone();
-    let undefined = mesh.positions.par_chunks_mut(CHUNK).zip(before.par_chunks(CHUNK)).enumerate().map(|(n, (to, from))| {
-        map.points(to);
-        let bad = |(p, q): (&DVec3, &DVec3)| !q.is_finite() || bounded && !creases.defined_at(*p);
-        from.iter().zip(to.iter()).position(bad).map(|i| n * CHUNK + i)
-    });
+    let undefined =
+        mesh.positions.par_chunks_mut(CHUNK).zip(before.par_chunks(CHUNK)).enumerate().map(|(n, (to, from))| {
+            map.points(to);
+            let bad = |(p, q): (&DVec3, &DVec3)| !q.is_finite() || bounded && !creases.defined_at(*p);
+            from.iter().zip(to.iter()).position(bad).map(|i| n * CHUNK + i)
+        });
     if let Some(vertex) = undefined.min_by_key(|v| v.unwrap_or(usize::MAX)).flatten() {
         return Err(Undefined3 { vertex, at: before[vertex] });
     }

@@ -62,7 +62,12 @@ mod tests {
         // A square with a square hole, as eight triangles, given clockwise.
         let p = |r: f64| [[-r, -r], [r, -r], [r, r], [-r, r]];
         let points = [p(2.0), p(1.0)].concat();
-        let triangles = (0..4u32).flat_map(|i| { let j = (i + 1) % 4; [[i, i + 4, j], [j, i + 4, j + 4]] }).collect();
+        let triangles = (0..4u32)
+            .flat_map(|i| {
+                let j = (i + 1) % 4;
+                [[i, i + 4, j], [j, i + 4, j + 4]]
+            })
+            .collect();
         let shape = FlatShape { name: "frame".into(), points, triangles };
         let mut mesh = Mesh::default();
         extrude(&mut mesh, &shape, 0.5);

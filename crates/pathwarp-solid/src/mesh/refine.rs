@@ -281,7 +281,10 @@ mod tests {
             faces = t.faces;
             // A twist keeps the volume.
             assert!((t.volume / 10_000.0 - 1.0).abs() < 0.1 * tolerance.sqrt(), "{tolerance}: {}", t.volume);
-            assert!(mesh.uvs.iter().all(|uv| (0.0..=1.0).contains(&uv[0])) && mesh.name_of(mesh.polygons.len() - 1) == "top");
+            assert!(
+                mesh.uvs.iter().all(|uv| (0.0..=1.0).contains(&uv[0]))
+                    && mesh.name_of(mesh.polygons.len() - 1) == "top"
+            );
         }
     }
 

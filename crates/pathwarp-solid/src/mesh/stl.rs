@@ -53,7 +53,8 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         own[0] = b'S';
         bytes = &own[..];
     }
-    let read = stl_io::read_stl(&mut Cursor::new(bytes)).map_err(|e| MeshError::whole(format!("is a damaged STL file: {e}")))?;
+    let read = stl_io::read_stl(&mut Cursor::new(bytes))
+        .map_err(|e| MeshError::whole(format!("is a damaged STL file: {e}")))?;
     let mut mesh = Mesh::default();
     for (i, v) in read.vertices.iter().enumerate() {
         let p = DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));

@@ -71,6 +71,11 @@ pub(super) fn attributes(input: &WriteInput<'_>) -> Option<Vec<(&'static str, St
     Some(out)
 }
 
+/// The visible area before and after, if the page changes.
+pub(super) fn change(input: &WriteInput<'_>) -> Option<(Rect, Rect)> {
+    Some((input.drawing.visible_area(), adapted(input)?))
+}
+
 /// Measures the overhang over a page that is not adapted, compared to the original.
 pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     // Measuring needs every outline, so skip it if nothing has moved.

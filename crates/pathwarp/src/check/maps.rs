@@ -51,7 +51,10 @@ fn derivatives(map: &dyn Map) -> Check {
             faults.fault(format!("derivatives at {p:?}: {j:?}, differences give {dx:?} {dy:?}"));
         }
     }
-    faults.detail = format!("{} points are finite, alone and in batches; derivatives differ from differences by {largest:.0e}", ps.len());
+    faults.detail = format!(
+        "{} points are finite, alone and in batches; derivatives differ from differences by {largest:.0e}",
+        ps.len()
+    );
     faults
 }
 

@@ -1,7 +1,7 @@
 //! The description of a deformation: its names, texts, and the defaults of its parameters.
 
-use super::outcome::Check;
 use super::frame::frame;
+use super::outcome::Check;
 use crate::deform::Deformation;
 use crate::param::{Args, Kind, Settings};
 
@@ -23,6 +23,10 @@ pub(super) fn help(entry: &dyn Deformation) -> Check {
     }
     if info.examples.len() < 2 {
         faults.fault("has fewer than two examples");
+    }
+    let is_path = |name: &&'static str| info.params.iter().any(|p| p.name == *name && p.kind == Kind::Path);
+    if !info.guides.params.iter().all(is_path) || info.guides.usual > info.guides.params.len() {
+        faults.fault("its guides are not path parameters, or fewer than is usual");
     }
     faults
 }

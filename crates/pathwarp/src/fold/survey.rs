@@ -54,6 +54,18 @@ impl<'a> Survey<'a> {
         matches!(self.knowledge, Knowledge::Nothing)
     }
 
+    /// Returns the work of sampling `shapes` outlines with `segments` together, in evaluations of [`budget`](crate::budget); 0 if
+    /// nothing is sampled.
+    #[must_use]
+    pub fn work(&self, shapes: usize, segments: usize) -> f64 {
+        /// A sample is taken in a batch.
+        const SAMPLE: f64 = 0.25;
+        /// Share of a grid over a box that is inside of the shape, and the work to find out.
+        const FILLED: f64 = 0.5;
+        let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
+        if self.samples() { SAMPLE * self.map.work() * samples } else { 0.0 }
+    }
+
     /// Returns the orientation of a shape of the artwork. Unless the survey has a proof, the determinant is sampled along `outline`, and
     /// inside it if `filled`; of an affine map no samples are taken.
     ///

@@ -82,6 +82,10 @@ fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
 }
 
 impl Map for Chain {
+    fn work(&self) -> f64 {
+        self.steps.iter().map(Map::work).sum::<f64>().max(1.0)
+    }
+
     fn jet(&self, p: Point) -> Jet {
         let mut it = self.steps.iter();
         let Some(first) = it.next() else { return AffineMap::IDENTITY.jet(p) };
@@ -129,7 +133,8 @@ impl Map for Chain {
         first.points(ps, out);
         for m in rest {
             if m.prefers_batches() {
-                m.points(&out.to_vec(), out);
+                let at = out.to_vec();
+                m.points(&at, out);
                 continue;
             }
             for chunk in out.chunks_mut(BATCH) {

@@ -19,15 +19,16 @@ pub struct Gathered<'a> {
 }
 
 /// Answers by the bits of their point.
-type Memory<T> = HashMap<[u64; 2], T, BuildHasherDefault<Mixer>>;
+pub(super) type Memory<T> = HashMap<[u64; 2], T, BuildHasherDefault<Mixer>>;
 
-fn key(p: Point) -> [u64; 2] {
+/// The key of a point.
+pub(super) fn key(p: Point) -> [u64; 2] {
     [p.x.to_bits(), p.y.to_bits()]
 }
 
 /// A hash of coordinates. The points are computed here, so nobody can choose them to collide.
 #[derive(Default)]
-struct Mixer(u64);
+pub(super) struct Mixer(u64);
 
 impl Hasher for Mixer {
     fn finish(&self) -> u64 {
@@ -133,6 +134,10 @@ impl Map for Gathered<'_> {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         self.map.inverse()
+    }
+
+    fn work(&self) -> f64 {
+        self.map.work()
     }
 
     fn prefers_batches(&self) -> bool {

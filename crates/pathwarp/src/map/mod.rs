@@ -52,6 +52,7 @@ pub(crate) mod piecewise;
 pub(crate) mod polynomial;
 mod projective;
 mod rational_bezier;
+mod rounds;
 mod traits;
 
 pub use birational::{Birational, BirationalInverse, Rows};
@@ -66,6 +67,7 @@ pub use homography::Homography;
 pub use jet::Jet;
 pub use lattice::{Lattice, LatticeMap};
 pub use nets::{BicubicNet, Net, bspline, complete_net};
+pub(crate) use newton::INVERSE_WORK;
 pub use newton::NewtonInverse;
 pub use piecewise::{Coons, Sides};
 pub use projective::AffineMap;

@@ -68,6 +68,12 @@ pub trait Map: Send + Sync {
         None
     }
 
+    /// The cost of one evaluation, relative to that of a bicubic net, for [`budget`](crate::budget): a map that takes longer the
+    /// more parts it has says so here. 1 or more.
+    fn work(&self) -> f64 {
+        1.0
+    }
+
     /// Returns `true` if a call costs much and a point little, as where another program is asked. Callers then collect the points
     /// they need.
     fn prefers_batches(&self) -> bool {
@@ -141,6 +147,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         (**self).inverse()
     }
+    fn work(&self) -> f64 {
+        (**self).work()
+    }
     fn prefers_batches(&self) -> bool {
         (**self).prefers_batches()
     }
@@ -208,6 +217,9 @@ mod tests {
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             self.record("inverse", None)
         }
+        fn work(&self) -> f64 {
+            self.record("work", 3.0)
+        }
         fn prefers_batches(&self) -> bool {
             self.record("prefers_batches", true)
         }
@@ -239,6 +251,7 @@ mod tests {
         let _ = map.rational_degree();
         let _ = map.denominator(p);
         let _ = map.inverse();
+        let _ = map.work();
         let _ = map.prefers_batches();
         let _ = map.remembers();
         map.prepare(&[p], &[p]);

@@ -96,13 +96,14 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
         path::affine(outline, m, options, &mut out)?;
     } else {
         let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
-        gather::announce_outline(outline, map, options);
         let mut creases = Creases::default();
         map.creases(&mut creases);
+        let announced = path::announce_short(outline, map, &creases, options);
         for sub in &outline.subpaths {
-            path::subpath(sub, map, &creases, options, &mut out)?;
+            path::subpath(sub, map, &creases, (options, announced), &mut out)?;
         }
     }
     out.report.segments_in = outline.segs().count();
+    out.report.name_a_miss(outline, options.tolerance);
     Ok(out.finish())
 }

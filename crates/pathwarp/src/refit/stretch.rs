@@ -28,6 +28,8 @@ pub(super) struct StretchFitter<'a> {
     /// The map's degree, if it is a quotient of polynomials and the ends of the pieces lie on its image.
     pub(super) degree: Option<RationalDegree>,
     pub(super) attempts: usize,
+    /// The number of attempts at which the work ends.
+    pub(super) most_attempts: usize,
 }
 
 impl StretchFitter<'_> {

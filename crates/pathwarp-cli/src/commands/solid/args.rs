@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::options::{INPUT, some_options};
-use clap::{Arg, ArgMatches, value_parser};
 use crate::units::MM_PER_PX;
+use clap::{Arg, ArgMatches, value_parser};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length, LengthUnit};
 use pathwarp_solid::Box3;
@@ -35,7 +35,11 @@ pub(super) fn all() -> Vec<Arg> {
         "Subdivide faces until the deformed surface is within D of the exact one: units of the model, or a length such as 0.05mm; \
          without it, vertices move and edges stay straight",
     );
-    let extrude = own("extrude", "DEPTH", "Make a drawing's filled shapes a solid of this depth, such as 5mm; without it they are flat");
+    let extrude = own(
+        "extrude",
+        "DEPTH",
+        "Make a drawing's filled shapes a solid of this depth, such as 5mm; without it they are flat",
+    );
     std::iter::once(model).chain(options()).chain([frame_arg(), refine, extrude]).collect()
 }
 
@@ -52,7 +56,8 @@ pub(super) struct Own {
 impl Own {
     /// Reads them from a command line.
     pub(super) fn read(m: &ArgMatches) -> Result<Self, Failure> {
-        let depth = length(m, "extrude")?.map(|l| l.in_units(Axis::X, &Frame::new(Rect::ZERO).with_units_per_px([MM_PER_PX; 2])));
+        let depth = length(m, "extrude")?
+            .map(|l| l.in_units(Axis::X, &Frame::new(Rect::ZERO).with_units_per_px([MM_PER_PX; 2])));
         Ok(Self { frame: frame(m)?, refine: length(m, "refine")?, depth })
     }
 }
@@ -85,7 +90,9 @@ pub(super) fn frame(m: &ArgMatches) -> Result<Option<Box3>, Failure> {
     let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
     match numbers[..] {
         [x, y, z, w, h, d]
-            if [w, h, d].iter().all(|v| *v > 0.0) && numbers.iter().all(|v| v.is_finite()) && text.split(',').count() == 6 =>
+            if [w, h, d].iter().all(|v| *v > 0.0)
+                && numbers.iter().all(|v| v.is_finite())
+                && text.split(',').count() == 6 =>
         {
             let min = DVec3::new(x, y, z);
             Ok(Some(Box3 { min, max: min + DVec3::new(w, h, d) }))

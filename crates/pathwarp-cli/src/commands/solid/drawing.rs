@@ -18,7 +18,8 @@ const TOLERANCE: f64 = 0.01;
 pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, Failure> {
     let doc = input::document(file, reading)?;
     let page = doc.user_to_px().transform_rect_bbox(doc.view_box());
-    let to_mm = Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
+    let to_mm =
+        Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
     let unit = to_mm.determinant().abs().sqrt();
     let mut mesh = Mesh::default();
     let mut unfilled = 0;
@@ -28,7 +29,7 @@ pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, F
             continue;
         }
         let named = NamedShape { name: &shape.id, outline: &shape.outline, even_odd: shape.even_odd };
-        let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit)
+        let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit, doc.budget())
             .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface(&e))))?;
         let points = flat.points.iter().map(|p| {
             let p: Point = to_mm * *p;

@@ -27,10 +27,11 @@ pub(super) fn command(registry: &Registry3) -> Command {
     let jacobian =
         Arg::new("jacobian").long("jacobian").action(ArgAction::SetTrue).help("Print the partial derivatives too");
     let deformation = |info: &pathwarp::deform::Info| {
-        Command::new(info.name)
-            .about(info.title)
-            .args(steps::args(info))
-            .args([points.clone(), jacobian.clone(), args::frame_arg()])
+        Command::new(info.name).about(info.title).args(steps::args(info)).args([
+            points.clone(),
+            jacobian.clone(),
+            args::frame_arg(),
+        ])
     };
     Command::new(NAME)
         .about("Map plain points, one x y z per line, by a deformation of space")

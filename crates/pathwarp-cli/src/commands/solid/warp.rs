@@ -76,8 +76,7 @@ fn check_outputs(
     from.iter().for_each(|f| files.read(f));
     files.read(input);
     files.write(options.out.as_deref().unwrap_or(Path::new("-")), "")?;
-    let others =
-        [("report", &options.report), ("write-recipe", &options.write_recipe), ("preview", &options.preview)];
+    let others = [("report", &options.report), ("write-recipe", &options.write_recipe), ("preview", &options.preview)];
     for (option, file) in others {
         if let Some(file) = file {
             files.write(file, option)?;
@@ -109,7 +108,8 @@ impl Work<'_> {
         let source = (options.report.is_some() || options.preview.is_some()).then(|| model.mesh.clone());
         let bounds = model.mesh.bounds().unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
         let frame = Frame3::new(self.own.frame.unwrap_or(bounds));
-        let built = recipe::build(self.recipe, self.registry, frame, &model.mesh.positions).map_err(Failure::of_recipe)?;
+        let built =
+            recipe::build(self.recipe, self.registry, frame, &model.mesh.positions).map_err(Failure::of_recipe)?;
         if let Some(length) = self.own.refine {
             let budget = Budget::new(options.reading.limits.for_input(model.bytes));
             let within = length.in_units(Axis::X, &frame.front());

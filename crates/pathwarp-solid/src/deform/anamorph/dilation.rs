@@ -37,8 +37,7 @@ pub(super) struct Simplex {
 impl Simplex {
     pub(super) fn new(degree: usize, values: impl Iterator<Item = ([usize; 4], f64)>) -> Self {
         let factorial = |n: usize| (1..=n).fold(1.0, |f, k| f * k as f64);
-        let coefficient =
-            |node: &[usize; 4]| factorial(degree) / node.iter().map(|n| factorial(*n)).product::<f64>();
+        let coefficient = |node: &[usize; 4]| factorial(degree) / node.iter().map(|n| factorial(*n)).product::<f64>();
         Self { degree, terms: values.map(|(node, delta)| (node, delta * coefficient(&node))).collect() }
     }
 

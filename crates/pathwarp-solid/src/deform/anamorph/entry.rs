@@ -104,7 +104,11 @@ control point that has most influence there and is not on the fixed face (the fi
 };
 
 const LOCAL: Pairs = &[
-    ("eye", "50,60,300"), ("reference", "20,20,20 80,80,80"), ("degree", "2"), ("push", "1,1,1:1.2"), ("local", "true"),
+    ("eye", "50,60,300"),
+    ("reference", "20,20,20 80,80,80"),
+    ("degree", "2"),
+    ("push", "1,1,1:1.2"),
+    ("local", "true"),
 ];
 
 impl Deformation3 for Entry {
@@ -113,7 +117,9 @@ impl Deformation3 for Entry {
     }
 
     fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
-        let eye = s.point_if("eye")?.ok_or_else(|| Error::missing("eye", "the place from which the model looks unchanged"))?;
+        let eye = s
+            .point_if("eye")?
+            .ok_or_else(|| Error::missing("eye", "the place from which the model looks unchanged"))?;
         let mut points = Vec::new();
         for word in s.words("reference").into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty()) {
             points.push(s.point_in("reference", word)?);

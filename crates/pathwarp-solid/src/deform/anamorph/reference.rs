@@ -68,7 +68,9 @@ impl Reference3 {
                     _ => Err(wrong("has no area; name two opposite corners of a box or a rectangle")),
                 }
             }
-            _ => Err(wrong("must have four points (a tetrahedron), three (a triangle) or two (a box, or a rectangle if flat)")),
+            _ => Err(wrong(
+                "must have four points (a tetrahedron), three (a triangle) or two (a box, or a rectangle if flat)",
+            )),
         }
     }
 
@@ -80,9 +82,7 @@ impl Reference3 {
                 let rows = (0..=n).flat_map(|l| (0..=n - l).map(move |k| (k, l)));
                 rows.flat_map(|(k, l)| (0..=n - l - k).map(move |j| [n - j - k - l, j, k, l])).collect()
             }
-            Self::Triangle(_, n) => {
-                (0..=n).flat_map(|k| (0..=n - k).map(move |j| [n - j - k, j, k, 0])).collect()
-            }
+            Self::Triangle(_, n) => (0..=n).flat_map(|k| (0..=n - k).map(move |j| [n - j - k, j, k, 0])).collect(),
             Self::Cuboid(_, [l, m, n]) | Self::Rectangle(_, _, [l, m, n]) => {
                 let rows = (0..=n).flat_map(|k| (0..=m).map(move |j| (j, k)));
                 rows.flat_map(|(j, k)| (0..=l).map(move |i| [i, j, k, 0])).collect()

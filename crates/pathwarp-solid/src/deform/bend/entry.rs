@@ -132,7 +132,11 @@ fn spine(s: &Settings3<'_>) -> Result<Spine3, Error> {
     if s.flat().given("preset") {
         for name in ["skeleton", "spline", "degree"] {
             if s.flat().given(name) {
-                return Err(Error::usage(name, s.words(name).join(" "), "cannot go with `preset`, which has its own skeleton"));
+                return Err(Error::usage(
+                    name,
+                    s.words(name).join(" "),
+                    "cannot go with `preset`, which has its own skeleton",
+                ));
             }
         }
         let angle = s.flat().number("angle")?.to_radians();

@@ -117,8 +117,7 @@ impl Bend3 {
         }
         let count = pieces.len();
         let (axis, start) = (self.axis, self.bounds.min[self.axis]);
-        let mut built =
-            Built3::new(Arc::new(BendMap3 { pieces: pieces.into(), axis, start, length: size, through }));
+        let mut built = Built3::new(Arc::new(BendMap3 { pieces: pieces.into(), axis, start, length: size, through }));
         let length: f64 = skeleton.windows(2).map(|w| w[0].distance(w[1])).sum();
         built.note(format!("skeleton: {count} pieces, {length:.6} long; the model is {size:.6} long along it"));
         built.guides.push(skeleton);
@@ -144,7 +143,8 @@ impl Bend3 {
             Spine3::Bezier(points, degree) => self.ribbons(points, *degree),
             Spine3::Spline(points, degree) => {
                 if points.len() <= *degree || !(1..=3).contains(degree) {
-                    let problem = format!("has too few points: a spline of degree {degree} needs {} or more", degree + 1);
+                    let problem =
+                        format!("has too few points: a spline of degree {degree} needs {} or more", degree + 1);
                     return Err(Error::usage("skeleton", "", problem));
                 }
                 let cells = bspline::extraction(*degree, points.len() - degree);
@@ -174,7 +174,8 @@ impl Bend3 {
         let legs = points.len() - 1;
         let mut first = self.turning_least(points).map_err(wrong)?;
         let pieces = legs / degree;
-        let mut deeper: Vec<Vec<[DVec3; 2]>> = (2..=degree).map(|j| vec![[DVec3::ZERO; 2]; pieces * (degree + 1 - j)]).collect();
+        let mut deeper: Vec<Vec<[DVec3; 2]>> =
+            (2..=degree).map(|j| vec![[DVec3::ZERO; 2]; pieces * (degree + 1 - j)]).collect();
         let mut deepest = 1;
         for h in &self.handles {
             let level = if h.level == 1 { Some(&mut first) } else { deeper.get_mut(h.level.wrapping_sub(2)) };
@@ -206,7 +207,8 @@ impl Bend3 {
         let mut side = DVec3::AXES[(self.axis + 1) % 3];
         for (i, leg) in points.windows(2).enumerate() {
             let direction = (leg[1] - leg[0]).try_normalize();
-            let direction = direction.ok_or_else(|| format!("has two equal points, {i} and {}; move them apart", i + 1))?;
+            let direction =
+                direction.ok_or_else(|| format!("has two equal points, {i} and {}; move them apart", i + 1))?;
             side = (DQuat::from_rotation_arc(previous, direction) * side).reject_from_normalized(direction).normalize();
             out.push([side, direction.cross(side)]);
             previous = direction;

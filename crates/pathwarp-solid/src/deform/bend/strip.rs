@@ -103,7 +103,8 @@ mod tests {
                     })
                     .sum();
                 let h = 1e-6;
-                let difference = (bezier(p[..n].iter().copied(), u + h).0 - bezier(p[..n].iter().copied(), u - h).0) / (2.0 * h);
+                let difference =
+                    (bezier(p[..n].iter().copied(), u + h).0 - bezier(p[..n].iter().copied(), u - h).0) / (2.0 * h);
                 assert!((at - truth).length() < 1e-14 && (slope - difference).length() < 1e-8, "{n} {u}");
             }
         }

@@ -39,8 +39,9 @@ fn one() -> [usize; 3] {
 
 /// Reads a lattice. The flag is `true` if the file names its region; otherwise the region is `frame`.
 pub(super) fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, bool), Error> {
-    let file: LatticeFile = serde_json::from_str(text)
-        .map_err(|e| Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is not a lattice in space: {e}")))?;
+    let file: LatticeFile = serde_json::from_str(text).map_err(|e| {
+        Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is not a lattice in space: {e}"))
+    })?;
     let wrong = |what: String| Error::input(name, what);
     for (what, numbers, most) in [("degrees", file.degree, MAX_DEGREE), ("cells", file.cells, MAX_CELLS)] {
         if numbers.iter().any(|n| !(1..=most).contains(n)) {
@@ -59,7 +60,9 @@ pub(super) fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, boo
     let [nx, ny, nz] = lattice.size();
     let fits = file.points.len() == nz && file.points.iter().all(|l| l.len() == ny && l.iter().all(|r| r.len() == nx));
     if !fits {
-        return Err(wrong(format!("its points are not {nz} layers of {ny} rows of {nx}, as its degree and cells ask for")));
+        return Err(wrong(format!(
+            "its points are not {nz} layers of {ny} rows of {nx}, as its degree and cells ask for"
+        )));
     }
     for node in lattice.nodes() {
         let [i, j, k] = node;
@@ -90,7 +93,10 @@ pub(super) fn write(lattice: &Lattice3) -> String {
     let (r, layers) = (lattice.region(), (0..nz).map(layer).collect::<Vec<_>>().join(",\n"));
     let region: Vec<f64> = r.min.to_array().into_iter().chain(r.size().to_array()).collect();
     let [d, c] = [lattice.degree(), lattice.cells()];
-    format!("{{\n  \"degree\": {d:?},\n  \"cells\": {c:?},\n  \"region\": {},\n  \"points\": [\n{layers}\n  ]\n}}\n", numbers(&region))
+    format!(
+        "{{\n  \"degree\": {d:?},\n  \"cells\": {c:?},\n  \"region\": {},\n  \"points\": [\n{layers}\n  ]\n}}\n",
+        numbers(&region)
+    )
 }
 
 #[cfg(test)]
@@ -100,7 +106,8 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         let frame = Box3::new(DVec3::ZERO, DVec3::ONE);
-        let mut lattice = Lattice3::regular(Box3::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 6.0, 8.0)), [2, 1, 3], [2, 1, 1]);
+        let mut lattice =
+            Lattice3::regular(Box3::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 6.0, 8.0)), [2, 1, 3], [2, 1, 1]);
         lattice.shift([1, 0, 2], DVec3::new(0.125, -0.5, 3.0));
         lattice.set_weight([3, 1, 0], 2.5);
         let (back, named) = read("a.json", &write(&lattice), frame).unwrap();

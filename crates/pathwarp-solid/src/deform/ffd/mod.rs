@@ -143,8 +143,13 @@ impl Ffd3 {
         let [l, m, n] = lattice.size();
         let [a, b, c] = lattice.degree();
         let Box3 { min, max } = region;
-        built.note(format!("grid: {l} by {m} by {n} control points of degree {a}x{b}x{c} over {} to {}", show(min), show(max)));
-        built.note(format!("outside the region: {}", if self.extended { "the map continues" } else { "nothing moves" }));
+        built.note(format!(
+            "grid: {l} by {m} by {n} control points of degree {a}x{b}x{c} over {} to {}",
+            show(min),
+            show(max)
+        ));
+        built
+            .note(format!("outside the region: {}", if self.extended { "the map continues" } else { "nothing moves" }));
         built.guides = net(&lattice);
         Ok((built, lattice))
     }
@@ -160,7 +165,9 @@ impl Ffd3 {
             let wrong = |problem: String| Error::usage(change.param(), names(&[node]), problem);
             if !lattice.has(node) {
                 let [l, m, n] = lattice.size().map(|n| n - 1);
-                return Err(wrong(format!("is not a control point: i goes from 0 to {l}, j from 0 to {m}, k from 0 to {n}")));
+                return Err(wrong(format!(
+                    "is not a control point: i goes from 0 to {l}, j from 0 to {m}, k from 0 to {n}"
+                )));
             }
             if self.holds(node) {
                 return Err(wrong("is a control point that `freeze` keeps in place".into()));

@@ -166,8 +166,18 @@ mod tests {
         let mesh = read(TEXT.as_bytes()).unwrap();
         let text = String::from_utf8(write(&mesh, 6)).unwrap();
         for line in [
-            "mtllib paint.mtl", "o box one", "v 1.5 1 -0.25", "v 0 1 0.001", "vt 0 0.5", "vn 0 0 1", "g side left", "usemtl red",
-            "s 1", "f 1/1/1 2/1/1 3/1/1 4//1", "l 1 2 3", "p 4",
+            "mtllib paint.mtl",
+            "o box one",
+            "v 1.5 1 -0.25",
+            "v 0 1 0.001",
+            "vt 0 0.5",
+            "vn 0 0 1",
+            "g side left",
+            "usemtl red",
+            "s 1",
+            "f 1/1/1 2/1/1 3/1/1 4//1",
+            "l 1 2 3",
+            "p 4",
         ] {
             assert!(text.lines().any(|l| l == line), "{line} not in\n{text}");
         }

@@ -16,12 +16,13 @@ mod run;
 mod search;
 
 use super::gather;
+use super::options::Options;
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::source::SourceCurve;
-use crate::map::Jet;
+use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
@@ -52,6 +53,24 @@ pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
     let clear = |d: Vec2, seg: &Seg| d.hypot2() > scale * seg.end().distance_squared(seg.start());
     let (dot, cross) = (into.dot(away), into.cross(away).abs());
     dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
+}
+
+/// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
+/// batches and knows the jets at the joints.
+pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
+    let mut sources = Vec::new();
+    for segs in runs {
+        let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
+            (Some(before), Some(after)) => may_be_smooth(before, after, &map.jet(after.start())),
+            _ => false,
+        };
+        let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
+        sources.extend(segs.iter().enumerate().filter_map(in_run));
+    }
+    let sources: Vec<_> = sources.iter().map(|seg| SourceCurve::for_proof(seg, map, options.certify)).collect();
+    let lanes = SegmentRun::new(map.rational_degree().is_some(), 0).lanes();
+    let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+    gather::announce_all(map, &sources, &lanes, &ends);
 }
 
 impl<'a> Merger<'a> {
@@ -92,7 +111,6 @@ impl<'a> Merger<'a> {
     /// The longest run of smoothly joined segments from `start` up to `end`.
     fn run(&self, start: usize, end: usize) -> Result<SegmentRun<'a>, Point> {
         let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
-        self.announce(&run, start, end);
         for i in start..end {
             if self.fitter.options.shared.contains(&self.segs[i]) {
                 break;
@@ -107,17 +125,6 @@ impl<'a> Merger<'a> {
             }
         }
         Ok(run)
-    }
-
-    /// Announces the samples of a run up to `end`, and the places where its pieces may end.
-    fn announce(&self, run: &SegmentRun<'_>, start: usize, end: usize) {
-        let SegmentFitter { map, options, .. } = *self.fitter;
-        if map.prefers_batches() {
-            let sources: Vec<_> =
-                self.segs[start..end].iter().map(|s| SourceCurve::for_proof(s, map, options.certify)).collect();
-            let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
-            gather::announce_all(map, &sources, run.lanes(), ends);
-        }
     }
 
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
