@@ -1,7 +1,7 @@
 //! `pathwarp solid DEFORMATION MODEL …`: deforms a model by one deformation or a chain.
 
 use super::args::{self, Own};
-use super::model::Model;
+use super::model::{Model, ModelFormat};
 use super::preview::Preview;
 use super::report::Run;
 use crate::advice::{self, Flags};
@@ -102,6 +102,8 @@ impl Work<'_> {
         let started = Instant::now();
         let options = self.options;
         let flags = Flags::of(self.registry as &dyn Catalogue);
+        // A wrong extension must not cost a long run.
+        ModelFormat::of_output(options.out.as_deref(), ModelFormat::Obj)?;
         let mut model = Model::read(input, &options.reading, self.own.depth)?;
         let source = (options.report.is_some() || options.preview.is_some()).then(|| model.mesh.clone());
         let bounds = model.mesh.bounds().unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
