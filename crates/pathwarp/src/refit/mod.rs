@@ -64,6 +64,7 @@ pub use shared::SharedEdges;
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Map};
 use crate::outline::Outline;
+use merge::MergeMemory;
 use piece::PathWriter;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`.
@@ -95,8 +96,9 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
     } else {
         let mut creases = Creases::default();
         map.creases(&mut creases);
+        let mut memory = MergeMemory::default();
         for sub in &outline.subpaths {
-            path::subpath(sub, map, &creases, options, &mut out)?;
+            path::subpath(sub, map, &creases, options, &mut memory, &mut out)?;
         }
     }
     out.report.segments_in = outline.segs().count();

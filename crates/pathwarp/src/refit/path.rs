@@ -1,7 +1,7 @@
 //! Whole paths, subpath by subpath.
 
 use super::limits::CHUNK;
-use super::merge::{Merger, may_be_smooth};
+use super::merge::{MergeMemory, Merger, may_be_smooth};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::piece::{FittedPiece, PathWriter, reverse};
@@ -55,6 +55,7 @@ pub(super) fn subpath(
     map: &dyn Map,
     creases: &Creases,
     options: &Options,
+    memory: &mut MergeMemory,
     out: &mut PathWriter,
 ) -> Result<(), GeometryError> {
     sub.segs.first().map_or(Ok(()), finite)?;
@@ -64,16 +65,19 @@ pub(super) fn subpath(
     }
     let projective = matches!(map.class(), Class::Projective(_));
     let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, options };
-    let refitted = |i: usize, segs: &[Seg]| {
+    let refitted = |i: usize, segs: &[Seg], memory: &mut MergeMemory| {
         let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
-        if options.merge { merged(&fitter, segs, nodes) } else { unmerged(&fitter, segs, nodes) }
+        if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) }
     };
     let mut pieces = Vec::new();
-    for (more, report) in in_parallel(&sub.segs, CHUNK, refitted)? {
+    if sub.segs.len() <= CHUNK {
+        let (all, report) = refitted(0, &sub.segs, memory)?;
         out.report.add(report);
-        if pieces.is_empty() {
-            pieces = more;
-        } else {
+        pieces = all;
+    } else {
+        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::default());
+        for (more, report) in in_parallel(&sub.segs, CHUNK, alone)? {
+            out.report.add(report);
             pieces.extend(more);
         }
     }
@@ -97,7 +101,7 @@ fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> R
 }
 
 /// Refits segments, with fewer pieces across smooth joints.
-fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
+fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory: &mut MergeMemory) -> Refitted {
     // Across other creases than the domain's edge the image has corners.
     if fitter.creases.items().iter().any(|c| c.kind != CreaseKind::Edge) {
         return unmerged(fitter, segs, nodes);
@@ -110,7 +114,7 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Ref
         smooth.push(i > 0 && may_be_smooth(&segs[i - 1], seg, &ends[0]));
         jets.push(ends);
     }
-    Merger::new(fitter, segs, &jets).merged(&smooth).map_err(infinity)
+    Merger::new(fitter, segs, &jets, memory).merged(&smooth).map_err(infinity)
 }
 
 /// The jets at the ends of one segment after the other.
