@@ -51,16 +51,22 @@ fn pdf(doc: &Document, options: &CommonOptions) -> Result<Exported, Failure> {
     let exact = ExactOutlines::of(doc);
     let written = usvg_tree::with_stack(doc, || {
         let outline = |path: &_| exact.get(path).cloned();
-        let options = pathwarp_pdf::Options { exact: &outline, picture_dpi: options.image_dpi };
+        let limits = *doc.budget().limits();
+        let options = pathwarp_pdf::Options { exact: &outline, picture_dpi: options.image_dpi, limits };
         Ok(pathwarp_pdf::write(usvg_tree::tree(doc), &options))
-    })?;
-    let pictures = written.pictures;
+    })??;
+    let (pictures, coarser) = (written.pictures, written.coarser);
     let warning = format!(
         "PDF has no filters: {} a filter {} a picture in it",
         counted(pictures, "group with", "groups with"),
         if pictures == 1 { "is" } else { "are" },
     );
-    Ok(Exported { bytes: written.bytes, warnings: (pictures > 0).then_some(warning).into_iter().collect() })
+    let less = format!(
+        "{} fewer pixels than the resolution asks for, within the limits; --limit painting and --limit pixels raise them",
+        counted(coarser, "of these pictures has", "of these pictures have")
+    );
+    let warnings = [(pictures > 0).then_some(warning), (coarser > 0).then_some(less)];
+    Ok(Exported { bytes: written.bytes, warnings: warnings.into_iter().flatten().collect() })
 }
 
 /// A drawing as DXF, in millimetres.
@@ -84,8 +90,10 @@ fn dxf(doc: &Document, options: &CommonOptions, tolerance: Option<f64>) -> Resul
         curves: options.dxf_curves,
         tolerance: tolerance * to_mm.determinant().abs().sqrt(),
         page,
+        limits: *doc.budget().limits(),
     };
-    let text = pathwarp_dxf::write(&shapes, &settings);
+    let text = pathwarp_dxf::write(&shapes, &settings)
+        .map_err(|e| pathwarp::Error::limit(doc.name(), "as polylines, it takes", e))?;
     Ok(Exported { bytes: text.into_bytes(), warnings: lost_in_dxf(&plot) })
 }
 

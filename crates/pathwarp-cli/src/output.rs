@@ -197,6 +197,15 @@ pub(crate) fn write(target: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> 
     }
 }
 
+/// Width of the column of names in a table.
+pub(crate) fn column<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    /// That of the heading.
+    const LEAST: usize = 4;
+    /// Longer names break out of their column: one long name would pad all lines.
+    const MOST: usize = 60;
+    names.map(|n| n.chars().count()).max().unwrap_or(LEAST).clamp(LEAST, MOST)
+}
+
 /// Writes to standard output. The reader may close the pipe early; ignore that.
 pub(crate) fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();

@@ -11,12 +11,14 @@
 //! shaper = "cage.svg#flag"   # relative to the recipe's own folder
 //! reverse-shaper = true
 //! ```
+//!
+//! A recipe for solids has `solid = true` below the version.
 
 use crate::advice;
+use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::input::split_reference;
 use crate::options::Given;
-use pathwarp::deform::Registry;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};
@@ -34,6 +36,9 @@ const INVERSE: &str = "inverse";
 #[serde(deny_unknown_fields)]
 struct RecipeFile {
     pathwarp: i64,
+    /// The steps deform solids, not drawings.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    solid: bool,
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
     options: toml::Table,
     #[serde(default)]
@@ -47,10 +52,20 @@ pub(crate) struct SavedRecipe {
 }
 
 /// Reads a recipe file. Relative paths in it refer to the file's folder; absolute ones are allowed only if `external`.
-pub(crate) fn read(registry: &Registry, file: &Path, external: bool) -> Result<SavedRecipe, Failure> {
+pub(crate) fn read(catalogue: &dyn Catalogue, file: &Path, external: bool) -> Result<SavedRecipe, Failure> {
     let text = std::fs::read_to_string(file).map_err(|e| Failure::file(file, format!("cannot be read: {e}")))?;
     let place = Folder { path: file.parent().unwrap_or(Path::new("")), external };
-    parse(registry, &text, &place).map_err(|e| Failure::file(file, e))
+    parse(catalogue, &text, &place).map_err(|e| Failure::file(file, e))
+}
+
+/// Reads the text of a recipe that stands in the file of a drawing. Paths as in [`read`].
+pub(crate) fn from_text(
+    catalogue: &dyn Catalogue,
+    text: &str,
+    folder: &Path,
+    external: bool,
+) -> Result<SavedRecipe, String> {
+    parse(catalogue, text, &Folder { path: folder, external })
 }
 
 /// The folder of a recipe.
@@ -60,10 +75,17 @@ struct Folder<'a> {
     external: bool,
 }
 
-fn parse(registry: &Registry, text: &str, folder: &Folder<'_>) -> Result<SavedRecipe, String> {
+fn parse(catalogue: &dyn Catalogue, text: &str, folder: &Folder<'_>) -> Result<SavedRecipe, String> {
     let file: RecipeFile = toml::from_str(text).map_err(|e| e.to_string())?;
     if file.pathwarp != VERSION {
         return Err(format!("has version {}; this program reads version {VERSION}", file.pathwarp));
+    }
+    match (file.solid, catalogue.is_solid()) {
+        (true, false) => return Err("deforms solids (solid = true); run it with `pathwarp solid run`".into()),
+        (false, true) => {
+            return Err("deforms drawings; run it with `pathwarp run` (one for solids has solid = true)".into());
+        }
+        _ => {}
     }
     if file.step.is_empty() {
         return Err("has no [[step]]".into());
@@ -77,22 +99,23 @@ fn parse(registry: &Registry, text: &str, folder: &Folder<'_>) -> Result<SavedRe
             options.push(name, text).map_err(|e| format!("[options] {e}"))?;
         }
     }
-    let step = |(i, t): (usize, &toml::Table)| step(registry, t, folder).map_err(|e| format!("step {}: {e}", i + 1));
+    let step = |(i, t): (usize, &toml::Table)| step(catalogue, t, folder).map_err(|e| format!("step {}: {e}", i + 1));
     let steps: Result<Vec<Step>, String> = file.step.iter().enumerate().map(step).collect();
     Ok(SavedRecipe { recipe: Recipe { steps: steps? }, options })
 }
 
-fn step(registry: &Registry, table: &toml::Table, folder: &Folder<'_>) -> Result<Step, String> {
+fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> Result<Step, String> {
     let name = table.get(DEFORMATION).and_then(Value::as_str).ok_or("has no `deformation = \"NAME\"`")?;
-    let known = registry.entries().iter().map(|e| e.info().name);
-    let entry = registry.get(name).ok_or_else(|| advice::unknown("deformation", name, known))?;
+    let infos = catalogue.infos();
+    let known = infos.iter().map(|i| i.name);
+    let info = catalogue.info(name).ok_or_else(|| advice::unknown("deformation", name, known))?;
     let mut step = Step::new(name, Args::new());
     for (key, value) in table {
         match key.as_str() {
             DEFORMATION => {}
             INVERSE => step.inverse = value.as_bool().ok_or("inverse must be true or false")?,
             key => {
-                let params = entry.info().params;
+                let params = info.params;
                 let param = params.iter().find(|p| p.name == key).ok_or_else(|| {
                     let known: Vec<_> = params.iter().map(|p| p.name).collect();
                     format!("{name} has no parameter `{key}`; its parameters are {}", known.join(", "))
@@ -161,11 +184,17 @@ fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<Stri
 }
 
 /// The text of a recipe file in `folder` with these steps and the options that recipes store.
-pub(crate) fn write(registry: &Registry, recipe: &Recipe, given: &Given, folder: &Path) -> Result<String, Failure> {
+pub(crate) fn write(
+    catalogue: &dyn Catalogue,
+    recipe: &Recipe,
+    given: &Given,
+    folder: &Path,
+) -> Result<String, Failure> {
     let here = std::env::current_dir().map_err(|e| Failure::Input(e.to_string()))?;
     let same_place = folder.as_os_str().is_empty()
         || matches!((folder.canonicalize(), here.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    let mut file = RecipeFile { pathwarp: VERSION, options: toml::Table::new(), step: Vec::new() };
+    let mut file =
+        RecipeFile { pathwarp: VERSION, solid: catalogue.is_solid(), options: toml::Table::new(), step: Vec::new() };
     for (name, values) in given.stored() {
         file.options.insert(name.to_owned(), value(values));
     }
@@ -175,7 +204,7 @@ pub(crate) fn write(registry: &Registry, recipe: &Recipe, given: &Given, folder:
         if s.inverse {
             t.insert(INVERSE.into(), Value::Boolean(true));
         }
-        let params = registry.get(&s.deformation).map_or(&[][..], |e| e.info().params);
+        let params = catalogue.info(&s.deformation).map_or(&[][..], |i| i.params);
         for (name, values) in s.args.iter() {
             let param = params.iter().find(|p| p.name == name);
             if param.is_some_and(|p| p.kind == Kind::Save) {

@@ -1,5 +1,6 @@
 //! Path references, `FILE#NAME`, `FILE` and `#NAME`: looked up in files and in the input document.
 
+use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::input::{GimpFile, read_data_file, split_reference};
 use crate::options::Reading;
@@ -12,13 +13,13 @@ use pathwarp_svg::Document;
 use std::path::{Path, PathBuf};
 
 /// Looks up every file that a recipe refers to. References to the input document, `#NAME`, stay open.
-pub(crate) fn resolve_files(registry: &Registry, recipe: &mut Recipe, reading: &Reading) -> Result<(), Failure> {
+pub(crate) fn resolve_files(catalogue: &dyn Catalogue, recipe: &mut Recipe, reading: &Reading) -> Result<(), Failure> {
     let outside =
         |reference: &str| if reference.starts_with('#') { Ok(None) } else { in_file(reference, reading).map(Some) };
     for step in &mut recipe.steps {
-        let Some(e) = registry.get(&step.deformation) else { continue };
-        let paths = step.args.resolve_paths(e.info().params, outside);
-        let all = paths.and_then(|()| step.args.resolve_files(e.info().params, read_data_file));
+        let Some(info) = catalogue.info(&step.deformation) else { continue };
+        let paths = step.args.resolve_paths(info.params, outside);
+        let all = paths.and_then(|()| step.args.resolve_files(info.params, read_data_file));
         all.map_err(Failure::of_recipe)?;
     }
     Ok(())
@@ -46,10 +47,10 @@ pub(crate) fn resolve_names(
 }
 
 /// The files that a recipe reads.
-pub(crate) fn files_read(registry: &Registry, recipe: &Recipe) -> Vec<PathBuf> {
+pub(crate) fn files_read(catalogue: &dyn Catalogue, recipe: &Recipe) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for step in &recipe.steps {
-        for p in registry.get(&step.deformation).map_or(&[][..], |e| e.info().params) {
+        for p in catalogue.info(&step.deformation).map_or(&[][..], |i| i.params) {
             for value in step.args.get(p.name) {
                 match p.kind {
                     Kind::Path if !value.starts_with('#') && !is_inline(value) => files.push(split_reference(value).0),
@@ -64,11 +65,11 @@ pub(crate) fn files_read(registry: &Registry, recipe: &Recipe) -> Vec<PathBuf> {
 
 /// The files that a recipe's parameters ask to be written.
 pub(crate) fn files_written<'a>(
-    registry: &'a Registry,
+    catalogue: &'a dyn Catalogue,
     recipe: &'a Recipe,
 ) -> impl Iterator<Item = (&'static str, &'a Path)> {
     recipe.steps.iter().flat_map(|step| {
-        let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+        let params = catalogue.info(&step.deformation).map_or(&[][..], |i| i.params);
         let saves = params.iter().filter(|p| p.kind == Kind::Save);
         saves.flat_map(|p| step.args.get(p.name).iter().map(|file| (p.name, Path::new(file))))
     })
@@ -77,7 +78,7 @@ pub(crate) fn files_written<'a>(
 /// Looks up `FILE#NAME` or `FILE`.
 fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
     let (file, name) = split_reference(reference);
-    if let Some(gimp) = GimpFile::read(&file, false)? {
+    if let Some(gimp) = GimpFile::read(&file, false, &reading.limits)? {
         return Ok(match name {
             Some(name) => gimp.path_named(name)?.outline(),
             None => gimp.only_path()?.outline(),

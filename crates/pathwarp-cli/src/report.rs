@@ -15,6 +15,11 @@ pub(crate) struct FileReport {
     pub(crate) error: Option<String>,
     /// User units; `None` after an error.
     pub(crate) tolerance: Option<f64>,
+    /// The frame that percentages refer to: x, y, width and height in user units; `None` after an error.
+    pub(crate) frame: Option<[f64; 4]>,
+    /// The height of the lettering's baseline, if the frame has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) baseline: Option<f64>,
     pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
@@ -28,6 +33,8 @@ impl FileReport {
             output: None,
             error: Some(error),
             tolerance: None,
+            frame: None,
+            baseline: None,
             shapes: Vec::new(),
             skipped: Vec::new(),
             warnings: Vec::new(),

@@ -55,6 +55,11 @@ impl Temporary {
         Self(Some(path))
     }
 
+    /// The file.
+    pub(crate) fn path(&self) -> &Path {
+        self.0.as_deref().unwrap_or(Path::new(""))
+    }
+
     /// Renames the file, over an existing one.
     pub(crate) fn rename(mut self, to: &Path) -> io::Result<()> {
         let Some(path) = self.0.take() else { return Ok(()) };
@@ -92,7 +97,7 @@ fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 }
 
 /// Installs the handler, once.
-fn on_interruption_remove_all() {
+pub(crate) fn on_interruption_remove_all() {
     static INSTALL: Once = Once::new();
     INSTALL.call_once(|| {
         // A program around this library may have a handler already; it then answers for interruptions.
@@ -109,9 +114,10 @@ fn on_interruption_remove_all() {
     });
 }
 
-/// Waits for commits under way, removes all temporary files, and calls `end`, which ends the program.
+/// Waits for commits under way, ends the plug-ins' programs, removes all temporary files, and calls `end`, which ends this program.
 pub(crate) fn remove_all_and(end: impl FnOnce()) {
     let _gate = GATE.write().unwrap_or_else(PoisonError::into_inner);
+    pathwarp_plugin::end_all();
     for path in live().iter() {
         let _ = std::fs::remove_file(path);
     }

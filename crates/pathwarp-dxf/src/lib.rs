@@ -14,7 +14,7 @@
 //! use pathwarp_dxf::{Options, Shape, write};
 //!
 //! let outline = Outline::from_svg("M0,0 H50 V20 A10,10 0 0 1 40,30 H0 Z").unwrap();
-//! let dxf = write(&[Shape { layer: "cut", color: Some([255, 0, 0]), outline: &outline }], &Options::default());
+//! let dxf = write(&[Shape { layer: "cut", color: Some([255, 0, 0]), outline: &outline }], &Options::default())?;
 //! assert!(dxf.contains("LWPOLYLINE"));
 //! ```
 
@@ -32,11 +32,19 @@ pub use model::{Curves, Options, Shape};
 use codes::Codes;
 use entities::Pen;
 use layers::Layers;
+use pathwarp::budget::{Exceeded, Limit};
 
 /// Returns a DXF file with the outlines of these shapes.
-#[must_use]
-pub fn write(shapes: &[Shape<'_>], options: &Options) -> String {
+///
+/// # Errors
+/// Polylines within the tolerance have more segments than the limits allow.
+pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded> {
     let layers = Layers::of(shapes);
+    if options.curves == Curves::Polylines {
+        let segs = shapes.iter().flat_map(|s| s.outline.segs());
+        let lines: f64 = segs.map(|s| flatten::most_lines(s, options.tolerance)).sum();
+        options.limits.check(Limit::Segments, lines)?;
+    }
     let mut out = Codes::new();
     file::start(&mut out, &layers, options);
     for shape in shapes {
@@ -48,5 +56,5 @@ pub fn write(shapes: &[Shape<'_>], options: &Options) -> String {
             }
         }
     }
-    file::finish(out)
+    Ok(file::finish(out))
 }

@@ -1,6 +1,7 @@
 //! The outlines to write, and the options.
 
 use pathwarp::Outline;
+use pathwarp::budget::Limits;
 
 /// An outline with its layer and colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,11 +35,13 @@ pub struct Options {
     pub tolerance: f64,
     /// Width and height of the page in mm.
     pub page: [f64; 2],
+    /// Limits on the number of segments.
+    pub limits: Limits,
 }
 
 impl Default for Options {
     /// Splines on an A4 page, with a tolerance of 0.01 mm.
     fn default() -> Self {
-        Self { curves: Curves::Splines, tolerance: 0.01, page: [210.0, 297.0] }
+        Self { curves: Curves::Splines, tolerance: 0.01, page: [210.0, 297.0], limits: Limits::default() }
     }
 }

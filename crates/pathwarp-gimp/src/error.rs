@@ -1,5 +1,6 @@
 //! Errors with their place in the file.
 
+use pathwarp::budget::Exceeded;
 use thiserror::Error;
 
 /// The reason why a file cannot be read or written.
@@ -23,7 +24,7 @@ pub enum ErrorKind {
 }
 
 /// An error at a place in a file.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[error("byte {offset}: {problem}")]
 #[non_exhaustive]
 pub struct Error {
@@ -33,11 +34,13 @@ pub struct Error {
     pub offset: u64,
     /// Description of the problem.
     pub problem: String,
+    /// The limit, if the file takes more work than it allows.
+    pub limit: Option<Exceeded>,
 }
 
 impl Error {
     pub(crate) fn new(kind: ErrorKind, offset: u64, problem: impl Into<String>) -> Self {
-        Self { kind, offset, problem: problem.into() }
+        Self { kind, offset, problem: problem.into(), limit: None }
     }
 
     pub(crate) fn damaged(offset: u64, problem: impl Into<String>) -> Self {
@@ -48,8 +51,8 @@ impl Error {
         Self::new(ErrorKind::Unsupported, offset, problem)
     }
 
-    pub(crate) fn too_large(offset: u64, problem: impl Into<String>) -> Self {
-        Self::new(ErrorKind::TooLarge, offset, problem)
+    pub(crate) fn too_large(offset: u64, what: &str, limit: Exceeded) -> Self {
+        Self { limit: Some(limit), ..Self::new(ErrorKind::TooLarge, offset, format!("{what} {limit}")) }
     }
 
     pub(crate) fn io(offset: u64, error: &std::io::Error) -> Self {

@@ -2,19 +2,17 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::file::{FileKind, PathFile, Salvaged};
-use crate::source::{ByteSource, ReadSeek};
+use crate::source::{ByteSource, ReadSeek, length};
 use crate::{point_list, svg, text, xcf};
-use std::io::{Read, Seek, SeekFrom};
+use pathwarp::budget::Limits;
+use std::io::{Read, Seek};
 
-/// Maximum size of decompressed data, in which all paths must be: about 15 seconds of work.
-const MOST_UNPACKED: u64 = 1 << 32;
-
-/// Reads the paths of a file, seeking past everything else.
+/// Reads the paths of a file, seeking past everything else, within the default limits.
 ///
 /// # Errors
 /// The file has an unknown format, is damaged, or cannot be read; the error contains the byte offset.
-pub fn open(mut file: impl Read + Seek) -> Result<PathFile, Error> {
-    let salvaged = dispatch(&mut file)?;
+pub fn open(file: impl Read + Seek) -> Result<PathFile, Error> {
+    let salvaged = salvage(file)?;
     salvaged.damage.map_or(Ok(salvaged.file), Err)
 }
 
@@ -22,8 +20,17 @@ pub fn open(mut file: impl Read + Seek) -> Result<PathFile, Error> {
 ///
 /// # Errors
 /// Nothing can be read: the file has an unknown format, or its header is damaged.
-pub fn salvage(mut file: impl Read + Seek) -> Result<Salvaged, Error> {
-    dispatch(&mut file)
+pub fn salvage(file: impl Read + Seek) -> Result<Salvaged, Error> {
+    salvage_within(file, &Limits::default())
+}
+
+/// Reads a file like [`salvage`], within limits for its size: those on bytes of text, which paths are read from, and on bytes of
+/// pictures, among which they lie in compressed files.
+///
+/// # Errors
+/// As for [`salvage`].
+pub fn salvage_within(mut file: impl Read + Seek, limits: &Limits) -> Result<Salvaged, Error> {
+    dispatch(&mut file, limits)
 }
 
 /// The compression of a file.
@@ -46,30 +53,28 @@ fn packing(head: &[u8]) -> Packing {
 }
 
 /// Wraps a file in the decoder it needs.
-fn unpacked<'a>(file: &'a mut dyn ReadSeek, packing: Packing) -> Result<ByteSource<'a>, Error> {
+fn unpacked<'a>(file: &'a mut dyn ReadSeek, packing: Packing, limits: &Limits) -> Result<ByteSource<'a>, Error> {
+    let limits = limits.for_input(usize::try_from(length(file)?).unwrap_or(usize::MAX));
     Ok(match packing {
-        Packing::None => ByteSource::file(file)?,
-        Packing::Gzip => ByteSource::stream(flate2::read::MultiGzDecoder::new(file), MOST_UNPACKED),
-        Packing::Bzip2 => ByteSource::stream(bzip2::read::MultiBzDecoder::new(file), MOST_UNPACKED),
-        Packing::Xz => {
-            ByteSource::stream(lzma_rust2::XzReader::new_mem_limit(file, true, XZ_MEMORY_KIB), MOST_UNPACKED)
-        }
+        Packing::None => ByteSource::file(file, limits)?,
+        Packing::Gzip => ByteSource::stream(flate2::read::MultiGzDecoder::new(file), limits),
+        Packing::Bzip2 => ByteSource::stream(bzip2::read::MultiBzDecoder::new(file), limits),
+        Packing::Xz => ByteSource::stream(lzma_rust2::XzReader::new_mem_limit(file, true, XZ_MEMORY_KIB), limits),
     })
 }
 
 /// Returns the first bytes of a file.
 fn head(file: &mut dyn ReadSeek) -> Result<Vec<u8>, Error> {
-    ByteSource::file(file)?.peek(HEAD)
+    ByteSource::file(file, Limits::none())?.peek(HEAD)
 }
 
 /// Number of bytes that identify a file, including the declarations of an SVG.
 const HEAD: usize = 512;
 
 /// Reads a file by its format.
-fn dispatch(file: &mut dyn ReadSeek) -> Result<Salvaged, Error> {
+fn dispatch(file: &mut dyn ReadSeek, limits: &Limits) -> Result<Salvaged, Error> {
     let packing = packing(&head(file)?);
-    file.seek(SeekFrom::Start(0)).map_err(|e| Error::io(0, &e))?;
-    let mut input = unpacked(file, packing)?;
+    let mut input = unpacked(file, packing, limits)?;
     let head = input.peek(HEAD)?;
     if head.is_empty() {
         return Err(Error::new(ErrorKind::UnknownFormat, 0, "the file is empty"));
@@ -113,10 +118,7 @@ fn first_byte(head: &[u8]) -> Option<u8> {
 pub fn sniff(mut file: impl Read + Seek) -> bool {
     let file: &mut dyn ReadSeek = &mut file;
     let Ok(start) = head(file) else { return false };
-    if file.seek(SeekFrom::Start(0)).is_err() {
-        return false;
-    }
-    let Ok(mut input) = unpacked(file, packing(&start)) else { return false };
+    let Ok(mut input) = unpacked(file, packing(&start), &Limits::default()) else { return false };
     let Ok(head) = input.peek(HEAD) else { return false };
     if head.starts_with(xcf::MAGIC) || head.starts_with(text::FIRST) {
         return true;

@@ -1,6 +1,7 @@
 //! A reader that knows its offset: a seekable file, or a decompressed stream that only moves forwards.
 
 use crate::error::{Error, ErrorKind as FormatError};
+use pathwarp::budget::{Limit, Limits};
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 /// A seekable reader, as a trait object.
@@ -10,16 +11,15 @@ impl<T: Read + Seek> ReadSeek for T {}
 /// Bytes read into memory at a time.
 const CHUNK: usize = 1 << 16;
 
-/// Maximum number of bytes read, not skipped, from compressed data: over a million points. A few kilobytes can unpack to any
-/// amount.
-const MOST_PACKED: u64 = 1 << 24;
-
-/// Maximum size of text (SVG, JSON, GIMP 1): a hundred times the path data of any real drawing.
-const MOST_TEXT: u64 = 1 << 28;
-
 enum Backend<'a> {
     File(BufReader<&'a mut dyn ReadSeek>),
     Stream(BufReader<Box<dyn Read + 'a>>),
+}
+
+/// The length of a file, from whose start it is read afterwards.
+pub(crate) fn length(file: &mut dyn ReadSeek) -> Result<u64, Error> {
+    let end = file.seek(SeekFrom::End(0)).and_then(|end| file.seek(SeekFrom::Start(0)).map(|_| end));
+    end.map_err(|e| Error::io(0, &e))
 }
 
 /// A source of big-endian numbers that knows its offset.
@@ -28,27 +28,31 @@ pub(crate) struct ByteSource<'a> {
     at: u64,
     /// Upper bound for the end of the data.
     pub(crate) end: u64,
-    /// Number of bytes that may still be read.
-    allowance: u64,
+    limits: Limits,
+    /// Number of bytes read, not skipped, from compressed data, of which a few kilobytes can unpack to any amount.
+    unpacked: u64,
 }
 
 impl<'a> ByteSource<'a> {
     /// Reads a file from its start.
-    pub(crate) fn file(file: &'a mut dyn ReadSeek) -> Result<Self, Error> {
-        let length = |f: &mut dyn ReadSeek| {
-            let end = f.seek(SeekFrom::End(0))?;
-            f.seek(SeekFrom::Start(0))?;
-            Ok(end)
-        };
-        let end = length(file).map_err(|e: std::io::Error| Error::io(0, &e))?;
+    pub(crate) fn file(file: &'a mut dyn ReadSeek, limits: Limits) -> Result<Self, Error> {
+        let end = length(file)?;
         // Most reads are a word followed by a seek, so keep the buffer small.
-        Ok(Self { backend: Backend::File(BufReader::with_capacity(1 << 12, file)), at: 0, end, allowance: u64::MAX })
+        Ok(Self { backend: Backend::File(BufReader::with_capacity(1 << 12, file)), at: 0, end, limits, unpacked: 0 })
     }
 
-    /// Reads the output of a decoder, at most `most` bytes.
-    pub(crate) fn stream(decoder: impl Read + 'a, most: u64) -> Self {
+    /// Reads the output of a decoder, up to the limit on bytes of pictures.
+    pub(crate) fn stream(decoder: impl Read + 'a, limits: Limits) -> Self {
         let backend = Backend::Stream(BufReader::with_capacity(CHUNK, Box::new(decoder)));
-        Self { backend, at: 0, end: most, allowance: MOST_PACKED }
+        Self { backend, at: 0, end: limits.of(Limit::ImageBytes) as u64, limits, unpacked: 0 }
+    }
+
+    /// The error about byte `to`, which is beyond the end: that of a file is `known`, that of a stream is a limit.
+    pub(crate) fn beyond(&self, to: u64, known: Error) -> Error {
+        match (&self.backend, self.limits.check(Limit::ImageBytes, to as f64)) {
+            (Backend::Stream(_), Err(e)) => Error::too_large(known.offset, "unpacked, the file takes", e.cut_short()),
+            _ => known,
+        }
     }
 
     pub(crate) fn at(&self) -> u64 {
@@ -65,15 +69,15 @@ impl<'a> ByteSource<'a> {
             let needed = format!("{what} needs {} more bytes", buffer.len());
             return Err(Error::truncated(self.at, &needed, self.left()));
         }
-        self.allowance = self.allowance.checked_sub(buffer.len() as u64).ok_or_else(|| {
-            let problem = format!(
-                "compressed data holds more than {MOST_PACKED} bytes of paths, which is the limit; unpack the file first"
-            );
-            Error::too_large(self.at, problem)
-        })?;
         let read = match &mut self.backend {
             Backend::File(f) => f.read_exact(buffer),
-            Backend::Stream(s) => s.read_exact(buffer),
+            Backend::Stream(s) => {
+                self.unpacked += buffer.len() as u64;
+                self.limits
+                    .check(Limit::Bytes, self.unpacked as f64)
+                    .map_err(|e| Error::too_large(self.at, "unpacked, its paths take", e.cut_short()))?;
+                s.read_exact(buffer)
+            }
         };
         read.map_err(|e| match e.kind() {
             ErrorKind::UnexpectedEof => {
@@ -104,17 +108,15 @@ impl<'a> ByteSource<'a> {
     /// Reads everything up to the end as UTF-8.
     pub(crate) fn text(&mut self) -> Result<String, Error> {
         let mut out = Vec::new();
+        let most = (self.limits.of(Limit::Bytes) as u64).saturating_add(1);
         let read = match &mut self.backend {
-            Backend::File(f) => f.take(MOST_TEXT + 1).read_to_end(&mut out),
-            Backend::Stream(s) => s.take(MOST_TEXT + 1).read_to_end(&mut out),
+            Backend::File(f) => f.take(most).read_to_end(&mut out),
+            Backend::Stream(s) => s.take(most).read_to_end(&mut out),
         };
         read.map_err(|e| Error::io(self.at, &e))?;
-        if out.len() as u64 > MOST_TEXT {
-            return Err(Error::too_large(
-                MOST_TEXT,
-                format!("text of more than {MOST_TEXT} bytes, which is the limit"),
-            ));
-        }
+        self.limits
+            .check(Limit::Bytes, out.len() as f64)
+            .map_err(|e| Error::too_large(self.at, "its text takes", e.cut_short()))?;
         self.at += out.len() as u64;
         String::from_utf8(out).map_err(|e| {
             let at = e.utf8_error().valid_up_to() as u64;
@@ -135,10 +137,8 @@ impl<'a> ByteSource<'a> {
     /// Moves to byte `to`; a stream only moves forwards.
     pub(crate) fn seek(&mut self, to: u64, what: &str) -> Result<(), Error> {
         if to > self.end {
-            return Err(Error::damaged(
-                self.at,
-                format!("{what} points to byte {to}, but the file ends at {}", self.end),
-            ));
+            let problem = format!("{what} points to byte {to}, but the file ends at {}", self.end);
+            return Err(self.beyond(to, Error::damaged(self.at, problem)));
         }
         match &mut self.backend {
             Backend::File(f) => {
@@ -166,7 +166,8 @@ impl<'a> ByteSource<'a> {
 
     pub(crate) fn skip(&mut self, count: u64, what: &str) -> Result<(), Error> {
         if count > self.left() {
-            return Err(Error::truncated(self.at, &format!("{what} needs {count} bytes"), self.left()));
+            let known = Error::truncated(self.at, &format!("{what} needs {count} bytes"), self.left());
+            return Err(self.beyond(self.at.saturating_add(count), known));
         }
         self.seek(self.at + count, what)
     }

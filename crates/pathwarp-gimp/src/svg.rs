@@ -17,8 +17,6 @@ use std::fmt::Write as _;
 const NAMESPACE: &str = "http://www.w3.org/2000/svg";
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 const DOCTYPE: &str = "-//W3C//DTD SVG 20010904//EN";
-/// Limit for the number of XML nodes.
-const MOST_NODES: u32 = 4_000_000;
 
 /// The attributes that distinguish GIMP's exports from other SVG files.
 const ATTRIBUTES: [(&str, &str); 3] = [("fill", "none"), ("stroke", "black"), ("stroke-width", "1")];
@@ -35,7 +33,7 @@ fn parse(text: &str) -> Result<Document<'_>, Error> {
     if !is_plain(text) {
         return Err(Error::damaged(0, "it declares entities or has very many attributes, which GIMP does not write"));
     }
-    let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|e| {
         let pos = e.pos();
         let lines = text.split_inclusive('\n').take((pos.row as usize).saturating_sub(1));

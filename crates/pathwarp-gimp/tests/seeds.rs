@@ -1,6 +1,6 @@
 //! Seeds for the fuzz targets, all of them valid files.
 //!
-//! `PATHWARP_FUZZ_SEEDS=fuzz/corpus cargo test -p pathwarp-gimp --test seeds` writes them.
+//! `PATHWARP_FUZZ_SEEDS=fuzz/seeds cargo test -p pathwarp-gimp --test seeds` writes them.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "tests may panic")]
 
 mod common;

@@ -1,5 +1,6 @@
 //! Errors of making a mesh.
 
+use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Point;
 use thiserror::Error;
 
@@ -15,13 +16,13 @@ pub enum Error {
         /// The point.
         at: Point,
     },
-    /// The shape needs too many triangles or points.
-    #[error("{shape} would need more than {most} triangles or points")]
+    /// The shapes need too many triangles or points.
+    #[error("{shape} takes {exceeded}, as sides of triangles or of polylines")]
     TooMany {
-        /// Name of the shape.
+        /// Name of the shape that exceeds the limit.
         shape: String,
         /// The limit.
-        most: usize,
+        exceeded: Exceeded,
     },
     /// The tessellator failed.
     #[error("{shape} cannot be filled with triangles: {why}")]

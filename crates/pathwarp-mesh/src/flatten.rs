@@ -3,12 +3,11 @@
 use crate::error::Error;
 use crate::shape::{NamedShape, Point3, SurfaceFn};
 use pathwarp::Seg;
+use pathwarp::budget::{Budget, Limit};
 use pathwarp::kurbo::Point;
 
 /// Maximum number of halvings of a segment.
 const MOST_HALVINGS: u32 = 14;
-/// Maximum number of points of a shape.
-const MOST_POINTS: usize = 1 << 20;
 
 /// A polygon or polyline in the plane of the drawing.
 pub(crate) struct Polygon {
@@ -17,22 +16,26 @@ pub(crate) struct Polygon {
 }
 
 /// Flattens all subpaths of a shape.
-pub(crate) fn polygons(shape: &NamedShape<'_>, space: &SurfaceFn<'_>, tolerance: f64) -> Result<Vec<Polygon>, Error> {
+pub(crate) fn polygons(
+    shape: &NamedShape<'_>,
+    space: &SurfaceFn<'_>,
+    tolerance: f64,
+    budget: &Budget,
+) -> Result<Vec<Polygon>, Error> {
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: shape.name.to_owned(), at: p });
-    let mut total = 0;
     let mut out = Vec::new();
     for sub in &shape.outline.subpaths {
         let mut points = vec![sub.start];
         for seg in &sub.segs {
+            let before = points.len();
             flatten(seg, &place, tolerance, &mut points)?;
-            if total + points.len() > MOST_POINTS {
-                return Err(Error::TooMany { shape: shape.name.to_owned(), most: MOST_POINTS });
-            }
+            let more = (points.len() - before) as u64;
+            let counted = budget.spend_cut(Limit::Segments, more);
+            counted.map_err(|exceeded| Error::TooMany { shape: shape.name.to_owned(), exceeded })?;
         }
         if sub.closed && points.len() > 1 && points.first() == points.last() {
             points.pop();
         }
-        total += points.len();
         out.push(Polygon { points, closed: sub.closed });
     }
     Ok(out)

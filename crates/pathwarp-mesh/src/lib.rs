@@ -10,11 +10,12 @@
 //!
 //! ```
 //! use pathwarp::Outline;
+//! use pathwarp::budget::Budget;
 //! use pathwarp_mesh::{NamedShape, filled};
 //!
 //! let square = Outline::from_svg("M0,0 H10 V10 H0 Z").unwrap();
 //! let bowl = |p: pathwarp::kurbo::Point| Some([p.x, p.y, 0.01 * (p.x * p.x + p.y * p.y)]);
-//! let obj = filled(&[NamedShape { name: "square", outline: &square, even_odd: false }], &bowl, 0.01)?;
+//! let obj = filled(&[NamedShape { name: "square", outline: &square, even_odd: false }], &bowl, 0.01, &Budget::default())?;
 //! assert!(obj.lines().filter(|l| l.starts_with("f ")).count() > 8);
 //! # Ok::<(), pathwarp_mesh::Error>(())
 //! ```
@@ -28,33 +29,56 @@ mod tessellate;
 
 pub use error::Error;
 pub use shape::{NamedShape, Point3, SurfaceFn};
+pub use tessellate::FlatMesh;
 
 use obj::ObjWriter;
+use pathwarp::budget::Budget;
 
 /// Returns the filled shapes as a mesh in OBJ format. The midpoint of every edge is within `tolerance` (user units) of the surface.
 ///
+/// `budget` counts the sides of the triangles as segments.
+///
 /// # Errors
 /// A point has no image on the surface, or a shape needs too many triangles.
-pub fn filled(shapes: &[NamedShape<'_>], space: &SurfaceFn<'_>, tolerance: f64) -> Result<String, Error> {
+pub fn filled(
+    shapes: &[NamedShape<'_>],
+    space: &SurfaceFn<'_>,
+    tolerance: f64,
+    budget: &Budget,
+) -> Result<String, Error> {
     let mut out = ObjWriter::new();
     for s in shapes {
-        let polygons = flatten::polygons(s, space, tolerance)?;
+        let polygons = flatten::polygons(s, space, tolerance, budget)?;
         let mesh = tessellate::fill(s, &polygons)?;
-        let mesh = refine::to_surface(s.name, mesh, space, tolerance)?;
+        let mesh = refine::to_surface(s.name, mesh, space, tolerance, budget)?;
         out.mesh(s.name, &mesh);
     }
     Ok(out.finish())
 }
 
+/// Fills a shape with triangles in the plane of the drawing, within `tolerance` (user units) of its outline.
+///
+/// # Errors
+/// The shape needs too many points, or cannot be filled.
+pub fn flat(shape: &NamedShape<'_>, tolerance: f64, budget: &Budget) -> Result<FlatMesh, Error> {
+    let polygons = flatten::polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance, budget)?;
+    tessellate::fill(shape, &polygons)
+}
+
 /// Returns the outlines of the shapes as polylines in OBJ format, within `tolerance` (user units) of their images in space.
 ///
 /// # Errors
-/// A point has no image on the surface, or a shape needs too many triangles.
-pub fn outlines(shapes: &[NamedShape<'_>], space: &SurfaceFn<'_>, tolerance: f64) -> Result<String, Error> {
+/// A point has no image on the surface, or the shapes need more segments than `budget` has.
+pub fn outlines(
+    shapes: &[NamedShape<'_>],
+    space: &SurfaceFn<'_>,
+    tolerance: f64,
+    budget: &Budget,
+) -> Result<String, Error> {
     let mut out = ObjWriter::new();
     for s in shapes {
         let mut lines = Vec::new();
-        for polygon in flatten::polygons(s, space, tolerance)? {
+        for polygon in flatten::polygons(s, space, tolerance, budget)? {
             let place = |p: &pathwarp::kurbo::Point| {
                 space(*p).ok_or_else(|| Error::NoPlace { shape: s.name.to_owned(), at: *p })
             };
@@ -100,8 +124,13 @@ mod tests {
         let truth = std::f64::consts::PI * (900.0 - 225.0);
         let mut last = f64::INFINITY;
         for tolerance in [1.0, 0.1, 0.01] {
-            let obj =
-                filled(&[NamedShape { name: "ring", outline: &ring, even_odd: false }], &roll, tolerance).unwrap();
+            let obj = filled(
+                &[NamedShape { name: "ring", outline: &ring, even_odd: false }],
+                &roll,
+                tolerance,
+                &Budget::default(),
+            )
+            .unwrap();
             let (v, f) = read(&obj);
             let got: f64 = f.iter().map(|t| area(v[t[0]], v[t[1]], v[t[2]])).sum();
             let off = (got - truth).abs() / truth;
@@ -138,7 +167,9 @@ mod tests {
     fn outlines_follow_the_surface() {
         let wave = |p: Point| Some([p.x, p.y, 5.0 * (p.x / 8.0).sin()]);
         let line = Outline::from_svg("M0,0 H60").unwrap();
-        let obj = outlines(&[NamedShape { name: "line", outline: &line, even_odd: false }], &wave, 0.01).unwrap();
+        let obj =
+            outlines(&[NamedShape { name: "line", outline: &line, even_odd: false }], &wave, 0.01, &Budget::default())
+                .unwrap();
         let (v, _) = read(&obj);
         assert!(v.len() > 10 && obj.lines().filter(|l| l.starts_with("l ")).count() == 1);
         assert!(v.iter().all(|q| (q[2] - 5.0 * (q[0] / 8.0).sin()).abs() < 1e-6));
@@ -149,8 +180,10 @@ mod tests {
         let hole = |p: Point| (p.x < 20.0).then_some([p.x, p.y, 0.0]);
         let ring = Outline::from_svg(RING).unwrap();
         let shapes = [NamedShape { name: "ring", outline: &ring, even_odd: true }];
-        assert!(matches!(filled(&shapes, &hole, 0.1), Err(Error::NoPlace { shape, .. }) if shape == "ring"));
+        assert!(
+            matches!(filled(&shapes, &hole, 0.1, &Budget::default()), Err(Error::NoPlace { shape, .. }) if shape == "ring")
+        );
         let rough = |p: Point| Some([p.x, p.y, (p.x * 1e4).sin() * 1e3]);
-        assert!(matches!(filled(&shapes, &rough, 1e-6), Err(Error::TooMany { .. })));
+        assert!(matches!(filled(&shapes, &rough, 1e-6, &Budget::default()), Err(Error::TooMany { .. })));
     }
 }

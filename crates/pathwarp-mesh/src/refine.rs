@@ -4,11 +4,12 @@ use crate::error::Error;
 use crate::flatten::chord_distance;
 use crate::shape::{Point3, SurfaceFn};
 use crate::tessellate::FlatMesh;
+use pathwarp::budget::{Budget, Limit};
 use pathwarp::kurbo::Point;
 use std::collections::{HashMap, HashSet};
 
-/// Maximum number of triangles of a shape.
-const MOST_TRIANGLES: usize = 2_000_000;
+/// Sides of a mesh for each of its triangles: two triangles share a side.
+const SIDES: f64 = 1.5;
 /// Maximum number of rounds of halving, which gives at most 2^20 parts per edge.
 const MOST_ROUNDS: usize = 20;
 
@@ -31,12 +32,17 @@ pub(crate) fn to_surface(
     flat: FlatMesh,
     space: &SurfaceFn<'_>,
     tolerance: f64,
+    budget: &Budget,
 ) -> Result<TriangleMesh, Error> {
+    let too_many = |exceeded| Error::TooMany { shape: name.to_owned(), exceeded };
+    let count =
+        |triangles: usize| budget.spend_cut(Limit::Segments, (SIDES * triangles as f64) as u64).map_err(too_many);
     let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: name.to_owned(), at: p });
     let mut plane = flat.points;
     let placed: Result<Vec<Point3>, Error> = plane.iter().map(|p| place(*p)).collect();
     let mut points = placed?;
     let mut triangles = flat.triangles;
+    count(triangles.len())?;
     // Edges that are known to be close enough.
     let mut close: HashSet<Edge> = HashSet::new();
     for _ in 0..MOST_ROUNDS {
@@ -65,9 +71,7 @@ pub(crate) fn to_surface(
         for t in &triangles {
             split(*t, &middles, &mut finer);
         }
-        if finer.len() > MOST_TRIANGLES {
-            return Err(Error::TooMany { shape: name.to_owned(), most: MOST_TRIANGLES });
-        }
+        count(finer.len() - triangles.len())?;
         triangles = finer;
     }
     Ok(TriangleMesh { points, triangles })

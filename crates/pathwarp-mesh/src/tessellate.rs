@@ -10,9 +10,11 @@ use lyon_tessellation::{BuffersBuilder, FillOptions, FillRule, FillTessellator, 
 use pathwarp::kurbo::{Point, Rect};
 
 /// Triangles in the plane of the drawing.
-pub(crate) struct FlatMesh {
-    pub(crate) points: Vec<Point>,
-    pub(crate) triangles: Vec<[u32; 3]>,
+pub struct FlatMesh {
+    /// Vertices.
+    pub points: Vec<Point>,
+    /// Indices of the corners of triangles, all of one orientation.
+    pub triangles: Vec<[u32; 3]>,
 }
 
 /// Triangulates a filled shape.

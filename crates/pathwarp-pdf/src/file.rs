@@ -6,10 +6,13 @@ use crate::stream::Stream;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use kurbo::Rect;
+use pathwarp::budget::Budget;
+use pathwarp_raster::Error;
 use pdf_writer::types::{BlendMode, MaskType};
 use pdf_writer::{Filter, Name, Pdf, Ref};
 use std::collections::HashMap;
 use std::io::Write as _;
+use std::sync::Arc;
 
 /// Draws a group. Patterns, masks and images hold groups, and groups hold them.
 pub(crate) type DrawGroup = fn(&mut File<'_>, &mut Stream, &usvg::Group);
@@ -19,8 +22,15 @@ pub(crate) struct File<'a> {
     pub(crate) pdf: Pdf,
     pub(crate) options: &'a Options<'a>,
     pub(crate) draw: DrawGroup,
-    /// Number of groups that became pictures.
+    /// Number of groups that became pictures, and of those with fewer pixels than wanted.
     pub(crate) pictures: usize,
+    pub(crate) coarser: usize,
+    /// The work on pictures.
+    pub(crate) budget: Budget,
+    /// The first error about a picture. The file is then dropped, so the rest is not drawn.
+    pub(crate) failed: Option<Error>,
+    /// The objects of embedded pictures, by their data and whether they are smooth.
+    pub(crate) embedded: HashMap<(Arc<Vec<u8>>, bool), Ref>,
     last: i32,
     states: HashMap<State, Ref>,
 }
@@ -92,7 +102,18 @@ impl<'a> File<'a> {
         pdf.set_version(1, 7);
         // Bytes above 127, so that programs take the file for binary.
         pdf.set_binary_marker(b"\xe2\xe3\xcf\xd3");
-        Self { pdf, options, draw, pictures: 0, last: 0, states: HashMap::new() }
+        Self {
+            pdf,
+            options,
+            draw,
+            pictures: 0,
+            coarser: 0,
+            budget: Budget::new(options.limits),
+            failed: None,
+            embedded: HashMap::new(),
+            last: 0,
+            states: HashMap::new(),
+        }
     }
 
     /// A number for a new object.

@@ -93,12 +93,26 @@ fn mask(file: &mut File<'_>, m: &Mask) -> (MaskKind, Ref) {
 
 /// Draws a group with a filter as a picture.
 fn filtered(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
-    let Some(picture) = picture::of_group(g, file.options.picture_dpi) else { return };
+    if file.failed.is_some() {
+        return;
+    }
+    let drawn = picture::of_group(file, g).and_then(|drawn| {
+        let Some(picture) = drawn else { return Ok(None) };
+        let object = image::add(file, &picture.pixmap, true)?;
+        Ok(Some((object, picture.area)))
+    });
+    let (object, area) = match drawn {
+        Ok(Some(drawn)) => drawn,
+        Ok(None) => return,
+        Err(e) => {
+            file.failed = Some(e);
+            return;
+        }
+    };
     file.pictures += 1;
-    let object = image::add(file, &picture.pixmap, true);
     if g.blend_mode() != BlendMode::Normal {
         let state = file.state(State::default().blend(g.blend_mode()));
         stream.state(state);
     }
-    image::place(stream, object, picture.area);
+    image::place(stream, object, area);
 }

@@ -4,8 +4,10 @@ use crate::file::{File, deflated};
 use crate::space::matrix;
 use crate::stream::Stream;
 use kurbo::{Affine, Rect};
-use pathwarp_raster::{Picture, Pixmap};
+use pathwarp::budget::Limit;
+use pathwarp_raster::{Error, Picture, Pixmap, header_size};
 use pdf_writer::{Filter, Finish as _, Name, Ref};
+use std::sync::Arc;
 use usvg::{FillRule, Image, ImageKind, ImageRendering};
 
 /// Draws an image.
@@ -28,12 +30,24 @@ pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
             stream.object(object);
             return;
         }
-        ImageKind::JPEG(data) => jpeg(file, data, smooth).or_else(|| decoded(file, data, smooth)),
-        ImageKind::PNG(data) | ImageKind::GIF(data) | ImageKind::WEBP(data) => decoded(file, data, smooth),
+        ImageKind::JPEG(data) | ImageKind::PNG(data) | ImageKind::GIF(data) | ImageKind::WEBP(data) => {
+            embedded(file, data, smooth)
+        }
     };
     if let Some(object) = object {
         place(stream, object, area);
     }
+}
+
+/// The object of an embedded picture, which is added once, however often it is drawn.
+fn embedded(file: &mut File<'_>, data: &Arc<Vec<u8>>, smooth: bool) -> Option<Ref> {
+    let key = (Arc::clone(data), smooth);
+    if let Some(known) = file.embedded.get(&key) {
+        return Some(*known);
+    }
+    let object = jpeg(file, data, smooth).or_else(|| decoded(file, data, smooth))?;
+    file.embedded.insert(key, object);
+    Some(object)
 }
 
 /// Draws a bitmap over an area.
@@ -46,13 +60,35 @@ pub(crate) fn place(stream: &mut Stream, object: Ref, area: Rect) {
     stream.content.restore_state();
 }
 
+/// Adds a picture as its pixels. What cannot be decoded is not drawn, as in browsers; too large a one is an error.
 fn decoded(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
-    Some(add(file, &Picture::read_stored(data).ok()?.pixmap, smooth))
+    if file.failed.is_some() {
+        return None;
+    }
+    let added = count(file, header_size(data).ok()?, DECODING)
+        .and_then(|()| Picture::read_stored_within(data, &file.options.limits.for_input(data.len())))
+        .and_then(|picture| add(file, &picture.pixmap, smooth));
+    match added {
+        Err(e @ (Error::TooLarge { .. } | Error::TooMuch(_))) => {
+            file.failed = Some(e);
+            None
+        }
+        other => other.ok(),
+    }
+}
+
+/// Work for a pixel that is decoded, and for one that is compressed again, in pixels painted.
+const DECODING: f64 = 4.0;
+const COMPRESSING: f64 = 20.0;
+
+fn count(file: &File<'_>, (width, height): (u32, u32), work: f64) -> Result<(), Error> {
+    Ok(file.budget.spend(Limit::Painting, (work * f64::from(width) * f64::from(height)) as u64)?)
 }
 
 /// Adds a bitmap, with its transparency if it has any.
-pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Ref {
+pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<Ref, Error> {
     let (width, height) = (pixmap.width(), pixmap.height());
+    count(file, (width, height), COMPRESSING)?;
     let mut colors = Vec::with_capacity(pixmap.pixels().len() * 3);
     let mut opacities = Vec::with_capacity(pixmap.pixels().len());
     for p in pixmap.pixels() {
@@ -74,7 +110,7 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Ref {
     };
     let is_opaque = opacities.iter().all(|a| *a == u8::MAX);
     let mask = (!is_opaque).then(|| add(&opacities, Name(b"DeviceGray"), None));
-    add(&colors, Name(b"DeviceRGB"), mask)
+    Ok(add(&colors, Name(b"DeviceRGB"), mask))
 }
 
 /// Adds a JPEG as it is, if PDF programs show it as browsers do: grey or with three components of 8 bits.

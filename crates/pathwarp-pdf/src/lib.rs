@@ -29,6 +29,7 @@ mod space;
 mod stream;
 
 pub use options::{ExactOutline, Options};
+pub use pathwarp_raster::Error;
 
 use file::File;
 use kurbo::Affine;
@@ -48,11 +49,15 @@ pub struct Written {
     pub bytes: Vec<u8>,
     /// Number of groups that became pictures because of a filter.
     pub pictures: usize,
+    /// Number of those with fewer pixels than the resolution asks for, to stay within the limits.
+    pub coarser: usize,
 }
 
 /// Writes a drawing as a PDF of one page.
-#[must_use]
-pub fn write(tree: &usvg::Tree, options: &Options<'_>) -> Written {
+///
+/// # Errors
+/// Its pictures exceed the limits, or the renderer fails on a filter.
+pub fn write(tree: &usvg::Tree, options: &Options<'_>) -> Result<Written, Error> {
     let mut file = File::new(options, group::draw);
     let [catalog, pages, page, info, content] = [(); 5].map(|()| file.new_ref());
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
@@ -78,5 +83,8 @@ pub fn write(tree: &usvg::Tree, options: &Options<'_>) -> Written {
     blending.transparency().isolated(true).pair(Name(b"CS"), Name(b"DeviceRGB"));
     drop(blending);
     drop(out);
-    Written { pictures: file.pictures, bytes: file.pdf.finish() }
+    match file.failed.take() {
+        Some(e) => Err(e),
+        None => Ok(Written { pictures: file.pictures, coarser: file.coarser, bytes: file.pdf.finish() }),
+    }
 }

@@ -1,6 +1,7 @@
 //! Options for writing a PDF.
 
 use kurbo::BezPath;
+use pathwarp::budget::Limits;
 
 /// Resolution of the pictures that stand for filters, in pixels per inch, if none is given: the usual one for print.
 pub(crate) const PRINT: f64 = 300.0;
@@ -14,10 +15,12 @@ pub struct Options<'a> {
     pub exact: &'a ExactOutline<'a>,
     /// Pixels per inch of the pictures that stand for filters; `None`: 300.
     pub picture_dpi: Option<f64>,
+    /// Limits on the pictures, embedded ones and those that stand for filters.
+    pub limits: Limits,
 }
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { exact: &|_| None, picture_dpi: None }
+        Self { exact: &|_| None, picture_dpi: None, limits: Limits::default() }
     }
 }

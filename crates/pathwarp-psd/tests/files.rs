@@ -113,3 +113,16 @@ fn damaged_files_are_errors() {
     let deep = file(false, &[layer(false, "deep", &[block("SoLd", smart(&[("warp", tagged("Objc", deep))]))])]);
     assert!(warps(&deep).unwrap_err().to_string().contains("nested more than 32 deep"));
 }
+
+/// Seeds for the fuzz target `psd`: `PATHWARP_FUZZ_SEEDS=fuzz/seeds cargo test -p pathwarp-psd --test files` writes them.
+#[test]
+fn seeds_are_read() {
+    let folder = std::env::var_os("PATHWARP_FUZZ_SEEDS").map(|f| std::path::Path::new(&f).join("psd"));
+    for (name, wide) in [("psd", false), ("psb", true)] {
+        assert_eq!(warps(&all(wide)).unwrap().warps.len(), 4);
+        if let Some(folder) = &folder {
+            std::fs::create_dir_all(folder).unwrap();
+            std::fs::write(folder.join(name), all(wide)).unwrap();
+        }
+    }
+}

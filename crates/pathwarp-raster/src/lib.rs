@@ -42,6 +42,7 @@ mod smooth_png;
 mod warp_image;
 
 pub use compare::{Difference, compare, diff_image};
+pub use draw::render_group;
 pub use error::Error;
 pub use picture::{Picture, PictureFormat, header_size};
 pub use png::{decode_png, encode_png};

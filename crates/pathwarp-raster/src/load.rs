@@ -42,19 +42,20 @@ const DASH: f64 = 200.0;
 /// Octaves of turbulence beyond these change no colour of eight bits, and overflow in the renderer.
 const MOST_OCTAVES: u32 = 24;
 
-/// Checks what rendering `tree` takes with `transform` to a picture of `width` × `height` pixels.
+/// The work of drawing a group with `transform` on a picture of `width` × `height` pixels.
 ///
 /// # Errors
 /// It exceeds the limits, or geometry reaches too far.
-pub(crate) fn check(
-    tree: &usvg::Tree,
+pub(crate) fn of_group(
+    group: &Group,
     transform: Transform,
     [width, height]: [f32; 2],
     limits: &Limits,
-) -> Result<(), Error> {
+) -> Result<f64, Error> {
     let mut load = Load { limits: *limits, work: 0.0, sizes: HashMap::new() };
-    let canvas = f64::from(width) * f64::from(height);
-    load.group(tree.root(), transform, &Canvas { width, height, held: canvas })
+    let held = f64::from(width) * f64::from(height);
+    load.group(group, transform, &Canvas { width, height, held })?;
+    Ok(load.work)
 }
 
 /// The surface that is painted on.
@@ -258,6 +259,7 @@ impl Load {
                 }
                 Kind::ConvolveMatrix(c) => f64::from(c.matrix().columns()) * f64::from(c.matrix().rows()),
                 Kind::GaussianBlur(_) | Kind::DropShadow(_) => BLURRED,
+                Kind::Merge(m) => LAYER * m.inputs().len() as f64,
                 Kind::DiffuseLighting(_) | Kind::SpecularLighting(_) => LIT,
                 Kind::Image(i) => {
                     self.group(i.root(), transform, &layer)?;

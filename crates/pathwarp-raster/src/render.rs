@@ -3,7 +3,7 @@
 use crate::draw::draw;
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
-use pathwarp::budget::Limits;
+use pathwarp::budget::{Budget, Limits};
 use tiny_skia::{Color, Pixmap, Transform};
 
 /// Excess over a whole number of pixels that does not start another row.
@@ -50,13 +50,21 @@ impl RenderOptions {
     /// The size is zero or not a positive number, the picture or the work to draw it exceeds the limits, or a shape reaches
     /// farther than the renderer can compute with.
     pub fn render_within(&self, tree: &usvg::Tree, limits: &Limits) -> Result<Pixmap, Error> {
+        self.render_counted(tree, &Budget::new(*limits))
+    }
+
+    /// Renders `tree` with these options, and counts the work: several drawings may share a budget.
+    ///
+    /// # Errors
+    /// As for [`RenderOptions::render_within`].
+    pub fn render_counted(&self, tree: &usvg::Tree, budget: &Budget) -> Result<Pixmap, Error> {
         let native = (f64::from(tree.size().width()), f64::from(tree.size().height()));
         let (width, height, scale) = self.size.resolve(native)?;
-        let mut pixmap = new_pixmap(width, height, limits)?;
+        let mut pixmap = new_pixmap(width, height, budget.limits())?;
         if let Some(color) = self.background {
             pixmap.fill(color);
         }
-        draw(tree, Transform::from_scale(scale, scale), &mut pixmap, limits)?;
+        draw(tree, Transform::from_scale(scale, scale), &mut pixmap, budget)?;
         Ok(pixmap)
     }
 }

@@ -1,6 +1,7 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
 use crate::source::read::bytes_unpacked;
+use crate::source::tags::PATHWARP as NAMESPACE;
 use crate::source::xml::{self, escape_content};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -8,9 +9,6 @@ use pathwarp::Error;
 use pathwarp::budget::{Budget, Limit, Limits};
 use std::io::Write as _;
 use usvg::roxmltree;
-
-/// Namespace of the embedded elements.
-const NAMESPACE: &str = "https://github.com/pathwarp/pathwarp/ns/1";
 
 /// The origin of a drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]

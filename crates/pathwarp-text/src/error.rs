@@ -1,6 +1,7 @@
 //! Errors of fonts and lettering.
 
 use crate::metrics::FontAxis;
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
@@ -64,10 +65,12 @@ pub enum Error {
     #[error("no text to set: it is empty or has no extent")]
     Empty,
     /// The text or its outlines exceed a limit.
-    #[error("the text has more than {most} {quantity}, which is the limit")]
+    #[error("the text has at least {needed} {quantity}, and the limit is {most}")]
     TooLarge {
-        /// Name of the limited quantity.
-        quantity: &'static str,
+        /// The limited quantity.
+        quantity: Quantity,
+        /// The amount needed, or counted when work stopped.
+        needed: usize,
         /// The limit.
         most: usize,
     },
@@ -82,6 +85,27 @@ pub enum Error {
     /// The font makes its reader or the shaper panic.
     #[error("the font is damaged and cannot be used")]
     Failed,
+}
+
+/// A quantity that is limited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Letters of the text.
+    Letters,
+    /// Glyphs that the fonts make of them.
+    Glyphs,
+    /// Segments of the outlines.
+    Segments,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Letters => "letters",
+            Self::Glyphs => "glyphs",
+            Self::Segments => "segments",
+        })
+    }
 }
 
 impl Error {

@@ -5,16 +5,14 @@ use crate::error::{Error, guarded};
 use crate::font::Font;
 use crate::itemize::{self, Run};
 use crate::lettering::{LetteringLine, OutlinedText};
-use crate::painter::{GlyphPainter, MOST_ELEMENTS, SpacedCluster};
+use crate::limits::TextLimits;
+use crate::painter::{GlyphPainter, SpacedCluster};
 use crate::setting::Feature;
-use crate::shape::{self, MOST_GLYPHS, RunShaper};
+use crate::shape::{self, RunShaper};
 use crate::style::{Direction, Ligatures, TextStyle, check};
 use std::collections::{BTreeSet, HashMap};
 
-/// Maximum number of characters in a text.
-const MOST_CHARACTERS: usize = 20_000;
-
-/// Sets text. Lines end at newlines; a tab or other control character becomes a space. Characters that the first font lacks are
+/// Sets text within the default limits. Lines end at newlines; a tab or other control character becomes a space. Characters that the first font lacks are
 /// taken from the next font that has them.
 ///
 /// ```
@@ -33,20 +31,31 @@ const MOST_CHARACTERS: usize = 20_000;
 /// # Errors
 /// The style is out of range, the text is empty or too long, or the font is damaged.
 pub fn layout(text: &str, fonts: &[Font<'_>], style: &TextStyle) -> Result<OutlinedText, Error> {
+    layout_within(text, fonts, style, &TextLimits::default())
+}
+
+/// Sets text like [`layout`], within `limits`.
+///
+/// # Errors
+/// As for [`layout`].
+pub fn layout_within(
+    text: &str,
+    fonts: &[Font<'_>],
+    style: &TextStyle,
+    limits: &TextLimits,
+) -> Result<OutlinedText, Error> {
     let Some(font) = fonts.first() else { return Err(Error::NoFont) };
     let (script, language) = check(style)?;
     let lines = lines(text);
     let text = lines.join("\n");
-    if text.chars().nth(MOST_CHARACTERS).is_some() {
-        return Err(Error::TooLarge { quantity: "characters", most: MOST_CHARACTERS });
-    }
+    limits.letters(text.chars().count())?;
     let rtl = match style.direction {
         Direction::Auto => itemize::starts_rtl(&text),
         Direction::Ltr => false,
         Direction::Rtl => true,
     };
-    let mut shaper = RunShaper { fonts, size: style.size, features: features(style), language, budget: MOST_GLYPHS };
-    let mut painter = GlyphPainter { fonts, size: style.size, drawn: HashMap::new(), budget: MOST_ELEMENTS };
+    let mut shaper = RunShaper { fonts, size: style.size, features: features(style), language, limits, set: 0 };
+    let mut painter = GlyphPainter { fonts, size: style.size, drawn: HashMap::new(), limits, painted: 0 };
     let set_lines = || -> Result<Vec<LetteringLine>, Error> {
         let metrics = font.metrics(style.size);
         let step = style.line_height.unwrap_or(metrics.ascent + metrics.descent + metrics.line_gap);

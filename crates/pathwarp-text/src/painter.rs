@@ -3,14 +3,12 @@
 use crate::error::Error;
 use crate::font::Font;
 use crate::lettering::{Cluster, LetteringLine, PlacedGlyph};
+use crate::limits::TextLimits;
 use crate::shape::ShapedCluster;
 use kurbo::{Affine, BezPath, Point};
 use skrifa::GlyphId;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-
-/// Maximum number of path elements in a text: about 200 MB.
-pub(crate) const MOST_ELEMENTS: usize = 1 << 22;
 
 /// A cluster and the space after it.
 pub(crate) struct SpacedCluster {
@@ -24,8 +22,9 @@ pub(crate) struct GlyphPainter<'s, 'f> {
     pub(crate) size: f64,
     /// Outlines by font and glyph.
     pub(crate) drawn: HashMap<(usize, u32), BezPath>,
-    /// Number of further path elements allowed.
-    pub(crate) budget: usize,
+    pub(crate) limits: &'s TextLimits,
+    /// Number of path elements so far.
+    pub(crate) painted: usize,
 }
 
 impl GlyphPainter<'_, '_> {
@@ -62,10 +61,8 @@ impl GlyphPainter<'_, '_> {
                 e.insert(font.synthesis.apply(outline, font.units_per_em()))
             }
         };
-        self.budget = self
-            .budget
-            .checked_sub(glyph.elements().len())
-            .ok_or(Error::TooLarge { quantity: "path elements", most: MOST_ELEMENTS })?;
+        self.painted += glyph.elements().len();
+        self.limits.segments(self.painted)?;
         let place =
             Affine::translate((origin.x + g.dx, origin.y + g.dy)) * Affine::scale(self.size / font.units_per_em());
         out.extend(glyph.elements().iter().map(|el| place * *el));

@@ -4,13 +4,11 @@ use crate::error::Error;
 use crate::font::Font;
 use crate::itemize::{Run, for_shaper};
 use crate::lettering::PlacedGlyph;
+use crate::limits::TextLimits;
 use crate::setting::Feature;
 use harfrust::{BufferFlags, Direction, Language, ShapeOptions, UnicodeBuffer};
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
-
-/// Maximum number of glyphs in a text, far above what a sound font gives for the longest text.
-pub(crate) const MOST_GLYPHS: usize = 1 << 19;
 
 /// A cluster of glyphs, in user units.
 #[derive(Debug, Clone)]
@@ -29,8 +27,9 @@ pub(crate) struct RunShaper<'s, 'f> {
     pub(crate) size: f64,
     pub(crate) features: Vec<harfrust::Feature>,
     pub(crate) language: Option<Language>,
-    /// Number of further glyphs allowed.
-    pub(crate) budget: usize,
+    pub(crate) limits: &'s TextLimits,
+    /// Number of glyphs so far.
+    pub(crate) set: usize,
 }
 
 impl RunShaper<'_, '_> {
@@ -92,8 +91,8 @@ impl RunShaper<'_, '_> {
         }
         let shaper = font.data.shaper(&font.font).instance(Some(&font.instance)).build();
         let shaped = shaper.shape(buffer, ShapeOptions::new().features(&self.features));
-        self.budget =
-            self.budget.checked_sub(shaped.len()).ok_or(Error::TooLarge { quantity: "glyphs", most: MOST_GLYPHS })?;
+        self.set += shaped.len();
+        self.limits.glyphs(self.set)?;
 
         let scale = self.size / font.units_per_em();
         let infos = shaped.glyph_infos();

@@ -15,7 +15,7 @@ pub enum Limit {
     Bytes,
     /// Elements, with everything that references show again.
     Elements,
-    /// Comparisons of names: to match selectors, and by the XML parser.
+    /// Comparisons: of names, to match selectors and by the XML parser; of places, to measure distances.
     Comparisons,
     /// Segments of outlines: read, laid out, or written.
     Segments,
@@ -83,7 +83,7 @@ impl Limit {
         match self {
             Self::Bytes => "bytes of text",
             Self::Elements => "elements",
-            Self::Comparisons => "comparisons of names",
+            Self::Comparisons => "comparisons",
             Self::Segments => "segments",
             Self::Letters => "letters",
             Self::Pixels => "pixels at once",
@@ -100,7 +100,7 @@ impl Limit {
     fn base(self) -> f64 {
         match self {
             Self::Bytes => 16e6,
-            Self::Elements => 40e3,
+            Self::Elements => 30e3,
             Self::Comparisons => 15e6,
             Self::Segments => 2e6,
             Self::Letters => 30e3,

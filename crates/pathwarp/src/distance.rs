@@ -1,5 +1,17 @@
-//! The Hausdorff distance between two paths.
+//! The Hausdorff distance between two paths: how far two drawings of the same shape are apart.
+//!
+//! ```
+//! use pathwarp::{Outline, distance};
+//!
+//! let circle = Outline::from_svg("M90,50 A40,40 0 1 1 10,50 A40,40 0 1 1 90,50 Z")?;
+//! let octagon = Outline::from_svg("M90,50 L78,78 L50,90 L22,78 L10,50 L22,22 L50,10 L78,22 Z")?;
+//! let apart = distance::symmetric(&circle, &octagon).unwrap_or_default();
+//! // In the middle of each side.
+//! assert!((3.0..3.3).contains(&apart), "{apart}");
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
 
+use crate::budget::{Budget, Exceeded, Limit, Limits};
 use crate::outline::{Outline, Seg};
 use kurbo::{Point, Rect};
 
@@ -8,43 +20,150 @@ const PER_SEGMENT: usize = 64;
 /// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
 
+/// Work of looking at a box, at a line and at a curve, in comparisons of the budget.
+const BOX: f64 = 0.05;
+const LINE: f64 = 0.2;
+const CURVE: f64 = 3.0;
+
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
 /// Sampled at 65 points per segment, whose nearest points are found by the Gauss–Newton method from 17 starting points per
 /// segment. A lower bound, exact up to the movement of the distance between samples. `None` if one of the paths is empty.
 #[must_use]
 pub fn symmetric(a: &Outline, b: &Outline) -> Option<f64> {
-    Some(one_way(a, b)?.max(one_way(b, a)?))
+    symmetric_within(a, b, &Budget::new(Limits::none())).ok().flatten()
 }
 
-/// The largest distance from a point of `from` to `to`.
-fn one_way(from: &Outline, to: &Outline) -> Option<f64> {
-    let targets: Vec<(Rect, &Seg)> = to.segs().map(|s| (s.bounding_box(), s)).collect();
-    let dots: Vec<Point> = to.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| s.start).collect();
-    if targets.is_empty() && dots.is_empty() {
-        return None;
+/// The same as [`symmetric`], counted as comparisons: paths of very many segments that are everywhere about equally far apart take
+/// time in proportion to the product of their numbers.
+///
+/// # Errors
+/// It takes more comparisons than `budget` has.
+pub fn symmetric_within(a: &Outline, b: &Outline, budget: &Budget) -> Result<Option<f64>, Exceeded> {
+    let Some(there) = one_way(a, b, 0.0, budget)? else { return Ok(None) };
+    one_way(b, a, there, budget)
+}
+
+/// The largest distance from a point of `from` to `to`, or `least` if that is larger.
+fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<Option<f64>, Exceeded> {
+    let segs = to.segs().map(Target::Seg);
+    let dots = to.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
+    let mut targets = Targets::new(segs.chain(dots).collect());
+    if targets.all.is_empty() {
+        return Ok(None);
     }
-    let samples = from.segs().flat_map(|s| (0..=PER_SEGMENT).map(|i| s.eval(i as f64 / PER_SEGMENT as f64)));
-    let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| s.start);
-    let mut last = 0;
-    samples
-        .chain(alone)
-        .map(|p| {
-            let mut best = dots.iter().map(|d| d.distance(p)).fold(f64::INFINITY, f64::min);
-            // Neighbouring samples have neighbouring foot points: starting at the last winner prunes nearly all other segments.
-            let winner = last;
-            let near = targets.get(winner).into_iter();
-            for (i, (bounds, seg)) in near.map(|t| (winner, t)).chain(targets.iter().enumerate()) {
-                if box_distance(bounds, p) < best {
-                    let d = to_segment(seg, p, best);
-                    if d < best {
-                        (best, last) = (d, i);
-                    }
-                }
+    let samples = from.segs().map(Target::Seg);
+    let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
+    let mut most = None;
+    for sampled in samples.chain(alone) {
+        let mut work = 0.0;
+        for i in 0..=sampled.intervals() {
+            let p = sampled.eval(i as f64 / PER_SEGMENT as f64);
+            let d = targets.distance(p, most.unwrap_or(least), &mut work);
+            most = Some(d.max(most.unwrap_or(least)));
+        }
+        budget.spend_cut(Limit::Comparisons, work as u64)?;
+    }
+    Ok(most)
+}
+
+/// A part of a path: a segment, or a subpath that is a point.
+enum Target<'a> {
+    Seg(&'a Seg),
+    Dot(Point),
+}
+
+impl Target<'_> {
+    fn bounds(&self) -> Rect {
+        match self {
+            Self::Seg(s) => s.bounding_box(),
+            Self::Dot(p) => Rect::from_points(*p, *p),
+        }
+    }
+
+    fn intervals(&self) -> usize {
+        if matches!(self, Self::Seg(_)) { PER_SEGMENT } else { 0 }
+    }
+
+    /// The work of [`distance`](Self::distance).
+    fn work(&self) -> f64 {
+        if matches!(self, Self::Seg(Seg::Quad(_) | Seg::Cubic(_) | Seg::Arc(_))) { CURVE } else { LINE }
+    }
+
+    fn eval(&self, t: f64) -> Point {
+        match self {
+            Self::Seg(s) => s.eval(t),
+            Self::Dot(p) => *p,
+        }
+    }
+
+    /// The distance from `p`, or `known` if that is smaller.
+    fn distance(&self, p: Point, known: f64) -> f64 {
+        match self {
+            Self::Seg(s) => to_segment(s, p, known),
+            Self::Dot(d) => d.distance(p).min(known),
+        }
+    }
+}
+
+/// The parts of a path under a tree of boxes: node i holds nodes 2i and 2i + 1, and the parts are the leaves. Neighbours along a
+/// path are near each other, so their boxes are small.
+struct Targets<'a> {
+    all: Vec<Target<'a>>,
+    boxes: Vec<Rect>,
+    /// The nearest part of the last point: neighbouring samples have neighbouring foot points.
+    last: usize,
+    pending: Vec<usize>,
+}
+
+/// The box of nothing: infinitely far from every point.
+const NOWHERE: Rect = Rect::new(f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
+
+impl<'a> Targets<'a> {
+    fn new(all: Vec<Target<'a>>) -> Self {
+        let leaves = all.len().next_power_of_two();
+        let mut boxes = vec![NOWHERE; 2 * leaves];
+        for (leaf, target) in boxes[leaves..].iter_mut().zip(&all) {
+            *leaf = target.bounds();
+        }
+        for i in (1..leaves).rev() {
+            let (a, b) = (boxes[2 * i], boxes[2 * i + 1]);
+            boxes[i] = Rect::new(a.x0.min(b.x0), a.y0.min(b.y0), a.x1.max(b.x1), a.y1.max(b.y1));
+        }
+        Self { all, boxes, last: 0, pending: Vec::new() }
+    }
+
+    /// The distance from `p`. The search ends where it is known to be at most `enough`. Adds to `work`.
+    fn distance(&mut self, p: Point, enough: f64, work: &mut f64) -> f64 {
+        let leaves = self.boxes.len() / 2;
+        let mut best = self.all[self.last].distance(p, f64::INFINITY);
+        *work += self.all[self.last].work();
+        self.pending.clear();
+        self.pending.push(1);
+        while let Some(node) = self.pending.pop()
+            && best > enough
+        {
+            *work += BOX;
+            // A box with coordinates that are not finite is looked into.
+            if box_distance(&self.boxes[node], p) >= best {
+                continue;
             }
-            best
-        })
-        .reduce(f64::max)
+            if node < leaves {
+                let children = [2 * node, 2 * node + 1];
+                let nearer =
+                    usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
+                self.pending.extend([children[1 - nearer], children[nearer]]);
+                continue;
+            }
+            let Some(target) = self.all.get(node - leaves) else { continue };
+            *work += target.work();
+            let d = target.distance(p, best);
+            if d < best {
+                (best, self.last) = (d, node - leaves);
+            }
+        }
+        best
+    }
 }
 
 fn box_distance(r: &Rect, p: Point) -> f64 {
@@ -55,10 +174,21 @@ fn box_distance(r: &Rect, p: Point) -> f64 {
 
 /// The distance from `p` to `seg`, or `known` if that is smaller.
 fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
-    let mut best = known;
-    for i in 0..=STRETCHES {
-        let mut t = i as f64 / STRETCHES as f64;
-        let mut d = seg.eval(t).distance(p);
+    if let Seg::Line(l) = seg {
+        let v = l.p1 - l.p0;
+        let t = ((p - l.p0).dot(v) / v.hypot2()).clamp(0.0, 1.0);
+        let foot = if t.is_nan() { l.p0 } else { l.p0.lerp(l.p1, t) };
+        return foot.distance(p).min(known);
+    }
+    let at: [f64; STRETCHES + 1] = std::array::from_fn(|i| seg.eval(i as f64 / STRETCHES as f64).distance(p));
+    let mut best = at.iter().copied().fold(known, f64::min);
+    // No point is farther than this from the nearest of those.
+    let reach = most_speed(seg) * 0.5 / STRETCHES as f64;
+    for (i, d) in at.into_iter().enumerate() {
+        if d - reach >= best {
+            continue;
+        }
+        let (mut t, mut d) = (i as f64 / STRETCHES as f64, d);
         // Gauss–Newton for the foot point.
         for _ in 0..6 {
             let v = seg.deriv(t);
@@ -78,6 +208,16 @@ fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
     best
 }
 
+/// A bound for the length of the derivative.
+fn most_speed(seg: &Seg) -> f64 {
+    match seg {
+        Seg::Line(l) => l.p0.distance(l.p1),
+        Seg::Quad(q) => 2.0 * q.p0.distance(q.p1).max(q.p1.distance(q.p2)),
+        Seg::Cubic(c) => 3.0 * c.p0.distance(c.p1).max(c.p1.distance(c.p2)).max(c.p2.distance(c.p3)),
+        Seg::Arc(a) => a.a.hypot().hypot(a.b.hypot()) * a.sweep.abs(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,5 +231,26 @@ mod tests {
         assert!((symmetric(&path("M0,0 H10"), &path("M0,1 H14")).unwrap() - 17.0_f64.sqrt()).abs() < 1e-12);
         assert!(symmetric(&ring(10.0), &ring(10.0)).unwrap() < 1e-12);
         assert_eq!(symmetric(&ring(1.0), &Outline::default()), None);
+        assert_eq!(symmetric(&path("M3,4"), &path("M0,0M9,0H8")), Some(65.0_f64.sqrt()));
+    }
+
+    #[test]
+    fn many_segments_take_little_unless_all_are_as_near() {
+        use crate::budget::{Limit, Limits};
+        let zigzag = |n: usize, y: f64| {
+            let points: Vec<Point> = (0..n).map(|i| Point::new(i as f64, y + (i % 2) as f64)).collect();
+            Outline::from_points(&points, false)
+        };
+        let budget = Budget::new(Limits::default().with(Limit::Comparisons, 20e6));
+        assert!(
+            (symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12
+        );
+        // Every part of the star is as far from the centre.
+        let star: Vec<Point> = (0..30_000).map(|i| Point::new(1e3 * f64::from(i % 2 * 2 - 1), 0.0)).collect();
+        let few = Budget::new(Limits::default().with(Limit::Comparisons, 1e3));
+        assert_eq!(
+            symmetric_within(&Outline::from_points(&star, false), &zigzag(9, 5.0), &few).unwrap_err().limit,
+            Limit::Comparisons
+        );
     }
 }

@@ -1,12 +1,36 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
+//!
+//! A [`Step`] names a deformation of a [`Registry`] and holds its arguments as text; a [`Recipe`] builds all of them into one
+//! [`Chain`]:
+//!
+//! ```
+//! use pathwarp::deform::Registry;
+//! use pathwarp::kurbo::Rect;
+//! use pathwarp::param::{Args, Frame};
+//! use pathwarp::recipe::{Recipe, Step};
+//! use pathwarp::{Outline, refit};
+//!
+//! let square = Outline::from_svg("M0,0 H100 V100 H0 Z")?;
+//! let flag = Step::new("warp", Args::from_pairs(&[("style", "flag"), ("bend", "40%")]));
+//! let turn = Step::new("affine", Args::from_pairs(&[("rotate", "10")]));
+//!
+//! let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+//! let recipe = Recipe { steps: vec![flag, turn] };
+//! let built = recipe.build(&Registry::builtin(), frame, &std::iter::once(&square))?;
+//! let warped = refit::warp_path(&square, &built.map, &refit::Options::new(0.01))?;
+//! assert!(warped.report.max_error <= 0.01);
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
 
 use crate::ambiguity::ambiguity;
+use crate::budget::{Budget, Limit};
 use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
-use crate::error::{Error, show};
+use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
 use crate::param::{Args, Frame, Letter};
 use kurbo::{Affine, Point, Rect, Vec2};
+use std::cell::LazyCell;
 use std::sync::Arc;
 
 /// A deformation with its arguments.
@@ -46,9 +70,32 @@ pub struct BuiltRecipe {
     pub placement: Placement,
     /// The steps after the first, composed: the map for letters that were placed.
     pub after: Chain,
+    /// For every step, the frame that its percentages refer to.
+    pub frames: Vec<Frame>,
 }
 
 impl Recipe {
+    /// Builds every step within a budget, which counts the evaluations that find out where the artwork is after each step. See
+    /// [`Recipe::build`].
+    ///
+    /// # Errors
+    /// As for [`Recipe::build`], and [`GeometryError::Limit`] if the budget does not allow so many.
+    pub fn build_within<'a>(
+        &self,
+        registry: &Registry,
+        frame: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        budget: &Budget,
+    ) -> Result<BuiltRecipe, Error> {
+        let samples = LazyCell::new(|| (artwork.clone().flat_map(Outline::segs).count() * (PER_SEGMENT + 1)) as f64);
+        let count = |out: &BuiltRecipe| {
+            let places = out.placement.copies.len().max(1) as f64;
+            let work = SAMPLE * places * *samples * out.map.work();
+            budget.spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)
+        };
+        self.built(registry, frame, artwork, &count)
+    }
+
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
     /// as it is by then.
     ///
@@ -60,11 +107,23 @@ impl Recipe {
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
+        self.built(registry, frame, artwork, &|_| Ok(()))
+    }
+
+    /// Builds every step; `count` is called before the artwork's image under the steps so far is sampled.
+    fn built<'a>(
+        &self,
+        registry: &Registry,
+        frame: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
+    ) -> Result<BuiltRecipe, Error> {
         let mut out = BuiltRecipe {
             map: Chain::default(),
             steps: Vec::with_capacity(self.steps.len()),
             placement: Placement::default(),
             after: Chain::default(),
+            frames: Vec::with_capacity(self.steps.len()),
         };
         let letters = Arc::clone(&frame.letters);
         let mut frame = frame;
@@ -75,6 +134,7 @@ impl Recipe {
                 Error::input(format!("step {}", i + 1), problem)
             })?;
             if i > 0 {
+                count(&out)?;
                 let units_per_px = frame.units_per_px;
                 let image = out.image_box(artwork.clone(), &letters);
                 frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
@@ -85,6 +145,7 @@ impl Recipe {
                 out.placement.clone_from(&built.placement);
             }
             if step.inverse {
+                count(&out)?;
                 if let Some(warning) = out.torn_seam(artwork.clone(), &built, &step.deformation) {
                     built.warn(warning);
                 }
@@ -95,6 +156,7 @@ impl Recipe {
             }
             out.map.push(Arc::clone(&built.map));
             out.steps.push(built);
+            out.frames.push(frame.clone());
         }
         Ok(out)
     }
@@ -123,8 +185,16 @@ fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), E
 }
 
 impl BuiltRecipe {
-    /// Returns the bounding box of the artwork's image under the steps so far.
-    fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>, letters: &[Letter]) -> Option<Rect> {
+    /// Returns the failure of a step's map, if one has failed. Results computed with it are not to be used.
+    #[must_use]
+    pub fn failure(&self) -> Option<Error> {
+        self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()))
+    }
+
+    /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
+    /// `letters` are those of the first frame. `None` if nothing of the artwork is in the map's domain.
+    #[must_use]
+    pub fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>, letters: &[Letter]) -> Option<Rect> {
         if self.placement.letters.is_empty() {
             return image_box(artwork, &self.placement.copies, &self.map);
         }
@@ -180,6 +250,9 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
 /// Intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
 
+/// The work of a sample, which is taken in a batch, in evaluations of the budget.
+const SAMPLE: f64 = 0.25;
+
 /// Samples the image of every segment of the artwork: accurate enough for percentages and warnings, not for proofs.
 fn images<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
@@ -234,6 +307,8 @@ mod tests {
             .unwrap();
         assert_eq!(built.map.point(Point::new(10.0, 5.0)), Point::new(120.0, 5.0));
         assert_eq!(built.map.steps().len(), 1);
+        let frames: Vec<Rect> = built.frames.iter().map(|f| f.rect).collect();
+        assert_eq!(frames, [Rect::new(0.0, 0.0, 100.0, 50.0), Rect::new(0.0, 0.0, 200.0, 50.0)]);
         let unknown = Recipe { steps: vec![step("wobble", &[])] };
         let e = unknown.build(&Registry::builtin(), Frame::new(Rect::ZERO), &std::iter::once(&art)).err().unwrap();
         assert!(e.to_string().contains("shaper"), "{e}");

@@ -7,8 +7,10 @@ mod files;
 mod hostile;
 mod new_deformation;
 mod outputs;
+mod package;
 mod parallel;
 mod refit_report;
+mod semver;
 mod shell;
 mod speed;
 
@@ -17,13 +19,16 @@ use clap::Command;
 use std::process::ExitCode;
 
 /// Every chore, declared with its options in a separate file.
-const CHORES: [Chore; 7] = [
+const CHORES: [Chore; 10] = [
     new_deformation::CHORE,
     corpus::CHORE,
     refit_report::CHORE,
     outputs::CHORE,
     speed::CHORE,
     hostile::CHORE,
+    package::CHORE,
+    package::REPRODUCIBLE,
+    semver::CHORE,
     docs::CHORE,
 ];
 

@@ -1,6 +1,7 @@
 //! The structure that ARCHITECTURE.md describes, checked: crates depend one way, files never import in a circle, the rooms of
 //! pathwarp-svg follow one another, and files and functions stay short.
 
+mod features;
 mod graph;
 #[path = "../support/mod.rs"]
 mod support;
@@ -45,18 +46,24 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
+    allowed("pathwarp-solid", &["pathwarp"]);
+    allowed("pathwarp-plugin", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
+    allowed("pathwarp-editor", &["pathwarp", "pathwarp-svg"]);
     allowed("pathwarp-pdf", &["pathwarp-raster"]);
     let below_cli = [
         "pathwarp",
         "pathwarp-dxf",
+        "pathwarp-editor",
         "pathwarp-gimp",
         "pathwarp-mesh",
         "pathwarp-pdf",
+        "pathwarp-plugin",
         "pathwarp-psd",
         "pathwarp-svg",
         "pathwarp-raster",
+        "pathwarp-solid",
         "pathwarp-text",
     ];
     allowed("pathwarp-cli", &below_cli);

@@ -13,6 +13,7 @@ fn oscillations_end_by_the_budget() {
         &["wave", "--length", "0.01"],
         &["wave", "--length", "0.001", "--amount", "50"],
         &["swirl", "--angle", "1e9"],
+        &["swirl", "--angle", "1e6", "--strokes", "outline", "--tolerance", "1e-9", "--certify"],
     ] {
         let (code, said) = folder.run(&[args, &["a.svg", "-o", "o.svg"]].concat());
         assert_ne!(code, 0, "{args:?}");
@@ -51,5 +52,29 @@ fn huge_coordinates_and_pins_end() {
         &["projective", "--target", "0,0 1e99,0 1e99,1e99 0,1e99"],
     ] {
         folder.run(&[args, &["a.svg", "-o", "o.svg"]].concat());
+    }
+}
+
+/// The work of a map is counted by its parts.
+#[test]
+fn long_formulas_chains_and_skeletons_end_by_the_budget() {
+    let folder = Folder::with(&[("a.svg", &fs::read(sample("logo.svg")).unwrap())]);
+    let sum = (1..300).map(|i| format!("+sin(x*{i})")).collect::<String>();
+    let pairs: Vec<String> =
+        (0..990).map(|i| format!("{},{}:{},{}", i, i * 7 % 100, i * 3 % 100, i * 11 % 100)).collect();
+    let mls: Vec<&str> = ["mls"].into_iter().chain(pairs.iter().flat_map(|p| ["--pair", p])).collect();
+    let waves: Vec<&str> = ["wave"].into_iter().chain(["+", "wave"].repeat(60)).collect();
+    for args in [
+        &["expr", "--x", &format!("x{sum}"), "--y", "y"][..],
+        &[&mls[..], &["--tolerance", "1e-6"]].concat(),
+        &waves,
+        &["bend", "--along", &format!("M0,0{}", "c9,9,9,-9,1,1".repeat(6000))],
+        &["bend", "--along", &format!("M0,0{}", "l1,1".repeat(20_000))],
+        &["bend", "--along", "circle:r=40", "--repeat", "10000"],
+        &["envelope", "--envelope", &format!("M0,0{}L9,9Z", "q1,1,2,0".repeat(9000))],
+        &["warp", "--style", "twist", "--bend", "1000%", "--inverse"],
+    ] {
+        let (code, said) = folder.run(&[args[..1].to_vec(), vec!["a.svg", "-o", "o.svg"], args[1..].to_vec()].concat());
+        assert!([0, 1, 4].contains(&code) || said.contains("--limit") || code == 2, "{}: {code} {said}", args[0]);
     }
 }

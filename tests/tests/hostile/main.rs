@@ -2,9 +2,12 @@
 //! nothing that was not named.
 
 mod bounded;
+mod exports;
 mod formulas;
+mod lists;
 mod markup;
 mod numbers;
+mod packed;
 mod pictures;
 #[path = "../support/mod.rs"]
 mod support;

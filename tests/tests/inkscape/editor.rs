@@ -74,3 +74,32 @@ pub fn edit(folder: &Path, names: &[String]) {
         std::thread::sleep(Duration::from_millis(20));
     }
 }
+
+/// Returns `true` if there is a screen that nobody sees, which effects need, else prints a remark.
+pub fn has_screen() -> bool {
+    let found = Command::new("xvfb-run").arg("--help").output().is_ok();
+    if !found {
+        eprintln!("skipped: there is no program `xvfb-run` here");
+    }
+    found
+}
+
+/// Opens a file in a window and runs actions, by a profile in the folder. A window with a message would stay, so the time is limited.
+pub fn act(folder: &Path, file: &Path, actions: &str) {
+    let seconds = LONGEST.as_secs().to_string();
+    let mut run = Command::new("timeout");
+    run.args(["--kill-after=5", &seconds, "xvfb-run", "-a"]).arg(program()).args(["-g", "--batch-process"]);
+    finish(run.arg(file).arg(format!("--actions={actions}")), folder);
+}
+
+/// Runs Inkscape without a window, by a profile in the folder.
+pub fn convert(folder: &Path, args: &[&str]) {
+    finish(Command::new(program()).args(args), folder);
+}
+
+fn finish(run: &mut Command, folder: &Path) {
+    let run = run.env("INKSCAPE_PROFILE_DIR", folder.join("profile")).current_dir(folder).stdin(Stdio::null());
+    let out = run.output().unwrap();
+    let said = [out.stdout, out.stderr].map(|t| String::from_utf8_lossy(&t).into_owned()).join("\n");
+    assert!(out.status.success(), "{run:?}: {said}");
+}

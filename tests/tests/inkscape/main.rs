@@ -1,9 +1,11 @@
 //! Warped documents in an installed Inkscape: opened, edited and saved, they must look as pathwarp left them.
 
+mod calls;
 #[path = "../../../crates/pathwarp-svg/tests/common/mod.rs"]
 mod common;
 mod drawings;
 mod editor;
+mod extension;
 #[path = "../support/mod.rs"]
 mod support;
 

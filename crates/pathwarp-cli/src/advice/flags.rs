@@ -1,7 +1,7 @@
 //! Parameters in messages as flags: the libraries write `bottom`, the command line `--bottom`.
 
 use super::names::likely;
-use pathwarp::deform::Registry;
+use crate::catalogue::Catalogue;
 use pathwarp::param::Kind;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,13 +14,20 @@ pub(crate) struct Flags {
 
 impl Flags {
     /// The parameters of all deformations.
-    pub(crate) fn of(registry: &Registry) -> Self {
-        let params = || registry.entries().iter().flat_map(|e| e.info().params);
+    pub(crate) fn of(catalogue: &dyn Catalogue) -> Self {
+        let params = || catalogue.infos().into_iter().flat_map(|i| i.params);
         let names = params().filter_map(|p| match p.kind {
             Kind::NameOrFile(names) | Kind::Choice(names) => Some((p.name, names)),
             _ => None,
         });
         Self { params: params().map(|p| p.name).collect(), names: names.collect() }
+    }
+
+    /// The parameters of both.
+    pub(crate) fn and(mut self, other: Self) -> Self {
+        self.params.extend(other.params);
+        self.names.extend(other.names);
+        self
     }
 
     /// The name that a wrong value of the parameter `param` most likely means.
@@ -67,6 +74,7 @@ impl Flags {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pathwarp::deform::Registry;
 
     #[test]
     fn parameters_become_flags() {

@@ -1,7 +1,9 @@
 //! [`Bender`]: warps the bitmaps in drawings and paints bent gradients.
 
+use super::counted::{Counted, count_pixels};
 use super::inverse::{ROUNDING, inverse};
-use pathwarp::budget::Limits;
+use crate::advice;
+use pathwarp::budget::{Budget, Exceeded, Limits};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp_raster::{
@@ -19,20 +21,26 @@ pub struct Bender {
     map: Arc<dyn Map>,
     /// Pixels per inch; `None`: as many as keep every detail.
     dpi: Option<f64>,
-    limits: Limits,
+    budget: Arc<Budget>,
 }
 
 impl Bender {
     /// Creates a bender for `map` at `dpi` pixels per inch of the drawing; `None` uses as many as keep every detail.
     #[must_use]
     pub fn new(map: Arc<dyn Map>, dpi: Option<f64>) -> Self {
-        Self { map, dpi, limits: Limits::default() }
+        Self { map, dpi, budget: Arc::default() }
     }
 
     /// Sets limits on the bitmaps.
     #[must_use]
     pub fn with_limits(self, limits: Limits) -> Self {
-        Self { limits, ..self }
+        self.with_budget(Arc::new(Budget::new(limits)))
+    }
+
+    /// Counts the work on all bitmaps in a budget.
+    #[must_use]
+    pub fn with_budget(self, budget: Arc<Budget>) -> Self {
+        Self { budget, ..self }
     }
 }
 
@@ -42,8 +50,8 @@ impl ImageWarper for Bender {
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
-        let picture =
-            Picture::read_stored_within(r.data, &self.limits.for_input(r.data.len())).map_err(|e| e.to_string())?;
+        let picture = Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len()))
+            .map_err(|e| e.to_string())?;
         let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
@@ -62,19 +70,28 @@ impl ImageWarper for Bender {
         };
         let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
         let size = (pixels(width), pixels(height));
+        let size = (size.0 as u32, size.1 as u32);
+        count_pixels(&self.budget, &picture.pixmap, size).map_err(too_much)?;
         let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area));
+        let inverse = Counted::new(inverse, Arc::clone(&self.budget));
         let warp = ImageWarp {
             source: &picture.pixmap,
             placed: r.placed,
             map: r.map,
-            inverse: &*inverse,
-            shown: r.after.inverse() * shown(e.bounds, (size.0 as u32, size.1 as u32)),
-            size: (size.0 as u32, size.1 as u32),
+            inverse: &inverse,
+            shown: r.after.inverse() * shown(e.bounds, size),
+            size,
         };
         let pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
+        inverse.check().map_err(too_much)?;
         let png = Picture { pixmap, profile: picture.profile }.write(PictureFormat::Png).map_err(|e| e.to_string())?;
         Ok(BentImage { png, area: e.bounds })
     }
+}
+
+/// The error about a bitmap that takes too much work.
+fn too_much(e: Exceeded) -> PictureError {
+    format!("bending it takes {e}; {}", advice::raise(&e)).into()
 }
 
 impl GradientPainter for Bender {

@@ -1,9 +1,11 @@
 //! Bitmaps and gradients bent pixel by pixel, and pictures as files.
 
 mod bender;
+mod counted;
 mod encode;
 mod inverse;
 
 pub use bender::Bender;
+pub(crate) use counted::{Counted, count_pixels};
 pub(crate) use encode::encode;
 pub(crate) use inverse::{ROUNDING, inverse};

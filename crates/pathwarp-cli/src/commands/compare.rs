@@ -6,6 +6,7 @@ use crate::options::{Given, reading_args};
 use crate::status::Status;
 use crate::{input, output};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::budget::Exceeded;
 use pathwarp::distance;
 use pathwarp_raster::{Color, RenderOptions, Size};
 use pathwarp_svg::{Document, NamedPath, usvg_tree};
@@ -97,17 +98,20 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
 fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure> {
     let (paths_a, paths_b) = (a.paths(), b.paths());
     let counterparts = counterparts(&paths_a, &paths_b);
-    let pairs: Vec<PathPair> = paths_a
+    let pairs: Result<Vec<PathPair>, Exceeded> = paths_a
         .par_iter()
         .zip(&counterparts)
         .filter_map(|(p, i)| i.map(|i| (p, &paths_b[i])))
-        .map(|(p, q)| PathPair {
-            id: p.id.clone(),
-            segments_a: p.outline.segs().count(),
-            segments_b: q.outline.segs().count(),
-            distance: distance::symmetric(&p.outline, &q.outline),
+        .map(|(p, q)| {
+            Ok(PathPair {
+                id: p.id.clone(),
+                segments_a: p.outline.segs().count(),
+                segments_b: q.outline.segs().count(),
+                distance: distance::symmetric_within(&p.outline, &q.outline, a.budget())?,
+            })
         })
         .collect();
+    let pairs = pairs.map_err(|e| pathwarp::Error::limit(a.name(), "comparing it takes", e))?;
     let paired: HashSet<usize> = counterparts.iter().flatten().copied().collect();
     let paired_ids: HashSet<&str> = paired.iter().map(|&i| paths_b[i].id.as_str()).collect();
     let unpaired = paths_a.iter().zip(&counterparts).filter(|(_, i)| i.is_none());
@@ -117,7 +121,7 @@ fn compare(a: &Document, b: &Document, size: Size) -> Result<Comparison, Failure
     let unpaired = paths_b.iter().enumerate().filter(|(i, p)| !paired.contains(i) && !repeated(p));
     let only_in_b = unpaired.map(|(_, p)| p.id.clone()).collect();
     let options = RenderOptions { size, background: Some(Color::WHITE) };
-    let render = |d: &Document| options.render_within(usvg_tree::tree(d), d.budget().limits());
+    let render = |d: &Document| options.render_counted(usvg_tree::tree(d), a.budget());
     let pixels = match pathwarp_raster::compare(&render(a)?, &render(b)?) {
         Ok(difference) => Some(Pixels {
             width: difference.width,
@@ -170,7 +174,7 @@ fn counterparts(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
 
 fn table(c: &Comparison) -> String {
     let mut out = String::new();
-    let width = c.paths.iter().map(|p| p.id.chars().count()).max().unwrap_or(0).max(4);
+    let width = output::column(c.paths.iter().map(|p| p.id.as_str()));
     let _ = writeln!(out, "{:width$}  segments      distance", "id");
     for p in &c.paths {
         let d = p.distance.map_or_else(|| "empty".to_owned(), |d| format!("{d:.6}"));

@@ -13,7 +13,7 @@ use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
 use pathwarp_svg::ReadOptions;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 pub(super) const NAME: &str = "convert";
@@ -27,7 +27,7 @@ pub(super) fn command() -> Command {
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
-        .args(some_options(&["format", "dxf-curves", "tolerance"]))
+        .args(some_options(&["format", "dxf-curves", "tolerance", "quiet"]))
         .arg(
             Arg::new("split")
                 .long("split")
@@ -58,7 +58,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let options = Given::options(m).read()?;
     let choice = Choice { what: "paths are", among: FORMATS };
     let format = choice.format(target, options.format)?;
-    let gimp = GimpFile::open(file, m.get_flag("salvage"))?;
+    let gimp = GimpFile::open(file, m.get_flag("salvage"), &options.reading.limits)?;
     if gimp.is_none() && !split && matches!(format, Format::Pdf | Format::Dxf) {
         return whole(file, target, format, &options);
     }
@@ -67,7 +67,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
         Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
         None => drawing(file, &options.reading)?,
     };
-    if let Some(d) = &damage {
+    if let Some(d) = damage.as_ref().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {d}", input::display(file)));
     }
     match target {
@@ -105,7 +105,7 @@ fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOpt
     let Exported { bytes, warnings } =
         export::drawing(doc.text().to_owned(), format, &input::read_options(file, &options.reading), options, None)?;
     let warnings: Vec<String> = doc.missing().into_iter().chain(warnings).collect();
-    for warning in &warnings {
+    for warning in warnings.iter().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {warning}", input::display(file)));
     }
     output::write(target, &bytes)?;
@@ -132,11 +132,18 @@ fn names(out: &Path, format: Format, paths: &[GimpPath]) -> Vec<PathBuf> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let extension = out.extension().map_or_else(|| format.extension().into(), |e| e.to_string_lossy());
     let mut taken = HashSet::new();
+    // The next number of each name, so that many paths of one name do not try all numbers.
+    let mut next: HashMap<String, usize> = HashMap::new();
     let mut unique = |p: &GimpPath| {
         let name = input::file_name(&p.name);
-        let numbered = (2..).map(|n| format!("{name}-{n}"));
-        let mut tries = std::iter::once(name.clone()).chain(numbered).filter(|n| !n.is_empty());
-        tries.find(|n| taken.insert(n.to_lowercase())).unwrap_or(name)
+        let number = next.entry(name.to_lowercase()).or_insert(1);
+        loop {
+            let numbered = if *number == 1 { name.clone() } else { format!("{name}-{number}") };
+            *number += 1;
+            if !numbered.is_empty() && taken.insert(numbered.to_lowercase()) {
+                return numbered;
+            }
+        }
     };
     paths.iter().map(|p| out.with_file_name(format!("{stem}-{}.{extension}", unique(p)))).collect()
 }

@@ -28,7 +28,7 @@ pub(super) fn command(info: &Info) -> Command {
 pub(super) fn run(registry: &Registry, name: &str, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Failure> {
     let mut steps = vec![steps::step(registry, name, m)];
     let mut given = Given::default();
-    for part in steps::parts(registry, later, true)? {
+    for part in steps::parts(registry, later, &options::options_without_inputs().collect::<Vec<_>>())? {
         steps.push(part.step);
         given = given.joined(&part.options)?;
     }

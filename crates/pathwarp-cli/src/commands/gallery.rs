@@ -142,13 +142,14 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
         title: title(file, &sets, bend, axis),
     };
     let svg = sheet(&cells, &layout, &input::read_options(file, &options.reading))?;
+    let plain = ReadOptions::default().with_limits(options.reading.limits);
     let bytes = if format.of_picture(None).is_some() {
-        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &ReadOptions::default())?;
+        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the sheet", &plain)?;
         let size = Size::Scale(m.get_one::<f32>("scale").copied().unwrap_or(1.0));
         let drawn = RenderOptions { size, background: None }.render_within(&tree, doc.budget().limits())?;
         encode(drawn, format, options.quality)?
     } else {
-        export::drawing(svg, format, &ReadOptions::default(), &options, None)?.bytes
+        export::drawing(svg, format, &plain, &options, None)?.bytes
     };
     output::write(target, &bytes)?;
     Ok(Status::Complete)

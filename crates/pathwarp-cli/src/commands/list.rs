@@ -2,10 +2,11 @@
 
 use crate::failure::Failure;
 use crate::output;
+use crate::plugins::Plugins;
 use crate::status::Status;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::deform::{Info, Registry};
-use pathwarp::param::{Kind, Param};
+use pathwarp::param::{Axis, Kind, Param};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::IsTerminal;
@@ -18,10 +19,40 @@ pub(super) fn command() -> Command {
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON, with every parameter"))
 }
 
-/// The deformations with their parameters.
-fn json(registry: &Registry) -> Value {
+/// The kind of a parameter, in the words of a plug-in's entry.
+fn kind(p: &Param) -> &'static str {
+    match p.kind {
+        Kind::Flag => "flag",
+        Kind::Number => "number",
+        Kind::Numbers(_) => "numbers",
+        Kind::Length(_) => "length",
+        Kind::Angle => "angle",
+        Kind::Count => "count",
+        Kind::Point => "point",
+        Kind::Path => "path",
+        Kind::Choice(_) => "choice",
+        Kind::Text(_) => "text",
+        Kind::NameOrFile(_) => "name-or-file",
+        Kind::File => "file",
+        Kind::Save => "save",
+    }
+}
+
+/// The deformations with their parameters, and the plug-ins that are broken.
+fn json(registry: &Registry, plugins: &Plugins) -> Value {
     let param = |p: &Param| {
-        let mut v = json!({ "name": p.name, "help": p.help, "needed": p.needed, "repeat": p.repeat });
+        let mut v = json!({ "name": p.name, "kind": kind(p), "help": p.help, "needed": p.needed, "repeat": p.repeat });
+        if let Kind::Length(axis) = p.kind {
+            v["axis"] = match axis {
+                Axis::X => json!("x"),
+                Axis::Y => json!("y"),
+                Axis::Diagonal => json!("diagonal"),
+            };
+        }
+        if p.range.0.is_finite() || p.range.1.is_finite() {
+            // JSON has no infinity: null.
+            v["range"] = json!([p.range.0, p.range.1]);
+        }
         match p.kind {
             Kind::Flag => v["flag"] = json!(true),
             Kind::Choice(words) => v["choices"] = json!(words),
@@ -38,15 +69,22 @@ fn json(registry: &Registry) -> Value {
         let examples: Vec<&str> = i.examples.iter().map(|e| e.command).collect();
         json!({
             "name": i.name, "title": i.title, "group": i.group, "about": i.about, "source": i.source,
-            "parameters": params, "examples": examples,
+            "parameters": params, "examples": examples, "plug-in": plugins.file(i.name),
         })
     };
-    json!({ "deformations": registry.entries().iter().map(|e| deformation(e.info())).collect::<Vec<_>>() })
+    let broken: Vec<Value> = plugins
+        .broken
+        .iter()
+        .map(|b| json!({ "name": b.name, "file": b.path.display().to_string(), "problem": b.fault.to_string() }))
+        .collect();
+    let deformations: Vec<Value> = registry.entries().iter().map(|e| deformation(e.info())).collect();
+    json!({ "deformations": deformations, "broken-plug-ins": broken })
 }
 
-pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
+pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
     if m.get_flag("json") {
-        let text = serde_json::to_string_pretty(&json(registry)).map_err(|e| Failure::Output(e.to_string()))?;
+        let text =
+            serde_json::to_string_pretty(&json(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
         output::to_stdout((text + "\n").as_bytes())?;
         return Ok(Status::Complete);
     }
@@ -66,6 +104,13 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
             let _ = writeln!(out, "  {:width$}  {}", i.name, i.title);
         }
         out.push('\n');
+    }
+    if !plugins.broken.is_empty() {
+        let _ = writeln!(out, "{heading}Broken plug-ins{heading:#}");
+        for b in &plugins.broken {
+            let _ = writeln!(out, "  {:width$}  {} {}", b.name, b.path.display(), b.fault);
+        }
+        out.push_str("  `pathwarp check NAME` tries one again.\n\n");
     }
     out.push_str("`pathwarp help NAME` describes one; `+` chains several.\n");
     let plain = if std::io::stdout().is_terminal() { out } else { anstream::adapter::strip_str(&out).to_string() };

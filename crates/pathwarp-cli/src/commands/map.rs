@@ -64,7 +64,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let reading = Given::reading(m)?;
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required")) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
-    recipe.steps.extend(steps::parts(registry, later, false)?.into_iter().map(|part| part.step));
+    recipe.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut recipe, &reading)?;
     references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
@@ -76,11 +76,15 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
         None => cloud.bounding_box().unwrap_or(Rect::ZERO),
     };
-    let map = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud)).map_err(Failure::of_recipe)?.map;
+    let built = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud)).map_err(Failure::of_recipe)?;
+    let map = &built.map;
     let mut creases = Creases::default();
     map.creases(&mut creases);
     let mut jets = vec![Jet::default(); points.len()];
     map.jets(&points, &mut jets);
+    if let Some(e) = built.failure() {
+        return Err(Failure::of_recipe(e));
+    }
     let mut out = String::new();
     let mut status = Status::Complete;
     for (p, j) in points.iter().zip(&jets) {

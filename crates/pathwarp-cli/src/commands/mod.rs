@@ -1,30 +1,35 @@
 //! The command line: one subcommand per deformation of the registry, and one file per further subcommand, which holds its
 //! arguments and its run.
 
+mod check;
 mod compare;
 mod completions;
 mod convert;
 mod deformation;
+mod edit;
 mod file_args;
 mod gallery;
 mod install;
 mod list;
 mod man;
 mod map;
+mod new_plugin;
 mod paths;
 mod render;
 mod run;
 mod schema;
+mod solid;
 mod text;
 mod unwarp;
 
 use crate::advice;
 use crate::failure::Failure;
 use crate::options::Given;
+use crate::plugins::{self, Plugins};
 use crate::status::Status;
 use crate::watch;
-use clap::Command;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command};
 use pathwarp::deform::Registry;
 use std::ffi::OsString;
 
@@ -76,16 +81,25 @@ fn root() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .infer_subcommands(false)
+        .arg(
+            Arg::new(plugins::OPTION)
+                .long(plugins::OPTION)
+                .value_name("FILE")
+                .global(true)
+                .help("Use the plug-in in this file, too (docs/plugin-protocol.md)"),
+        )
 }
 
 /// Declares a subcommand.
 type Declare = fn(&Registry) -> Command;
 
 /// The subcommands that are not deformations, in the order of the help.
-const OTHERS: [(&str, Declare); 14] = [
+const OTHERS: [(&str, Declare); 18] = [
+    (edit::NAME, |_| edit::command()),
     (run::NAME, run::command),
     (list::NAME, |_| list::command()),
     (map::NAME, map::command),
+    (solid::NAME, |_| solid::command()),
     (unwarp::NAME, |_| unwarp::command()),
     (schema::NAME, |_| schema::command()),
     (text::NAME, |_| text::command()),
@@ -94,6 +108,8 @@ const OTHERS: [(&str, Declare); 14] = [
     (render::NAME, |_| render::command()),
     (gallery::NAME, gallery::command),
     (compare::NAME, |_| compare::command()),
+    (check::NAME, |_| check::command()),
+    (new_plugin::NAME, |_| new_plugin::command()),
     (install::NAME, |_| install::command()),
     (completions::NAME, |_| completions::command()),
     (man::NAME, |_| man::command()),
@@ -101,17 +117,23 @@ const OTHERS: [(&str, Declare); 14] = [
 
 /// Runs the subcommand that `args` names; the first of them is the program's name.
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
+    let (args, plugins) = plugins::load(registry, args, &OTHERS.map(|(name, _)| name))?;
+    let (registry, args) = (&plugins.added_to(registry), args.as_slice());
     // Each part after a lone `+` is a command line of its own.
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
-    let matches =
-        build_for(registry, first.get(1)).try_get_matches_from(first).map_err(|e| suggested(registry, first, e))?;
+    let matches = build_for(registry, first.get(1))
+        .try_get_matches_from(first)
+        .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations"));
     };
     let reading = Given::reading(m)?;
-    watch::begin(reading.limits);
+    // An editor may be open for hours; it counts the work of every picture.
+    if name != edit::NAME {
+        watch::begin(reading.limits);
+    }
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return deformation::run(registry, name, m, &later);
@@ -120,12 +142,16 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return run::run(registry, m);
     }
     reading.check()?;
-    if name != map::NAME && !later.is_empty() {
+    if name != map::NAME && name != solid::NAME && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
-        list::NAME => list::run(registry, m),
+        edit::NAME => edit::run(registry, m),
+        list::NAME => list::run(registry, &plugins, m),
+        check::NAME => check::run(registry, &plugins, m),
+        new_plugin::NAME => new_plugin::run(m),
         map::NAME => map::run(registry, m, &later),
+        solid::NAME => solid::run(m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
         text::NAME => text::run(m),
@@ -134,11 +160,18 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         render::NAME => render::run(m),
         gallery::NAME => gallery::run(registry, m),
         compare::NAME => compare::run(m),
-        install::NAME => install::run(m),
+        install::NAME => install::run(registry, m),
         completions::NAME => completions::run(build(registry), m),
         man::NAME => man::run(build(registry), m),
         other => Err(Failure::usage(format!("there is no command {other}"))),
     }
+}
+
+/// The error that the deformation that `args` begin with is a broken plug-in.
+fn broken(plugins: &Plugins, args: &[OsString]) -> Option<Failure> {
+    let named = |word: &&OsString| plugins.broken.iter().find(|b| b.name.as_str() == word.as_os_str());
+    let word = args.get(1).filter(|w| *w != "help").or(args.get(2));
+    word.as_ref().and_then(named).map(|b| b.fault.of(&b.path).into())
 }
 
 /// Suggests a command to `pathwarp help NAME`, for which clap does not, and quotes around `#NAME`, which shells take for a comment.

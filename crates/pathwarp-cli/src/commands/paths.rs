@@ -65,10 +65,11 @@ struct ListedStroke {
 
 pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "FILE")?;
-    let gimp = GimpFile::open(file, m.get_flag("salvage"))?;
+    let reading = Given::reading(m)?;
+    let gimp = GimpFile::open(file, m.get_flag("salvage"), &reading.limits)?;
     let mut paths = match &gimp {
         Some(gimp) => gimp.paths().map(of_gimp).collect(),
-        None => of_drawing(&input::document(file, &Given::reading(m)?)?),
+        None => of_drawing(&input::document(file, &reading)?),
     };
     let text = if m.get_flag("json") {
         if gimp.is_some() {
@@ -118,7 +119,7 @@ fn stroke(s: &pathwarp_gimp::Stroke) -> ListedStroke {
 
 fn table(paths: &[ListedPath]) -> String {
     let mut out = String::new();
-    let width = paths.iter().map(|p| p.name.chars().count()).max().unwrap_or(0).max(4);
+    let width = output::column(paths.iter().map(|p| p.name.as_str()));
     let what = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
     let _ = writeln!(out, "{:width$}  {what:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
     for p in paths {

@@ -25,7 +25,7 @@ pub(super) fn command() -> Command {
             "OUT.png",
             "Write the picture to this file: .png, .jpg or .webp (without loss); - or none writes to standard output",
         ))
-        .args(some_options(&["format", "quality"]))
+        .args(some_options(&["format", "quality", "quiet"]))
         .arg(pixels("width", "Width in pixels"))
         .arg(pixels("height", "Height in pixels"))
         .arg(
@@ -76,7 +76,9 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let limits = options.reading.limits.for_input(bytes.len());
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
     let picture = encode(drawn.map_err(|e| Failure::from(e).about(&name))?, format, options.quality)?;
-    advice::unread(&read.unread).iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
+    if !options.quiet {
+        advice::unread(&read.unread).iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
+    }
     output::write(target, &picture)?;
     Ok(Status::partial_if(!read.unread.is_empty()))
 }

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape};
+use pathwarp::budget::Budget;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
 use pathwarp::recipe::BuiltRecipe;
@@ -34,6 +35,9 @@ pub(crate) trait Artwork {
 
     /// The outlines of the artwork.
     fn outlines(&self) -> Vec<&Outline>;
+
+    /// The limits on the work that the artwork causes, and what is used of them.
+    fn budget(&self) -> &Budget;
 
     /// Warps the artwork.
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure>;

@@ -13,6 +13,7 @@ use crate::format::Format;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
+use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{Class, Map};
@@ -38,6 +39,7 @@ pub(crate) struct GimpArtwork {
     selected: Vec<usize>,
     /// The outlines of those paths.
     outlines: Vec<Outline>,
+    budget: Arc<Budget>,
 }
 
 impl GimpArtwork {
@@ -48,7 +50,10 @@ impl GimpArtwork {
         for name in select.iter().chain(&exclude) {
             file.path_named(name.strip_prefix('#').unwrap_or(name))?;
         }
-        Ok(Self { file, format, select, exclude, selected: Vec::new(), outlines: Vec::new() })
+        let size = std::fs::metadata(&file.path).map_or(0, |m| m.len());
+        let limits = options.reading.limits.for_input(usize::try_from(size).unwrap_or(usize::MAX));
+        let budget = Arc::new(Budget::new(limits));
+        Ok(Self { file, format, select, exclude, selected: Vec::new(), outlines: Vec::new(), budget })
     }
 
     fn path(&self, i: usize) -> &GimpPath {
@@ -137,6 +142,10 @@ impl Artwork for GimpArtwork {
         }
     }
 
+    fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
     fn outlines(&self) -> Vec<&Outline> {
         self.outlines.iter().collect()
     }
@@ -195,11 +204,14 @@ impl GimpArtwork {
         let refit = refit::Options::new(request.tolerance)
             .with_certify(options.certify)
             .with_merge(options.merge)
+            .with_budget(Arc::clone(&self.budget))
             .with_shared(Arc::new(SharedEdges::among(self.outlines.iter())));
         let places =
             if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
         let segments: usize = self.outlines.iter().map(|o| o.segs().count()).sum();
         let survey = Survey::new(&built.map, request.bounds, segments);
+        let work = survey.work(0, segments) * places.len() as f64;
+        self.budget.spend_cut(Limit::Evaluations, work as u64).map_err(|e| Error::from(GeometryError::Limit(e)))?;
         let warp = |(&i, outline): (&usize, &Outline)| {
             (warp_strokes(self.path(i), &places, &built.map, &refit), survey.orientation(outline, false))
         };

@@ -3,6 +3,7 @@
 use super::reference_name::split_reference;
 use crate::failure::Failure;
 use pathwarp::Error;
+use pathwarp::budget::Limits;
 use pathwarp_gimp::{GimpPath, sniff};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -19,14 +20,14 @@ pub(crate) struct GimpFile {
 
 impl GimpFile {
     /// Opens the input `FILE` or `FILE#NAME`. Returns `None` if it is not a GIMP file.
-    pub(crate) fn open(input: &Path, salvage: bool) -> Result<Option<Self>, Failure> {
+    pub(crate) fn open(input: &Path, salvage: bool, limits: &Limits) -> Result<Option<Self>, Failure> {
         let text = input.to_string_lossy();
         let (file, name) = match text.as_ref() {
             "-" => return Ok(None),
             _ if input.is_file() => (input.to_owned(), None),
             text => split_reference(text),
         };
-        let Some(mut found) = Self::read(&file, salvage)? else { return Ok(None) };
+        let Some(mut found) = Self::read(&file, salvage, limits)? else { return Ok(None) };
         if let Some(name) = name {
             found.path_named(name)?;
             found.only = Some(name.to_owned());
@@ -35,7 +36,7 @@ impl GimpFile {
     }
 
     /// Reads the paths of the file `path` and little else of it. Returns `None` if it is not a GIMP file.
-    pub(crate) fn read(path: &Path, salvage: bool) -> Result<Option<Self>, Error> {
+    pub(crate) fn read(path: &Path, salvage: bool, limits: &Limits) -> Result<Option<Self>, Error> {
         // A pipe can be read only once, so it is not probed.
         if !path.is_file() {
             return Ok(None);
@@ -46,9 +47,12 @@ impl GimpFile {
         if !sniff(open()?) && !is_named_xcf(path) {
             return Ok(None);
         }
-        let at_byte =
-            |e: pathwarp_gimp::Error, hint: &str| Error::input(format!("{name}, byte {}", e.offset), e.problem + hint);
-        let found = pathwarp_gimp::salvage(open()?).map_err(|e| at_byte(e, ""))?;
+        let at_byte = |e: pathwarp_gimp::Error, hint: &str| Error::Input {
+            place: format!("{name}, byte {}", e.offset),
+            problem: e.problem + hint,
+            limit: e.limit,
+        };
+        let found = pathwarp_gimp::salvage_within(open()?, limits).map_err(|e| at_byte(e, ""))?;
         let damage = match found.damage {
             Some(e) if !salvage => {
                 let hint = match found.file.paths.len() {

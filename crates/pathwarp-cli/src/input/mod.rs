@@ -15,11 +15,13 @@ mod reference_name;
 mod surface;
 mod svg;
 
-pub(crate) use artwork::{Baseline, WarpRequest, WarpedResult};
+pub(crate) use artwork::{Artwork, Baseline, WarpRequest, WarpedResult};
 pub(crate) use data_file::read_data_file;
+pub(crate) use folds::Fold;
 pub(crate) use gimp_file::GimpFile;
 pub(crate) use gimp_format::{file_name, svg_name};
 pub(crate) use kind::Input;
 pub(crate) use preview::PREVIEW;
 pub(crate) use read::{bytes, display, document, read_options};
 pub(crate) use reference_name::{no_document, split_reference};
+pub(crate) use svg::SvgArtwork;

@@ -4,11 +4,11 @@ use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult
 use super::read::display;
 use super::reference_name::no_document;
 use crate::advice;
-use crate::bitmap::{ROUNDING, inverse};
+use crate::bitmap::{Counted, ROUNDING, count_pixels, inverse};
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::{CommonOptions, FrameChoice};
-use pathwarp::budget::{Limit, Limits};
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
@@ -23,7 +23,7 @@ pub(crate) struct PictureArtwork {
     name: String,
     picture: Picture,
     format: PictureFormat,
-    limits: Limits,
+    budget: Arc<Budget>,
     /// The picture's rectangle as an outline.
     outline: Outline,
 }
@@ -52,7 +52,13 @@ impl PictureArtwork {
         let picture = Picture::read_within(bytes, &limits)?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
-        Ok(Self { name, picture, format, limits, outline: Outline::from_points(&corners, true) })
+        Ok(Self {
+            name,
+            picture,
+            format,
+            budget: Arc::new(Budget::new(limits)),
+            outline: Outline::from_points(&corners, true),
+        })
     }
 
     fn area(&self) -> Rect {
@@ -85,6 +91,10 @@ impl Artwork for PictureArtwork {
         }
     }
 
+    fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
     fn outlines(&self) -> Vec<&Outline> {
         vec![&self.outline]
     }
@@ -109,17 +119,20 @@ impl Artwork for PictureArtwork {
             }
             warnings.push(undefined_at(p));
         }
-        let (visible, size) = size(bounds, options.image_size, &self.limits)?;
-        let inverse = inverse(&map, area);
+        let (visible, size) = size(bounds, options.image_size, self.budget.limits())?;
+        count_pixels(&self.budget, &self.picture.pixmap, size).map_err(|e| too_much(&e))?;
+        let inverse = Counted::new(inverse(&map, area), Arc::clone(&self.budget));
         let warp = ImageWarp {
             source: &self.picture.pixmap,
             placed: Affine::IDENTITY,
             map: &*map,
-            inverse: &*inverse,
+            inverse: &inverse,
             shown: shown(visible, size),
             size,
         };
-        let warped = Picture { pixmap: warp_image(&warp)?, profile: self.picture.profile.clone() };
+        let pixmap = warp_image(&warp)?;
+        inverse.check().map_err(|e| too_much(&e))?;
+        let warped = Picture { pixmap, profile: self.picture.profile.clone() };
         Ok(WarpedArtwork {
             result: WarpedResult::Bytes(warped.write(self.format)?),
             shapes: Vec::new(),
@@ -131,6 +144,11 @@ impl Artwork for PictureArtwork {
             partial: undefined.is_some(),
         })
     }
+}
+
+/// The error about a picture that takes too much work.
+fn too_much(e: &Exceeded) -> Failure {
+    Failure::Geometry(format!("warping the picture takes {e}; give a smaller --image-size, or {}", advice::raise(e)))
 }
 
 /// The part of the plane that the result shows, and its size in pixels: by default one pixel per unit of the plane.

@@ -15,9 +15,13 @@ fn is_stdin(input: &Path) -> bool {
     input.as_os_str() == "-"
 }
 
-/// The name of an input in messages and reports.
+/// The name of an input in messages and reports. A drawing in memory may have none.
 pub(crate) fn display(input: &Path) -> String {
-    if is_stdin(input) { "standard input".into() } else { input.display().to_string() }
+    match input.to_str() {
+        Some("-") => "standard input".into(),
+        Some("") => "the drawing".into(),
+        _ => input.display().to_string(),
+    }
 }
 
 /// Reads all bytes of a file or of standard input.
@@ -49,9 +53,10 @@ pub(crate) fn document(input: &Path, reading: &Reading) -> Result<Document, Fail
 
 /// Options for reading `input` as SVG: linked images are looked up relative to its folder.
 pub(crate) fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
-    let folder = match input.parent() {
+    let own = || match input.parent() {
         Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
         other => other.map(Path::to_path_buf),
     };
+    let folder = reading.base.clone().or_else(own);
     reading.read_options().with_base_dir(folder)
 }

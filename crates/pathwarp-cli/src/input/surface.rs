@@ -31,9 +31,9 @@ pub(super) fn files(
             let wanted: Vec<NamedShape<'_>> =
                 wanted.map(|s| NamedShape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
             let made = if file.filled {
-                pathwarp_mesh::filled(&wanted, &place, options.refit.tolerance)
+                pathwarp_mesh::filled(&wanted, &place, options.refit.tolerance, doc.budget())
             } else {
-                pathwarp_mesh::outlines(&wanted, &place, options.refit.tolerance)
+                pathwarp_mesh::outlines(&wanted, &place, options.refit.tolerance, doc.budget())
             };
             let text = made.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface(&e))))?;
             out.push((PathBuf::from(&file.name), text));

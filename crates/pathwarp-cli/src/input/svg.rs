@@ -13,11 +13,12 @@ use crate::options::{CommonOptions, FrameChoice, GradientChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use crate::units::units_per_px;
+use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
 use pathwarp::refit;
-use pathwarp::{Error, Outline};
+use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_svg::{
     Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, ReadOptions, Selection, WarpOptions,
     WarpedDocument,
@@ -31,6 +32,9 @@ use std::sync::Arc;
 /// With fewer segments, starting threads takes longer than looking for folds.
 const WORTH_THREADS: usize = 5000;
 
+/// Resolution of bitmaps in a draft.
+const DRAFT_DPI: f64 = 24.0;
+
 /// An SVG drawing. Its plane is root user space.
 pub(crate) struct SvgArtwork {
     name: String,
@@ -42,7 +46,7 @@ pub(crate) struct SvgArtwork {
 }
 
 impl SvgArtwork {
-    pub(super) fn read(
+    pub(crate) fn read(
         bytes: &[u8],
         input: &Path,
         options: &CommonOptions,
@@ -57,10 +61,31 @@ impl SvgArtwork {
         Ok(Self { name, doc, read, selection, format })
     }
 
+    /// Counts the work from here on anew, for a drawing that is bent again and again.
+    pub(crate) fn renew_budget(&mut self) {
+        self.doc.renew_budget();
+    }
+
+    pub(crate) fn document(&self) -> &Document {
+        &self.doc
+    }
+
+    /// The result for a look at it while something is dragged: within the tolerance, but not merged into few nodes, and with gradients
+    /// and bitmaps in the coarse.
+    pub(crate) fn draft(&self, request: &WarpRequest<'_>) -> Result<String, Failure> {
+        let WarpRequest { built, .. } = request;
+        let mut options = self.warp_options(request).with_gradients(Gradients::Fit);
+        options.refit = options.refit.with_merge(false);
+        if let Images::Warp(_) = options.images {
+            let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
+            options.images = Images::Warp(Arc::new(bender.with_budget(self.doc.budget().clone())));
+        }
+        Ok(self.doc.warp(&built.map, &options)?.svg)
+    }
+
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
         let WarpRequest { built, options, tolerance, .. } = request;
-        let bender =
-            Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_limits(*self.doc.budget().limits());
+        let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
         let bender = Arc::new(bender);
         let gradients = match options.gradients {
             GradientChoice::Fit => Gradients::Fit,
@@ -81,13 +106,18 @@ impl SvgArtwork {
             .with_gradients(gradients)
             .with_patterns(options.patterns)
             .with_page(options.page)
+            .with_clones(options.clones)
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep })
     }
 
     /// Every selected shape's orientation under the map.
-    fn orientations(&self, request: &WarpRequest<'_>, options: &WarpOptions) -> Vec<(&str, Orientation)> {
+    fn orientations(
+        &self,
+        request: &WarpRequest<'_>,
+        options: &WarpOptions,
+    ) -> Result<Vec<(&str, Orientation)>, Error> {
         let WarpRequest { built, bounds, .. } = request;
         let copies = &built.placement.copies;
         let shapes: Vec<_> = self.doc.selected(&options.selection).collect();
@@ -97,6 +127,9 @@ impl SvgArtwork {
             places => places.iter().map(|m| m.transform_rect_bbox(b)).reduce(|a, b| a.union(b)),
         });
         let survey = Survey::new(&built.map, all_copies, segments * copies.len().max(1));
+        let filled = shapes.iter().filter(|s| s.filled).count();
+        let work = survey.work(filled, segments) * copies.len().max(1) as f64;
+        self.doc.budget().spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)?;
         // A letter that is placed on its own can fold only in a later step.
         let placed = self.doc.placed(options);
         let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {
@@ -108,7 +141,7 @@ impl SvgArtwork {
         } else {
             shapes.iter().copied().zip(&placed).map(orientation).collect()
         };
-        shapes.iter().map(|s| s.id.as_str()).zip(all).collect()
+        Ok(shapes.iter().map(|s| s.id.as_str()).zip(all).collect())
     }
 
     /// The report of every shape, and the fold warnings.
@@ -117,11 +150,11 @@ impl SvgArtwork {
         request: &WarpRequest<'_>,
         options: &WarpOptions,
         warped: &WarpedDocument,
-    ) -> (Vec<ReportedShape>, Vec<String>) {
+    ) -> Result<(Vec<ReportedShape>, Vec<String>), Error> {
         // Parts of one text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
-        for (id, o) in self.orientations(request, options) {
+        for (id, o) in self.orientations(request, options)? {
             all = all.and(&o);
             let sum = by_id.entry(id).or_default();
             *sum = sum.and(&o);
@@ -147,7 +180,7 @@ impl SvgArtwork {
             }
             shapes.push(shape_report(s, &fold));
         }
-        (shapes, warnings)
+        Ok((shapes, warnings))
     }
 }
 
@@ -228,6 +261,10 @@ impl Artwork for SvgArtwork {
         units_per_px(&self.doc)
     }
 
+    fn budget(&self) -> &Budget {
+        self.doc.budget()
+    }
+
     fn outlines(&self) -> Vec<&Outline> {
         self.doc.selected(&self.selection).map(|s| &*s.outline).collect()
     }
@@ -240,8 +277,8 @@ impl Artwork for SvgArtwork {
             let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
             warped.svg = origin.embed(&warped.svg)?;
         }
-        let (shapes, folds) = self.shape_reports(request, &options, &warped);
-        let mut warnings = warped.warnings;
+        let (shapes, folds) = self.shape_reports(request, &options, &warped)?;
+        let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         let empty = !self.doc.has_artwork(&self.selection);
         if empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());

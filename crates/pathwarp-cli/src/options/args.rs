@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, value_parser};
 use std::path::PathBuf;
 
 /// The id of the positional argument for the inputs.
-pub(super) const INPUT: &str = "INPUT";
+pub(crate) const INPUT: &str = "INPUT";
 
 /// The inputs and the common options.
 pub(crate) fn args() -> impl Iterator<Item = Arg> {

@@ -7,7 +7,7 @@ use crate::format::Format;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length};
 use pathwarp_dxf::Curves;
-use pathwarp_svg::{LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
+use pathwarp_svg::{Clones, LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::path::PathBuf;
 
 /// Default tolerance as a fraction of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
@@ -91,6 +91,7 @@ pub(crate) struct CommonOptions {
     pub(crate) gradients: GradientChoice,
     pub(crate) patterns: Patterns,
     pub(crate) page: PageFit,
+    pub(crate) clones: Clones,
     pub(crate) structure: Structure,
     /// Warp the bitmaps in drawings.
     pub(crate) warp_images: bool,

@@ -12,8 +12,9 @@ mod reading;
 mod table;
 mod typed_box;
 
-pub(crate) use args::{args, options_without_inputs, reading_args, some_options};
+pub(crate) use args::{INPUT, args, options_without_inputs, reading_args, some_options};
 pub(crate) use common::{CommonOptions, FrameChoice, GradientChoice, OnFailure};
+pub(crate) use definition::{CommonOption, OptionValue};
 pub(crate) use given::Given;
 pub(crate) use parse::rect;
 pub(crate) use reading::Reading;

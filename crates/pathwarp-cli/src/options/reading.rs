@@ -13,6 +13,8 @@ pub(crate) struct Reading {
     /// Read linked files from anywhere, not only beside the input.
     pub(crate) external: bool,
     pub(crate) fonts: Fonts,
+    /// The folder that links are relative to; `None`: the input's.
+    pub(crate) base: Option<PathBuf>,
 }
 
 /// The fonts for text.

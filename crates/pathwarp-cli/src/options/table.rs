@@ -5,7 +5,7 @@ use super::definition::{CommonOption, LeadingMinus, OptionValue};
 use super::parse;
 use crate::format::Format;
 use pathwarp_dxf::Curves;
-use pathwarp_svg::{PageFit, Patterns, Strokes, Structure, TextMode};
+use pathwarp_svg::{Clones, PageFit, Patterns, Strokes, Structure, TextMode};
 
 /// An option without short name, default and conflicts, stored in recipes.
 const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
@@ -284,6 +284,15 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
         )
     },
     CommonOption {
+        default: Some("copy"),
+        ..stored(
+            "clones",
+            OptionValue::Choice(&[("copy", |o| o.clones = Clones::Copy), ("follow", |o| o.clones = Clones::Follow)]),
+            "Clones (use) that are not warped themselves, of shapes that are: copy what they showed, so that they look as \
+             before, or let them follow the warped shape",
+        )
+    },
+    CommonOption {
         default: Some("auto"),
         ..stored(
             "structure",
@@ -414,6 +423,14 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
             OptionValue::Switch(|o| o.reading.external = true),
             "Read linked pictures and drawings from anywhere, not only beside the input or in folders below it, and let a \
          recipe name files by absolute paths",
+        )
+    },
+    CommonOption {
+        reading: true,
+        ..of_the_run(
+            "base-dir",
+            OptionValue::File { name: "DIR", set: |o, folder| o.reading.base = Some(folder) },
+            "The folder that links to pictures and drawings are relative to, instead of the input's",
         )
     },
     CommonOption {

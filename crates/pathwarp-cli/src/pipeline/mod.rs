@@ -4,6 +4,7 @@
 mod file_run;
 mod folders;
 mod inputs;
+mod memory;
 mod messages;
 mod naming;
 mod plan;
@@ -19,8 +20,10 @@ use crate::output::{self, Draft, PendingFile};
 use crate::status::Status;
 use crate::{recipe_file, references, temporaries, watch};
 use file_run::{Batch, FileRun};
+pub(crate) use file_run::{explained, first_baseline};
 use folders::Folders;
 use indicatif::ProgressBar;
+pub(crate) use memory::warp_bytes;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use plan::Job;

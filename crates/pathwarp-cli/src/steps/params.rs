@@ -1,7 +1,8 @@
 //! A deformation's own parameters: as clap arguments, and read back into a step.
 
+use crate::catalogue::Catalogue;
 use clap::{Arg, ArgAction, ArgMatches};
-use pathwarp::deform::{Info, Registry};
+use pathwarp::deform::Info;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::Step;
 use std::fmt::Write as _;
@@ -42,9 +43,9 @@ fn arg(p: &Param) -> Arg {
 }
 
 /// The step that the parsed subcommand of the deformation `name` asks for.
-pub(crate) fn step(registry: &Registry, name: &str, m: &ArgMatches) -> Step {
+pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Step {
     let mut args = Args::new();
-    for p in registry.get(name).map_or(&[][..], |e| e.info().params) {
+    for p in catalogue.info(name).map_or(&[][..], |i| i.params) {
         if p.kind == Kind::Flag {
             if m.get_flag(p.name) {
                 args.push(p.name, "true");
@@ -59,7 +60,7 @@ pub(crate) fn step(registry: &Registry, name: &str, m: &ArgMatches) -> Step {
 }
 
 /// A name that differs from a known one only in case, as that one.
-fn in_lower_case(p: &Param, value: &str) -> String {
+pub(crate) fn in_lower_case(p: &Param, value: &str) -> String {
     let (Kind::NameOrFile(names) | Kind::Choice(names)) = p.kind else { return value.to_owned() };
     let same = names.iter().find(|n| n.eq_ignore_ascii_case(value));
     same.map_or_else(|| value.to_owned(), |n| (*n).to_owned())

@@ -4,7 +4,7 @@
 //! hierarchy to levels, each level to tiles. The property of a floating selection points to the layer or channel that it
 //! belongs to.
 
-use super::model::{MOST_PROPERTIES, PROP_END, Xcf};
+use super::model::{PROP_END, Xcf};
 use crate::error::Error;
 use crate::source::ByteSource;
 use std::collections::{BTreeMap, HashSet};
@@ -14,8 +14,8 @@ pub(super) type Pointers = BTreeMap<u64, u64>;
 
 /// A property whose whole content is a pointer.
 const PROP_FLOATING_SELECTION: u32 = 5;
-/// The number of tiles in 64 GiB of 8-bit RGBA.
-const MOST_POINTERS: u64 = 1 << 22;
+/// Size of a property without content.
+const LEAST_PROPERTY: u64 = 8;
 
 /// The type of structure that a pointer points to.
 #[derive(Clone, Copy)]
@@ -31,8 +31,9 @@ struct PointerWalk<'i, 'a> {
     input: &'i mut ByteSource<'a>,
     wide: bool,
     found: Pointers,
-    /// Maximum number of further pointers.
+    /// Maximum number of further pointers, and of properties: structures that do not overlap fit into the file.
     left: u64,
+    properties_left: u64,
     /// Lowest valid target.
     first: u64,
     /// Structures still to be visited.
@@ -48,7 +49,8 @@ pub(super) fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Err
         wide: xcf.wide(),
         input,
         found: Pointers::new(),
-        left: (input_end / if xcf.wide() { 8 } else { 4 }).min(MOST_POINTERS),
+        left: input_end / if xcf.wide() { 8 } else { 4 },
+        properties_left: input_end / LEAST_PROPERTY,
         first: xcf.properties_end,
         pending: Vec::new(),
         visited: HashSet::new(),
@@ -125,7 +127,12 @@ impl PointerWalk<'_, '_> {
     fn name_and_properties(&mut self) -> Result<(), Error> {
         let name = u64::from(self.input.u32("a name")?);
         self.input.skip(name, "a name")?;
-        for _ in 0..MOST_PROPERTIES {
+        loop {
+            let at = self.input.at();
+            self.properties_left = self
+                .properties_left
+                .checked_sub(1)
+                .ok_or_else(|| Error::damaged(at, "the lists of properties overlap or have no end"))?;
             let kind = self.input.u32("a layer's properties")?;
             let length = u64::from(self.input.u32("a layer's properties")?);
             if kind == PROP_END {
@@ -137,6 +144,5 @@ impl PointerWalk<'_, '_> {
             }
             self.input.skip(end - self.input.at(), "a layer's property")?;
         }
-        Err(Error::damaged(self.input.at(), "a layer's property list has no end"))
     }
 }

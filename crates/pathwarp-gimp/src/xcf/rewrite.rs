@@ -7,6 +7,7 @@ use crate::error::{Error, ErrorKind};
 use crate::old_strokes;
 use crate::path::Stroke;
 use crate::source::{ByteSource, ReadSeek};
+use pathwarp::budget::Limits;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 
@@ -25,7 +26,7 @@ struct ByteEdit {
 pub fn rewrite<R: Read + Seek>(mut from: R, to: &mut dyn Write, strokes: &[(usize, Vec<Stroke>)]) -> Result<(), Error> {
     let (edits, end) = {
         let from: &mut dyn ReadSeek = &mut from;
-        let mut input = ByteSource::file(from)?;
+        let mut input = ByteSource::file(from, Limits::none())?;
         if !input.peek(MAGIC.len())?.starts_with(MAGIC) {
             return Err(Error::unsupported(0, "not an uncompressed XCF file; paths can be written to no other kind"));
         }
@@ -143,7 +144,9 @@ fn with_pointers(input: &mut ByteSource<'_>, xcf: &Xcf, mut edits: Vec<ByteEdit>
             new.to_be_bytes().to_vec()
         } else {
             let new = u32::try_from(new);
-            new.map_err(|_| Error::too_large(at, "the file would exceed its 32-bit pointers"))?.to_be_bytes().to_vec()
+            new.map_err(|_| Error::new(ErrorKind::TooLarge, at, "the file would exceed its 32-bit pointers"))?
+                .to_be_bytes()
+                .to_vec()
         };
         adjusted.push(ByteEdit { span: at..at + bytes.len() as u64, bytes });
     }

@@ -13,7 +13,7 @@ use crate::draw::draw;
 use crate::error::Error;
 use crate::pixmap::new_pixmap;
 use kurbo::{Affine, Rect};
-use pathwarp::budget::Limits;
+use pathwarp::budget::{Budget, Limits};
 use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, PixmapPaint, Transform};
 
 /// Default length of the longer side of a panel, in pixels.
@@ -122,11 +122,12 @@ impl<'a> Preview<'a> {
     pub fn render_within(&self, limits: &Limits) -> Result<Pixmap, Error> {
         let view = self.view.unwrap_or_else(|| self.before.bounds().union(self.after.bounds())).abs();
         let layout = PanelLayout::new(view, self.panel_size)?;
+        let budget = Budget::new(*limits);
         let mut picture = new_pixmap(2.0 * layout.width + layout.gap, layout.height, limits)?;
         picture.fill(Color::from_rgba8(0xc4, 0xc8, 0xcf, 0xff));
         let second = layout.width + layout.gap;
         for (panel, left) in [(&self.before, 0.0), (&self.after, second)] {
-            let drawn = layout.draw(panel, limits)?;
+            let drawn = layout.draw(panel, &budget)?;
             #[expect(clippy::cast_possible_truncation, reason = "within the picture")]
             let left = left as i32;
             picture.draw_pixmap(left, 0, drawn.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
@@ -170,16 +171,16 @@ impl PanelLayout {
         Ok(Self { width, height, gap: (GAP * nominal).round().max(1.0), to_panel, unit })
     }
 
-    fn draw(&self, panel: &Panel<'_>, limits: &Limits) -> Result<Pixmap, Error> {
+    fn draw(&self, panel: &Panel<'_>, budget: &Budget) -> Result<Pixmap, Error> {
         let determinant = panel.user_to_px.determinant();
         if !determinant.is_finite() || determinant == 0.0 {
             return Err(Error::NoView("the map from user units to pixels is singular"));
         }
-        let mut picture = new_pixmap(self.width, self.height, limits)?;
+        let mut picture = new_pixmap(self.width, self.height, budget.limits())?;
         picture.fill(Color::from_rgba8(0xec, 0xee, 0xf1, 0xff));
         self.draw_page(panel.page, &mut picture);
         let tree_to_panel = skia::transform(self.to_panel * panel.user_to_px.inverse());
-        draw(panel.tree, tree_to_panel, &mut picture, limits)?;
+        draw(panel.tree, tree_to_panel, &mut picture, budget)?;
         for overlay in &panel.overlays {
             overlay.draw(self.to_panel, self.unit, &mut picture);
         }

@@ -32,6 +32,9 @@ pub(super) fn with_arcs(
         // The test for circles is no proof.
         return Ok(None);
     } else {
+        if map.prefers_batches() {
+            map.prepare(&outline.segs().flat_map(on_circle).collect::<Vec<_>>(), &[]);
+        }
         let images = |s: &Subpath| s.segs.iter().map(|g| circle_of(g, map)).collect();
         let all: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();
         if all.iter().flatten().all(Option::is_none) {
@@ -46,10 +49,17 @@ pub(super) fn with_arcs(
     Ok(Some((image, report)))
 }
 
+/// Places compared with the circle.
+const SAMPLES: u32 = 24;
+
+/// The places of an arc that are compared with a circle; none of other segments.
+fn on_circle(g: &Seg) -> Vec<Point> {
+    let Seg::Arc(arc) = g else { return Vec::new() };
+    (0..=SAMPLES).map(|i| arc.eval(f64::from(i) / f64::from(SAMPLES))).collect()
+}
+
 /// The image of an arc of a circle, if that is one, too.
 fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
-    /// Places compared with the circle.
-    const SAMPLES: u32 = 24;
     let Seg::Arc(arc) = g else { return None };
     let r = arc.a.hypot();
     if (arc.b.hypot() - r).abs() > ROUND * r || arc.a.dot(arc.b).abs() > ROUND * r * r {

@@ -8,13 +8,14 @@ use super::part;
 use super::shading::Shading;
 use super::slots::{self, PlacedSlot, written};
 use super::task::{PartContext, PartTask};
+use super::warning::Warning;
 use crate::scene::affine::is_invertible;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::source::parallel::map_parallel;
 use crate::source::tags::ElementId;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::{Class, Map};
+use pathwarp::map::{Class, Gathered, Map};
 use pathwarp::{Error, GeometryError};
 use std::collections::HashMap;
 
@@ -58,14 +59,10 @@ pub(crate) fn bend(
             Some(Ok(warped)) => {
                 let id = &drawing.shapes()[i].id;
                 if let Some(why) = &warped.unpainted {
-                    out.warnings.push(format!("a gradient of {id} only follows the best affine fit: {why}"));
+                    out.warnings.push(Warning::FittedGradient { id: id.clone(), why: why.to_string() });
                 }
                 if let Some(error) = warped.stroke_error.filter(|_| warped.stroke_refused) {
-                    let off =
-                        if error.is_finite() { format!(", off by up to {error:.3} units") } else { String::new() };
-                    out.warnings.push(format!(
-                        "the stroke of {id} extends to where the map is undefined; it keeps a single width{off}"
-                    ));
+                    out.warnings.push(Warning::SingleWidth { id: id.clone(), error });
                 }
                 let element = part.element();
                 let known = element.and_then(|e| reports.get(&e).copied());
@@ -115,6 +112,8 @@ fn warp_parts(
     let identity = is_identity(map, options);
     let warp = |i: usize| {
         let p = &parts[i];
+        let gathered = map.prefers_batches().then(|| Gathered::new(map));
+        let context = PartContext { map: gathered.as_ref().map_or(map, |g| g as &dyn Map), ..context };
         let write = written(scene, slots, p.slot, p.frame);
         (selected[i] && !identity && is_invertible(p.frame) && is_invertible(write))
             .then(|| part::warp(&PartTask::new(p, shapes[i].outline.clone(), write, &context, &pieces[i])))
@@ -142,14 +141,13 @@ fn warn(
     out: &mut WarpedDocument,
 ) {
     if options.copies.len() > 1 && outcomes.iter().any(|o| o.warped().is_some_and(|d| d.fit.is_some())) {
-        out.warnings.push("gradients and patterns span the whole row of copies instead of each copy".into());
+        out.warnings.push(Warning::SharedPaints);
     }
     if options.copies.len() > 1 && slots.iter().any(|s| s.fit != Affine::IDENTITY) {
-        out.warnings.push("images and filtered groups are not repeated; they follow the row as a whole".into());
+        out.warnings.push(Warning::SharedImages);
     }
     if !drawing.missed.fonts.is_empty() {
-        let names = drawing.missed.fonts.join(", ");
-        out.warnings.push(format!("text uses another font, as {names} is missing; install it or outline the text"));
+        out.warnings.push(Warning::MissingFonts(drawing.missed.fonts.clone()));
     }
 }
 

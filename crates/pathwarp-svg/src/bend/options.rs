@@ -130,6 +130,17 @@ pub enum Patterns {
     Keep,
 }
 
+/// Treatment of `use` elements that are not warped themselves but show something that is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Clones {
+    /// Replace them by copies of what they showed, so that they look as before.
+    #[default]
+    Copy,
+    /// Leave them, so that they show what is warped.
+    Follow,
+}
+
 /// Options for warping a document.
 ///
 /// ```
@@ -170,6 +181,8 @@ pub struct WarpOptions {
     pub letters: LetterPlaces,
     /// Treatment of bitmaps.
     pub images: Images,
+    /// Treatment of `use` elements that are not warped themselves but show something that is.
+    pub clones: Clones,
 }
 
 impl WarpOptions {
@@ -190,6 +203,7 @@ impl WarpOptions {
             copies: Vec::new(),
             letters: LetterPlaces::default(),
             images: Images::default(),
+            clones: Clones::default(),
         }
     }
 
@@ -237,4 +251,5 @@ setters! {
     copies: Vec<Affine>, with_copies;
     letters: LetterPlaces, with_letters;
     images: Images, with_images;
+    clones: Clones, with_clones;
 }

@@ -2,6 +2,7 @@
 
 use super::paint::PaintFit;
 use super::picture::{BentImage, PictureError};
+use super::warning::Warning;
 use crate::source::number::path_data;
 use pathwarp::kurbo::{BezPath, Point};
 use pathwarp::refit::{Assurance, PathReport};
@@ -18,7 +19,7 @@ pub struct WarpedDocument {
     /// Elements that were not warped.
     pub skipped: Vec<Skipped>,
     /// Warnings for the user.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// Distance by which the artwork extends past the page. `None` if it does not, the original does as well, or the page is
     /// adapted (see [`PageFit`](crate::PageFit)).
     pub overhang: Option<Overhang>,
@@ -122,17 +123,9 @@ impl Notes {
         self.0.entry(text).or_default().insert(name.to_owned());
     }
 
-    pub(crate) fn lines(self) -> impl Iterator<Item = String> {
-        /// Number of names listed; a few are enough to find the place.
-        const NAMED: usize = 4;
-        self.0.into_iter().map(|(text, all)| {
-            let names: Vec<&str> = all.iter().map(String::as_str).filter(|n| !n.is_empty()).take(NAMED).collect();
-            match (names.len(), all.len()) {
-                (0, _) => text.to_owned(),
-                (n, all) if all > n => format!("{text}: {} and {} more", names.join(", "), all - n),
-                _ => format!("{text}: {}", names.join(", ")),
-            }
-        })
+    pub(crate) fn warnings(self) -> impl Iterator<Item = Warning> {
+        let named = |names: BTreeSet<String>| names.into_iter().filter(|n| !n.is_empty()).collect();
+        self.0.into_iter().map(move |(text, names)| Warning::Note { text, names: named(names) })
     }
 }
 

@@ -3,12 +3,10 @@
 
 use super::style::declarations;
 use base64::Engine as _;
+use pathwarp::budget::{Budget, Exceeded, Limit};
 use std::io::Read as _;
 use std::sync::Arc;
 use usvg::fontdb::{Database, FaceInfo, Language, Source, Style, Weight};
-
-/// Largest font to unpack, about ten times the usual size.
-const LARGEST: usize = 64 << 20;
 
 #[derive(Debug)]
 struct Face {
@@ -20,10 +18,13 @@ struct Face {
 }
 
 /// Adds a drawing's embedded fonts. They replace other fonts of the same name.
-pub(crate) fn add(mut db: Arc<Database>, text: &str) -> Arc<Database> {
-    let faces = faces(text);
+///
+/// # Errors
+/// Unpacked, the fonts exceed the budget.
+pub(crate) fn add(mut db: Arc<Database>, text: &str, budget: &Budget) -> Result<Arc<Database>, Exceeded> {
+    let faces = faces(text, budget)?;
     if faces.is_empty() {
-        return db;
+        return Ok(db);
     }
     let all = Arc::make_mut(&mut db);
     let same = |f: &&FaceInfo| f.families.iter().any(|n| faces.iter().any(|face| face.family == n.0));
@@ -41,20 +42,26 @@ pub(crate) fn add(mut db: Arc<Database>, text: &str) -> Arc<Database> {
             });
         }
     }
-    db
+    Ok(db)
 }
 
-fn faces(text: &str) -> Vec<Face> {
-    let blocks = text.match_indices("@font-face").filter_map(|(i, _)| {
-        let (_, rest) = text[i..].split_once('{')?;
-        rest.split_once('}').map(|b| b.0)
-    });
-    blocks.filter_map(face).collect()
+fn faces(text: &str, budget: &Budget) -> Result<Vec<Face>, Exceeded> {
+    let mut out = Vec::new();
+    let mut rest = text;
+    while let Some((_, rule)) = rest.split_once("@font-face") {
+        let Some((block, after)) = rule.split_once('{').and_then(|(_, body)| body.split_once('}')) else { break };
+        out.extend(face(block, budget)?);
+        rest = after;
+    }
+    Ok(out)
 }
 
-fn face(block: &str) -> Option<Face> {
-    let of = |name: &str| declarations(block).filter(|d| d.0.eq_ignore_ascii_case(name)).last().map(|d| d.1);
-    let family = of("font-family")?.trim_matches(['"', '\'']).to_owned();
+/// The font of a rule; `None` if it has none that can be read.
+fn face(block: &str, budget: &Budget) -> Result<Option<Face>, Exceeded> {
+    let declarations: Vec<_> = declarations(block).collect();
+    let of = |name: &str| declarations.iter().rfind(|d| d.0.eq_ignore_ascii_case(name)).map(|d| d.1);
+    let (Some(family), Some(src)) = (of("font-family"), of("src")) else { return Ok(None) };
+    let family = family.trim_matches(['"', '\'']).to_owned();
     let style = of("font-style").and_then(|v| match v {
         "normal" => Some(Style::Normal),
         "italic" => Some(Style::Italic),
@@ -65,39 +72,69 @@ fn face(block: &str) -> Option<Face> {
         "bold" => Some(Weight::BOLD),
         v => v.parse().ok().map(Weight),
     });
-    let src = of("src")?;
-    let data = src.match_indices("data:").find_map(|(i, _)| font(&src[i..]))?;
-    Some(Face { family, style, weight, data })
+    // Base64 has no colon.
+    for url in src.split("data:").skip(1) {
+        if let Some(data) = font(url, budget)? {
+            return Ok(Some(Face { family, style, weight, data }));
+        }
+    }
+    Ok(None)
 }
 
-/// Decodes the font in a `data:` URL to an sfnt file.
-fn font(url: &str) -> Option<Vec<u8>> {
+/// Decodes the font in a `data:` URL, from the colon on, to an sfnt file.
+fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
+    let Some(data) = decoded(url) else { return Ok(None) };
+    match data.get(..4) {
+        Some(b"wOFF") => {
+            budget.spend(Limit::ImageBytes, unpacked_size(&data).unwrap_or(0))?;
+            Ok(unpacked(&data))
+        }
+        Some(b"wOF2") | None => Ok(None),
+        Some(_) => Ok(Some(data)),
+    }
+}
+
+/// The data of a `data:` URL in base64.
+fn decoded(url: &str) -> Option<Vec<u8>> {
     let (head, rest) = url.split_once(',')?;
     if !head.trim_end().ends_with(";base64") {
         return None;
     }
     let encoded = &rest[..rest.find(['"', '\'', ')']).unwrap_or(rest.len())];
     let encoded: String = encoded.split_whitespace().collect();
-    let data = base64::engine::general_purpose::STANDARD.decode(encoded).ok()?;
-    match data.get(..4)? {
-        b"wOFF" => unpacked(&data),
-        b"wOF2" => None,
-        _ => Some(data),
-    }
+    base64::engine::general_purpose::STANDARD.decode(encoded).ok()
+}
+
+/// Sizes of the header of a WOFF and of an entry of its directory.
+const HEADER: usize = 44;
+const ENTRY: usize = 20;
+
+/// The number at a byte of a WOFF.
+fn long(woff: &[u8], at: usize) -> Option<u32> {
+    Some(u32::from_be_bytes(woff.get(at..at.checked_add(4)?)?.try_into().ok()?))
+}
+
+/// The number of tables of a WOFF.
+fn table_count(woff: &[u8]) -> Option<u16> {
+    Some(u16::from_be_bytes(woff.get(12..14)?.try_into().ok()?))
+}
+
+/// The size of all tables, unpacked, as announced.
+fn unpacked_size(woff: &[u8]) -> Option<u64> {
+    let count = usize::from(table_count(woff)?);
+    (0..count).map(|i| long(woff, HEADER + i * ENTRY + 12).map(u64::from)).sum()
 }
 
 /// Unpacks WOFF 1.0 to the original sfnt file (W3C, *WOFF File Format 1.0*, sections 3 to 5).
 fn unpacked(woff: &[u8]) -> Option<Vec<u8>> {
-    const HEADER: usize = 44;
-    const ENTRY: usize = 20;
-    let long = |at: usize| Some(u32::from_be_bytes(woff.get(at..at + 4)?.try_into().ok()?));
+    let long = |at: usize| long(woff, at);
     let size = |at: usize| long(at).map(|v| v as usize);
-    let count = u16::from_be_bytes(woff.get(12..14)?.try_into().ok()?);
+    let count = table_count(woff)?;
     let mut out = long(4)?.to_be_bytes().to_vec();
     // Search parameters of the table directory, required by some readers.
     let halves = u16::try_from(count.checked_ilog2()?).ok()?;
-    let range = 16 << halves;
-    for v in [count, range, halves, (count * 16).checked_sub(range)?] {
+    let range = 16_u16.checked_mul(1 << halves)?;
+    for v in [count, range, halves, count.checked_mul(16)? - range] {
         out.extend(v.to_be_bytes());
     }
     let mut tables = Vec::new();
@@ -106,9 +143,6 @@ fn unpacked(woff: &[u8]) -> Option<Vec<u8>> {
         let at = HEADER + i * ENTRY;
         let (from, packed, length) = (size(at + 4)?, size(at + 8)?, size(at + 12)?);
         let data = woff.get(from..from.checked_add(packed)?)?;
-        if length > LARGEST || tables.len() + length > LARGEST {
-            return None;
-        }
         out.extend(woff.get(at..at + 4)?);
         for v in [long(at + 16)?, u32::try_from(start + tables.len()).ok()?, long(at + 12)?] {
             out.extend(v.to_be_bytes());

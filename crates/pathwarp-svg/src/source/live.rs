@@ -56,6 +56,8 @@ pub(crate) fn is_live(a: &Attr, text: &str) -> bool {
     match a.namespace {
         Namespace::Sodipodi => SODIPODI.contains(&name),
         Namespace::Inkscape => INKSCAPE.contains(&name) || FAMILIES.iter().any(|f| name.starts_with(f)),
+        // The source and the recipe of an earlier warp.
+        Namespace::Pathwarp => true,
         Namespace::None | Namespace::Xlink | Namespace::Xml | Namespace::Other => false,
     }
 }

@@ -7,8 +7,8 @@ use std::collections::HashSet;
 /// The part of a document to warp. By default, everything.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
-    /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name (id, Inkscape label or title). Empty:
-    /// all.
+    /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name (id, Inkscape label or title);
+    /// `[id=ID]` is the id alone. Empty: all.
     pub select: Vec<String>,
     /// Elements to leave unchanged with all they contain, in the same form.
     pub exclude: Vec<String>,
@@ -64,6 +64,9 @@ pub(crate) fn candidates(source: &SourceText, selector: &str) -> Vec<String> {
 }
 
 fn matches(source: &SourceText, e: ElementId, selector: &str) -> bool {
+    if let Some(id) = selector.strip_prefix("[id=").and_then(|s| s.strip_suffix(']')) {
+        return source.attr(e, "id").is_some_and(|v| v == id);
+    }
     match selector.split_at_checked(1) {
         Some(("#", name)) => is_named(source, e, name),
         Some((".", class)) => source.attr(e, "class").is_some_and(|c| c.split_ascii_whitespace().any(|c| c == class)),

@@ -4,8 +4,15 @@ pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
 pub(crate) const XLINK: &str = "http://www.w3.org/1999/xlink";
 pub(crate) const XML: &str = "http://www.w3.org/XML/1998/namespace";
 pub(crate) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
+/// The namespace of what pathwarp stores in a file.
+pub(crate) const PATHWARP: &str = "https://github.com/pathwarp/pathwarp/ns/1";
 /// End of the namespace of Sodipodi, whose host has changed over the years.
 const SODIPODI: &str = "/DTD/sodipodi-0.dtd";
+
+/// Returns `true` for the namespace of Sodipodi.
+pub(crate) fn is_sodipodi(uri: &str) -> bool {
+    uri.ends_with(SODIPODI)
+}
 
 /// An element's number in document order.
 pub(crate) type ElementId = usize;
@@ -18,6 +25,7 @@ pub(crate) enum Namespace {
     Xml,
     Inkscape,
     Sodipodi,
+    Pathwarp,
     Other,
 }
 
@@ -29,7 +37,8 @@ impl Namespace {
             Some(XLINK) => Self::Xlink,
             Some(XML) => Self::Xml,
             Some(INKSCAPE) => Self::Inkscape,
-            Some(uri) if uri.ends_with(SODIPODI) => Self::Sodipodi,
+            Some(PATHWARP) => Self::Pathwarp,
+            Some(uri) if is_sodipodi(uri) => Self::Sodipodi,
             Some(_) => Self::Other,
         }
     }

@@ -7,6 +7,7 @@ use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::{fontface, range, xml};
 use pathwarp::Error;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use usvg::roxmltree;
 
@@ -58,7 +59,9 @@ fn resolve(
     let (missing, unread) = (Missing::default(), Unread::default());
     // Reading the installed fonts takes longer than most drawings do.
     let base = if features.text {
-        let fontdb = fontface::add(fonts::database(options.system_fonts, &options.fonts), xml.input_text());
+        let installed = fonts::database(options.system_fonts, &options.fonts);
+        let fontdb = fontface::add(installed, xml.input_text(), &options.budget)
+            .map_err(|e| Error::limit(name, "unpacked, its fonts take", e))?;
         let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone());
         usvg::Options { fontdb, font_resolver, ..usvg::Options::default() }
     } else {
@@ -69,7 +72,9 @@ fn resolve(
     if features.images {
         usvg.image_href_resolver = images::resolver(name, options, &rejected, &unread);
     }
-    let tree = usvg::Tree::from_xmltree(xml, &usvg).map_err(|e| {
+    let resolved = catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(xml, &usvg)));
+    let failed = |_| Error::input(name, "the library that reads SVG fails on it; please report it");
+    let tree = resolved.map_err(failed)?.map_err(|e| {
         let problem = match e {
             usvg::Error::InvalidSize => {
                 "the root <svg> has no valid size; give it a viewBox, or width and height".into()

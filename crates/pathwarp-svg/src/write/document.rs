@@ -4,6 +4,7 @@ use super::input::WriteInput;
 use super::{arrivals, flat, keep, page, unsupported};
 use crate::bend::options::{Structure, WarpOptions};
 use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
+use crate::bend::warning::Warning;
 use crate::scene::drawing::Drawing;
 use crate::source::images::{is_same_link, shown};
 use pathwarp::Error;
@@ -34,7 +35,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
         }
         (patched, _) => {
             if let Some(Err(why)) = patched {
-                out.warnings.push(format!("the file is flattened, as its structure cannot be kept: {why}"));
+                out.warnings.push(Warning::Flattened(why.to_string()));
             }
             out.skipped.extend(unread.map(|s| Skipped { why: s.why + "; it is left out", ..s }));
             flat::write(input, &mut out.skipped, &mut notes)
@@ -42,7 +43,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
     };
     arrivals::note(input, &mut notes);
     unsupported::note_private(input, &mut notes);
-    out.warnings.extend(notes.lines());
+    out.warnings.extend(notes.warnings());
     out.overhang = page::overhang(input);
     Ok(())
 }

@@ -71,6 +71,11 @@ pub(super) fn attributes(input: &WriteInput<'_>) -> Option<Vec<(&'static str, St
     Some(out)
 }
 
+/// The visible area before and after, if the page changes.
+pub(super) fn change(input: &WriteInput<'_>) -> Option<(Rect, Rect)> {
+    Some((input.drawing.visible_area(), adapted(input)?))
+}
+
 /// Measures the overhang over a page that is not adapted, compared to the original.
 pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     // Measuring needs every outline, so skip it if nothing has moved.
@@ -147,8 +152,10 @@ fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
         let first = all.is_empty().then_some(Affine::IDENTITY);
         all.iter().copied().chain(first).map(move |c| c * q)
     };
-    let images = (0..(N + 1) * (N + 1)).flat_map(|k| copies(point(k))).map(|q| input.map.point(q));
-    images.filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
+    let places: Vec<Point> = (0..(N + 1) * (N + 1)).flat_map(|k| copies(point(k))).collect();
+    let mut images = places.clone();
+    input.map.points(&places, &mut images);
+    images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
 }
 
 fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> {

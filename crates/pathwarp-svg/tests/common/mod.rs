@@ -10,6 +10,7 @@ use pathwarp_svg::usvg_tree::{self, parse_tree};
 use pathwarp_svg::{Document, ReadOptions, WarpOptions, WarpedDocument};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Tree;
+use std::sync::OnceLock;
 
 /// An affine map that does not report its class, and is therefore treated like any smooth map.
 pub struct Hidden(pub Affine);
@@ -129,15 +130,39 @@ pub fn curved(svg: &str, options: &WarpOptions) -> (WarpedDocument, Gap) {
     (warped, gap)
 }
 
+/// Pixels per unit of the comparison.
+const SCALE: u32 = 4;
+/// Samples per pixel of the comparison, across and down.
+const OVER: u32 = 4;
+/// The visible area: its corner and its size in units.
+const FROM: f64 = -20.0;
+const SIDE: u32 = 140;
+
+/// The places whose images under [`Bend`] are the samples of the comparison, pixel by pixel. The inverse is a fixed-point
+/// iteration, which contracts by 0.2 · 0.32.
+fn sources() -> &'static [Point] {
+    static ALL: OnceLock<Vec<Point>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let wide = SIDE * SCALE;
+        let samples = (0..wide.pow(2) * OVER * OVER).map(|n| {
+            let (pixel, k) = (n / (OVER * OVER), n % (OVER * OVER));
+            let sub =
+                |c: u32, k: u32| FROM + (f64::from(c) + (f64::from(k) + 0.5) / f64::from(OVER)) / f64::from(SCALE);
+            let to = Point::new(sub(pixel % wide, k % OVER), sub(pixel / wide, k / OVER));
+            let mut p = to;
+            for _ in 0..12 {
+                p = Point::new(to.x - (p.y / 30.0).sin() * 6.0, to.y - (p.x / 25.0).sin() * 8.0);
+            }
+            p
+        });
+        samples.collect()
+    })
+}
+
 /// Compares a drawing warped by [`Bend`] with the original's rendering, sampled at four times the resolution through the
-/// inverse map. The inverse is a fixed-point iteration, which contracts by 0.2 · 0.32. (The renderer rounds a pattern's tile to
-/// whole pixels, which moves the tiles apart. Tiles must therefore be whole at [`FINE`] pixels per unit here.)
+/// inverse map. (The renderer rounds a pattern's tile to whole pixels, which moves the tiles apart. Tiles must therefore be whole
+/// at [`FINE`] pixels per unit here.)
 pub fn gap(svg: &str, warped: &str) -> Gap {
-    /// Pixels per unit of the comparison.
-    const SCALE: u32 = 4;
-    /// The visible area: its corner and its size in units.
-    const FROM: f64 = -20.0;
-    const SIDE: u32 = 140;
     let document = read(svg);
     let window = |scale: u32| Affine::scale(f64::from(scale)) * Affine::translate((-FROM, -FROM));
     let px = document.user_to_px();
@@ -146,32 +171,23 @@ pub fn gap(svg: &str, warped: &str) -> Gap {
     let found = picture(&tree, SIDE * SCALE, window(SCALE) * px.inverse());
     let wide = (SIDE * FINE) as usize;
     let data = original.data();
-    let at = |p: Point, k: usize| {
+    let at = |p: Point| {
         let q = window(FINE) * p - Vec2::new(0.5, 0.5);
         let (i, j) = (q.x.floor().clamp(0.0, wide as f64 - 2.0), q.y.floor().clamp(0.0, wide as f64 - 2.0));
         let (u, v) = ((q.x - i).clamp(0.0, 1.0), (q.y - j).clamp(0.0, 1.0));
-        let read = |di: usize, dj: usize| f64::from(data[((j as usize + dj) * wide + i as usize + di) * 4 + k]);
-        let row = |dj: usize| read(0, dj) * (1.0 - u) + read(1, dj) * u;
-        row(0) * (1.0 - v) + row(1) * v
+        let [above, below] = [j as usize, j as usize + 1].map(|j| &data[(j * wide + i as usize) * 4..][..8]);
+        let row = |row: &[u8], k: usize| f64::from(row[k]) * (1.0 - u) + f64::from(row[k + 4]) * u;
+        [0, 1, 2, 3].map(|k| row(above, k) * (1.0 - v) + row(below, k) * v)
     };
-    const OVER: u32 = 4;
     let (mut sum, mut off, mut count) = (0.0, 0, 0);
-    for n in 0..(SIDE * SCALE).pow(2) {
-        let (i, j) = (n % (SIDE * SCALE), n / (SIDE * SCALE));
+    for (samples, found) in sources().chunks((OVER * OVER) as usize).zip(found.data().chunks(4)) {
         let mut wanted = [0.0; 4];
-        for k in 0..OVER * OVER {
-            let sub = |c: u32, k: u32| f64::from(c) + (f64::from(k) + 0.5) / f64::from(OVER);
-            let to = window(SCALE).inverse() * Point::new(sub(i, k % OVER), sub(j, k / OVER));
-            let mut p = to;
-            for _ in 0..12 {
-                p = Point::new(to.x - (p.y / 30.0).sin() * 6.0, to.y - (p.x / 25.0).sin() * 8.0);
-            }
-            for (c, w) in wanted.iter_mut().enumerate() {
-                *w += at(p, c) / f64::from(OVER * OVER);
+        for p in samples {
+            for (w, c) in wanted.iter_mut().zip(at(*p)) {
+                *w += c / f64::from(OVER * OVER);
             }
         }
-        let found = &found.data()[n as usize * 4..][..4];
-        let differences: Vec<f64> = wanted.iter().zip(found).map(|(w, f)| (w - f64::from(*f)).abs()).collect();
+        let differences = [0, 1, 2, 3].map(|k| (wanted[k] - f64::from(found[k])).abs());
         if wanted[3] > 0.0 || found[3] > 0 {
             sum += differences.iter().sum::<f64>() / 4.0;
             off += u32::from(differences.iter().any(|d| *d > 16.0));

@@ -61,6 +61,7 @@ impl Bilinear {
 
 static INFO: Info = Info::new("bilinear", "stretch artwork to four corners, its sides divided evenly")
     .group("Envelopes")
+    .guides(&["target", "base"], 1)
     .about("Takes the corners of the artwork's box (or the Base) to the four anchors of the Target. Verticals and horizontals stay straight \
 and keep their even spacing, where projective would crowd them towards the far side; slanting lines become parabolas.\n\nBoth start \
 with the side that lies lowest on the screen, left to right, unless --base-as-drawn or --target-as-drawn say otherwise.")

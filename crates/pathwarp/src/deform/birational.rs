@@ -125,6 +125,7 @@ impl Birational {
 
 static INFO: Info = Info::new("birational", "bend artwork between two rows of points; verticals or horizontals stay straight")
     .group("Envelopes")
+    .guides(&["top", "bottom"], 2)
     .about("Draw the new top and bottom of the artwork as two rows of equally many points from left to right: \
 verticals stay straight lines between them, which is what lettering wants. Or give --left and --right from top to bottom: \
 then horizontals stay straight. The rows are curves that begin and end in their first and last points and are pulled towards the \

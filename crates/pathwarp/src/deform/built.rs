@@ -1,5 +1,6 @@
 //! The result of building a deformation: the map, and everything about it that is not a map.
 
+use crate::error::Error;
 use crate::map::Map;
 use kurbo::{Affine, BezPath, Point};
 use std::fmt;
@@ -23,10 +24,15 @@ pub struct Built {
     pub space: Option<InSpace>,
     /// Says why the map is undefined at a point, where it can.
     pub undefined: Option<Undefined>,
+    /// Says how the map failed after it was built, for maps that can.
+    pub failure: Option<Failure>,
 }
 
 /// The reason why a map is undefined at a point of its source plane; `None` if it is defined there.
 pub type Undefined = Arc<dyn Fn(Point) -> Option<String> + Send + Sync>;
+
+/// The failure of a map that asks another program; `None` while there is none. A map that has failed gives NaN.
+pub type Failure = Arc<dyn Fn() -> Option<Error> + Send + Sync>;
 
 impl Built {
     /// Wraps a map that needs no explanation.
@@ -40,6 +46,7 @@ impl Built {
             saves: Vec::new(),
             space: None,
             undefined: None,
+            failure: None,
         }
     }
 

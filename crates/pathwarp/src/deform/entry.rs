@@ -72,6 +72,8 @@ pub struct Info {
     pub letters: bool,
     /// The presets that a gallery draws one by one, if the deformation has any.
     pub gallery: Option<Gallery>,
+    /// The paths that selected ones stand for where a user selects guides and artwork together.
+    pub guides: Guides,
 }
 
 impl Info {
@@ -92,6 +94,7 @@ impl Info {
             baseline: None,
             letters: false,
             gallery: None,
+            guides: Guides { params: &[], usual: 0 },
         }
     }
 
@@ -155,11 +158,26 @@ impl Info {
         Self { baseline: Some(param), ..self }
     }
 
+    /// Names the path parameters that selected paths stand for, the topmost first, and the usual number of them.
+    #[must_use]
+    pub const fn guides(self, params: &'static [&'static str], usual: usize) -> Self {
+        Self { guides: Guides { params, usual }, ..self }
+    }
+
     /// Names the presets that a gallery draws one by one.
     #[must_use]
     pub const fn gallery(self, gallery: Gallery) -> Self {
         Self { gallery: Some(gallery), ..self }
     }
+}
+
+/// The path parameters that selected paths stand for in a drawing program, where cages and artwork are selected together.
+#[derive(Debug, Clone, Copy)]
+pub struct Guides {
+    /// The parameters: the topmost selected path is the value of the first, the next one that of the second.
+    pub params: &'static [&'static str],
+    /// The number of paths taken unless the user says otherwise; the rest is artwork.
+    pub usual: usize,
 }
 
 /// The presets of a deformation, as a gallery draws them: the artwork once under each.

@@ -238,7 +238,14 @@ impl ExprMap {
     }
 }
 
+/// Operations of a formula that take as long as a net.
+const OPERATIONS: f64 = 8.0;
+
 impl Map for ExprMap {
+    fn work(&self) -> f64 {
+        1.0 + self.program.len() as f64 / OPERATIONS
+    }
+
     fn jet(&self, p: Point) -> Jet {
         let [j] = self.some_jets([p]);
         j

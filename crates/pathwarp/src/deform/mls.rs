@@ -113,6 +113,7 @@ pub enum Stiffness {
 
 static INFO: Info = Info::new("mls", "move points of the artwork, and let the rest follow")
     .group("Points")
+    .guides(&["to", "from"], 2)
     .about("Moves points of the artwork; everything else follows smoothly, most where it is near. --pair moves a \
 point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \
 it can, similar also lets them grow and shrink, affine lets them shear as well (it needs three pairs that are not on one line).")
@@ -318,7 +319,14 @@ impl MlsMap {
     }
 }
 
+/// Handles that take as long as a net.
+const HANDLES: f64 = 4.0;
+
 impl Formula for MlsMap {
+    fn work(&self) -> f64 {
+        1.0 + self.handles.len() as f64 / HANDLES
+    }
+
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         /// Squared distance below which a point counts as on the handle, relative to that of the next handle.
         const ON: f64 = 1e-28;

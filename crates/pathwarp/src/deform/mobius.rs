@@ -96,6 +96,7 @@ impl Mobius {
 
 static INFO: Info = Info::new("mobius", "take circles to circles, by a pole, three points or coefficients")
     .group("Classics")
+    .guides(&["to", "from"], 0)
     .about("Straight lines become arcs of circles, circles stay circles, and angles are kept: small squares stay small squares. The \
 simplest way in is the pole, the point that goes to infinity: artwork grows towards it and shrinks away from it. Or give three \
 points and their images (--from, --to), or give the coefficients of w = (a·z + b)/(c·z + d), z = x + iy.\n\nArtwork must keep clear of the pole.")

@@ -43,9 +43,11 @@ pub use anamorph::{Anamorph, Onto};
 pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
 pub use birational::Birational;
-pub use built::{Built, Explanation, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined};
+pub use built::{
+    Built, Explanation, Failure, InSpace, Overlay, Placement, Role, SavedFile, Seam, SpaceFile, Undefined,
+};
 pub use bulge::Bulge;
-pub use entry::{Case, Deformation, Example, Gallery, Info, Law, Pairs};
+pub use entry::{Case, Deformation, Example, Gallery, Guides, Info, Law, Pairs};
 pub use envelope::{Envelope, Keep, Spread};
 pub use expr::Expr;
 pub use ffd::Ffd;

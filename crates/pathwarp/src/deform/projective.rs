@@ -53,6 +53,7 @@ impl Projective {
 
 static INFO: Info = Info::new("projective", "put artwork in perspective: four points to four points, lines stay straight")
     .group("Perspective and anamorphosis")
+    .guides(&["target", "base"], 1)
     .about("Takes the four anchors of the Base (by default the corners of the artwork's box) to the four anchors of the Target. \
 Straight lines stay straight and keep their two nodes.\n\nBoth start with the side that lies lowest on the screen, left to right, \
 unless --base-as-drawn or --target-as-drawn say otherwise.")

@@ -42,3 +42,85 @@ impl Registry {
         self.entries.iter().find(|e| e.info().name == name)
     }
 }
+
+/// The registry is complete and consistent: every file in `src/deform/` is an entry, and names are unique.
+#[cfg(test)]
+mod tests {
+    use super::Registry;
+    use std::path::Path;
+
+    /// Files of `src/deform/` that hold what entries share.
+    const SHARED: [&str; 5] = ["mod", "built", "change", "entry", "registry"];
+
+    #[test]
+    fn every_file_is_registered() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/deform");
+        let list = std::fs::read_to_string(folder.join("mod.rs")).unwrap();
+        for file in std::fs::read_dir(&folder).unwrap() {
+            let stem = file.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned();
+            if SHARED.contains(&stem.as_str()) {
+                continue;
+            }
+            assert!(list.contains(&format!("mod {stem};")), "deform/{stem}.rs is no module of deform/mod.rs");
+            assert!(list.contains(&format!("Arc::new({stem}::")), "deform/{stem}.rs is not in builtin()");
+            let name = stem.replace('_', "-");
+            assert!(
+                Registry::builtin().get(&name).is_some(),
+                "deform/{stem}.rs does not hold an entry called `{name}`"
+            );
+        }
+    }
+
+    #[test]
+    fn names_are_unique() {
+        let mut names: Vec<_> = Registry::builtin().entries().iter().map(|e| e.info().name).collect();
+        let all = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), all);
+    }
+
+    /// `pathwarp list` is a menu: its headings in a sensible order, each once; lines that say what one does with it, all different.
+    #[test]
+    fn the_list_reads_like_a_menu() {
+        let registry = Registry::builtin();
+        let infos: Vec<_> = registry.entries().iter().map(|e| e.info()).collect();
+        let mut headings: Vec<&str> = Vec::new();
+        for i in &infos {
+            if !headings.contains(&i.group) {
+                headings.push(i.group);
+            }
+        }
+        let expected = [
+            "Envelopes",
+            "Bends",
+            "Lattices and nets",
+            "Points",
+            "Perspective and anamorphosis",
+            "Classics",
+            "Formulas",
+            "Basics",
+        ];
+        // A heading of its own, for a deformation that fits under none of these, comes at the end.
+        assert_eq!(headings[..expected.len()], expected);
+        let mut titles: Vec<&str> = infos.iter().map(|i| i.title).collect();
+        titles.sort_unstable();
+        titles.dedup();
+        assert_eq!(titles.len(), infos.len());
+        for i in &infos {
+            assert!(
+                i.title.starts_with(|c: char| c.is_lowercase()) && !i.title.ends_with('.'),
+                "{}: {}",
+                i.name,
+                i.title
+            );
+            assert!(i.title.chars().count() <= 80, "{}: {}", i.name, i.title);
+            assert!(i.examples.len() >= 2, "{}", i.name);
+            let mut commands: Vec<&str> = i.examples.iter().map(|e| e.command).collect();
+            commands.sort_unstable();
+            commands.dedup();
+            assert_eq!(commands.len(), i.examples.len(), "{}", i.name);
+            assert!(i.examples.iter().all(|e| e.command.starts_with(i.name)), "{}", i.name);
+        }
+    }
+}

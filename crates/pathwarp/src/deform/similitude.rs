@@ -54,6 +54,7 @@ impl Similitude {
 
 static INFO: Info = Info::new("similitude", "turn, scale and shift by two anchors; shapes stay the same")
     .group("Basics")
+    .guides(&["target", "base"], 1)
     .about("Takes the first anchor of the Base to the first of the Target and the second to the second, as drawn. Everything is \
 turned, scaled evenly and shifted; nothing is bent, and no node is added.")
     .source("elementary; the wrapper of M. Koppinen, A plane transformation from 16 control points")

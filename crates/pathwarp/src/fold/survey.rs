@@ -3,7 +3,7 @@
 use super::interior::interior;
 use super::orientation::Orientation;
 use super::sign;
-use crate::map::{Class, Creases, Jet, Map};
+use crate::map::{Class, Creases, Gathered, Jet, Map};
 use crate::outline::{Outline, Seg};
 use kurbo::{Affine, Point, Rect};
 
@@ -54,6 +54,18 @@ impl<'a> Survey<'a> {
         matches!(self.knowledge, Knowledge::Nothing)
     }
 
+    /// Returns the work of sampling `shapes` outlines with `segments` together, in evaluations of [`budget`](crate::budget); 0 if
+    /// nothing is sampled.
+    #[must_use]
+    pub fn work(&self, shapes: usize, segments: usize) -> f64 {
+        /// A sample is taken in a batch.
+        const SAMPLE: f64 = 0.25;
+        /// Share of a grid over a box that is inside of the shape, and the work to find out.
+        const FILLED: f64 = 0.5;
+        let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
+        if self.samples() { SAMPLE * self.map.work() * samples } else { 0.0 }
+    }
+
     /// Returns the orientation of a shape of the artwork. Unless the survey has a proof, the determinant is sampled along `outline`, and
     /// inside it if `filled`; of an affine map no samples are taken.
     ///
@@ -91,11 +103,16 @@ impl<'a> Survey<'a> {
     }
 
     fn sampled(&self, outline: &Outline, filled: bool) -> Orientation {
+        let gathered = self.map.prefers_batches().then(|| Gathered::new(self.map));
+        let map = gathered.as_ref().map_or(self.map, |g| g as &dyn Map);
+        if gathered.is_some() {
+            map.prepare(&[], &self.samples_of(outline, filled));
+        }
         let mut out = Orientation::default();
         let mut jets = [Jet::default(); PER_SEGMENT + 1];
         for seg in outline.segs() {
             let points: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
-            self.map.jets(&points, &mut jets);
+            map.jets(&points, &mut jets);
             out.add(&points, &jets);
         }
         if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
@@ -103,9 +120,19 @@ impl<'a> Survey<'a> {
             for mut row in interior(outline, bounds, GRID) {
                 row.retain(|p| self.creases.defined_at(*p));
                 let jets = &mut jets[..row.len()];
-                self.map.jets(&row, jets);
+                map.jets(&row, jets);
                 out.add(&row, jets);
             }
+        }
+        out
+    }
+
+    /// All points that are sampled.
+    fn samples_of(&self, outline: &Outline, filled: bool) -> Vec<Point> {
+        let along = |seg: Seg| (0..=PER_SEGMENT).map(move |i| seg.eval(i as f64 / PER_SEGMENT as f64));
+        let mut out: Vec<Point> = outline.segs().flat_map(|seg| along(*seg)).collect();
+        if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
+            out.extend(interior(outline, bounds, GRID).into_iter().flatten().filter(|p| self.creases.defined_at(*p)));
         }
         out
     }

@@ -75,6 +75,11 @@ impl Program {
         if let Some(Op::Const(c)) = self.ops.get(i as usize) { Some(*c) } else { None }
     }
 
+    /// The number of operations.
+    pub(crate) fn len(&self) -> usize {
+        self.ops.len()
+    }
+
     pub(crate) fn constant(&mut self, c: f64) -> Option<u32> {
         self.push(Op::Const(c))
     }

@@ -82,6 +82,10 @@ fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
 }
 
 impl Map for Chain {
+    fn work(&self) -> f64 {
+        self.steps.iter().map(Map::work).sum::<f64>().max(1.0)
+    }
+
     fn jet(&self, p: Point) -> Jet {
         let mut it = self.steps.iter();
         let Some(first) = it.next() else { return AffineMap::IDENTITY.jet(p) };
@@ -98,6 +102,15 @@ impl Map for Chain {
         };
         first.jets(ps, out);
         for m in rest {
+            if m.prefers_batches() {
+                let at: Vec<Point> = out.iter().map(|j| j.p).collect();
+                let mut outer = vec![Jet::default(); at.len()];
+                m.jets(&at, &mut outer);
+                for (j, o) in out.iter_mut().zip(&outer) {
+                    *j = j.then(o);
+                }
+                continue;
+            }
             for chunk in out.chunks_mut(BATCH) {
                 let (mut at, mut outer) = ([Point::ORIGIN; BATCH], [Jet::default(); BATCH]);
                 let n = chunk.len();
@@ -119,6 +132,11 @@ impl Map for Chain {
         };
         first.points(ps, out);
         for m in rest {
+            if m.prefers_batches() {
+                let at = out.to_vec();
+                m.points(&at, out);
+                continue;
+            }
             for chunk in out.chunks_mut(BATCH) {
                 let mut at = [Point::ORIGIN; BATCH];
                 at[..chunk.len()].copy_from_slice(chunk);
@@ -183,6 +201,10 @@ impl Map for Chain {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let back: Option<Vec<_>> = self.steps.iter().rev().map(Map::inverse).collect();
         back.map(|steps| Arc::new(Self::new(steps)) as Arc<dyn Map>)
+    }
+
+    fn prefers_batches(&self) -> bool {
+        self.steps.iter().any(Map::prefers_batches)
     }
 
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {

@@ -196,7 +196,20 @@ pub struct Creases {
     items: Vec<Crease>,
 }
 
+/// Evaluations of a map that take as long as the crossings of a segment with a straight crease.
+const STRAIGHT_WORK: f64 = 1.0;
+
 impl Creases {
+    /// The work of [`splits`](Self::splits) for a map of `work` per evaluation, in evaluations of a net.
+    pub(crate) fn splits_work(&self, seg: &Seg, work: f64) -> f64 {
+        let of = |c: &Crease| match (&c.level, seg) {
+            (Level::Line { .. } | Level::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => STRAIGHT_WORK,
+            (Level::Field(_), _) => f64::from(SAMPLES) * work,
+            _ => f64::from(SAMPLES) * 0.1,
+        };
+        self.items.iter().map(of).sum()
+    }
+
     /// Adds a crease.
     pub fn push(&mut self, c: Crease) {
         self.items.push(c);

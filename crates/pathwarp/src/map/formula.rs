@@ -59,6 +59,11 @@ pub trait Formula: Send + Sync {
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         None
     }
+
+    /// See [`Map::work`].
+    fn work(&self) -> f64 {
+        1.0
+    }
 }
 
 impl<F: Formula> Map for F {
@@ -105,5 +110,9 @@ impl<F: Formula> Map for F {
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Formula::inverse(self)
+    }
+
+    fn work(&self) -> f64 {
+        Formula::work(self)
     }
 }

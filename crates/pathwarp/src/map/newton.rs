@@ -14,6 +14,7 @@
 //! (the part of the box that the map is designed for) take precedence; outside the core, only sheets with the orientation of the
 //! core's center count, and of those the preimage nearest to the core is chosen.
 
+use super::rounds::by_rounds;
 use super::{Jet, Map};
 use kurbo::{Point, Rect, Vec2};
 use std::sync::Arc;
@@ -151,12 +152,17 @@ impl NewtonInverse {
     /// The preimage of `q` and the derivatives of the inverse there; `None` if there is no preimage in the box.
     #[must_use]
     pub fn solve(&self, q: Point) -> Option<Jet> {
-        self.solve_where(q, |_| true)
+        self.solve_by(&*self.map, q, |_| true)
     }
 
     /// As [`NewtonInverse::solve`], among the preimages that `accept` accepts.
     #[must_use]
     pub(crate) fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
+        self.solve_by(&*self.map, q, accept)
+    }
+
+    /// The same with the jets of `map`, which is this inverse's map or a memory of it.
+    fn solve_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() {
             return None;
         }
@@ -165,7 +171,7 @@ impl NewtonInverse {
         let off = |s: &Start| (s.image - q).hypot2();
         if near.is_empty() {
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.newton(start.at, q).filter(|found| self.counts(found) && accept(found.p));
+            return self.newton(map, start.at, q).filter(|found| self.counts(found) && accept(found.p));
         }
         let mut tried = [u32::MAX; MAX_TRIES];
         let mut best: Option<(f64, Jet)> = None;
@@ -182,7 +188,9 @@ impl NewtonInverse {
             };
             let Some(k) = all.min_by(less) else { break };
             tried[n] = k;
-            let Some(found) = self.newton(self.starts[k as usize].at, q).filter(|f| accept(f.p)) else { continue };
+            let Some(found) = self.newton(map, self.starts[k as usize].at, q).filter(|f| accept(f.p)) else {
+                continue;
+            };
             let distance = self.distance_from_core(found.p);
             if distance <= self.reach {
                 return Some(found);
@@ -206,10 +214,10 @@ impl NewtonInverse {
     }
 
     /// Newton's method from one starting point.
-    fn newton(&self, start: Point, q: Point) -> Option<Jet> {
+    fn newton(&self, map: &dyn Map, start: Point, q: Point) -> Option<Jet> {
         let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
-        let mut jet = self.map.jet(x);
+        let mut jet = map.jet(x);
         let mut residual = q - jet.p;
         for _ in 0..MAX_STEPS {
             let step = solve(&jet, residual)?;
@@ -219,7 +227,7 @@ impl NewtonInverse {
             while damping > MIN_DAMPING {
                 to = x + step * damping;
                 to = Point::new(to.x.clamp(room.x0, room.x1), to.y.clamp(room.y0, room.y1));
-                at = self.map.jet(to);
+                at = map.jet(to);
                 r = q - at.p;
                 if r.hypot2() < residual.hypot2() || r.hypot() <= self.rounding {
                     break;
@@ -259,9 +267,35 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
     out.is_finite().then_some(out)
 }
 
+/// Evaluations of the map for a point of the inverse.
+pub(crate) const INVERSE_WORK: f64 = 32.0;
+
 impl Map for NewtonInverse {
+    fn work(&self) -> f64 {
+        INVERSE_WORK * self.map.work()
+    }
+
     fn jet(&self, q: Point) -> Jet {
         self.solve(q).unwrap_or(Jet::UNDEFINED)
+    }
+
+    fn jets(&self, qs: &[Point], out: &mut [Jet]) {
+        let one = |map: &dyn Map, q: &Point| self.solve_by(map, *q, |_| true).unwrap_or(Jet::UNDEFINED);
+        if self.map.prefers_batches() {
+            out.copy_from_slice(&by_rounds(&*self.map, qs, one));
+        } else {
+            qs.iter().zip(out).for_each(|(q, o)| *o = one(&*self.map, q));
+        }
+    }
+
+    fn points(&self, qs: &[Point], out: &mut [Point]) {
+        let mut jets = vec![Jet::default(); qs.len()];
+        self.jets(qs, &mut jets);
+        out.iter_mut().zip(&jets).for_each(|(o, j)| *o = j.p);
+    }
+
+    fn prefers_batches(&self) -> bool {
+        self.map.prefers_batches()
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

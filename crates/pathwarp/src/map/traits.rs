@@ -68,6 +68,29 @@ pub trait Map: Send + Sync {
         None
     }
 
+    /// The cost of one evaluation, relative to that of a bicubic net, for [`budget`](crate::budget): a map that takes longer the
+    /// more parts it has says so here. 1 or more.
+    fn work(&self) -> f64 {
+        1.0
+    }
+
+    /// Returns `true` if a call costs much and a point little, as where another program is asked. Callers then collect the points
+    /// they need.
+    fn prefers_batches(&self) -> bool {
+        false
+    }
+
+    /// Returns `true` for a memory in front of a map that [prefers batches](Map::prefers_batches).
+    #[doc(hidden)]
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// Announces points whose values and points whose jets are asked for next, to a memory in front of a map that
+    /// [prefers batches](Map::prefers_batches).
+    #[doc(hidden)]
+    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
+
     /// Maps a batch of points in place. See [`batch`](super::batch).
     #[doc(hidden)]
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
@@ -123,6 +146,18 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         (**self).inverse()
+    }
+    fn work(&self) -> f64 {
+        (**self).work()
+    }
+    fn prefers_batches(&self) -> bool {
+        (**self).prefers_batches()
+    }
+    fn remembers(&self) -> bool {
+        (**self).remembers()
+    }
+    fn prepare(&self, points: &[Point], jets: &[Point]) {
+        (**self).prepare(points, jets);
     }
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         (**self).lanes(x, y);
@@ -182,6 +217,18 @@ mod tests {
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             self.record("inverse", None)
         }
+        fn work(&self) -> f64 {
+            self.record("work", 3.0)
+        }
+        fn prefers_batches(&self) -> bool {
+            self.record("prefers_batches", true)
+        }
+        fn remembers(&self) -> bool {
+            self.record("remembers", true)
+        }
+        fn prepare(&self, _points: &[Point], _jets: &[Point]) {
+            self.record("prepare", ());
+        }
         fn lanes(&self, _x: &mut Lane, _y: &mut Lane) {
             self.record("lanes", ());
         }
@@ -204,6 +251,10 @@ mod tests {
         let _ = map.rational_degree();
         let _ = map.denominator(p);
         let _ = map.inverse();
+        let _ = map.work();
+        let _ = map.prefers_batches();
+        let _ = map.remembers();
+        map.prepare(&[p], &[p]);
         map.lanes(&mut [1.0; WIDTH], &mut [2.0; WIDTH]);
         let _ = map.denominators(&[1.0; WIDTH], &[2.0; WIDTH]);
     }

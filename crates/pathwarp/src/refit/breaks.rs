@@ -9,10 +9,10 @@
 //! has a much smaller error. So fewer pieces than the difficulty predicts are tried first, and near the limit single break
 //! points are moved by bisection.
 
+use super::gather;
 use super::lanes::{Lanes, larger};
 use super::limits::{
-    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_ATTEMPTS, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE,
-    REPORT_MARGIN,
+    BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_STRETCH, PLACEMENTS, REPAIRABLE, REPORT_MARGIN,
 };
 use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
@@ -85,7 +85,7 @@ impl StretchFitter<'_> {
                 FitOutcome::Misses { piece, error, cusp, .. } => (piece, error, cusp),
             };
             let h = to.t - from.t;
-            if self.attempts >= MAX_ATTEMPTS || h < MIN_STRETCH {
+            if self.attempts >= self.most_attempts || h < MIN_STRETCH {
                 report.over_budget.push(self.source.at(0.5 * (from.t + to.t)));
                 report.add_error(error, Assurance::Checked);
                 out.push(piece);
@@ -123,8 +123,10 @@ impl StretchFitter<'_> {
         let n = ((whole.difficulty(tol) * HOPE).ceil() as usize).clamp(2, MAX_PLANNED);
         let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
         plan.ends[n] = to;
+        let places = |i: usize| from.t + (to.t - from.t) * i as f64 / n as f64;
+        gather::announce_parts(self.source, from.t, &(1..n).map(places), to.t);
         for (i, end) in plan.ends.iter_mut().enumerate().take(n).skip(1) {
-            *end = self.source.end(from.t + (to.t - from.t) * i as f64 / n as f64)?;
+            *end = self.source.end(places(i))?;
         }
         let mut placements = 0;
         loop {
@@ -146,7 +148,7 @@ impl StretchFitter<'_> {
             placements += 1;
             let has_cusp = |o: &FitOutcome| matches!(o, FitOutcome::Misses { cusp: Some(_), .. });
             let cusp = plan.outcomes[..n].iter().flatten().any(has_cusp);
-            if fits || cusp || self.attempts >= MAX_ATTEMPTS {
+            if fits || cusp || self.attempts >= self.most_attempts {
                 break;
             }
             let mut next = n;
@@ -179,13 +181,18 @@ impl StretchFitter<'_> {
         let (n, old) = (plan.n, plan.ends);
         let total = sums[n];
         let mut at = 0;
-        for (i, end) in plan.ends.iter_mut().enumerate().take(next).skip(1) {
+        let mut places = [0.0; MAX_PLANNED + 1];
+        for (i, place) in places.iter_mut().enumerate().take(next).skip(1) {
             let want = total * i as f64 / next as f64;
             while at + 1 < n && sums[at + 1] < want {
                 at += 1;
             }
             let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
-            *end = self.source.end(old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0))?;
+            *place = old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0);
+        }
+        gather::announce_parts(self.source, old[0].t, &places[1..next].iter().copied(), to.t);
+        for (end, place) in plan.ends[1..next].iter_mut().zip(&places[1..next]) {
+            *end = self.source.end(*place)?;
         }
         plan.ends[next] = to;
         plan.outcomes = [None; MAX_PLANNED];
@@ -232,6 +239,7 @@ impl StretchFitter<'_> {
             if !(t > lo + margin && t < hi - margin) {
                 t = 0.5 * (lo + hi);
             }
+            gather::announce_parts(self.source, from.t, &std::iter::once(t), to.t);
             let mid = self.source.end(t)?;
             now = [self.attempt(&from, &mid)?, self.attempt(&mid, &to)?];
             match now.map(|o| o.fits()) {

@@ -30,6 +30,7 @@ mod check;
 mod cusp;
 mod fit;
 mod frame;
+mod gather;
 mod hermite;
 mod improve;
 mod judge;
@@ -62,7 +63,7 @@ pub use report::{Assurance, PathReport, RefittedPath};
 pub use shared::SharedEdges;
 
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Map};
+use crate::map::{Class, Creases, Gathered, Map};
 use crate::outline::Outline;
 use merge::MergeMemory;
 use piece::PathWriter;
@@ -91,16 +92,20 @@ use piece::PathWriter;
 /// ```
 pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<RefittedPath, GeometryError> {
     let mut out = PathWriter::default();
+    let gathered = (map.prefers_batches() && !map.remembers()).then(|| Gathered::new(map));
     if let Class::Affine(m) = map.class() {
         path::affine(outline, m, options, &mut out)?;
     } else {
+        let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
         let mut creases = Creases::default();
         map.creases(&mut creases);
+        let announced = path::announce_short(outline, map, &creases, options);
         let mut memory = MergeMemory::default();
         for sub in &outline.subpaths {
-            path::subpath(sub, map, &creases, options, &mut memory, &mut out)?;
+            path::subpath(sub, map, &creases, (options, announced), &mut memory, &mut out)?;
         }
     }
     out.report.segments_in = outline.segs().count();
+    out.report.name_a_miss(outline, options.tolerance);
     Ok(out.finish())
 }

@@ -1,7 +1,8 @@
 //! Whole paths, subpath by subpath.
 
+use super::gather;
 use super::limits::CHUNK;
-use super::merge::{MergeMemory, Merger, may_be_smooth};
+use super::merge::{self, MergeMemory, Merger, may_be_smooth};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::piece::{FittedPiece, PathWriter, reverse};
@@ -23,9 +24,14 @@ pub(super) fn affine(
 ) -> Result<(), GeometryError> {
     outline.segs().try_for_each(finite)?;
     for sub in &outline.subpaths {
+        if !(m * sub.start).is_finite() {
+            return Err(infinity(sub.start));
+        }
         let mut pieces = Vec::with_capacity(sub.segs.len());
         for seg in &sub.segs {
-            match seg.transformed(m) {
+            let image = seg.transformed(m);
+            finite(&image)?;
+            match image {
                 Seg::Line(l) => pieces.push(FittedPiece::Line(l)),
                 Seg::Arc(a) => {
                     let (canonical, flipped) = split::canonical(seg);
@@ -54,7 +60,7 @@ pub(super) fn subpath(
     sub: &Subpath,
     map: &dyn Map,
     creases: &Creases,
-    options: &Options,
+    (options, announced): (&Options, bool),
     memory: &mut MergeMemory,
     out: &mut PathWriter,
 ) -> Result<(), GeometryError> {
@@ -64,8 +70,17 @@ pub(super) fn subpath(
         return Err(infinity(sub.start));
     }
     let projective = matches!(map.class(), Class::Projective(_));
-    let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, options };
+    let work = map.work();
+    // Values at the nodes.
+    options
+        .budget
+        .spend_cut(Limit::Evaluations, (work * sub.segs.len() as f64) as u64)
+        .map_err(GeometryError::Limit)?;
+    let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
     let refitted = |i: usize, segs: &[Seg], memory: &mut MergeMemory| {
+        if !announced {
+            announce(&[segs], map, creases, options);
+        }
         let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
         if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) }
     };
@@ -85,6 +100,28 @@ pub(super) fn subpath(
     options.budget.spend_cut(Limit::Evaluations, 0).map_err(GeometryError::Limit)?;
     out.subpath(start.p, &pieces, sub.closed);
     Ok(())
+}
+
+/// Announces everything about a path at once, if it is short. A longer one is announced chunk by chunk.
+/// Returns `true` if nothing is left to be announced.
+pub(super) fn announce_short(outline: &Outline, map: &dyn Map, creases: &Creases, options: &Options) -> bool {
+    if !map.prefers_batches() {
+        return true;
+    }
+    let is_short = outline.segs().count() <= CHUNK;
+    if is_short {
+        let subpaths: Vec<&[Seg]> = outline.subpaths.iter().map(|s| s.segs.as_slice()).collect();
+        announce(&subpaths, map, creases, options);
+    }
+    is_short
+}
+
+/// Announces what the refit of these runs of segments is going to ask, to a map that prefers batches.
+fn announce(runs: &[&[Seg]], map: &dyn Map, creases: &Creases, options: &Options) {
+    gather::announce_segments(runs.iter().copied().flatten(), map, options);
+    if options.merge && creases.items().iter().all(|c| c.kind == CreaseKind::Edge) {
+        merge::announce(runs, map, options);
+    }
 }
 
 /// The pieces of consecutive segments, and their report.

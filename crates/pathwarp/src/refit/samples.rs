@@ -1,6 +1,6 @@
 //! The sixteen samples of a piece, at j/17 of its parameter: eight to fit, eight between them to check.
 
-use super::lanes::Lane;
+use super::lanes::{Lane, fma};
 
 /// Spacing of the samples.
 pub(super) const UNIT: f64 = 1.0 / 17.0;
@@ -32,6 +32,16 @@ pub(super) const MIDDLE: Lane = {
     }
     out
 };
+
+/// The parameters of the samples `set` of a stretch that begins at `t0` and is `h` long.
+#[inline(always)]
+pub(super) fn spaced(t0: f64, h: f64, set: &Lane) -> Lane {
+    let mut t = [0.0; 8];
+    for i in 0..8 {
+        t[i] = fma(h, set[i] * UNIT, t0);
+    }
+    t
+}
 
 /// Number of [`Evenly`] spaced values.
 pub(super) const ALL: usize = 18;

@@ -1,6 +1,6 @@
 //! One segment: its canonical direction, its smooth parts, and their pieces.
 
-use super::limits::{MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
+use super::limits::{MAX_ATTEMPTS, MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
 use super::piece::{FittedPiece, reverse};
 use super::proof::RationalForm;
@@ -29,6 +29,8 @@ pub(super) struct SegmentFitter<'a> {
     /// The map's degree, if it is a quotient of polynomials.
     pub(super) degree: Option<RationalDegree>,
     pub(super) creases: &'a Creases,
+    /// The map's [`work`](Map::work).
+    pub(super) work: f64,
     pub(super) options: &'a Options,
 }
 
@@ -123,6 +125,20 @@ impl SegmentFitter<'_> {
         self.fit_parts(&source, jets, &slow, pieces, report)
     }
 
+    /// The attempts after which this part ends: those that exceed the budget by themselves, so that the result does not depend on
+    /// what other threads count at the same time.
+    fn most_attempts(&self) -> usize {
+        let left = self.options.budget.left(Limit::Evaluations) / self.work;
+        let (usual, hard) = (left / EVALUATIONS as f64, left / EVALUATIONS_HARD as f64);
+        let most = if usual < HARD as f64 { usual } else { hard.max(HARD as f64) };
+        MAX_ATTEMPTS.min((most as usize).saturating_add(1))
+    }
+
+    /// Counts work. Too much of it is an error of the whole path, which ends by itself: `fit` does no more.
+    fn spend(&self, evaluations: f64) {
+        let _ = self.options.budget.spend(Limit::Evaluations, evaluations as u64);
+    }
+
     /// Covers a smooth part, whose ends are at most `blur` from the source's image.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
@@ -140,11 +156,11 @@ impl SegmentFitter<'_> {
         let form = form.map(|f| f.with_blur(blur));
         let degree = degree.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0 };
+        let most_attempts = self.most_attempts();
+        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, most_attempts };
         let covered = fitter.cover(from, to, pieces, report);
         let each = if fitter.attempts > HARD { EVALUATIONS_HARD } else { EVALUATIONS };
-        // Too many are an error of the whole path, which ends by itself: `fit` does no more work.
-        let _ = self.options.budget.spend(Limit::Evaluations, (fitter.attempts * each) as u64);
+        self.spend((fitter.attempts * each) as f64 * self.work);
         covered
     }
 
@@ -159,6 +175,7 @@ impl SegmentFitter<'_> {
         report: &mut PathReport,
     ) -> Result<(), Point> {
         let (seg, map) = (whole.seg, self.map);
+        self.spend(self.creases.splits_work(seg, self.work));
         let splits = self.creases.splits(seg);
         let mut from = Node { t: 0.0, u: 0.0, p: jets[0].p, jet: Some(jets[0]) };
         for i in 0..=splits.len() {

@@ -2,7 +2,7 @@
 
 use super::frame::ChordFrame;
 use super::hermite::HermiteResiduals;
-use super::lanes::{Lane, Lanes, clamp_unit, fma, larger};
+use super::lanes::{Lane, Lanes, clamp_unit, larger};
 use super::limits::{
     EIGHT_ACCEPTED, EIGHT_GROWTH, FOOT_DRIFT, HANDLE_FLOOR, HANDLE_FLOOR_STOPPED, HANDLE_PULL, SMALL_ERROR,
 };
@@ -11,7 +11,7 @@ use super::piece::FittedPiece;
 use super::proof::{self, RationalForm};
 use super::request::FitRequest;
 use super::residuals::FitState;
-use super::samples::{CHECKED, FITTED, UNIT};
+use super::samples::{CHECKED, FITTED, UNIT, spaced};
 use super::source::{BreakPoint, SourceCurve};
 use super::split::SlowSpots;
 use super::straight::straight;
@@ -28,6 +28,8 @@ pub(super) struct StretchFitter<'a> {
     /// The map's degree, if it is a quotient of polynomials and the ends of the pieces lie on its image.
     pub(super) degree: Option<RationalDegree>,
     pub(super) attempts: usize,
+    /// The number of attempts at which the work ends.
+    pub(super) most_attempts: usize,
 }
 
 impl StretchFitter<'_> {
@@ -157,11 +159,7 @@ impl StretchFitter<'_> {
     /// Images at the samples `set` of a stretch of length `h`, relative to its first point.
     #[inline(always)]
     fn sample(&self, from: &BreakPoint, h: f64, set: &Lane, g: &mut Lanes) -> Result<(), Point> {
-        let mut t = [0.0; 8];
-        for i in 0..8 {
-            t[i] = fma(h, set[i] * UNIT, from.t);
-        }
-        self.source.images_into(&t, g)?;
+        self.source.images_into(&spaced(from.t, h, set), g)?;
         for i in 0..8 {
             g.x[i] -= from.p.x;
             g.y[i] -= from.p.y;

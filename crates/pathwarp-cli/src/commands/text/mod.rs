@@ -11,11 +11,12 @@ use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS};
 use crate::options::Given;
 use crate::status::Status;
-use crate::{output, terminal};
+use crate::{advice, output, terminal};
 use clap::{ArgMatches, Command};
 use fonts::Wanted;
+use pathwarp::budget::{Exceeded, Limit};
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
-use pathwarp_text::{Font, layout};
+use pathwarp_text::{Font, Quantity, TextLimits, layout_within};
 use std::path::{Path, PathBuf};
 use style::Em;
 
@@ -52,7 +53,10 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     fonts::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
     let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
-    let set = layout(&text, &chosen, &style).map_err(|e| failure(&e))?;
+    let limits = options.reading.limits.for_input(text.len());
+    let most =
+        TextLimits { letters: limits.of(Limit::Letters) as usize, segments: limits.of(Limit::Segments) as usize };
+    let set = layout_within(&text, &chosen, &style, &most).map_err(|e| failure(&e, &most))?;
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
     let margin = em.length(m, "margin")?.unwrap_or(0.0);
     let svg = write_lettering(&set, &LetteringOptions { fill, margin, unit: em.unit })?;
@@ -65,11 +69,24 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
 }
 
 /// Maps an error of the layout: a bad option is wrong usage, anything else a problem of the font or the text.
-fn failure(e: &pathwarp_text::Error) -> Failure {
+fn failure(e: &pathwarp_text::Error, most: &TextLimits) -> Failure {
     use pathwarp_text::Error as E;
     match e {
         E::Style { .. } | E::Empty => Failure::usage(e.to_string()),
         E::Setting { .. } => Failure::usage(format!("--script or --language: {e}")),
+        &E::TooLarge { quantity, needed, .. } => {
+            // Only letters are counted before work begins.
+            let enough = match quantity {
+                Quantity::Letters => Exceeded { limit: Limit::Letters, most: 0.0, needed: needed as f64, cut: false },
+                Quantity::Segments => {
+                    Exceeded { limit: Limit::Segments, most: most.segments as f64, needed: 0.0, cut: true }
+                }
+                Quantity::Glyphs => {
+                    Exceeded { limit: Limit::Letters, most: most.letters as f64, needed: 0.0, cut: true }
+                }
+            };
+            Failure::Input(format!("{e}; {}", advice::raise(&enough)))
+        }
         _ => Failure::Input(e.to_string()),
     }
 }

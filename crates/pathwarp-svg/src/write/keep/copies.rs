@@ -3,6 +3,7 @@
 use super::animations;
 use super::keeper::{Keeper, NO_EFFECTS};
 use crate::bend::bitmap::EmbeddedImage;
+use crate::bend::options::Clones;
 use crate::bend::outcome::Skipped;
 use crate::scene::model::{Group, Node};
 use crate::source::live::is_live;
@@ -47,8 +48,11 @@ pub(super) fn drawing(k: &mut Keeper<'_, '_>, e: ElementId, n: &Node, g: &Group)
 /// Replaces a `use` by a group with the resolved content, if that is no longer a copy of the original.
 pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     // The original may have been warped.
-    let original_unchanged =
-        || k.input.options.selection.is_everything() || k.input.outcomes.iter().all(|o| o.warped().is_none());
+    let original_unchanged = || {
+        k.input.options.clones == Clones::Follow
+            || k.input.options.selection.is_everything()
+            || k.input.outcomes.iter().all(|o| o.warped().is_none())
+    };
     if !g.children.iter().any(|n| k.changed(n)) && original_unchanged() {
         return;
     }

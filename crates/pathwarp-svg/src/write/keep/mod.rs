@@ -5,6 +5,7 @@ mod clips;
 mod copies;
 mod keeper;
 mod live;
+mod pages;
 mod shape;
 mod text;
 mod walk;
@@ -41,6 +42,7 @@ pub(super) fn write(
     for (name, value) in page::attributes(input).into_iter().flatten() {
         k.edits.set_attr(0, name, value);
     }
+    pages::follow(&mut k);
     let edits = k.edits;
     let defs = std::mem::take(&mut writer.defs.text);
     finish(input.source, edits, &defs, &writer.markup.tag("defs"))

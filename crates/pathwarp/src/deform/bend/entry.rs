@@ -14,6 +14,7 @@ pub(in crate::deform) struct Entry;
 pub(super) static INFO: Info = Info::new("bend", "bend artwork along a path")
     .baseline("baseline")
     .group("Bends")
+    .guides(&["along"], 1)
     .about("The artwork follows a path, the skeleton: horizontals run along it, verticals stand on it. The skeleton may \
 have any number of lines, curves and arcs, open or closed. Nothing is stretched unless you ask: --stretch scale sizes the artwork \
 to the skeleton, fit stretches it lengthwise only. --stretch repeat sets copies of it side by side, as many as fit on the skeleton, \

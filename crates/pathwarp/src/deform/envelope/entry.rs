@@ -11,6 +11,7 @@ pub(in crate::deform) struct Entry;
 
 pub(super) static INFO: Info = Info::new("envelope", "put artwork into any closed shape, or between curves")
     .group("Envelopes")
+    .guides(&["envelope"], 1)
     .about("The artwork's box is laid onto a shape with four sides, which may have any number of pieces, and the artwork \
 follows. Name a closed path (--envelope, for instance an object of the drawing itself), or draw the sides one by one: --bottom and \
 --top, with --left and --right if they are to be curves as well, or --bottom alone with a --height.\n\nA closed path's corners are its \

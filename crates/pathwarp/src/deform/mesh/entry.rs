@@ -12,6 +12,7 @@ pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches, or by a Photoshop warp")
     .group("Lattices and nets")
+    .guides(&["net"], 1)
     .about("A quilt of patches, side by side in rows and columns, each with sixteen control points; neighbours share the points of their common \
 sides. Give it as a path with one line of curves per row of control points (--net: a path of 4 lines with one curve each is one \
 patch, of 7 lines with two curves each four), or as a file (--mesh, JSON or TOML): {\"region\": [x,y,w,h], \"points\": [[[x,y], …], \

@@ -11,6 +11,7 @@ pub(in crate::deform) struct Entry;
 
 static INFO: Info = Info::new("shaper", "bend artwork into a closed path of four curved sides")
     .group("Envelopes")
+    .guides(&["shaper", "base", "target"], 1)
     .about("Draw a closed path with four anchors: that is the shape. The artwork's box (or the base) is laid onto it, side by \
 side, and everything inside follows smoothly. With a target, the shaper's corners are then moved there, so that its \
 size and position do not matter.\n\nThe bottom is the side that lies lowest on the screen, run left to right, unless another \

@@ -120,7 +120,7 @@ impl Lattice {
     pub fn influence(&self, p: Point) -> Vec<((usize, usize), f64)> {
         let r = self.region;
         let at = [(p.x - r.x0) / r.width(), (p.y - r.y0) / r.height()];
-        let [(i0, across), (j0, down)] = [0, 1].map(|k| basis(self.degree[k], self.cells[k], at[k]));
+        let [(i0, across), (j0, down)] = [0, 1].map(|k| bspline::basis(self.degree[k], self.cells[k], at[k]));
         let mut out = Vec::with_capacity(across.len() * down.len());
         for (j, b) in down.iter().enumerate() {
             for (i, a) in across.iter().enumerate() {
@@ -192,23 +192,4 @@ impl Lattice {
         let shift = o - u * r.x0 - v * r.y0;
         Some(Affine::new([1.0 + u.x, u.y, v.x, 1.0 + v.y, shift.x, shift.y]))
     }
-}
-
-/// The first control point with influence at `s`, and the values of the basis functions from there on.
-fn basis(degree: usize, cells: usize, s: f64) -> (usize, Vec<f64>) {
-    let cell = ((s * cells as f64).max(0.0) as usize).min(cells - 1);
-    let local = s * cells as f64 - cell as f64;
-    // Bernstein polynomials by their recursion, then B-splines by the extraction matrix.
-    let mut b = vec![1.0];
-    for _ in 0..degree {
-        let mut next = vec![0.0; b.len() + 1];
-        for (i, v) in b.iter().enumerate() {
-            next[i] += v * (1.0 - local);
-            next[i + 1] += v * local;
-        }
-        b = next;
-    }
-    let rows = &bspline::extraction(degree, cells)[cell];
-    let through = |l: usize| rows.iter().zip(&b).map(|(row, b)| row[l] * b).sum();
-    (cell, (0..=degree).map(through).collect())
 }

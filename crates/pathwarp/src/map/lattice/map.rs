@@ -104,6 +104,10 @@ impl LatticeMap {
 }
 
 impl Map for LatticeMap {
+    fn work(&self) -> f64 {
+        self.patches.first().map_or(1.0, Map::work)
+    }
+
     fn jet(&self, p: Point) -> Jet {
         self.cell(p).map_or_else(|| AffineMap::IDENTITY.jet(p), |c| self.patches[c].jet(p))
     }
@@ -238,6 +242,10 @@ impl LatticeInverse {
 }
 
 impl Map for LatticeInverse {
+    fn work(&self) -> f64 {
+        2.0 * self.inner.work()
+    }
+
     fn jet(&self, q: Point) -> Jet {
         match self.inner.solve(q) {
             Some(found) => found,

@@ -16,7 +16,8 @@ fn knots(degree: usize, cells: usize) -> Vec<f64> {
 
 /// The control points that make the spline the identity: the means of `degree` consecutive knots (Greville abscissae), i/n for
 /// one cell.
-pub(crate) fn regular(degree: usize, cells: usize) -> Vec<f64> {
+#[must_use]
+pub fn regular(degree: usize, cells: usize) -> Vec<f64> {
     if cells == 1 {
         return (0..=degree).map(|i| i as f64 / degree as f64).collect();
     }
@@ -26,7 +27,8 @@ pub(crate) fn regular(degree: usize, cells: usize) -> Vec<f64> {
 
 /// For each cell, the matrix that takes its `degree` + 1 control points, which start at the index of the cell, to Bézier points
 /// (one row each).
-pub(crate) fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
+#[must_use]
+pub fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
     let t = knots(degree, cells);
     let bezier = |cell: usize| -> Vec<Vec<f64>> {
         let span = cell + degree;
@@ -51,6 +53,26 @@ pub(crate) fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
         rows
     };
     (0..cells).map(bezier).collect()
+}
+
+/// The first control point with influence at `s`, and the values of the basis functions from there on.
+#[must_use]
+pub fn basis(degree: usize, cells: usize, s: f64) -> (usize, Vec<f64>) {
+    let cell = ((s * cells as f64).max(0.0) as usize).min(cells - 1);
+    let local = s * cells as f64 - cell as f64;
+    // Bernstein polynomials by their recursion, then B-splines by the extraction matrix.
+    let mut b = vec![1.0];
+    for _ in 0..degree {
+        let mut next = vec![0.0; b.len() + 1];
+        for (i, v) in b.iter().enumerate() {
+            next[i] += v * (1.0 - local);
+            next[i + 1] += v * local;
+        }
+        b = next;
+    }
+    let rows = &extraction(degree, cells)[cell];
+    let through = |l: usize| rows.iter().zip(&b).map(|(row, b)| row[l] * b).sum();
+    (cell, (0..=degree).map(through).collect())
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Maps given by a net of Bézier or B-spline control points.
 
 mod bicubic;
-pub(crate) mod bspline;
+pub mod bspline;
 mod patch;
 mod power_basis;
 

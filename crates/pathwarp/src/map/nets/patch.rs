@@ -298,6 +298,11 @@ fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
 }
 
 impl Map for Patch {
+    /// By the number of terms; a bicubic net has sixteen.
+    fn work(&self) -> f64 {
+        (self.width * self.height) as f64 / 16.0
+    }
+
     fn jet(&self, p: Point) -> Jet {
         match self.width {
             4 => self.jets_at::<1, 4>([p])[0],

@@ -52,6 +52,10 @@ impl Local {
 }
 
 impl Map for Local {
+    fn work(&self) -> f64 {
+        self.inside.work()
+    }
+
     fn jet(&self, p: Point) -> Jet {
         if self.contains(p) { self.inside.jet(p) } else { AffineMap::IDENTITY.jet(p) }
     }
@@ -140,6 +144,13 @@ impl LocalInverse {
 }
 
 impl Map for LocalInverse {
+    fn work(&self) -> f64 {
+        match &self.back {
+            InnerInverse::Closed(m) => m.work(),
+            InnerInverse::Newton(m) => m.work(),
+        }
+    }
+
     fn jet(&self, q: Point) -> Jet {
         match self.within(q, self.of.reach) {
             Some(found) => found,
@@ -175,6 +186,10 @@ impl Map for LocalInverse {
 struct Inside(LocalInverse);
 
 impl Map for Inside {
+    fn work(&self) -> f64 {
+        self.0.work()
+    }
+
     fn jet(&self, q: Point) -> Jet {
         self.0.within(q, self.0.margin()).unwrap_or(Jet::UNDEFINED)
     }

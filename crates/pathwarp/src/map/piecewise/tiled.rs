@@ -3,7 +3,7 @@
 //! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
 //! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
 
-use crate::map::{Crease, CreaseKind, Creases, Jet, Level, Map, NewtonInverse, RationalBezier};
+use crate::map::{Crease, CreaseKind, Creases, INVERSE_WORK, Jet, Level, Map, NewtonInverse, RationalBezier};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -88,6 +88,10 @@ impl Tiled {
 }
 
 impl Map for Tiled {
+    fn work(&self) -> f64 {
+        self.rows.iter().flat_map(|r| &r.maps).map(Map::work).fold(1.0, f64::max)
+    }
+
     fn jet(&self, p: Point) -> Jet {
         self.tile(p).jet(p)
     }
@@ -194,6 +198,10 @@ impl TiledInverse {
 }
 
 impl Map for TiledInverse {
+    fn work(&self) -> f64 {
+        2.0 * INVERSE_WORK * self.of.work()
+    }
+
     fn jet(&self, q: Point) -> Jet {
         self.solve(q).map_or(Jet::UNDEFINED, |s| s.1)
     }

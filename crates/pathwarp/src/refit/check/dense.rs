@@ -3,6 +3,7 @@
 use super::probe::{Probe, probe};
 use super::thorough::thorough;
 use crate::refit::candidate::Candidate;
+use crate::refit::gather;
 use crate::refit::lanes::{Lane, largest};
 use crate::refit::limits::{DENSE_BATCHES, FOOT_ROUNDING, MAX_ZOOMS, PEAK_NEAR, WALK_DEPTH, ZOOM_RISE};
 use crate::refit::peaks::parabola_peak;
@@ -27,9 +28,10 @@ pub(in crate::refit) fn dense(
     let mut walk = Walk { source, c, feet, worst: 0.0, last: FootPoint { tau: 0.0, s: 0.0, slope: c.frame.t0 } };
     let mut sound = true;
     let mut even = [[0.0; 8]; DENSE_BATCHES];
+    let tau = |k: usize| -> Lane { std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (DENSE_BATCHES * 8) as f64) };
+    gather::announce(source, &(0..DENSE_BATCHES).map(|k| tau(k).map(|t| c.param(t))), &std::iter::empty());
     for (k, squares) in even.iter_mut().enumerate() {
-        let tau: Lane = std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (DENSE_BATCHES * 8) as f64);
-        let (advances, d) = walk.advance(&tau, 0)?;
+        let (advances, d) = walk.advance(&tau(k), 0)?;
         sound &= advances;
         *squares = d;
     }

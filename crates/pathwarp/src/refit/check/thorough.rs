@@ -1,6 +1,7 @@
 //! The thorough check: both one-sided distances, without the foot points of the fit.
 
 use crate::refit::candidate::Candidate;
+use crate::refit::gather;
 use crate::refit::lanes::Lane;
 use crate::refit::limits::THOROUGH_SAMPLES;
 use crate::refit::source::SourceCurve;
@@ -17,6 +18,8 @@ pub(in crate::refit) fn thorough(
 ) -> Result<f64, Point> {
     let taus = places(c, slow);
     let mut images = Vec::with_capacity(taus.len());
+    let lanes = taus.chunks_exact(8).map(|chunk| std::array::from_fn(|i| c.param(chunk[i])));
+    gather::announce(source, &lanes, &std::iter::empty());
     for chunk in taus.chunks_exact(8) {
         let tau: Lane = std::array::from_fn(|i| chunk[i]);
         let g = c.images(source, &tau)?;

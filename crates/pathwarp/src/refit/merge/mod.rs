@@ -16,12 +16,14 @@ mod repeats;
 mod run;
 mod search;
 
+use super::gather;
+use super::options::Options;
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::source::SourceCurve;
-use crate::map::Jet;
+use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
@@ -59,6 +61,24 @@ pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
     let clear = |d: Vec2, seg: &Seg| d.hypot2() > scale * seg.end().distance_squared(seg.start());
     let (dot, cross) = (into.dot(away), into.cross(away).abs());
     dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
+}
+
+/// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
+/// batches and knows the jets at the joints.
+pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
+    let mut sources = Vec::new();
+    for segs in runs {
+        let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
+            (Some(before), Some(after)) => may_be_smooth(before, after, &map.jet(after.start())),
+            _ => false,
+        };
+        let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
+        sources.extend(segs.iter().enumerate().filter_map(in_run));
+    }
+    let sources: Vec<_> = sources.iter().map(|seg| SourceCurve::for_proof(seg, map, options.certify)).collect();
+    let lanes = SegmentRun::new(map.rational_degree().is_some(), 0).lanes();
+    let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+    gather::announce_all(map, &sources, &lanes, &ends);
 }
 
 impl<'a> Merger<'a> {

@@ -69,6 +69,12 @@ impl<'a> SegmentRun<'a> {
         Self { segments: Vec::with_capacity(capacity), per_segment, x: samples(), y: samples(), length: samples() }
     }
 
+    /// The parameters of a segment's samples.
+    pub(super) fn lanes(&self) -> impl Iterator<Item = Lane> + Clone + use<> {
+        let n = self.per_segment;
+        (0..n / 8).map(move |batch| std::array::from_fn(|i| (8 * batch + i + 1) as f64 / n as f64))
+    }
+
     /// Samples a segment and appends it. Returns `false` if it does not move everywhere: a stretch without length has no direction
     /// to be merged along.
     pub(super) fn push(&mut self, mut segment: RunSegment<'a>) -> Result<bool, Point> {
@@ -79,8 +85,7 @@ impl<'a> SegmentRun<'a> {
             self.length.push(0.0);
         }
         let start = self.x.len() - 1;
-        for batch in 0..n / 8 {
-            let t: Lane = std::array::from_fn(|i| (8 * batch + i + 1) as f64 / n as f64);
+        for t in self.lanes() {
             let g = segment.source.images(&t)?;
             self.x.extend(g.x);
             self.y.extend(g.y);

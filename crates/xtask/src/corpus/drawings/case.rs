@@ -11,7 +11,9 @@ use pathwarp::map::Map;
 use pathwarp::refit;
 use pathwarp_cli::Bender;
 use pathwarp_raster::{Pixmap, compare};
-use pathwarp_svg::{Document, Gradients, Images, ReadOptions, Structure, WarpOptions, WarpedDocument, usvg_tree};
+use pathwarp_svg::{
+    Document, Gradients, Images, ReadOptions, Structure, Warning, WarpOptions, WarpedDocument, usvg_tree,
+};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -275,8 +277,12 @@ impl FileCase<'_> {
 
     /// Checks that the file was patched in place and that ids, classes, titles and nesting are preserved.
     fn structure(&mut self, warped: &WarpedDocument) {
-        let flattened = warped.warnings.iter().find(|w| w.contains("is flattened"));
-        self.out.push(Finding::new("patched in place", flattened.is_none(), flattened.cloned().unwrap_or_default()));
+        let flattened = warped.warnings.iter().find(|w| matches!(w, Warning::Flattened(_)));
+        self.out.push(Finding::new(
+            "patched in place",
+            flattened.is_none(),
+            flattened.map(ToString::to_string).unwrap_or_default(),
+        ));
         let text = String::from_utf8_lossy(self.document.source()).into_owned();
         let (Some(a), Some(b)) = (facts(&text), facts(&warped.svg)) else { return };
         // Instances of `use` repeat classes, so a count may grow.
@@ -309,6 +315,6 @@ fn bending(map: &Arc<dyn Map>, mut options: WarpOptions) -> WarpOptions {
 /// The first warnings and skipped elements, as a hint at the cause.
 fn remarks(w: &WarpedDocument) -> String {
     let skipped = w.skipped.iter().map(|s| format!("{}: {}", s.id, s.why));
-    let all: Vec<String> = w.warnings.iter().cloned().chain(skipped).take(3).collect();
+    let all: Vec<String> = w.warnings.iter().map(ToString::to_string).chain(skipped).take(3).collect();
     if all.is_empty() { String::new() } else { format!(" ({})", all.join("; ")) }
 }

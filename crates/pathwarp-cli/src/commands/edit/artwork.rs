@@ -1,0 +1,156 @@
+//! A drawing that is bent again and again: what stays the same between two pictures is computed once.
+
+use crate::advice::Flags;
+use crate::failure::Failure;
+use crate::input::{Artwork as _, Baseline, SvgArtwork, WarpRequest, WarpedResult};
+use crate::options::{CommonOptions, Given};
+use crate::{pipeline, recipe_file, references};
+use pathwarp::Outline;
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::param::Frame;
+use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp_editor::{Artwork, Bent, Fineness, Summary};
+use pathwarp_svg::Document;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A drawing in the editor.
+pub(super) struct EditedArtwork {
+    svg: SvgArtwork,
+    registry: Arc<Registry>,
+    given: Given,
+    options: CommonOptions,
+    flags: Arc<Flags>,
+    /// The frame for the guides and the baseline of the last picture.
+    framed: Option<Framed>,
+}
+
+#[derive(Clone)]
+struct Framed {
+    guides: Vec<String>,
+    baseline: Baseline,
+    bounds: Option<Rect>,
+    frame: Frame,
+}
+
+/// A recipe that is ready to be used.
+struct Ready {
+    resolved: Recipe,
+    built: BuiltRecipe,
+    bounds: Option<Rect>,
+    tolerance: f64,
+}
+
+impl EditedArtwork {
+    pub(super) fn new(
+        svg: SvgArtwork,
+        registry: &Arc<Registry>,
+        given: Given,
+        options: CommonOptions,
+        flags: &Arc<Flags>,
+    ) -> Self {
+        Self { svg, registry: Arc::clone(registry), given, options, flags: Arc::clone(flags), framed: None }
+    }
+
+    /// Looks up references, chooses the frame and builds the steps.
+    fn ready(&mut self, recipe: &Recipe) -> Result<Ready, Failure> {
+        self.svg.renew_budget();
+        let mut resolved = recipe.clone();
+        references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
+        let guides = references::resolve_names(&self.registry, &mut resolved, |name| self.svg.path_named(name))?;
+        let Framed { bounds, frame, .. } = self.framed(guides, pipeline::first_baseline(&self.registry, &resolved))?;
+        let tolerance = self.options.tolerance_for(bounds, &frame)?;
+        let outlines = self.svg.outlines();
+        let built = resolved
+            .build_within(&self.registry, frame, &outlines.iter().copied(), self.svg.budget())
+            .map_err(Failure::of_recipe)?;
+        sound(&built)?;
+        Ok(Ready { resolved, built, bounds, tolerance })
+    }
+
+    fn framed(&mut self, guides: Vec<String>, baseline: Baseline) -> Result<Framed, Failure> {
+        if let Some(framed) = self.framed.as_ref().filter(|f| f.guides == guides && f.baseline == baseline) {
+            return Ok(framed.clone());
+        }
+        self.svg.remove_guides(guides.clone());
+        let bounds = self.svg.bounding_box();
+        let frame = self.svg.frame(self.options.frame, bounds, baseline)?;
+        let frame = frame.with_units_per_px(self.svg.units_per_px());
+        let framed = Framed { guides, baseline, bounds, frame };
+        self.framed = Some(framed.clone());
+        Ok(framed)
+    }
+
+    fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
+        let Ready { resolved, built, bounds, tolerance } = self.ready(recipe)?;
+        let text = || recipe_file::write(&*self.registry, recipe, &self.given, Path::new(""));
+        let embedded_recipe = (fineness == Fineness::Saved).then(text).transpose()?;
+        let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
+        let request = WarpRequest { built: &built, options: &self.options, bounds, tolerance, embedded_recipe };
+        if let Fineness::Draft(_) = fineness {
+            let svg = self.svg.draft(&request);
+            sound(&built)?;
+            let svg = svg?;
+            return Ok(Bent { svg, resolved, built, summary: None, warnings: Vec::new() });
+        }
+        let warped = self.svg.warp(&request);
+        sound(&built)?;
+        let warped = warped.map_err(|f| pipeline::explained(f, &built))?;
+        let WarpedResult::Bytes(bytes) = warped.result else {
+            return Err(Failure::Input("the result is not a drawing".into()));
+        };
+        let svg = String::from_utf8(bytes).map_err(|e| Failure::Input(e.to_string()))?;
+        let shapes = &warped.shapes;
+        let fold = |s: &crate::report::ReportedShape| s.folded_at.map(|[x, y]| (s.id.clone(), Point::new(x, y)));
+        let summary = Summary {
+            segments_in: shapes.iter().map(|s| s.segments_in).sum(),
+            segments_out: shapes.iter().map(|s| s.segments_out).sum(),
+            max_error: shapes.iter().map(|s| s.max_error).fold(0.0, f64::max),
+            tolerance,
+            folds: shapes.iter().filter_map(fold).collect(),
+        };
+        let own = built.steps.iter().flat_map(|s| &s.explanation.warnings);
+        let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
+        warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
+        Ok(Bent { svg, resolved, built, summary: Some(summary), warnings })
+    }
+
+    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+        result.map_err(|f| f.message(&self.flags))
+    }
+}
+
+/// The map of a plug-in may fail at any time. Nothing that was computed with it is used then.
+fn sound(built: &BuiltRecipe) -> Result<(), Failure> {
+    built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
+}
+
+impl Artwork for EditedArtwork {
+    fn document(&self) -> &Document {
+        self.svg.document()
+    }
+
+    fn frame(&self) -> Rect {
+        let known = self.framed.as_ref().map(|f| f.frame.rect);
+        known.or_else(|| self.svg.bounding_box()).unwrap_or_else(|| self.document().view_box())
+    }
+
+    fn outlines(&self) -> Vec<&Outline> {
+        self.svg.outlines()
+    }
+
+    fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
+        let bent = self.bent(recipe, fineness);
+        self.said(bent)
+    }
+
+    fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
+        let ready = self.ready(recipe);
+        self.said(ready).map(|r| (r.resolved, r.built))
+    }
+
+    fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
+        self.said(recipe_file::write(&*self.registry, recipe, &self.given, Path::new("")))
+    }
+}

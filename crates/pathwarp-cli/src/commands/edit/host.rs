@@ -1,0 +1,101 @@
+//! What the editor gets from the command line: reading, options, formats, safe writing.
+
+use super::artwork::EditedArtwork;
+use crate::advice::Flags;
+use crate::bitmap::encode;
+use crate::export;
+use crate::failure::Failure;
+use crate::format::{Choice, DRAWINGS, Format, PICTURES};
+use crate::input::{SvgArtwork, read_options};
+use crate::options::Given;
+use crate::output::PendingFile;
+use crate::recipe_file;
+use pathwarp::deform::Registry;
+use pathwarp::recipe::Recipe;
+use pathwarp_editor::{Host, Opened};
+use pathwarp_raster::{RenderOptions, Size};
+use pathwarp_svg::{Origin, ReadOptions, usvg_tree};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The width of pictures, in px: enough for a screen in full.
+const PICTURE_WIDTH: u32 = 2000;
+
+/// The command line around the editor.
+pub(super) struct EditorHost {
+    registry: Arc<Registry>,
+    /// The options as given.
+    given: Given,
+    flags: Arc<Flags>,
+}
+
+impl EditorHost {
+    pub(super) fn new(registry: Registry, given: Given) -> Self {
+        let flags = Arc::new(Flags::of(&registry));
+        Self { registry: Arc::new(registry), given, flags }
+    }
+
+    fn open_drawing(&self, file: &Path, bytes: &[u8]) -> Result<Opened, Failure> {
+        let reading = self.given.read()?.reading;
+        reading.check()?;
+        let origin = match std::str::from_utf8(bytes) {
+            Ok(text) => Origin::read_within(text, &reading.limits.for_input(bytes.len())).unwrap_or(None),
+            Err(_) => None,
+        };
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let (source, saved) = match &origin {
+            Some(origin) => {
+                let saved = recipe_file::from_text(&*self.registry, &origin.recipe, folder, reading.external);
+                (origin.source.as_slice(), Some(saved.map_err(|e| Failure::file(file, e))?))
+            }
+            None => (bytes, None),
+        };
+        let is_result = saved.is_some();
+        let (recipe, given) = match saved {
+            Some(saved) => (saved.recipe, saved.options.overridden_by(&self.given)),
+            None => (Recipe::default(), self.given.clone()),
+        };
+        let options = given.read()?;
+        let svg = SvgArtwork::read(source, file, &options, None)?;
+        let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags);
+        Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
+    }
+
+    fn converted(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), Failure> {
+        let options = self.given.read()?;
+        let among: Vec<Format> = DRAWINGS.iter().chain(PICTURES).copied().collect();
+        let format = Choice { what: "a drawing is", among: &among }.format(Some(to), None)?;
+        let read = read_options(to, &options.reading);
+        if format.of_picture(None).is_none() {
+            let exported = export::drawing(svg, format, &read, &options, None)?;
+            return Ok((exported.bytes, exported.warnings));
+        }
+        let tree = usvg_tree::parse_tree(svg.as_bytes(), "the result", &ReadOptions::default())?;
+        let limits = options.reading.limits.for_input(svg.len());
+        let drawn =
+            RenderOptions { size: Size::Width(PICTURE_WIDTH), background: None }.render_within(&tree, &limits)?;
+        Ok((encode(drawn, format, None)?, Vec::new()))
+    }
+
+    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+        result.map_err(|f| f.message(&self.flags))
+    }
+}
+
+impl Host for EditorHost {
+    fn registry(&self) -> &Registry {
+        &self.registry
+    }
+
+    fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {
+        self.said(self.open_drawing(file, bytes))
+    }
+
+    fn export(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), String> {
+        self.said(self.converted(svg, to))
+    }
+
+    fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {
+        self.said(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
+    }
+}

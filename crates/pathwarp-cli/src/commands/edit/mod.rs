@@ -1,0 +1,63 @@
+//! `pathwarp edit FILE`: bends a drawing by hand in the browser.
+
+mod artwork;
+mod host;
+
+use super::file_args;
+use crate::failure::Failure;
+use crate::options::{self, Given};
+use crate::output;
+use crate::status::Status;
+use crate::temporaries;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use host::EditorHost;
+use pathwarp::deform::Registry;
+use pathwarp_editor::Options;
+use std::sync::Arc;
+
+pub(super) const NAME: &str = "edit";
+
+/// The exit code after Ctrl-C: a shell's for SIGINT.
+const INTERRUPTED: i32 = 130;
+
+pub(super) fn command() -> Command {
+    Command::new(NAME)
+        .about("Bend a drawing by hand in the browser, and see it while you drag")
+        .arg(file_args::file("FILE", "An SVG file, or a result of this command, to go on with it"))
+        .arg(file_args::out("OUT", "Save to this file; without it, the page offers a name beside the drawing"))
+        .arg(
+            Arg::new("port")
+                .long("port")
+                .value_name("N")
+                .value_parser(value_parser!(u16).range(1..))
+                .help("Listen on this port of 127.0.0.1 [default: a free one]"),
+        )
+        .arg(Arg::new("no-open").long("no-open").action(ArgAction::SetTrue).help("Only print the page's address"))
+        .args(options::reading_args())
+        .after_help(
+            "The first line on standard output is the address of the page. Only this computer can open it, and only with the token \
+             in the address. The program ends when the page is closed, or with Ctrl-C. Steps that are not saved yet are kept in \
+             a hidden file beside the drawing and are there again next time.\n\nExamples:\n  pathwarp edit logo.svg\n  pathwarp edit \
+             logo.svg -o flag.svg   # Save writes flag.svg\n  pathwarp edit flag.svg         # goes on: the source and the steps are in \
+             the file\n  pathwarp edit logo.svg --no-open --port 8000",
+        )
+}
+
+pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
+    let file = file_args::given(m, "FILE")?;
+    if output::is_stdout(file) {
+        return Err(Failure::usage("edit needs a file: its results are saved beside it"));
+    }
+    let options = Options {
+        file: file.to_owned(),
+        out: file_args::target(m, [file])?.map(ToOwned::to_owned),
+        port: m.get_one::<u16>("port").copied(),
+        open: !m.get_flag("no-open"),
+    };
+    // Ctrl-C is the usual end of this command, so it needs no message.
+    let _ = ctrlc::set_handler(|| temporaries::remove_all_and(|| std::process::exit(INTERRUPTED)));
+    let host = Arc::new(EditorHost::new(registry.clone(), Given::options(m)));
+    let announce = |address: &str| drop(output::to_stdout(format!("{address}\n").as_bytes()));
+    pathwarp_editor::serve(host, &options, announce).map_err(Failure::Input)?;
+    Ok(Status::Complete)
+}

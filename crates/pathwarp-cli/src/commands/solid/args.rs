@@ -1,0 +1,102 @@
+//! Arguments that the subcommands of `solid` share.
+
+use crate::failure::Failure;
+use crate::options::{INPUT, some_options};
+use crate::units::MM_PER_PX;
+use clap::{Arg, ArgMatches, value_parser};
+use pathwarp::kurbo::Rect;
+use pathwarp::param::{Axis, Frame, Length, LengthUnit};
+use pathwarp_solid::Box3;
+use pathwarp_solid::glam::DVec3;
+use std::path::PathBuf;
+
+/// The common options that make sense for solids.
+const SHARED: &[&str] =
+    &["out", "precision", "report", "write-recipe", "preview", "explain", "jobs", "limit", "allow-external", "quiet"];
+
+/// The common options.
+pub(super) fn options() -> Vec<Arg> {
+    some_options(SHARED).map(|a| a.help_heading("Common options")).collect()
+}
+
+/// The model, the common options and the box.
+pub(super) fn all() -> Vec<Arg> {
+    let model = Arg::new(INPUT)
+        .num_args(0..=1)
+        .value_name("MODEL")
+        .value_parser(value_parser!(PathBuf))
+        .help("The model: an OBJ or STL file, or the filled shapes of an SVG file; - or none reads standard input");
+    let own = |name: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name(value).help_heading("Common options").help(help)
+    };
+    let refine = own(
+        "refine",
+        "D",
+        "Subdivide faces until the deformed surface is within D of the exact one: units of the model, or a length such as 0.05mm; \
+         without it, vertices move and edges stay straight",
+    );
+    let extrude = own(
+        "extrude",
+        "DEPTH",
+        "Make a drawing's filled shapes a solid of this depth, such as 5mm; without it they are flat",
+    );
+    std::iter::once(model).chain(options()).chain([frame_arg(), refine, extrude]).collect()
+}
+
+/// The options that only solids have.
+pub(super) struct Own {
+    /// The box that percentages refer to, if it is not the model's.
+    pub(super) frame: Option<Box3>,
+    /// The largest distance between the deformed surface and the exact one.
+    pub(super) refine: Option<Length>,
+    /// Millimetres by which a drawing is extruded.
+    pub(super) depth: Option<f64>,
+}
+
+impl Own {
+    /// Reads them from a command line.
+    pub(super) fn read(m: &ArgMatches) -> Result<Self, Failure> {
+        let depth = length(m, "extrude")?
+            .map(|l| l.in_units(Axis::X, &Frame::new(Rect::ZERO).with_units_per_px([MM_PER_PX; 2])));
+        Ok(Self { frame: frame(m)?, refine: length(m, "refine")?, depth })
+    }
+}
+
+/// The positive length given for an option.
+fn length(m: &ArgMatches, option: &str) -> Result<Option<Length>, Failure> {
+    let Some(text) = m.get_one::<String>(option) else { return Ok(None) };
+    let wrong = |problem: String| Failure::usage(format!("--{option}: `{text}` {problem}"));
+    let length: Length = text.parse().map_err(|e| wrong(format!("{e}")))?;
+    if length.value > 0.0 && length.unit != LengthUnit::Percent {
+        Ok(Some(length))
+    } else {
+        Err(wrong("is not a positive length".into()))
+    }
+}
+
+/// `--box`.
+pub(super) fn frame_arg() -> Arg {
+    Arg::new("box")
+        .long("box")
+        .value_name("X,Y,Z,W,H,D")
+        .allow_hyphen_values(true)
+        .help_heading("Common options")
+        .help("Box that percentages and defaults refer to [default: the model's box]")
+}
+
+/// The box given by `--box`.
+pub(super) fn frame(m: &ArgMatches) -> Result<Option<Box3>, Failure> {
+    let Some(text) = m.get_one::<String>("box") else { return Ok(None) };
+    let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z, w, h, d]
+            if [w, h, d].iter().all(|v| *v > 0.0)
+                && numbers.iter().all(|v| v.is_finite())
+                && text.split(',').count() == 6 =>
+        {
+            let min = DVec3::new(x, y, z);
+            Ok(Some(Box3 { min, max: min + DVec3::new(w, h, d) }))
+        }
+        _ => Err(Failure::usage(format!("--box: `{text}` is not X,Y,Z,W,H,D with positive W, H and D"))),
+    }
+}

@@ -1,0 +1,113 @@
+//! Sorts the selection into guides and artwork.
+
+use super::call::Call;
+use super::names::{AUTOMATIC, GUIDES};
+use super::words::word;
+use crate::failure::Failure;
+use pathwarp::deform::Info;
+use pathwarp::param::{Kind, Param};
+use pathwarp_svg::objects::Object;
+use std::collections::HashSet;
+
+/// Labels that stand for the first guide of any deformation.
+const LABELS: [&str; 3] = ["cage", "skeleton", "guide"];
+
+/// The selection, sorted.
+pub(super) struct Sorted {
+    /// The parameters that guides are the values of, with the guides' ids.
+    pub(super) guides: Vec<(&'static str, String)>,
+    /// The objects to be warped. They hold no guide.
+    pub(super) artwork: Vec<String>,
+}
+
+impl Sorted {
+    /// The words of a command line that name the guides.
+    pub(super) fn words(&self) -> impl Iterator<Item = String> {
+        self.guides.iter().map(|(param, id)| word(param, &format!("#{id}")))
+    }
+}
+
+/// Sorts the selection of a call. `given` are the words for the deformation's parameters as the dialog gives them.
+pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[String]) -> Result<Sorted, Failure> {
+    let is_given =
+        |p: &Param| given.iter().any(|w| w.strip_prefix("--").and_then(|w| w.split('=').next()) == Some(p.name));
+    let open: Vec<&Param> = info.params.iter().filter(|p| p.kind == Kind::Path && !is_given(p)).collect();
+    let selected: Vec<&Object> = objects.iter().filter(|o| call.ids.contains(&o.id)).collect();
+    let everything = || objects.iter().filter(|o| o.is_top && !o.is_locked).collect();
+    let artwork: Vec<&Object> = if call.ids.is_empty() { everything() } else { selected.clone() };
+
+    let mut guides = labelled(info, &open, objects, &selected);
+    let wanted = match call.value(GUIDES) {
+        None | Some(AUTOMATIC) => None,
+        Some(n) => Some(n.parse::<usize>().map_err(|_| Failure::usage(format!("`{n}` is no number of guides")))?),
+    };
+    // A path, a file or points in the dialog take the place of guides.
+    let otherwise = || info.params.iter().any(|p| is_alternative(p) && is_given(p));
+    let count = wanted.unwrap_or(if guides.is_empty() && !otherwise() { info.guides.usual } else { 0 });
+    let inside = |o: &&Object| call.ids.is_empty() && !o.is_locked || call.ids.contains(&o.id);
+    let mut paths: Vec<&Object> = objects.iter().filter(|o| o.is_path && inside(o)).collect();
+    paths.retain(|o| !guides.iter().any(|(_, id)| *id == o.id));
+    // Something must be left to warp.
+    let spare = if call.ids.is_empty() { paths.len() } else { artwork.len() }.saturating_sub(1);
+    let count = count.min(paths.len()).min(spare);
+    if wanted.is_some() || count >= info.guides.usual {
+        let topmost = paths.iter().rev().take(count);
+        let free = info.guides.params.iter().filter(|name| open.iter().any(|p| p.name == **name));
+        let free: Vec<&'static str> = free.filter(|name| !guides.iter().any(|(p, _)| p == *name)).copied().collect();
+        guides.extend(free.into_iter().zip(topmost.map(|o| o.id.clone())));
+    }
+    if let Some(p) = open.iter().find(|p| p.needed && !guides.iter().any(|(name, _)| *name == p.name)) {
+        return Err(missing(p, call));
+    }
+    let ids: HashSet<&str> = guides.iter().map(|(_, id)| id.as_str()).collect();
+    let artwork = without(objects, artwork.iter().map(|o| o.id.as_str()), &ids);
+    if artwork.is_empty() {
+        return Err(Failure::usage("there is no artwork beside the guides; select that, too"));
+    }
+    Ok(Sorted { guides, artwork })
+}
+
+/// The paths whose label or id is a parameter's name, or, for the first guide, one of the general labels. Selected ones go first.
+fn labelled(info: &Info, open: &[&Param], objects: &[Object], selected: &[&Object]) -> Vec<(&'static str, String)> {
+    let first = info.guides.params.first();
+    let called = |o: &Object, p: &Param| {
+        let is = |name: &str| o.label.as_deref().is_some_and(|l| l.eq_ignore_ascii_case(name)) || o.id == name;
+        is(p.name) || first == Some(&p.name) && LABELS.iter().any(|l| is(l))
+    };
+    let find = |p: &&Param| {
+        let mut all = selected.iter().rev().copied().chain(objects.iter().rev());
+        Some((p.name, all.find(|o| o.is_path && called(o, p))?.id.clone()))
+    };
+    open.iter().filter_map(find).collect()
+}
+
+/// Returns `true` for a parameter without a default that says where things are.
+fn is_alternative(p: &Param) -> bool {
+    p.default.is_none() && (p.repeat || matches!(p.kind, Kind::Path | Kind::File | Kind::Point | Kind::Numbers(_)))
+}
+
+fn missing(p: &Param, call: &Call) -> Failure {
+    let what =
+        if call.ids.is_empty() { "put it above the artwork" } else { "select it together with the artwork, above it" };
+    let name = p.name;
+    let help = p.help.split(". ").next().unwrap_or(p.help).trim_end_matches('.');
+    Failure::usage(format!("this effect needs a path, --{name} ({help}): {what}, or label it `{name}`"))
+}
+
+/// Objects without those that are guides; an object around a guide is replaced by what it holds beside it.
+fn without<'a>(objects: &'a [Object], ids: impl Iterator<Item = &'a str>, guides: &HashSet<&str>) -> Vec<String> {
+    let mut out = Vec::new();
+    for id in ids {
+        if guides.contains(id) {
+            continue;
+        }
+        let holds = |g: &str| objects.iter().any(|o| o.id == g && o.inside.iter().any(|i| i == id));
+        if guides.iter().any(|g| holds(g)) {
+            let children = objects.iter().filter(|o| o.inside.first().is_some_and(|p| p == id));
+            out.extend(without(objects, children.map(|o| o.id.as_str()), guides));
+        } else {
+            out.push(id.to_owned());
+        }
+    }
+    out
+}

@@ -1,0 +1,160 @@
+//! Runs the words of a command line on a drawing in memory, by way of temporary files.
+
+use super::call::Call;
+use super::inx::labelled;
+use super::names::WARNINGS;
+use crate::advice::Flags;
+use crate::failure::Failure;
+use crate::input;
+use crate::status::Status;
+use crate::temporaries::Temporary;
+use crate::terminal;
+use pathwarp::budget::Limits;
+use pathwarp::deform::Registry;
+use serde::Deserialize;
+use std::ffi::OsString;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Runs a command line.
+pub(super) type Dispatch = fn(&Registry, &[OsString]) -> Result<Status, Failure>;
+
+/// What a call needs to run command lines.
+pub(super) struct Stage<'a> {
+    pub(super) registry: &'a Registry,
+    pub(super) dispatch: Dispatch,
+    pub(super) call: &'a Call,
+}
+
+/// The elements that a command line is to warp.
+pub(super) struct Scope<'a> {
+    /// Ids; empty for the whole page.
+    pub(super) ids: &'a [String],
+}
+
+/// The result of a command line.
+pub(super) struct Outcome {
+    pub(super) svg: String,
+    /// x, y, width and height of the frame.
+    pub(super) frame: Option<[f64; 4]>,
+    /// The height of the lettering's baseline, if the frame has one.
+    pub(super) baseline: Option<f64>,
+    /// Warnings, and what was not warped.
+    pub(super) remarks: Vec<String>,
+    /// Something was left out.
+    pub(super) partial: bool,
+}
+
+/// The part of a report that is of use here.
+#[derive(Deserialize)]
+struct Report {
+    inputs: Vec<Input>,
+}
+
+#[derive(Deserialize)]
+struct Input {
+    #[serde(default)]
+    frame: Option<[f64; 4]>,
+    #[serde(default)]
+    baseline: Option<f64>,
+    warnings: Vec<String>,
+    skipped: Vec<Skipped>,
+}
+
+#[derive(Deserialize)]
+struct Skipped {
+    id: String,
+    why: String,
+}
+
+impl Stage<'_> {
+    /// The drawing as Inkscape passes it.
+    pub(super) fn drawing(&self) -> Result<String, Failure> {
+        let bytes = input::bytes(&self.call.file)?;
+        String::from_utf8(bytes).map_err(|_| Failure::file(&self.call.file, "is not UTF-8 text"))
+    }
+
+    /// The limits on work; Inkscape has read the drawing already.
+    pub(super) fn limits(&self) -> Limits {
+        Limits::default()
+    }
+
+    /// Warps a part of a drawing by a recipe, given as words.
+    pub(super) fn warp(&self, svg: &str, words: &[String], scope: &Scope<'_>) -> Result<Outcome, Failure> {
+        let source = temporary(svg.as_bytes())?;
+        let (result, report) = (temporary(b"")?, temporary(b"")?);
+        let (name, rest) = words.split_first().ok_or_else(|| Failure::usage("the recipe is empty"))?;
+        let mut all: Vec<OsString> = vec!["pathwarp".into(), name.into(), source.path().into()];
+        all.extend(["--quiet", "--format=svg", "--out"].map(OsString::from));
+        all.push(result.path().into());
+        all.extend(["--report".into(), report.path().into()]);
+        if let Some(folder) = folder() {
+            all.extend(["--base-dir".into(), folder.into()]);
+        }
+        all.extend(scope.ids.iter().map(|id| format!("--select=[id={id}]").into()));
+        all.extend(rest.iter().map(OsString::from));
+        let status = (self.dispatch)(self.registry, &all).map_err(|f| self.without_file(&f, source.path()))?;
+        let svg = text(result.path())?;
+        let report: Report =
+            serde_json::from_str(&text(report.path())?).map_err(|e| Failure::Input(format!("the report: {e}")))?;
+        let mut outcome =
+            Outcome { svg, frame: None, baseline: None, remarks: Vec::new(), partial: status == Status::Partial };
+        for input in report.inputs {
+            outcome.frame = input.frame;
+            outcome.baseline = input.baseline;
+            outcome.remarks.extend(input.warnings);
+            outcome.remarks.extend(input.skipped.into_iter().map(|s| format!("{} is not warped: {}", s.id, s.why)));
+        }
+        Ok(outcome)
+    }
+
+    /// Reports what was left out: as an error if nothing else happened, else if the user wants to see it.
+    pub(super) fn check(&self, before: &str, outcome: &Outcome) -> Result<(), Failure> {
+        if outcome.partial && outcome.svg == before {
+            return Err(Failure::Geometry(outcome.remarks.join("\n")));
+        }
+        if self.call.is_on(WARNINGS) {
+            outcome.remarks.iter().for_each(|r| terminal::warning(&labelled(r)));
+        }
+        Ok(())
+    }
+
+    /// The failure without the name of a temporary file.
+    pub(super) fn without_file(&self, failure: &Failure, file: &Path) -> Failure {
+        let file = file.display().to_string();
+        let message = failure.message(&Flags::of(self.registry));
+        Failure::Input(message.replace(&format!("{file}: "), "").replace(&file, "the drawing"))
+    }
+
+    /// Converts the file to another format on standard output.
+    pub(super) fn convert(&self, format: &str) -> Result<Status, Failure> {
+        let mut all: Vec<OsString> = ["pathwarp", "convert"].map(OsString::from).into();
+        all.push(self.call.file.clone().into());
+        all.push(format!("--format={format}").into());
+        if !self.call.is_on(WARNINGS) {
+            all.push("--quiet".into());
+        }
+        let own = self.call.values.iter().filter(|(n, v)| n != WARNINGS && !v.is_empty());
+        all.extend(own.map(|(n, v)| format!("--{n}={v}").into()));
+        (self.dispatch)(self.registry, &all)
+    }
+}
+
+/// A temporary file with this content.
+pub(super) fn temporary(content: &[u8]) -> Result<Temporary, Failure> {
+    let folder = std::env::temp_dir();
+    let failed = |e: std::io::Error| Failure::output(&folder, format!("a temporary file cannot be written: {e}"));
+    let (temporary, mut file) = Temporary::create_in(&folder).map_err(failed)?;
+    file.write_all(content).map_err(failed)?;
+    Ok(temporary)
+}
+
+fn text(file: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(file).map_err(|e| Failure::file(file, format!("cannot be read: {e}")))
+}
+
+/// The folder of the drawing on the screen, which linked pictures are relative to.
+fn folder() -> Option<PathBuf> {
+    let path = PathBuf::from(std::env::var_os("DOCUMENT_PATH").filter(|p| !p.is_empty())?);
+    path.parent().filter(|p| p.is_dir()).map(Path::to_path_buf)
+}

@@ -1,0 +1,173 @@
+//! Plug-ins that are programs: those of the user's folder and those named by `--plugin`, added to the registry.
+
+use crate::failure::Failure;
+use crate::options::OPTIONS;
+use crate::steps::INVERSE;
+use crate::temporaries;
+use pathwarp::deform::{Deformation, Registry};
+use pathwarp_plugin::{Broken, Plugin, Reserved};
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+/// The option that names a plug-in's file.
+pub(crate) const OPTION: &str = "plugin";
+
+/// Commands for which no plug-in of the folder matters.
+const WITHOUT: [&str; 8] = ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
+
+/// Names of arguments that a deformation's parameter cannot have, besides the common options.
+const ARGUMENTS: [&str; 7] = [INVERSE, OPTION, "help", "version", "points", "jacobian", "INPUT"];
+
+/// The plug-ins of a run.
+#[derive(Default)]
+pub(crate) struct Plugins {
+    plugins: Vec<Plugin>,
+    pub(crate) broken: Vec<Broken>,
+}
+
+impl Plugins {
+    /// The registry with the plug-ins.
+    pub(crate) fn added_to(&self, registry: &Registry) -> Registry {
+        self.plugins.iter().fold(registry.clone(), |all, p| all.with(p.clone()))
+    }
+
+    /// The plug-in called `name`.
+    pub(crate) fn get(&self, name: &str) -> Option<&Plugin> {
+        self.plugins.iter().find(|p| p.info().name == name)
+    }
+
+    /// The plug-in whose file was named last.
+    pub(crate) fn last_given(&self) -> Option<&Plugin> {
+        self.plugins.last()
+    }
+
+    /// The file of the plug-in called `name`.
+    pub(crate) fn file(&self, name: &str) -> Option<String> {
+        self.get(name).map(|p| p.path().display().to_string())
+    }
+}
+
+/// Takes `--plugin FILE` out of the arguments, and loads the plug-ins that the rest may need. `commands` are the names that
+/// deformations cannot have.
+pub(crate) fn load(
+    registry: &Registry,
+    args: &[OsString],
+    commands: &[&str],
+) -> Result<(Vec<OsString>, Plugins), Failure> {
+    let (args, files) = split(args)?;
+    let mut names: Vec<&str> = registry.entries().iter().map(|e| e.info().name).collect();
+    names.extend(commands);
+    names.push("help");
+    let parameters: Vec<&str> = OPTIONS.iter().map(|o| o.name).chain(ARGUMENTS).collect();
+    let reserved = Reserved { names: &names, parameters: &parameters };
+    let mut plugins = Plugins::default();
+    let wanted = need_installed(registry, &args);
+    if wanted || !files.is_empty() {
+        // From here on programs run, which an interruption must end.
+        temporaries::on_interruption_remove_all();
+    }
+    if wanted {
+        let afresh = args.get(2).filter(|_| args.get(1).is_some_and(|a| a == "check")).and_then(|n| n.to_str());
+        let found = pathwarp_plugin::installed(reserved, afresh);
+        (plugins.plugins, plugins.broken) = (found.plugins, found.broken);
+    }
+    for file in &files {
+        plugins.add(file, reserved)?;
+    }
+    // `check FILE` needs no `--plugin`.
+    let checked = args.get(2).map(Path::new).filter(|_| args.get(1).is_some_and(|a| a == "check"));
+    if let Some(file) = checked.filter(|f| is_file_name(f)) {
+        plugins.add(file, reserved)?;
+    }
+    Ok((args, plugins))
+}
+
+/// Returns `true` if a word names a file and not a deformation.
+pub(crate) fn is_file_name(word: &Path) -> bool {
+    word.components().count() > 1 || word.extension().is_some() || word.is_absolute()
+}
+
+impl Plugins {
+    /// Adds the plug-in in `file`, which takes the place of one of the same name.
+    fn add(&mut self, file: &Path, reserved: Reserved<'_>) -> Result<(), Failure> {
+        let plugin = pathwarp_plugin::by_file(file, reserved).map_err(|fault| Failure::from(fault.of(file)))?;
+        self.plugins.retain(|p| p.info().name != plugin.info().name);
+        self.broken.retain(|b| b.name != plugin.info().name);
+        self.plugins.push(plugin);
+        Ok(())
+    }
+}
+
+/// The arguments without `--plugin FILE`, and the files.
+fn split(args: &[OsString]) -> Result<(Vec<OsString>, Vec<PathBuf>), Failure> {
+    let (mut rest, mut files) = (Vec::with_capacity(args.len()), Vec::new());
+    let mut words = args.iter();
+    while let Some(word) = words.next() {
+        if word == "--" {
+            rest.push(word.clone());
+            rest.extend(words.by_ref().cloned());
+        } else if word == "--plugin" {
+            let file = words.next().ok_or_else(|| Failure::usage("--plugin needs the file of a plug-in"))?;
+            files.push(file.into());
+        } else if let Some(file) = word.to_str().and_then(|w| w.strip_prefix("--plugin=")) {
+            files.push(file.into());
+        } else {
+            rest.push(word.clone());
+        }
+    }
+    Ok((rest, files))
+}
+
+/// Returns `true` if the arguments may name a deformation that is not built in, or list all.
+fn need_installed(registry: &Registry, args: &[OsString]) -> bool {
+    let known = |word: &OsStr| word.to_str().is_some_and(|w| registry.get(w).is_some());
+    match args.get(1) {
+        None => false,
+        // A dialog for each.
+        Some(word) if word == "install" => args.get(2).is_some_and(|what| what == "inkscape"),
+        Some(word) if WITHOUT.iter().any(|w| *w == word.as_os_str()) => false,
+        // A chain of built-in deformations.
+        Some(word) if known(word) => args.windows(2).any(|w| w[0] == "+" && !known(&w[1])),
+        Some(word) => !word.to_string_lossy().starts_with('-') || word == "--help" || word == "-h",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(line: &str) -> Vec<OsString> {
+        line.split(' ').map(Into::into).collect()
+    }
+
+    #[test]
+    fn plug_ins_are_taken_out_of_the_arguments() {
+        let (rest, files) = split(&words("pathwarp a --plugin x.py b --plugin=y -- --plugin z")).unwrap();
+        assert_eq!(rest, words("pathwarp a b -- --plugin z"));
+        assert_eq!(files, [Path::new("x.py"), Path::new("y")]);
+        assert!(split(&words("pathwarp --plugin")).is_err());
+    }
+
+    #[test]
+    fn commands_without_plug_ins_do_not_look_for_them() {
+        let registry = Registry::builtin();
+        let need = |line: &str| need_installed(&registry, &words(line));
+        for line in [
+            "pathwarp shaper a.svg",
+            "pathwarp shaper a.svg + wave --height 3",
+            "pathwarp render a.svg",
+            "pathwarp install gimp",
+        ] {
+            assert!(!need(line), "{line}");
+        }
+        for line in [
+            "pathwarp list",
+            "pathwarp ripple a.svg",
+            "pathwarp install inkscape",
+            "pathwarp shaper a.svg + ripple",
+            "pathwarp run a.toml",
+        ] {
+            assert!(need(line), "{line}");
+        }
+    }
+}

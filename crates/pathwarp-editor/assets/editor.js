@@ -1,0 +1,1979 @@
+"use strict";
+(() => {
+  // src/connection.ts
+  var RETRY = 700;
+  var Refused = class extends Error {
+  };
+  var Gone = class extends Error {
+  };
+  var Connection = class {
+    constructor(onOpen, onGone, onEvent) {
+      this.onOpen = onOpen;
+      this.onGone = onGone;
+      this.onEvent = onEvent;
+      this.connect();
+    }
+    onOpen;
+    onGone;
+    onEvent;
+    socket = null;
+    waiting = /* @__PURE__ */ new Map();
+    next = 1;
+    connect() {
+      const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
+      socket.onopen = () => {
+        this.socket = socket;
+        this.onOpen();
+      };
+      socket.onmessage = (message) => this.take(JSON.parse(message.data));
+      socket.onclose = () => {
+        this.socket = null;
+        for (const { reject } of this.waiting.values()) reject(new Gone("pathwarp has ended"));
+        this.waiting.clear();
+        this.onGone();
+        setTimeout(() => this.connect(), RETRY);
+      };
+    }
+    take(answer) {
+      if (answer.id === void 0) return this.onEvent(answer);
+      const waiting = this.waiting.get(answer.id);
+      this.waiting.delete(answer.id);
+      if (answer.error === void 0) waiting?.resolve(answer);
+      else waiting?.reject(new Refused(answer.error));
+    }
+    /** Sends a request. */
+    ask(request) {
+      const { socket } = this;
+      if (!socket) return Promise.reject(new Gone("pathwarp has ended"));
+      const id = this.next++;
+      return new Promise((resolve, reject) => {
+        this.waiting.set(id, { resolve, reject });
+        socket.send(JSON.stringify({ ...request, id }));
+      });
+    }
+  };
+
+  // src/values.ts
+  var FIGURES = 7;
+  function short(value) {
+    return String(Number(value.toPrecision(FIGURES)));
+  }
+  function percent(value) {
+    return `${Number(value.toFixed(4))}%`;
+  }
+  function point([x, y], [left, top, width, height]) {
+    if (width <= 0 || height <= 0) return `${short(x)},${short(y)}`;
+    return `${percent(100 * (x - left) / width)},${percent(100 * (y - top) / height)}`;
+  }
+  function length(value, axis, [, , width, height]) {
+    const whole = axis === "x" ? width : axis === "y" ? height : Math.hypot(width, height);
+    return whole > 0 ? percent(100 * value / whole) : short(value);
+  }
+  function pathData(subpaths) {
+    return subpaths.map(({ start, segments, closed }) => {
+      const body = segments.map((seg) => (seg.length === 2 ? "L" : "C") + pairs(seg));
+      return `M${pairs(start)} ${body.join(" ")}${closed ? " Z" : ""}`;
+    }).join(" ");
+  }
+  function pairs(numbers) {
+    const out = [];
+    for (let i = 0; i + 1 < numbers.length; i += 2) out.push(`${short(numbers[i])},${short(numbers[i + 1])}`);
+    return out.join(" ");
+  }
+  function valuesOf(param, grip, frame, before2) {
+    if (grip.point) return [point(grip.point, frame)];
+    if (grip.points) return grip.points.map((p) => point(p, frame));
+    if (grip.pairs) return grip.pairs.map(([a, b]) => `${point(a, frame)}:${point(b, frame)}`);
+    if (grip.paths) return grip.paths.map((path) => isPolygon(path) ? corners(path[0], frame) : pathData(path));
+    return param.repeat || before2.length > 0 ? before2 : [];
+  }
+  function isPolygon(path) {
+    return path.length === 1 && !path[0].closed && path[0].segments.every((seg) => seg.length === 2);
+  }
+  function corners({ start, segments }, frame) {
+    return [start, ...segments].map((p) => point([p[0], p[1]], frame)).join(" ");
+  }
+  function node(name, at, frame) {
+    return `${name}:${point(at, frame)}`;
+  }
+
+  // src/dom.ts
+  var SVG = "http://www.w3.org/2000/svg";
+  function fill(element, attributes, children) {
+    for (const [name, value] of Object.entries(attributes)) {
+      if (value === void 0 || value === false) continue;
+      if (typeof value === "function") element.addEventListener(name.slice(2), value);
+      else element.setAttribute(name, value === true ? "" : String(value));
+    }
+    for (const child of children) if (child) element.append(child);
+    return element;
+  }
+  function h(tag, attributes = {}, ...children) {
+    return fill(document.createElement(tag), attributes, children);
+  }
+  function s(tag, attributes = {}, ...children) {
+    return fill(document.createElementNS(SVG, tag), attributes, children);
+  }
+  function byId(id) {
+    const found = document.getElementById(id);
+    if (!found) throw new Error(`the page has no #${id}`);
+    return found;
+  }
+  var ICONS = {
+    undo: "M9 7 4.5 11.5 9 16M5 11.5h9a5 5 0 0 1 0 10h-3",
+    redo: "M15 7l4.5 4.5L15 16M19 11.5h-9a5 5 0 0 0 0 10h3",
+    plus: "M12 5v14M5 12h14",
+    minus: "M5 12h14",
+    fit: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
+    close: "M6 6l12 12M18 6 6 18",
+    up: "M12 19V6M6 11.5 12 5.5l6 6",
+    down: "M12 5v13M6 12.5l6 6 6-6",
+    eye: "M2.5 12S6 5.5 12 5.5 21.5 12 21.5 12 18 18.5 12 18.5 2.5 12 2.5 12ZM12 15a3 3 0 1 0 0-6 3 3 0 0 0 0 6Z",
+    reset: "M4.5 12a7.5 7.5 0 1 0 2.4-5.5M4 4.5v4h4"
+  };
+  function icon(name) {
+    return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] ?? "" }));
+  }
+  function called({ name, label }) {
+    return label ?? words(name);
+  }
+  function words(name) {
+    const text = name.replaceAll("-", " ").replace(/([a-z])([0-9])/g, "$1 $2");
+    return text.charAt(0).toUpperCase() + text.slice(1);
+  }
+
+  // src/handles.ts
+  var Handles = class {
+    constructor(deformation, step2, grips) {
+      this.deformation = deformation;
+      this.step = step2;
+      this.frame = grips.frame;
+      this.grips = structuredClone(grips.params);
+      this.collect();
+    }
+    deformation;
+    step;
+    handles = [];
+    grips;
+    /** Control points of nets that have been moved. */
+    moved = {};
+    frame;
+    collect() {
+      this.handles = [];
+      for (const { name } of this.deformation.params) {
+        const grip = this.grips[name];
+        if (!grip) continue;
+        if (grip.point) this.addPoint(name, grip);
+        grip.points?.forEach((_, i) => this.addOneOf(name, grip.points, i));
+        grip.pairs?.forEach((_, i) => this.addPair(name, grip.pairs, i));
+        grip.net?.points.forEach((_, i) => this.addNode(name, grip.net, i));
+        if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
+        if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
+        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, sub, `${i}.${j}`)));
+      }
+    }
+    addPoint(param, grip) {
+      this.handles.push({
+        key: param,
+        param,
+        shape: "node",
+        label: words(param),
+        group: param,
+        get: () => grip.point,
+        set: (to) => void (grip.point = to)
+      });
+    }
+    /** The amount by which a preset bends the artwork: pulled up or down from the middle, half a height being all of it. */
+    addBend(param, grip) {
+      const [x, y, w, h2] = this.frame;
+      const middle = [x + w / 2, y + h2 / 2];
+      this.handles.push({
+        key: param,
+        param,
+        shape: "node",
+        label: words(param),
+        group: param,
+        get: () => [middle[0], middle[1] - grip.value * h2 / 2],
+        set: (to) => void (grip.value = Math.max(-2, Math.min(2, 2 * (middle[1] - to[1]) / Math.max(h2, 1e-9))))
+      });
+    }
+    /** A radius about a centre: a handle on the circle. */
+    addRadius(param, grip) {
+      const centre = () => this.grips.center.point;
+      this.handles.push({
+        key: param,
+        param,
+        shape: "control",
+        label: words(param),
+        group: param,
+        get: () => [centre()[0] + grip.value, centre()[1]],
+        set: (to) => void (grip.value = Math.hypot(to[0] - centre()[0], to[1] - centre()[1]))
+      });
+    }
+    addOneOf(param, points, i) {
+      this.handles.push({
+        key: `${param}/${i}`,
+        param,
+        shape: "node",
+        label: `${words(param)} ${i + 1}`,
+        group: param,
+        get: () => points[i],
+        set: (to) => void (points[i] = to),
+        remove: () => {
+          points.splice(i, 1);
+          this.collect();
+        }
+      });
+    }
+    addPair(param, pairs2, i) {
+      const remove = () => {
+        pairs2.splice(i, 1);
+        this.collect();
+      };
+      const handle = (end, shape, label) => ({
+        key: `${param}/${i}/${end}`,
+        param,
+        shape,
+        label: `${words(param)} ${i + 1}, ${label}`,
+        group: `${param}/${end}`,
+        get: () => pairs2[i][end],
+        set: (to) => void (pairs2[i][end] = to),
+        remove
+      });
+      this.handles.push(handle(0, "source", "place in the artwork"), handle(1, "node", "where it goes"));
+    }
+    addNode(param, net, i) {
+      const label = `Control point ${net.names[i]}`;
+      this.handles.push({
+        key: `${param}/${i}`,
+        param,
+        shape: "node",
+        label,
+        group: param,
+        get: () => net.points[i],
+        set: (to) => {
+          net.points[i] = to;
+          (this.moved[param] ??= /* @__PURE__ */ new Set()).add(i);
+        }
+      });
+    }
+    /** The nodes and control points of a path. Nodes carry their control points along; the ends of a closed path are one node. */
+    addSubpath(param, path, sub, id) {
+      const { segments } = sub;
+      const end = (k) => {
+        const seg = segments[k];
+        return [seg[seg.length - 2], seg[seg.length - 1]];
+      };
+      const last = segments.length - 1;
+      const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(last), sub.start);
+      const nodes = joined ? segments.length : segments.length + 1;
+      const before2 = (n) => n > 0 ? segments[n - 1] : joined ? segments[last] : void 0;
+      const after = (n) => segments[n];
+      const at = (n) => n === 0 ? sub.start : end(n - 1);
+      const name = param === this.deformation.name ? called(this.deformation) : words(param);
+      for (let n = 0; n < nodes; n++) {
+        const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
+        const key = `${param}/${id}/${n}`;
+        this.handles.push({
+          key,
+          param,
+          shape: "node",
+          label,
+          group: `${param}/${id}`,
+          get: () => at(n),
+          set: (to) => {
+            const from = at(n);
+            const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+            const arrive = before2(n);
+            const leave = after(n);
+            if (arrive?.length === 6) {
+              arrive[2] += dx;
+              arrive[3] += dy;
+            }
+            if (leave?.length === 6) {
+              leave[0] += dx;
+              leave[1] += dy;
+            }
+            if (n === 0) sub.start = to;
+            if (n > 0 || joined) arrive.splice(arrive.length - 2, 2, ...to);
+          }
+        });
+        const arm = (side) => {
+          const seg = side === "in" ? before2(n) : after(n);
+          if (seg?.length !== 6) return;
+          const k = side === "in" ? 2 : 0;
+          this.handles.push({
+            key: `${key}/${side}`,
+            param,
+            shape: "control",
+            label: `${label}, handle ${side === "in" ? 1 : 2}`,
+            group: `${param}/${id}`,
+            get: () => [seg[k], seg[k + 1]],
+            set: (to, smooth) => {
+              const other = side === "in" ? after(n) : before2(n);
+              const m = side === "in" ? 0 : 2;
+              const turns = smooth && other?.length === 6 && isSmooth(at(n), [seg[k], seg[k + 1]], [other[m], other[m + 1]]);
+              seg[k] = to[0];
+              seg[k + 1] = to[1];
+              if (turns) align(other, m, at(n), to);
+            }
+          });
+        };
+        arm("in");
+        arm("out");
+      }
+    }
+    /** The lines to draw under the handles. */
+    lines() {
+      const out = [];
+      for (const grip of Object.values(this.grips)) {
+        for (const pair of grip.pairs ?? []) out.push({ kind: "arm", points: [...pair] });
+        if (grip.value !== void 0 && grip === this.grips[this.deformation.gallery?.bend ?? ""]) {
+          const [x, y, w, h2] = this.frame;
+          out.push({ kind: "arm", points: [[x + w / 2, y + h2 / 2], [x + w / 2, y + h2 / 2 - grip.value * h2 / 2]] });
+        }
+        if (grip === this.grips.radius && grip.value !== void 0 && this.grips.center?.point) {
+          out.push(circle(this.grips.center.point, grip.value));
+        }
+        if (grip.net) {
+          const { points } = grip.net;
+          for (const line of grip.net.lines) out.push({ kind: "net", points: line.map((i) => points[i]) });
+        }
+        for (const path of grip.paths ?? []) path.forEach((sub) => this.subpathLines(sub, out));
+      }
+      return out;
+    }
+    subpathLines(sub, out) {
+      let at = sub.start;
+      const pieces = [at];
+      for (const seg of sub.segments) {
+        const points = [];
+        for (let i = 0; i + 1 < seg.length; i += 2) points.push([seg[i], seg[i + 1]]);
+        const to = points[points.length - 1];
+        if (points.length === 3) {
+          out.push({ kind: "arm", points: [at, points[0]] }, { kind: "arm", points: [points[1], to] });
+          pieces.push(...points);
+        } else {
+          pieces.push(at, to, to);
+        }
+        at = to;
+      }
+      const isQuadrangle = sub.segments.length === 3 && sub.segments.every((seg) => seg.length === 2);
+      out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed || isQuadrangle });
+    }
+    /** Writes the values of a parameter into the step. */
+    write(name) {
+      const param = this.deformation.params.find((p) => p.name === name);
+      const grip = this.grips[name];
+      if (!param || !grip) return;
+      if (grip.net) this.writeNet(name, grip.net);
+      else if (grip.value !== void 0) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];
+      else this.step.args[name] = valuesOf(param, grip, this.frame, this.step.args[name] ?? []);
+    }
+    /** A net's moved control points each have a value, which replaces an earlier one and a shift. */
+    writeNet(name, net) {
+      for (const i of this.moved[name] ?? []) {
+        const index = `${net.names[i]}:`;
+        const without = (key) => (this.step.args[key] ?? []).flatMap((v) => v.split(/\s+/)).filter((v) => v && !v.startsWith(index));
+        if (this.step.args.move) this.step.args.move = without("move");
+        this.step.args[name] = [...without(name), node(net.names[i], net.points[i], this.frame)];
+      }
+    }
+    /** Adds a point where the step takes any number of them. Returns the key of its handle. */
+    add(at) {
+      if (!this.grows) return null;
+      for (const { name, repeat, notation } of this.deformation.params) {
+        const grip = this.grips[name];
+        if (!repeat || !grip) continue;
+        if (notation === "X,Y:X,Y" && grip.pairs) {
+          grip.pairs.push([[...at], [...at]]);
+          this.collect();
+          this.write(name);
+          return `${name}/${grip.pairs.length - 1}/1`;
+        }
+        if (notation === "X,Y" && grip.points) {
+          grip.points.push(at);
+          this.collect();
+          this.write(name);
+          return `${name}/${grip.points.length - 1}`;
+        }
+      }
+      return null;
+    }
+    /** Returns `true` if points can be added. */
+    get grows() {
+      if (Object.values(this.grips).some((grip) => grip.net)) return false;
+      return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
+    }
+    /** The handle on the other side of the frame's middle, if one is there. */
+    partner(of) {
+      const [x, y, w, h2] = this.frame;
+      const [px, py] = of.get();
+      const mirrored = [2 * x + w - px, py];
+      const near = 1e-3 * Math.hypot(w, h2);
+      const candidates = this.handles.filter((o) => o !== of && o.shape === of.shape && o.param === of.param);
+      void y;
+      return candidates.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < near) ?? null;
+    }
+  };
+  function circle([x, y], r) {
+    const k = 0.5522848 * r;
+    const points = [
+      [x + r, y],
+      [x + r, y + k],
+      [x + k, y + r],
+      [x, y + r],
+      [x - k, y + r],
+      [x - r, y + k],
+      [x - r, y],
+      [x - r, y - k],
+      [x - k, y - r],
+      [x, y - r],
+      [x + k, y - r],
+      [x + r, y - k],
+      [x + r, y]
+    ];
+    return { kind: "path", points, cubic: true, closed: true };
+  }
+  function same(a, b) {
+    return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
+  }
+  var OPPOSITE = -0.9995;
+  function isSmooth(node2, a, b) {
+    const [ax, ay, bx, by] = [a[0] - node2[0], a[1] - node2[1], b[0] - node2[0], b[1] - node2[1]];
+    return ax * bx + ay * by < OPPOSITE * Math.hypot(ax, ay) * Math.hypot(bx, by);
+  }
+  function align(segment, k, node2, to) {
+    const [dx, dy] = [node2[0] - to[0], node2[1] - to[1]];
+    const length2 = Math.hypot(dx, dy);
+    const own = Math.hypot(segment[k] - node2[0], segment[k + 1] - node2[1]);
+    if (length2 === 0 || own === 0) return;
+    segment[k] = node2[0] + own * dx / length2;
+    segment[k + 1] = node2[1] + own * dy / length2;
+  }
+
+  // src/app.ts
+  var DRAFT = 0.35;
+  var App = class {
+    catalogue = [];
+    state = null;
+    steps = [];
+    /** The step whose handles and settings are shown. */
+    selected = 0;
+    /** The steps are a first proposal that nothing has been done with. */
+    isProposal = false;
+    grips = [];
+    handles = null;
+    summary = null;
+    warnings = [];
+    problem = null;
+    isConnected = false;
+    /** A handle is being dragged, so the handles stay as they are. */
+    isDragging = false;
+    screen = { show: () => {
+    }, pixel: 1 };
+    listeners = [];
+    isBusy = false;
+    isWanted = false;
+    since = 0;
+    connection;
+    constructor() {
+      this.connection = new Connection(
+        () => void this.begin(),
+        () => {
+          this.isConnected = false;
+          this.tell("link");
+        },
+        (news) => void this.hear(news)
+      );
+    }
+    listen(listener) {
+      this.listeners.push(listener);
+    }
+    tell(change) {
+      for (const listener of this.listeners) listener(change);
+    }
+    get step() {
+      return this.steps[this.selected];
+    }
+    deformation(name) {
+      return this.catalogue.find((d) => d.name === name);
+    }
+    /** The steps up to the one being changed. */
+    get visible() {
+      return this.steps.slice(0, this.selected + 1);
+    }
+    async begin() {
+      const answer = await this.connection.ask({ do: "hello" });
+      this.catalogue = answer.catalogue ?? [];
+      this.isConnected = true;
+      this.tell("link");
+      await this.load(answer.state);
+    }
+    /** Takes over a state of the server, with a proposal if nothing has been done yet. */
+    async load(state) {
+      this.state = state;
+      this.steps = structuredClone(state.steps);
+      this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
+      this.isProposal = false;
+      this.tell("state");
+      const first = this.catalogue[0];
+      if (this.steps.length === 0 && first) {
+        const step2 = await this.opening(first.name, []);
+        if (step2) {
+          this.steps = [step2];
+          this.selected = 0;
+          this.isProposal = true;
+        }
+      }
+      this.tell("steps");
+      await this.refresh();
+    }
+    /** The first values of a deformation after these steps. */
+    async opening(deformation, steps) {
+      return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, steps })).step ?? null);
+    }
+    /** Shows the picture of the present steps, exactly. */
+    async refresh() {
+      await this.attempt(async () => this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null })));
+    }
+    /** Shows a quick picture of the present steps. While one is being made, only the newest wish counts. */
+    draft(since) {
+      this.since = since;
+      if (this.isBusy) {
+        this.isWanted = true;
+        return;
+      }
+      this.isBusy = true;
+      void this.drafts();
+    }
+    async drafts() {
+      do {
+        this.isWanted = false;
+        const start = this.since;
+        await this.attempt(async () => {
+          const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
+          this.take(answer);
+          performance.measure("drag to picture", { start, end: performance.now() });
+        });
+      } while (this.isWanted);
+      this.isBusy = false;
+    }
+    /** Makes the present steps the ones to undo from and to save. */
+    async commit() {
+      this.isWanted = false;
+      const done = await this.attempt(async () => {
+        const answer = await this.connection.ask({ do: "commit", steps: this.steps, shown: this.selected + 1 });
+        this.isProposal = false;
+        this.take(answer);
+        return true;
+      });
+      if (done || !this.state || !this.isConnected) return;
+      const { problem } = this;
+      await this.load(this.state);
+      this.fail(problem);
+    }
+    /** Undoes or redoes. */
+    async turn(direction) {
+      if (this.isProposal && direction === "undo") return;
+      await this.attempt(async () => {
+        const answer = await this.connection.ask({ do: direction, shown: null });
+        this.screen.show(answer);
+        await this.load(answer.state);
+      });
+    }
+    /** Replaces the step being changed, or appends one. */
+    async choose(deformation, args, append) {
+      const at = append ? this.steps.length : this.selected;
+      const before2 = this.steps.slice(0, at);
+      const step2 = await this.opening(deformation, before2);
+      if (!step2) return;
+      Object.assign(step2.args, args);
+      this.steps = append ? [...this.steps, step2] : this.steps.map((s2, i) => i === at ? step2 : s2);
+      if (this.steps.length === 0) this.steps = [step2];
+      this.selected = Math.min(at, this.steps.length - 1);
+      this.tell("steps");
+      await this.commit();
+      this.tell("steps");
+    }
+    /** Changes the list of steps. */
+    async arrange(steps, selected) {
+      this.steps = steps;
+      this.selected = Math.max(0, Math.min(selected, steps.length - 1));
+      this.tell("steps");
+      await this.commit();
+      if (this.steps.length === 0 && this.state) await this.load(this.state);
+      this.tell("steps");
+    }
+    async select(step2) {
+      this.selected = step2;
+      this.tell("steps");
+      await this.refresh();
+    }
+    /** Sets a parameter of the step being changed. */
+    set(name, values, isDone) {
+      const { step: step2 } = this;
+      if (!step2) return;
+      if (values.length === 0) delete step2.args[name];
+      else step2.args[name] = values;
+      if (isDone) void this.commit();
+      else this.draft(performance.now());
+    }
+    grip(name) {
+      return this.grips[this.selected]?.params[name];
+    }
+    take(answer) {
+      this.problem = null;
+      if (answer.state) {
+        this.state = answer.state;
+        this.tell("state");
+      }
+      this.warnings = answer.warnings ?? [];
+      this.summary = answer.summary ?? null;
+      if (answer.grips) this.grips = answer.grips;
+      this.screen.show(answer);
+      this.tell("picture");
+      if (!this.isDragging) this.takeHandles();
+      this.tell("report");
+    }
+    takeHandles() {
+      const deformation = this.deformation(this.step?.deformation);
+      const grips = this.grips[this.selected];
+      this.handles = this.step && deformation && grips ? new Handles(deformation, this.step, grips) : null;
+      this.tell("handles");
+    }
+    /** Another page has changed the steps. */
+    async hear(news) {
+      if (news.event === "changed" && news.state && !this.isDragging) await this.load(news.state);
+    }
+    /** Does something that the server may refuse; then the message is shown. */
+    async attempt(work) {
+      try {
+        return await work();
+      } catch (e) {
+        if (!(e instanceof Gone)) this.fail(e instanceof Error ? e.message : String(e));
+        return null;
+      }
+    }
+    fail(problem) {
+      this.problem = problem;
+      this.tell("report");
+    }
+    /** Adds a point at a place, where the step takes any number. */
+    addPoint(at) {
+      const key = this.handles?.add(at) ?? null;
+      if (key) {
+        this.tell("handles");
+        void this.commit();
+      }
+      return key;
+    }
+  };
+
+  // src/gallery.ts
+  var DRAGGED = /* @__PURE__ */ new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
+  var Gallery = class {
+    constructor(app2) {
+      this.app = app2;
+      app2.listen((change) => {
+        if (change === "state") this.build();
+        if (change === "steps") this.mark();
+      });
+      this.search.addEventListener("input", () => this.filter());
+    }
+    app;
+    box = byId("gallery");
+    search = byId("search");
+    cards = [];
+    queue = [];
+    isDrawing = false;
+    own = h("section", { hidden: true });
+    shownFile = "";
+    /** The next choice is put after the other steps. */
+    appends = false;
+    seen = new IntersectionObserver((entries) => {
+      for (const entry of entries) {
+        const card = this.cards.find((c) => c.button === entry.target);
+        if (!entry.isIntersecting || !card) continue;
+        this.seen.unobserve(entry.target);
+        this.queue.push(card);
+        void this.draw();
+      }
+    }, { rootMargin: "150px" });
+    build() {
+      if (this.shownFile === "") void this.loadPresets();
+      const file = `${this.app.state?.folder}/${this.app.state?.file}`;
+      if (file === this.shownFile || this.app.catalogue.length === 0) return;
+      this.shownFile = file;
+      for (const { image } of this.cards) URL.revokeObjectURL(image.src);
+      this.cards = [];
+      this.queue = [];
+      const all = this.app.catalogue;
+      const byHand = all.filter((d) => isDragged(d) && !d.gallery);
+      const effects = all.filter((d) => !isDragged(d) && !d.gallery);
+      const styles = all.filter((d) => d.gallery);
+      this.box.replaceChildren(
+        this.own,
+        this.section("Bend by hand", byHand.map((d) => this.whole(d))),
+        ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery.title), this.presets(d))),
+        this.section("Effects", effects.map((d) => this.whole(d)))
+      );
+      this.mark();
+      this.filter();
+    }
+    async loadPresets() {
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "presets" }));
+      if (answer?.presets) this.showPresets(answer.presets);
+    }
+    /** Lists the user's presets. */
+    showPresets(names) {
+      const entry = (name) => {
+        const use = h("button", { type: "button", class: "preset" }, name);
+        use.addEventListener("click", async () => {
+          const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
+          if (answer?.steps) await this.app.arrange(answer.steps, answer.steps.length - 1);
+          document.body.classList.remove("shapes-open");
+        });
+        const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
+        forget.addEventListener("click", async () => {
+          const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
+          if (answer?.presets) this.showPresets(answer.presets);
+        });
+        return h("li", {}, use, forget);
+      };
+      this.own.hidden = names.length === 0;
+      this.own.replaceChildren(h("h3", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+    }
+    section(title, cards) {
+      const items = h("div", { class: "grid" }, ...cards.map((c) => c.button));
+      return h("section", {}, h("h3", {}, title), items);
+    }
+    card(deformation, args, steps, ...text) {
+      const image = h("img", { alt: "", draggable: "false" });
+      const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), ...text);
+      const card = { button, image, steps, deformation, args, words: button.textContent ?? "" };
+      button.addEventListener("click", () => {
+        void this.app.choose(deformation, args, this.appends);
+        this.appends = false;
+        document.body.classList.remove("shapes-open");
+      });
+      this.cards.push(card);
+      this.seen.observe(button);
+      return card;
+    }
+    whole(d) {
+      const card = this.card(d.name, {}, null, h("span", { class: "name" }, called(d)));
+      card.button.title = capital(d.title);
+      card.words = `${called(d)} ${d.name} ${d.title}`;
+      return card;
+    }
+    presets(d) {
+      const { presets } = d.gallery;
+      const names = d.params.find((p) => p.name === presets)?.words ?? [];
+      return names.map((name) => {
+        const args = { [presets]: [name] };
+        return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, words(name)));
+      });
+    }
+    /** Draws what is in view, one after another, so that dragging does not wait. */
+    async draw() {
+      if (this.isDrawing) return;
+      this.isDrawing = true;
+      for (let card = this.queue.shift(); card; card = this.queue.shift()) {
+        while (this.app.isDragging) await new Promise((done) => setTimeout(done, 100));
+        const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation };
+        try {
+          const { svg } = await this.app.connection.ask(request);
+          card.image.src = URL.createObjectURL(new Blob([svg ?? ""], { type: "image/svg+xml" }));
+        } catch {
+          card.button.classList.add("bare");
+        }
+      }
+      this.isDrawing = false;
+    }
+    /** Marks the shape of the step being changed. */
+    mark() {
+      const { step: step2 } = this.app;
+      for (const { button, deformation, args } of this.cards) {
+        const isChosen = step2?.deformation === deformation && Object.entries(args).every(([k, v]) => step2.args[k]?.[0] === v[0]);
+        button.setAttribute("aria-pressed", String(isChosen));
+      }
+    }
+    filter() {
+      const wanted = this.search.value.trim().toLowerCase();
+      for (const { button, words: words2 } of this.cards) button.hidden = !words2.toLowerCase().includes(wanted);
+      for (const section of Array.from(this.box.children)) {
+        if (section === this.own) continue;
+        section.hidden = !Array.from(section.querySelectorAll(".card")).some((c) => !c.hidden);
+      }
+    }
+  };
+  function isDragged(d) {
+    return d.params.some((p) => p.kind === "path" && p.name !== "base" || DRAGGED.has(p.notation ?? ""));
+  }
+  function capital(text) {
+    return text.charAt(0).toUpperCase() + text.slice(1);
+  }
+
+  // src/modes.ts
+  var Modes = class {
+    snaps = true;
+    mirrors = false;
+    smooths = true;
+    marks = [];
+    /** Shows where the handle has snapped to; the points are in user units. */
+    onSnap = () => {
+    };
+    /** A function that moves a handle, and its partner if symmetry is on. */
+    mover(handles, handle) {
+      const partner = this.mirrors ? handles.partner(handle) : null;
+      const [left, , width] = handles.frame;
+      this.marks = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
+      const start = [...handle.get()];
+      return (to, e) => {
+        const [dx, dy] = [to[0] - start[0], to[1] - start[1]];
+        const target = e?.shiftKey ? Math.abs(dx) > Math.abs(dy) ? [to[0], start[1]] : [start[0], to[1]] : to;
+        handle.set(target, this.smooths);
+        partner?.set([2 * left + width - target[0], target[1]], this.smooths);
+      };
+    }
+    /** The place near `to` that lines up with the frame or another handle; Alt turns that off. */
+    snapped(to, handle, handles, reach, e) {
+      if (!this.snaps || e.altKey || handle.shape === "control") {
+        this.onSnap(null, null);
+        return to;
+      }
+      const [x, y, w, h2] = handles.frame;
+      const xs = [x, x + w / 2, x + w, ...this.marks.map((p) => p[0])];
+      const ys = [y, y + h2 / 2, y + h2, ...this.marks.map((p) => p[1])];
+      const [nx, ny] = [nearest(to[0], xs, reach), nearest(to[1], ys, reach)];
+      this.onSnap(nx, ny);
+      return [nx ?? to[0], ny ?? to[1]];
+    }
+    clear() {
+      this.onSnap(null, null);
+    }
+  };
+  function nearest(value, among, reach) {
+    let best = null;
+    for (const candidate of among) {
+      const off = Math.abs(candidate - value);
+      if (off <= reach && (best === null || off < Math.abs(best - value))) best = candidate;
+    }
+    return best;
+  }
+  function snapLines(toScreen) {
+    const layer = byId("stage");
+    const vertical = s("line", { class: "snap", y1: -1e4, y2: 1e4, visibility: "hidden" });
+    const horizontal = s("line", { class: "snap", x1: -1e4, x2: 1e4, visibility: "hidden" });
+    layer.append(vertical, horizontal);
+    return (x, y) => {
+      vertical.setAttribute("visibility", x === null ? "hidden" : "visible");
+      horizontal.setAttribute("visibility", y === null ? "hidden" : "visible");
+      const [sx, sy] = toScreen([x ?? 0, y ?? 0]);
+      for (const end of ["x1", "x2"]) vertical.setAttribute(end, String(sx));
+      for (const end of ["y1", "y2"]) horizontal.setAttribute(end, String(sy));
+    };
+  }
+
+  // src/saving.ts
+  var FORMATS = [
+    ["svg", "SVG", "Can be opened here again"],
+    ["pdf", "PDF", "For print"],
+    ["dxf", "DXF", "For cutters and CAD"],
+    ["png", "PNG", "A picture"],
+    ["toml", "Recipe", "For other drawings"]
+  ];
+  var Saving = class {
+    constructor(app2) {
+      this.app = app2;
+      const formats = byId("save-formats");
+      for (const [extension, title, use] of FORMATS) {
+        const input = h("input", { type: "radio", name: "format", value: extension });
+        input.addEventListener("change", () => this.choose(extension));
+        formats.append(h("label", { class: "format" }, input, h("span", {}, h("b", {}, title), h("small", {}, use))));
+      }
+      byId("save").addEventListener("click", () => void this.quick());
+      byId("save-as").addEventListener("click", () => this.open());
+      byId("save-cancel").addEventListener("click", () => this.dialog.close());
+      this.dialog.querySelector("form").addEventListener("submit", (e) => {
+        e.preventDefault();
+        void this.write(this.name.value, false);
+      });
+      this.replace.addEventListener("click", () => void this.write(this.name.value, true));
+      this.name.addEventListener("input", () => this.say(""));
+      byId("copy-command").addEventListener("click", () => void this.copyCommand());
+      app2.listen((change) => {
+        if (change === "state") this.show();
+      });
+    }
+    app;
+    dialog = byId("save-dialog");
+    name = byId("save-name");
+    extension = "svg";
+    message = byId("save-message");
+    replace = byId("save-replace");
+    show() {
+      const { state } = this.app;
+      if (!state) return;
+      byId("file").textContent = state.file;
+      byId("saved").textContent = state.saved ? `Saved as ${state.savedTo}` : state.steps.length === 0 ? "" : "Not saved yet";
+      byId("save").disabled = state.steps.length === 0 || state.saved;
+      document.title = `${state.saved || state.steps.length === 0 ? "" : "• "}${state.file} — pathwarp`;
+    }
+    /** Saves where it was saved last; the first time, under the usual name. */
+    async quick() {
+      const { state } = this.app;
+      if (!state || state.steps.length === 0) return;
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
+      if (answer?.exists) return this.open();
+      if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
+    }
+    open() {
+      const { state } = this.app;
+      if (!state || state.steps.length === 0) return;
+      this.name.value = state.target;
+      this.choose("svg");
+      byId("save-folder").textContent = state.folder;
+      this.dialog.showModal();
+      this.name.select();
+    }
+    choose(extension) {
+      this.extension = extension;
+      this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|toml)$/i, "")}.${extension}`;
+      for (const input of Array.from(this.dialog.querySelectorAll("input[type=radio]"))) {
+        input.checked = input.value === this.extension;
+      }
+      this.say("");
+    }
+    say(text, offersReplace = false) {
+      this.message.textContent = text;
+      this.replace.hidden = !offersReplace;
+    }
+    async write(name, replace) {
+      try {
+        const answer = await this.app.connection.ask({ do: "save", name, replace });
+        if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
+        this.dialog.close();
+        this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
+      } catch (e) {
+        this.say(e instanceof Error ? e.message : String(e));
+      }
+    }
+    done(written, state, warnings) {
+      if (state) {
+        this.app.state = state;
+        this.app.tell("state");
+      }
+      const name = written.split(/[\\/]/).pop() ?? written;
+      toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
+    }
+    async copyCommand() {
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
+      if (!answer?.text) return;
+      try {
+        await navigator.clipboard.writeText(answer.text);
+        toast("The command line is on the clipboard");
+      } catch {
+        toast(answer.text);
+      }
+      this.dialog.close();
+    }
+  };
+  var fading = 0;
+  function toast(text) {
+    const box = byId("toast");
+    box.textContent = text;
+    box.classList.add("on");
+    clearTimeout(fading);
+    fading = window.setTimeout(() => box.classList.remove("on"), 5e3);
+  }
+
+  // src/settings.ts
+  var OF_ARTWORK = [0, 100];
+  var BOTH_WAYS = [-100, 100];
+  var SIDE_BY_SIDE = 3;
+  var Settings = class {
+    constructor(app2) {
+      this.app = app2;
+      app2.listen((change) => {
+        if (change === "steps" || change === "state") this.build();
+        if (change === "handles") this.refresh();
+      });
+    }
+    app;
+    box = byId("settings");
+    shown = "";
+    refreshers = [];
+    /** Asks for the id of a path that is clicked on the canvas. */
+    onPick = () => {
+    };
+    build() {
+      const { step: step2 } = this.app;
+      const deformation = this.app.deformation(step2?.deformation);
+      const signature = `${this.app.selected}:${step2?.deformation}:${step2?.args ? Object.keys(step2.args).join() : ""}`;
+      if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
+      this.shown = signature;
+      this.refreshers = [];
+      if (!step2 || !deformation) return this.box.replaceChildren();
+      const main = deformation.params.filter((p) => isMain(p));
+      const more = deformation.params.filter((p) => !isMain(p));
+      const gives = more.some((p) => p.kind === "file" && step2.args[p.name]);
+      const parts = [
+        h("p", { class: "about" }, sentence(deformation.title)),
+        ...main.map((p) => this.control(p)),
+        more.length > 0 && h("details", { class: "more", open: gives }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p)))
+      ];
+      this.box.replaceChildren(...parts.filter((part) => part !== false));
+      this.refresh();
+    }
+    refresh() {
+      for (const refresh of this.refreshers) refresh();
+    }
+    values(p) {
+      return this.app.step?.args[p.name] ?? [];
+    }
+    current(p) {
+      return this.values(p)[0] ?? p.default ?? "";
+    }
+    control(p) {
+      const id = `set-${p.name}`;
+      const title = plain(p.help);
+      const label = h("label", { for: id, title }, words(p.name));
+      switch (p.kind) {
+        case "flag":
+          return this.flag(p, id, title);
+        case "choice":
+          return h("div", { class: "field", title }, label, this.choice(p, id));
+        case "name":
+          return h("div", { class: "field", title }, label, this.select(p, id));
+        case "number":
+        case "length":
+        case "angle":
+          return this.slider(p, id, label, title);
+        case "path": {
+          const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
+          pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), this.text(p, id));
+        }
+        default:
+          return h("div", { class: "field", title }, label, this.text(p, id));
+      }
+    }
+    flag(p, id, title) {
+      const box = h("input", { type: "checkbox", id, role: "switch" });
+      box.addEventListener("change", () => this.app.set(p.name, box.checked ? ["true"] : [], true));
+      this.refreshers.push(() => box.checked = this.values(p)[0] === "true");
+      return h("label", { class: "field switch", for: id, title }, h("span", {}, words(p.name)), box);
+    }
+    choice(p, id) {
+      if ((p.words ?? []).length > SIDE_BY_SIDE) return this.select(p, id);
+      const buttons = (p.words ?? []).map((word) => {
+        const button = h("button", { type: "button", role: "radio" }, words(word));
+        button.addEventListener("click", () => this.app.set(p.name, [word], true));
+        this.refreshers.push(() => button.setAttribute("aria-checked", String(this.current(p) === word)));
+        return button;
+      });
+      return h("div", { class: "segments", role: "radiogroup", id, "aria-label": words(p.name) }, ...buttons);
+    }
+    select(p, id) {
+      const select = h("select", { id }, ...(p.words ?? []).map((word) => h("option", { value: word }, words(word))));
+      select.addEventListener("change", () => this.app.set(p.name, [select.value], true));
+      this.refreshers.push(() => {
+        const value = this.current(p);
+        if (!(p.words ?? []).includes(value) && select.options[0]?.value !== value) {
+          select.prepend(h("option", { value }, value || "—"));
+        }
+        select.value = value;
+      });
+      return select;
+    }
+    text(p, id) {
+      const input = h("textarea", { id, rows: 1, spellcheck: false, placeholder: p.default ?? p.notation ?? "" });
+      input.addEventListener("change", () => {
+        const text = input.value.trim();
+        this.app.set(p.name, text === "" ? [] : p.repeat ? text.split("\n").map((t) => t.trim()).filter(Boolean) : [text], true);
+      });
+      input.addEventListener("keydown", (e) => {
+        if (e.key === "Enter" && !p.repeat) {
+          e.preventDefault();
+          input.blur();
+        }
+      });
+      this.refreshers.push(() => {
+        if (document.activeElement === input) return;
+        const values = this.values(p);
+        input.value = values.join("\n");
+        input.rows = Math.min(Math.max(values.length, 1), 4);
+      });
+      return input;
+    }
+    slider(p, id, label, title) {
+      const [unit, range] = scale(p);
+      const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": words(p.name), tabindex: 0 });
+      const field = h("input", { type: "text", id, class: "value", inputmode: "text", spellcheck: false, autocomplete: "off", placeholder: p.default ?? "auto" });
+      slider.addEventListener("input", () => {
+        field.value = `${short(Number(slider.value))}${unit}`;
+        this.app.set(p.name, [field.value], false);
+      });
+      slider.addEventListener("change", () => this.app.set(p.name, [`${short(Number(slider.value))}${unit}`], true));
+      field.addEventListener("change", () => this.app.set(p.name, field.value.trim() === "" ? [] : [field.value.trim()], true));
+      field.addEventListener("keydown", (e) => {
+        if (e.key === "Enter") field.blur();
+      });
+      this.refreshers.push(() => {
+        const typed = this.current(p);
+        if (document.activeElement !== field) field.value = typed;
+        if (document.activeElement === slider && slider.matches(":active")) return;
+        const value = this.inUnit(p, unit, typed);
+        slider.min = String(Math.min(range[0], value ?? range[0]));
+        slider.max = String(Math.max(range[1], value ?? range[1]));
+        slider.value = String(value ?? range[0]);
+        slider.classList.toggle("unset", value === null);
+      });
+      const reset = () => this.app.set(p.name, [], true);
+      slider.addEventListener("dblclick", reset);
+      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
+    }
+    /** The value of a parameter in the unit of its slider. */
+    inUnit(p, unit, typed) {
+      const plainNumber = Number(typed.replace(unit, ""));
+      if (typed !== "" && Number.isFinite(plainNumber) && (unit === "" || typed.endsWith(unit))) return plainNumber;
+      const value = this.app.grip(p.name)?.value;
+      if (value === void 0) return null;
+      if (p.kind !== "length") return unit === "%" ? 100 * value : value;
+      const [, , w, h2] = this.app.grips[this.app.selected]?.frame ?? [0, 0, 1, 1];
+      const whole = p.axis === "x" ? w : p.axis === "y" ? h2 : Math.hypot(w, h2);
+      return 100 * value / whole;
+    }
+  };
+  function isMain(p) {
+    if (p.kind === "number" || p.kind === "angle" || p.kind === "choice") return p.default !== void 0;
+    if (p.kind === "length" || p.kind === "count") return p.default !== void 0;
+    if (p.kind === "name") return true;
+    return p.kind === "text" && (p.needed || p.default !== void 0);
+  }
+  function scale(p) {
+    const [from, to] = p.slider;
+    if (p.kind === "length") return ["%", p.least === void 0 && Number.parseFloat(p.default ?? "1") === 0 ? BOTH_WAYS : OF_ARTWORK];
+    if (p.kind === "number" && p.default?.endsWith("%")) return ["%", [100 * from, 100 * to]];
+    return ["", [from, to]];
+  }
+  function step([from, to]) {
+    const raw = (to - from) / 400;
+    return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
+  }
+  function sentence(title) {
+    return `${capital2(title)}${/[.…]$/.test(title) ? "" : "."}`;
+  }
+  function capital2(text) {
+    return plain(text.charAt(0).toUpperCase() + text.slice(1));
+  }
+  function plain(text) {
+    return text.replace(/--([a-z-]+)/g, (_, name) => `“${words(name)}”`);
+  }
+
+  // src/camera.ts
+  var RANGE = [0.02, 200];
+  var Camera = class {
+    /** Screen = scale · px + shift. */
+    scale = 1;
+    shift = [0, 0];
+    /** From user units to px of the drawing. */
+    toPx = [1, 0, 0, 1, 0, 0];
+    toScreen([x, y]) {
+      const [a, b, c, d, e, f] = this.toPx;
+      return [this.scale * (a * x + c * y + e) + this.shift[0], this.scale * (b * x + d * y + f) + this.shift[1]];
+    }
+    toUser([x, y]) {
+      const [a, b, c, d, e, f] = this.toPx;
+      const [px, py] = [(x - this.shift[0]) / this.scale - e, (y - this.shift[1]) / this.scale - f];
+      const det = a * d - b * c;
+      return [(d * px - c * py) / det, (a * py - b * px) / det];
+    }
+    /** The length of a px of the screen, in user units. */
+    get pixel() {
+      const [a, b, c, d] = this.toPx;
+      return 1 / (this.scale * Math.sqrt(Math.abs(a * d - b * c)));
+    }
+    /** The transform of the drawing, which is in px. */
+    get transform() {
+      return `matrix(${this.scale} 0 0 ${this.scale} ${this.shift[0]} ${this.shift[1]})`;
+    }
+    /** Magnifies by a factor about a point of the screen. */
+    zoom(factor, [x, y]) {
+      const scale2 = Math.min(Math.max(this.scale * factor, RANGE[0]), RANGE[1]);
+      const by = scale2 / this.scale;
+      this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
+      this.scale = scale2;
+    }
+    /** Shows a box of the drawing, in user units, in the middle of a view of this size. */
+    fit([x, y, w, h2], [width, height], margin) {
+      this.scale = 1;
+      this.shift = [0, 0];
+      const corners2 = [[x, y], [x + w, y], [x, y + h2], [x + w, y + h2]].map((p) => this.toScreen(p));
+      const xs = corners2.map((p) => p[0]);
+      const ys = corners2.map((p) => p[1]);
+      const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+      const room = (size) => Math.max(size - 2 * margin, size / 3);
+      const scale2 = Math.min(room(width) / Math.max(x1 - x0, 1e-9), room(height) / Math.max(y1 - y0, 1e-9));
+      this.scale = Math.min(Math.max(scale2, RANGE[0]), RANGE[1]);
+      this.shift = [(width - this.scale * (x0 + x1)) / 2, (height - this.scale * (y0 + y1)) / 2];
+    }
+  };
+
+  // src/drawing.ts
+  var SVG2 = "http://www.w3.org/2000/svg";
+  var XLINK = "http://www.w3.org/1999/xlink";
+  var ELEMENTS = new Set(
+    "svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight feSpecularLighting feSpotLight feTile feTurbulence use".split(" ")
+  );
+  var LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
+  function copy(from, lines) {
+    if (from.namespaceURI !== SVG2 || !ELEMENTS.has(from.localName)) {
+      skip(from, lines);
+      return null;
+    }
+    const to = document.createElementNS(SVG2, from.localName);
+    for (const { name, value } of Array.from(from.attributes)) set(to, name, value);
+    lines?.push(to);
+    for (const child of Array.from(from.children)) {
+      const copied = copy(child, lines);
+      if (copied) to.append(copied);
+    }
+    if (from.children.length > 0) lines?.push(null);
+    return to;
+  }
+  function skip(element, lines) {
+    lines?.push(null);
+    for (const child of Array.from(element.children)) skip(child, lines);
+    if (element.children.length > 0) lines?.push(null);
+  }
+  function set(element, name, value) {
+    if (name.startsWith("on") || name.startsWith("xmlns")) return;
+    if (name === "href" || name === "xlink:href") {
+      if (LINK.test(value)) element.setAttributeNS(name === "href" ? null : XLINK, name, value);
+      return;
+    }
+    if (name === "style") {
+      for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
+        if (property) element.style.setProperty(property.trim(), rest.join(":").trim());
+      }
+      return;
+    }
+    if (/url\(\s*["']?(?!#)/i.test(value)) return;
+    element.setAttribute(name, value);
+  }
+  function parse(text, lines = null) {
+    const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+    return copy(root, lines);
+  }
+  var Drawing = class {
+    constructor(layer) {
+      this.layer = layer;
+    }
+    layer;
+    /** The element that each line of the server's text opens. */
+    lines = [];
+    /** Shows a picture. */
+    show(picture) {
+      if ("changes" in picture) {
+        for (const [line, name, value] of picture.changes) {
+          const element = this.lines[line];
+          if (element) set(element, name, value);
+        }
+        return;
+      }
+      this.lines = [];
+      const root = parse(picture.whole, this.lines);
+      this.layer.replaceChildren(...root ? Array.from(root.children) : []);
+    }
+    /** The paths of the drawing, for nodes and handles. */
+    paths() {
+      return Array.from(this.layer.querySelectorAll("path")).filter((p) => !p.closest("defs"));
+    }
+  };
+
+  // src/heat.ts
+  var FULL = Math.log2(2);
+  function cells({ columns, points, factors }, place3) {
+    const byColour = /* @__PURE__ */ new Map();
+    factors.forEach((factor, k) => {
+      const [i, j] = [k % columns, Math.floor(k / columns)];
+      const at = (di, dj) => points[(j + dj) * (columns + 1) + i + di];
+      const corners2 = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
+      if (factor === null || corners2.some((c) => !c)) return;
+      const d = corners2.map((c) => place3(c).map((v) => v.toFixed(2)).join(",")).join("L");
+      const colour = shade(factor);
+      byColour.set(colour, [...byColour.get(colour) ?? [], `M${d}Z`]);
+    });
+    return Array.from(byColour, ([colour, d]) => {
+      const [fill2, opacity] = colour.split("/");
+      return s("path", { d: d.join(""), fill: fill2, "fill-opacity": opacity });
+    });
+  }
+  var STRONGEST = 0.8;
+  function shade(factor) {
+    if (factor < 0) return "#e11d2e/0.85";
+    const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));
+    const step2 = Math.round(amount * 8) / 8;
+    return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
+  }
+
+  // src/nodes.ts
+  var MOST = 4e6;
+  function nodesOf(paths) {
+    const out = [];
+    let length2 = 0;
+    for (const path of paths) {
+      const d = path.getAttribute("d") ?? "";
+      length2 += d.length;
+      if (length2 > MOST) break;
+      const at = place(path);
+      for (const [x, y] of anchors(d).map(at)) out.push(`M${x.toFixed(2)},${y.toFixed(2)}h0`);
+    }
+    return out.join("");
+  }
+  function place(path) {
+    let matrix = new DOMMatrix();
+    for (let e = path; e && !e.classList.contains("art"); e = e.parentElement) {
+      const own = e.transform?.baseVal.consolidate()?.matrix;
+      if (own) matrix = new DOMMatrix([own.a, own.b, own.c, own.d, own.e, own.f]).multiply(matrix);
+    }
+    return ([x, y]) => [matrix.a * x + matrix.c * y + matrix.e, matrix.b * x + matrix.d * y + matrix.f];
+  }
+  function anchors(d) {
+    const out = [];
+    const words2 = d.split(" ");
+    const numbers = { M: 2, L: 2, Q: 4, C: 6, Z: 0 };
+    for (let i = 0; i < words2.length; i++) {
+      const count = numbers[words2[i]];
+      if (!count) continue;
+      out.push([Number(words2[i + count - 1]), Number(words2[i + count])]);
+      i += count;
+    }
+    return out;
+  }
+
+  // src/stage.ts
+  var MARGIN = 56;
+  var REACH = 18;
+  var KEYS = 500;
+  var Stage = class {
+    constructor(app2, modes2) {
+      this.app = app2;
+      this.modes = modes2;
+      this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.nodes, this.guides, this.marks, this.knobs);
+      const stage2 = this;
+      app2.screen = { show: (answer) => this.show(answer), get pixel() {
+        return stage2.camera.pixel;
+      } };
+      app2.listen((change) => {
+        if (change === "state") this.place();
+        if (change === "handles") this.rebuild();
+        if (change === "report" && this.showsStretch && !app2.isDragging) void this.drawStretch();
+      });
+      this.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
+      this.svg.addEventListener("pointerdown", (e) => this.press(e));
+      this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
+      this.svg.addEventListener("keydown", (e) => this.key(e));
+      new ResizeObserver(() => this.resized()).observe(this.svg);
+    }
+    app;
+    modes;
+    camera = new Camera();
+    svg = byId("stage");
+    sheet = s("rect", { class: "sheet" });
+    art = s("g", { class: "art" });
+    beforeArt = s("g", { class: "art", visibility: "hidden" });
+    heat = s("g", { class: "heat" });
+    nodes = s("path", { class: "nodes" });
+    guides = s("g", { class: "guides" });
+    marks = s("g", { class: "marks" });
+    knobs = s("g", { class: "knobs" });
+    drawing = new Drawing(this.art);
+    elements = /* @__PURE__ */ new Map();
+    lines = [];
+    focused = null;
+    touches = /* @__PURE__ */ new Map();
+    keysTimer = 0;
+    isFitted = false;
+    /** Set while the page shows the drawing as it was. */
+    isBefore = false;
+    showsNodes = false;
+    showsStretch = false;
+    /** Takes the id of the path that is clicked next, instead of anything else. */
+    picks = null;
+    onFocus = () => {
+    };
+    onZoom = () => {
+    };
+    get size() {
+      return [this.svg.clientWidth, this.svg.clientHeight];
+    }
+    resized() {
+      if (!this.isFitted) this.fit();
+      else this.layout();
+    }
+    /** Shows the whole page. */
+    fit() {
+      const { state } = this.app;
+      const [width, whole] = this.size;
+      const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
+      const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
+      const height = Math.max(whole - covered, whole / 4);
+      if (!state || width === 0 || height === 0) return;
+      this.camera.fit(state.page, [width, height], Math.min(MARGIN, width / 10));
+      this.isFitted = true;
+      this.layout();
+    }
+    zoom(factor, at = [this.size[0] / 2, this.size[1] / 2]) {
+      this.camera.zoom(factor, at);
+      this.layout();
+    }
+    place() {
+      const { state } = this.app;
+      if (!state) return;
+      const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
+      this.camera.toPx = state.toPx;
+      if (isNew || !this.isFitted) this.fit();
+    }
+    show(answer) {
+      if (answer.picture) this.drawing.show(answer.picture);
+      if (this.showsNodes) this.drawNodes();
+      this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
+    }
+    fold(at) {
+      const [x, y] = this.camera.toScreen(at);
+      const mark = s("g", { class: "fold", transform: `translate(${x} ${y})` }, s("circle", { r: 9 }), s("circle", { r: 2.5 }));
+      mark.dataset.at = JSON.stringify(at);
+      return mark;
+    }
+    /** Shows the drawing as it was, or as it is. */
+    async before(on2) {
+      if (on2 === this.isBefore) return;
+      this.isBefore = on2;
+      if (on2 && this.beforeArt.childElementCount === 0) {
+        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "before" }));
+        const root = answer?.svg ? parse(answer.svg) : null;
+        if (root) this.beforeArt.replaceChildren(...Array.from(renamed(root).children));
+      }
+      this.svg.classList.toggle("before", this.isBefore);
+      this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
+      this.beforeArt.setAttribute("visibility", this.isBefore ? "visible" : "hidden");
+    }
+    /** Another drawing has been opened. */
+    forget() {
+      this.beforeArt.replaceChildren();
+      this.isFitted = false;
+    }
+    drawNodes() {
+      this.nodes.setAttribute("d", this.showsNodes ? nodesOf(this.drawing.paths()) : "");
+    }
+    /** Shows the stretch of the visible steps, or hides it. */
+    async drawStretch() {
+      const { app: app2 } = this;
+      const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
+      const [a, b, c, d, e, f] = this.camera.toPx;
+      const place3 = ([x, y]) => [a * x + c * y + e, b * x + d * y + f];
+      this.heat.replaceChildren(...answer?.stretch && this.showsStretch ? cells(answer.stretch, place3) : []);
+    }
+    /** The next click on the drawing names a path. */
+    pick(take) {
+      this.picks = take;
+      this.svg.classList.toggle("picking", take !== null);
+    }
+    /** Puts everything in its place on the screen. */
+    layout() {
+      const { camera } = this;
+      const { state } = this.app;
+      for (const layer of [this.art, this.beforeArt]) layer.setAttribute("transform", camera.transform);
+      this.nodes.setAttribute("transform", camera.transform);
+      this.heat.setAttribute("transform", camera.transform);
+      if (state) {
+        const [x, y, w, h2] = state.page;
+        const [a, b] = [camera.toScreen([x, y]), camera.toScreen([x + w, y + h2])];
+        this.sheet.setAttribute("x", String(Math.min(a[0], b[0])));
+        this.sheet.setAttribute("y", String(Math.min(a[1], b[1])));
+        this.sheet.setAttribute("width", String(Math.abs(b[0] - a[0])));
+        this.sheet.setAttribute("height", String(Math.abs(b[1] - a[1])));
+      }
+      for (const mark of Array.from(this.marks.children)) {
+        const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at));
+        mark.setAttribute("transform", `translate(${x} ${y})`);
+      }
+      this.placeHandles();
+      this.onZoom();
+    }
+    placeHandles() {
+      const { handles } = this.app;
+      if (!handles) return;
+      const at = (p) => this.camera.toScreen(p).map((v) => v.toFixed(2)).join(",");
+      handles.lines().forEach((line, i) => {
+        const element = this.lines[i];
+        if (!element) return;
+        const [first, ...rest] = line.points.map(at);
+        const close = line.closed ? "Z" : "";
+        element.setAttribute("d", line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`);
+      });
+      for (const handle of handles.handles) {
+        const [x, y] = this.camera.toScreen(handle.get());
+        this.elements.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
+      }
+    }
+    rebuild() {
+      const { handles } = this.app;
+      this.elements.clear();
+      this.lines = (handles?.lines() ?? []).map((line) => s("path", { class: `line ${line.kind}` }));
+      const knobs = (handles?.handles ?? []).map((handle) => {
+        const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" }) : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
+        const knob = s(
+          "g",
+          { class: `knob ${handle.shape}`, tabindex: 0, role: "button", "aria-label": handle.label, "data-key": handle.key },
+          s("circle", { r: handle.shape === "node" ? REACH : REACH - 5, class: "reach" }),
+          body
+        );
+        knob.addEventListener("focus", () => this.focus(handle.key));
+        this.elements.set(handle.key, knob);
+        return knob;
+      });
+      this.guides.replaceChildren(...this.lines);
+      const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
+      this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
+      this.placeHandles();
+      if (this.focused) {
+        const again = this.elements.get(this.focused);
+        if (!again) this.focus(null);
+        else if (had) again.focus({ preventScroll: true });
+        else this.focus(this.focused);
+      }
+    }
+    /** Selects a handle. */
+    focus(key) {
+      this.focused = key;
+      for (const [k, element] of this.elements) element.classList.toggle("selected", k === key);
+      this.onFocus(this.handle(key));
+    }
+    handle(key) {
+      return this.app.handles?.handles.find((h2) => h2.key === key) ?? null;
+    }
+    point(e) {
+      const box = this.svg.getBoundingClientRect();
+      return [e.clientX - box.left, e.clientY - box.top];
+    }
+    wheel(e) {
+      e.preventDefault();
+      if (e.ctrlKey || e.metaKey || e.deltaX === 0 && Math.abs(e.deltaY) >= 50) {
+        return this.zoom(Math.exp(-e.deltaY * (e.ctrlKey && Math.abs(e.deltaY) < 50 ? 0.01 : 2e-3)), this.point(e));
+      }
+      this.camera.shift = [this.camera.shift[0] - e.deltaX, this.camera.shift[1] - e.deltaY];
+      this.layout();
+    }
+    press(e) {
+      if (this.picks) return this.picked(e);
+      const knob = e.target.closest(".knob");
+      this.touches.set(e.pointerId, this.point(e));
+      if (this.touches.size === 2) return this.pinch();
+      if (this.touches.size > 2) return;
+      if (knob && e.button === 0 && !this.isBefore) this.drag(e, knob);
+      else this.pan(e);
+    }
+    picked(e) {
+      const named = e.target.closest(".art [id]");
+      const take = this.picks;
+      this.pick(null);
+      if (named) take?.(named.id.replace(/^art-/, ""));
+    }
+    /** Follows a pointer until it is lifted. */
+    follow(e, move, end) {
+      const id = e.pointerId;
+      const stop = new AbortController();
+      const { signal } = stop;
+      const done = (event) => {
+        if (event.pointerId !== id) return;
+        this.touches.delete(id);
+        stop.abort();
+        end();
+      };
+      window.addEventListener("pointermove", (event) => {
+        if (event.pointerId !== id) return;
+        this.touches.set(id, this.point(event));
+        move(this.point(event), event);
+      }, { signal });
+      window.addEventListener("pointerup", done, { signal });
+      window.addEventListener("pointercancel", done, { signal });
+    }
+    drag(e, knob) {
+      const handle = this.handle(knob.dataset.key);
+      if (!handle) return;
+      e.preventDefault();
+      knob.focus({ preventScroll: true });
+      const grabbed = this.camera.toScreen(handle.get());
+      const [x, y] = this.point(e);
+      const mover = this.modes.mover(this.app.handles, handle);
+      let hasMoved = false;
+      this.app.isDragging = true;
+      knob.classList.add("held");
+      this.follow(e, (to, event) => {
+        if (this.touches.size > 1) return;
+        hasMoved = true;
+        const target = this.camera.toUser([grabbed[0] + to[0] - x, grabbed[1] + to[1] - y]);
+        mover(this.modes.snapped(target, handle, this.app.handles, 7 * this.camera.pixel, event), event);
+        this.changed(handle, event.timeStamp);
+      }, () => {
+        knob.classList.remove("held");
+        this.app.isDragging = false;
+        this.modes.clear();
+        if (hasMoved) void this.app.commit();
+      });
+    }
+    changed(handle, since) {
+      this.app.handles.write(handle.param);
+      this.placeHandles();
+      this.onFocus(handle);
+      this.app.draft(since);
+    }
+    pan(e) {
+      let last = this.point(e);
+      this.svg.classList.add("panning");
+      this.follow(e, (to) => {
+        if (this.touches.size > 1) return;
+        this.camera.shift = [this.camera.shift[0] + to[0] - last[0], this.camera.shift[1] + to[1] - last[1]];
+        last = to;
+        this.layout();
+      }, () => this.svg.classList.remove("panning"));
+    }
+    /** Two fingers move and magnify the view. */
+    pinch() {
+      const [one, two] = Array.from(this.touches.keys());
+      const stop = new AbortController();
+      const { signal } = stop;
+      const middle = () => {
+        const [a, b] = [this.touches.get(one), this.touches.get(two)];
+        return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
+      };
+      let [at, apart] = middle();
+      window.addEventListener("pointermove", (e) => {
+        if (!this.touches.has(e.pointerId)) return;
+        this.touches.set(e.pointerId, this.point(e));
+        const [to, wide] = middle();
+        this.camera.shift = [this.camera.shift[0] + to[0] - at[0], this.camera.shift[1] + to[1] - at[1]];
+        if (apart > 0) this.camera.zoom(wide / apart, to);
+        [at, apart] = [to, wide];
+        this.layout();
+      }, { signal });
+      const end = (e) => {
+        this.touches.delete(e.pointerId);
+        stop.abort();
+      };
+      window.addEventListener("pointerup", end, { signal });
+      window.addEventListener("pointercancel", end, { signal });
+    }
+    doubleClick(e) {
+      if (e.target.closest(".knob")) return;
+      const key = this.app.addPoint(this.camera.toUser(this.point(e)));
+      if (key) this.focused = key;
+    }
+    /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
+    key(e) {
+      const handle = this.handle(e.target.closest(".knob")?.dataset.key ?? null);
+      if (!handle || !this.app.handles) return;
+      const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
+      if (by) {
+        e.preventDefault();
+        const far = e.shiftKey ? 10 : 1;
+        const [x, y] = this.camera.toScreen(handle.get());
+        this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+      } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
+        e.preventDefault();
+        handle.remove();
+        this.app.handles.write(handle.param);
+        this.focused = null;
+        void this.app.commit();
+      }
+    }
+    /** Moves a handle by keys or by typed numbers. */
+    moveTo(handle, to) {
+      const { handles } = this.app;
+      if (!handles) return;
+      this.app.isDragging = true;
+      this.modes.mover(handles, handle)(to, null);
+      this.changed(handle, performance.now());
+      clearTimeout(this.keysTimer);
+      this.keysTimer = window.setTimeout(() => {
+        this.app.isDragging = false;
+        void this.app.commit();
+      }, KEYS);
+    }
+  };
+  function renamed(root) {
+    for (const element of Array.from(root.querySelectorAll("*"))) {
+      for (const { name, value } of Array.from(element.attributes)) {
+        if (name === "id") element.setAttribute(name, `before-${value}`);
+        else if (value.includes("url(#")) element.setAttribute(name, value.replaceAll("url(#", "url(#before-"));
+        else if (name.endsWith("href") && value.startsWith("#")) element.setAttribute(name, `#before-${value.slice(1)}`);
+      }
+    }
+    return root;
+  }
+
+  // src/steps.ts
+  var Steps = class {
+    constructor(app2, gallery2) {
+      this.app = app2;
+      app2.listen((change) => {
+        if (change === "steps" || change === "state") this.build();
+      });
+      const add = byId("add-step");
+      add.addEventListener("click", () => {
+        gallery2.appends = true;
+        document.body.classList.add("shapes-open");
+        byId("note").textContent = "Choose the shape of the next step";
+        byId("gallery").scrollTop = 0;
+        byId("search").focus();
+      });
+    }
+    app;
+    list = byId("steps");
+    note = byId("steps-note");
+    build() {
+      const { app: app2 } = this;
+      const { steps, selected } = app2;
+      const name = (step2) => {
+        const deformation = app2.deformation(step2.deformation);
+        const preset = deformation?.gallery ? step2.args[deformation.gallery.presets]?.[0] : void 0;
+        return preset ? words(preset) : deformation ? called(deformation) : words(step2.deformation);
+      };
+      const button = (name2, label, action, disabled = false) => {
+        const b = h("button", { type: "button", class: "small", "aria-label": label, title: label, disabled }, icon(name2));
+        b.addEventListener("click", action);
+        return b;
+      };
+      this.list.replaceChildren(...steps.map((step2, i) => {
+        const title = name(step2);
+        const choose = h("button", { type: "button", class: "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`);
+        choose.addEventListener("click", () => void app2.select(i));
+        const moved = (to) => {
+          const others = steps.filter((_, k) => k !== i);
+          others.splice(to, 0, step2);
+          void app2.arrange(others, to);
+        };
+        const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), Math.max(0, i - 1));
+        return h(
+          "li",
+          { class: i === selected ? "chosen" : "" },
+          choose,
+          steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i === 0),
+          steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i === steps.length - 1),
+          !app2.isProposal && button("close", `Remove ${title}`, remove)
+        );
+      }));
+      this.note.hidden = selected >= steps.length - 1;
+      this.note.textContent = `The picture stops at step ${selected + 1}, so that you see what you drag. Saving uses all steps.`;
+    }
+  };
+
+  // src/main.ts
+  var ZOOM = 1.25;
+  var app = new App();
+  var modes = new Modes();
+  var stage = new Stage(app, modes);
+  var gallery = new Gallery(app);
+  var settings = new Settings(app);
+  new Steps(app, gallery);
+  var saving = new Saving(app);
+  modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
+  function on(id, action) {
+    byId(id).addEventListener("click", action);
+  }
+  on("undo", () => void app.turn("undo"));
+  on("redo", () => void app.turn("redo"));
+  on("zoom-in", () => stage.zoom(ZOOM));
+  on("zoom-out", () => stage.zoom(1 / ZOOM));
+  on("fit", () => stage.fit());
+  on("start-over", () => void app.arrange([], 0));
+  function sheet(name) {
+    const { classList } = document.body;
+    const opens = name !== null && !classList.contains(name);
+    if (!opens && !classList.contains("shapes-open") && !classList.contains("settings-open")) return;
+    classList.remove("shapes-open", "settings-open");
+    if (opens) classList.add(name);
+    stage.fit();
+  }
+  on("open-shapes", () => sheet("shapes-open"));
+  on("open-settings", () => sheet("settings-open"));
+  stage.onZoom = () => {
+    byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
+  };
+  function toggle(id, get, set2) {
+    const button = byId(id);
+    const show = () => button.setAttribute("aria-pressed", String(get()));
+    button.addEventListener("click", () => {
+      set2(!get());
+      show();
+    });
+    show();
+  }
+  toggle("snap", () => modes.snaps, (v) => modes.snaps = v);
+  toggle("mirror", () => modes.mirrors, (v) => modes.mirrors = v);
+  toggle("smooth", () => modes.smooths, (v) => modes.smooths = v);
+  toggle("stretch", () => stage.showsStretch, (v) => {
+    stage.showsStretch = v;
+    void stage.drawStretch();
+  });
+  settings.onPick = (take) => {
+    toast("Click a path of the drawing");
+    stage.pick(take);
+  };
+  toggle("nodes", () => stage.showsNodes, (v) => {
+    stage.showsNodes = v;
+    stage.drawNodes();
+  });
+  var before = byId("before");
+  before.addEventListener("pointerdown", () => void stage.before(true));
+  for (const end of ["pointerup", "pointerleave", "pointercancel", "blur"]) before.addEventListener(end, () => void stage.before(false));
+  before.addEventListener("keydown", (e) => {
+    if (e.key === " " || e.key === "Enter") void stage.before(true);
+  });
+  before.addEventListener("keyup", () => void stage.before(false));
+  function isTyping(target) {
+    return target instanceof HTMLElement && target.matches("input:not([type=range]):not([type=checkbox]), textarea, select");
+  }
+  window.addEventListener("keydown", (e) => {
+    const command = e.ctrlKey || e.metaKey;
+    const key = e.key.toLowerCase();
+    if (command && key === "s") {
+      e.preventDefault();
+      if (e.shiftKey) saving.open();
+      else void saving.quick();
+    } else if (command && key === "z" && !isTyping(e.target)) {
+      e.preventDefault();
+      void app.turn(e.shiftKey ? "redo" : "undo");
+    } else if (command && key === "y" && !isTyping(e.target)) {
+      e.preventDefault();
+      void app.turn("redo");
+    } else if (!command && !e.altKey && !isTyping(e.target)) {
+      const action = { "+": () => stage.zoom(ZOOM), "=": () => stage.zoom(ZOOM), "-": () => stage.zoom(1 / ZOOM), "0": () => stage.fit(), b: () => void stage.before(true) }[key];
+      if (action && !e.repeat) action();
+      if (key === "escape") stage.pick(null);
+    }
+  });
+  byId("stage").addEventListener("pointerdown", (e) => {
+    if (!e.target.closest(".knob")) sheet(null);
+  });
+  window.addEventListener("keyup", (e) => {
+    if (e.key.toLowerCase() === "b") void stage.before(false);
+  });
+  var place2 = byId("place");
+  var fields = [byId("place-x"), byId("place-y")];
+  var focused = null;
+  stage.onFocus = (handle) => {
+    focused = handle;
+    place2.classList.toggle("off", handle === null);
+    if (!handle) return;
+    byId("place-name").textContent = handle.label;
+    const at = handle.get();
+    fields.forEach((field, i) => {
+      if (document.activeElement !== field) field.value = short(Number(at[i].toFixed(3)));
+    });
+  };
+  fields.forEach((field, i) => field.addEventListener("change", () => {
+    const value = Number(field.value.replace(",", "."));
+    if (!focused || !Number.isFinite(value)) return;
+    const at = focused.get();
+    stage.moveTo(focused, i === 0 ? [value, at[1]] : [at[0], value]);
+  }));
+  app.listen((change) => {
+    const { state, summary } = app;
+    if (change === "report" || change === "state") {
+      const folds = summary?.folds.length ?? 0;
+      byId("counts").textContent = summary ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
+      byId("error").textContent = summary && summary.error > 0 ? `off by at most ${Number(summary.error.toPrecision(2))}` : "";
+      const fold = byId("folds");
+      fold.hidden = folds === 0;
+      fold.textContent = folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`;
+      const problem = byId("problem");
+      const text = app.problem ?? (state?.problem ? `Nothing is kept until you save: ${state.problem}` : "");
+      problem.hidden = text === "";
+      problem.textContent = text;
+      const warnings = byId("warnings");
+      warnings.hidden = app.warnings.length === 0;
+      warnings.title = app.warnings.join("\n");
+      warnings.textContent = app.warnings.length === 1 ? "1 remark" : `${app.warnings.length} remarks`;
+    }
+    if (change === "state" && state) {
+      byId("undo").disabled = !state.undo;
+      byId("redo").disabled = !state.redo;
+      byId("start-over").disabled = state.steps.length === 0;
+      byId("keep-preset").disabled = state.steps.length === 0;
+    }
+    if (change === "handles") {
+      const grows = app.handles?.grows ?? false;
+      const has = (app.handles?.handles.length ?? 0) > 0;
+      const isCurve = app.handles?.handles.some((h2) => /\/(in|out)$/.test(h2.key)) ?? false;
+      byId("smooth").hidden = !isCurve;
+      byId("mirror").hidden = !has;
+      byId("snap").hidden = !has;
+      const note = !has ? "Change the settings" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
+      byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
+    }
+    if (change === "link") {
+      byId("gone").hidden = app.isConnected;
+      byId("gone-kept").textContent = state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing.";
+    }
+    if (change === "state" && state?.restored && !announced) {
+      announced = true;
+      toast("Your last, unsaved steps are here again");
+    }
+  });
+  var announced = false;
+  byId("warnings").addEventListener("click", () => toast(app.warnings.join(" · ")));
+  var presetDialog = byId("preset-dialog");
+  var presetName = byId("preset-name");
+  on("keep-preset", () => {
+    presetName.value = "";
+    presetDialog.showModal();
+  });
+  on("preset-cancel", () => presetDialog.close());
+  presetDialog.querySelector("form").addEventListener("submit", (e) => {
+    e.preventDefault();
+    void app.attempt(async () => {
+      const { presets } = await app.connection.ask({ do: "keep-preset", name: presetName.value });
+      gallery.showPresets(presets ?? []);
+      presetDialog.close();
+      toast(`${presetName.value} is kept among the shapes`);
+    });
+  });
+  window.addEventListener("dragover", (e) => {
+    e.preventDefault();
+    document.body.classList.add("dropping");
+  });
+  window.addEventListener("dragleave", (e) => {
+    if (!e.relatedTarget) document.body.classList.remove("dropping");
+  });
+  window.addEventListener("drop", (e) => {
+    e.preventDefault();
+    document.body.classList.remove("dropping");
+    const file = e.dataTransfer?.files[0];
+    if (file) void openFile(file);
+  });
+  var chosen = byId("open-file");
+  on("open", () => chosen.click());
+  chosen.addEventListener("change", () => {
+    const file = chosen.files?.[0];
+    chosen.value = "";
+    if (file) void openFile(file);
+  });
+  async function openFile(file) {
+    const { state } = app;
+    const isUnsaved = state !== null && state.steps.length > 0 && !state.saved;
+    if (isUnsaved && !confirm(`The steps of ${state.file} are not saved. Open ${file.name} all the same?`)) return;
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    let binary = "";
+    for (let i = 0; i < bytes.length; i += 32768) binary += String.fromCharCode(...bytes.subarray(i, i + 32768));
+    const answer = await app.attempt(() => app.connection.ask({ do: "open", name: file.name, bytes: btoa(binary) }));
+    if (!answer?.state) return;
+    stage.forget();
+    await app.load(answer.state);
+  }
+})();

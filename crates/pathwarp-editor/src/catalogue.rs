@@ -1,0 +1,118 @@
+//! The deformations with their parameters as a page needs them: everything follows from the registry's tables.
+
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::{Axis, Kind, Param};
+use serde_json::{Value, json};
+
+/// Names for people who bend by hand; the registry's own are those of the command line. Others are shown as they are.
+const LABELS: [(&str, &str); 15] = [
+    ("shaper", "Cage"),
+    ("warp", "Style"),
+    ("wordart", "Text shape"),
+    ("bilinear", "Four corners"),
+    ("birational", "Two rows"),
+    ("polar", "Ring"),
+    ("ffd", "Grid"),
+    ("triangle", "Triangle net"),
+    ("mls", "Pins"),
+    ("projective", "Perspective"),
+    ("anamorph", "Anamorphosis"),
+    ("mobius", "Möbius"),
+    ("expr", "Formula"),
+    ("similitude", "Turn and scale"),
+    ("affine", "Transform"),
+];
+
+/// Describes all deformations, in menu order.
+pub(crate) fn catalogue(registry: &Registry) -> Value {
+    registry.entries().iter().map(|e| deformation(e.info())).collect()
+}
+
+fn deformation(info: &Info) -> Value {
+    // A page writes no files but the result.
+    let params = info.params.iter().filter(|p| p.kind != Kind::Save);
+    json!({
+        "name": info.name,
+        "label": LABELS.iter().find(|(name, _)| *name == info.name).map(|(_, label)| label),
+        "title": info.title,
+        "group": info.group,
+        "about": info.about,
+        "params": params.map(param).collect::<Value>(),
+        "gallery": info.gallery.map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
+    })
+}
+
+fn param(p: &Param) -> Value {
+    let mut out = json!({
+        "name": p.name,
+        "kind": kind(p.kind),
+        "needed": p.needed,
+        "repeat": p.repeat,
+        "help": p.help,
+        "slider": [p.ui.0, p.ui.1],
+    });
+    match p.kind {
+        Kind::Choice(words) | Kind::NameOrFile(words) => out["words"] = json!(words),
+        Kind::Text(notation) => out["notation"] = json!(notation),
+        Kind::Numbers(n) => out["count"] = json!(n),
+        Kind::Length(axis) => out["axis"] = json!(axis_word(axis)),
+        _ => {}
+    }
+    if let Some(default) = p.default {
+        out["default"] = json!(default);
+    }
+    for (key, limit) in [("least", p.range.0), ("most", p.range.1)] {
+        if limit.is_finite() {
+            out[key] = json!(limit);
+        }
+    }
+    out
+}
+
+fn axis_word(axis: Axis) -> &'static str {
+    match axis {
+        Axis::X => "x",
+        Axis::Y => "y",
+        Axis::Diagonal => "diagonal",
+    }
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Flag => "flag",
+        Kind::Number => "number",
+        Kind::Numbers(_) => "numbers",
+        Kind::Length(_) => "length",
+        Kind::Angle => "angle",
+        Kind::Count => "count",
+        Kind::Point => "point",
+        Kind::Path => "path",
+        Kind::Choice(_) => "choice",
+        Kind::Text(_) => "text",
+        Kind::NameOrFile(_) => "name",
+        Kind::File | Kind::Save => "file",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_deformation_and_parameter_is_there() {
+        let registry = Registry::builtin();
+        let all = catalogue(&registry);
+        for (entry, shown) in registry.entries().iter().zip(all.as_array().unwrap()) {
+            let info = entry.info();
+            assert_eq!(shown["name"], info.name);
+            let names: Vec<_> =
+                shown["params"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
+            let expected: Vec<_> = info.params.iter().filter(|p| p.kind != Kind::Save).map(|p| p.name).collect();
+            assert_eq!(names, expected);
+        }
+        for (name, _) in LABELS {
+            assert!(registry.get(name).is_some(), "{name}");
+        }
+        assert_eq!(all.as_array().unwrap().len(), registry.entries().len());
+    }
+}

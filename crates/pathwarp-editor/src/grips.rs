@@ -1,0 +1,288 @@
+//! The geometry of a step's parameters in user units, for handles: paths, points, pairs of points and nets.
+//!
+//! Which handles a parameter has follows from its kind and, for text, from its notation; so parameters of plug-ins have theirs.
+
+use pathwarp::Outline;
+use pathwarp::deform::Info;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
+use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::{Seg, deform::Registry};
+use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
+
+/// The curves of a handle path are shown as cubics; arcs come as near as this share of the frame's diagonal.
+const ARCS_WITHIN: f64 = 1e-6;
+/// Most control points of a net that get handles; more could not be told apart.
+const MOST_NODES: usize = 400;
+
+/// The notations of parameters that place control points of nets.
+const GRID: &str = "I,J:X,Y";
+const TRIANGLE: &str = "I,J,K:X,Y";
+
+/// The handles of every step.
+pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe) -> Value {
+    let steps = resolved.steps.iter().zip(&built.frames);
+    let steps = steps.map(|(step, frame)| {
+        let info = registry.get(&step.deformation).map(|e| e.info());
+        let params = info.map_or_else(Map::new, |info| of_step(info, &step.args, frame));
+        json!({ "frame": rect(frame.rect), "params": params })
+    });
+    steps.collect()
+}
+
+/// A box as x, y, width, height.
+pub(crate) fn rect(r: Rect) -> Value {
+    json!([r.x0, r.y0, r.width(), r.height()])
+}
+
+fn of_step(info: &Info, args: &Args, frame: &Frame) -> Map<String, Value> {
+    let mut out = Map::new();
+    // Values that are wrong have been reported when the step was built.
+    let Ok(settings) = Settings::new(info.params, args, frame) else { return out };
+    for p in info.params {
+        if let Some(geometry) = of_param(info, p, &settings) {
+            out.insert(p.name.to_owned(), geometry);
+        }
+    }
+    out
+}
+
+fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
+    match p.kind {
+        Kind::Point if s.given(p.name) || p.default.is_some() => Some(json!({ "point": xy(s.point(p.name).ok()?) })),
+        Kind::Path => {
+            let paths = s.paths(p.name).ok()?;
+            let diagonal = s.frame().extent(Axis::Diagonal);
+            let all: Vec<Value> = paths.iter().map(|named| path(&named.outline, ARCS_WITHIN * diagonal)).collect();
+            (!all.is_empty()).then(|| json!({ "paths": all }))
+        }
+        Kind::Length(_) | Kind::Number | Kind::Angle | Kind::Count => {
+            Some(json!({ "value": s.number_if(p.name).ok()?.filter(|v| v.is_finite())? }))
+        }
+        Kind::Text("X,Y") => {
+            let points = words(s, p).map(|w| s.point_in(p.name, w).map(xy));
+            Some(json!({ "points": points.collect::<Result<Vec<_>, _>>().ok()? }))
+        }
+        Kind::Text("X,Y:X,Y") => {
+            let pair = |w: &str| {
+                let (from, to) = w.split_once(':')?;
+                Some(json!([xy(s.point_in(p.name, from).ok()?), xy(s.point_in(p.name, to).ok()?)]))
+            };
+            Some(json!({ "pairs": words(s, p).map(pair).collect::<Option<Vec<_>>>()? }))
+        }
+        Kind::Text(GRID | TRIANGLE) => Some(json!({ "net": net(info, p, s)? })),
+        _ => None,
+    }
+}
+
+fn words<'a>(s: &Settings<'a>, p: &Param) -> impl Iterator<Item = &'a str> {
+    s.texts(p.name).into_iter().flat_map(str::split_whitespace)
+}
+
+fn xy(p: Point) -> Value {
+    json!([p.x, p.y])
+}
+
+/// A path as subpaths: the start, and cubics as six numbers or lines as two.
+fn path(outline: &Outline, arcs_within: f64) -> Value {
+    let subpath = |s: &pathwarp::Subpath| {
+        let mut segments: Vec<Value> = Vec::new();
+        for seg in &s.segs {
+            match seg {
+                Seg::Line(l) => segments.push(xy(l.p1)),
+                Seg::Arc(arc) => arc.to_cubics(arcs_within).for_each(|c| segments.push(cubic(c.p1, c.p2, c.p3))),
+                other => {
+                    let c = other.to_cubic();
+                    segments.push(cubic(c.p1, c.p2, c.p3));
+                }
+            }
+        }
+        json!({ "start": xy(s.start), "segments": segments, "closed": s.closed })
+    };
+    outline.subpaths.iter().map(subpath).collect()
+}
+
+fn cubic(a: Point, b: Point, c: Point) -> Value {
+    json!([a.x, a.y, b.x, b.y, c.x, c.y])
+}
+
+/// Path data of an outline, with all digits.
+pub(crate) fn path_data(outline: &Outline) -> String {
+    let mut out = String::new();
+    for s in &outline.subpaths {
+        let _ = write!(out, "M{},{} ", s.start.x, s.start.y);
+        // `Z` draws the closing line.
+        let segs = match s.segs.split_last() {
+            Some((Seg::Line(_), rest)) if s.closed => rest,
+            _ => &s.segs,
+        };
+        for seg in segs {
+            let _ = match seg {
+                Seg::Line(l) => write!(out, "L{},{} ", l.p1.x, l.p1.y),
+                other => {
+                    let c = other.to_cubic();
+                    write!(out, "C{},{} {},{} {},{} ", c.p1.x, c.p1.y, c.p2.x, c.p2.y, c.p3.x, c.p3.y)
+                }
+            };
+        }
+        if s.closed {
+            out.push_str("Z ");
+        }
+    }
+    out.truncate(out.trim_end().len());
+    out
+}
+
+/// The control points of a net whose parameter `p` places single ones: their indices as typed, and the rows they form. The net is
+/// that of the parameters `degree`, `cells`, `spline`, `region`, `reference` and `move`, as the deformation's notation has them.
+fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
+    let has = |name: &str| info.params.iter().any(|p| p.name == name);
+    // These say where control points are in ways of their own.
+    if ["lattice", "pin"].iter().any(|name| has(name) && s.given(name)) || !has("degree") {
+        return None;
+    }
+    let Net { names, mut points, lines } = if p.kind == Kind::Text(TRIANGLE) { triangle(s)? } else { grid(s, &has)? };
+    let index = |word: &str| {
+        let (name, rest) = word.split_once(':')?;
+        Some((names.iter().position(|n| n == name.trim())?, rest.to_owned()))
+    };
+    for word in words(s, p) {
+        let (i, rest) = index(word)?;
+        *points.get_mut(i)? = s.point_in(p.name, &rest).ok()?;
+    }
+    for word in if has("move") { s.texts("move") } else { Vec::new() }.into_iter().flat_map(str::split_whitespace) {
+        let (i, rest) = index(word)?;
+        let (x, y) = rest.split_once(',')?;
+        let point = points.get_mut(i)?;
+        point.x += s.length_in("move", x, Axis::X).ok()?;
+        point.y += s.length_in("move", y, Axis::Y).ok()?;
+    }
+    Some(json!({ "names": names, "points": points.into_iter().map(xy).collect::<Vec<_>>(), "lines": lines }))
+}
+
+/// Control points with their indices as typed, and the lines that join them.
+struct Net {
+    names: Vec<String>,
+    points: Vec<Point>,
+    lines: Vec<Vec<usize>>,
+}
+
+/// An undistorted grid over the region.
+fn grid(s: &Settings<'_>, has: &dyn Fn(&str) -> bool) -> Option<Net> {
+    let numbers = |name: &str| {
+        let text = s.texts(name).last().copied()?;
+        let (a, b) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
+        Some([a.trim().parse::<usize>().ok()?, b.trim().parse::<usize>().ok()?])
+    };
+    let degree = numbers("degree")?;
+    let cells = if has("cells") && s.given("cells") {
+        numbers("cells")?
+    } else if has("spline") && s.flag("spline").ok()? {
+        [4, 4]
+    } else {
+        [1, 1]
+    };
+    let [columns, rows] = [degree[0].checked_add(cells[0])?, degree[1].checked_add(cells[1])?];
+    if degree.contains(&0) || cells.contains(&0) || columns.checked_mul(rows)? > MOST_NODES {
+        return None;
+    }
+    let region = if has("region") { s.rect_if("region").ok()?.unwrap_or(s.frame().rect) } else { s.frame().rect };
+    let all = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
+    let place = |(i, j)| {
+        let (u, v) = (at_rest(i, degree[0], cells[0]), at_rest(j, degree[1], cells[1]));
+        Point::new(region.x0 + u * region.width(), region.y0 + v * region.height())
+    };
+    let across = (0..rows).map(|j| (0..columns).map(|i| j * columns + i).collect());
+    let down = (0..columns).map(|i| (0..rows).map(|j| j * columns + i).collect());
+    Some(Net {
+        names: all.clone().map(|(i, j)| format!("{i},{j}")).collect(),
+        points: all.map(place).collect(),
+        lines: across.chain(down).collect(),
+    })
+}
+
+/// An undistorted triangular net: control point i,j,k stands at (iA + jB + kC)/n.
+fn triangle(s: &Settings<'_>) -> Option<Net> {
+    let n = s.number("degree").ok()? as usize;
+    let frame = s.frame().rect;
+    let half = frame.width() / 2.0;
+    let given = s.texts("reference").pop().map(|text| s.points_in("reference", text));
+    let corners = match given.transpose().ok()? {
+        Some(corners) => corners,
+        // As the deformation has it: about the frame, twice as wide and twice as high.
+        None => vec![
+            Point::new(frame.center().x, frame.y0 - frame.height()),
+            Point::new(frame.x0 - half, frame.y1),
+            Point::new(frame.x1 + half, frame.y1),
+        ],
+    };
+    let [a, b, c] = corners.as_slice() else { return None };
+    if n == 0 || n > MOST_NODES {
+        return None;
+    }
+    let all: Vec<[usize; 3]> = (0..=n).flat_map(|i| (0..=n - i).map(move |j| [i, j, n - i - j])).collect();
+    let place = |[i, j, k]: &[usize; 3]| {
+        let sum = a.to_vec2() * *i as f64 + b.to_vec2() * *j as f64 + c.to_vec2() * *k as f64;
+        (sum / n as f64).to_point()
+    };
+    // Along each side: the points with the same index of the opposite corner.
+    let line = |axis: usize, m: usize| (0..all.len()).filter(|p| all[*p][axis] == m).collect::<Vec<_>>();
+    let lines = (0..3).flat_map(|axis| (0..n).map(move |m| (axis, m))).map(|(axis, m)| line(axis, m));
+    Some(Net {
+        names: all.iter().map(|[i, j, k]| format!("{i},{j},{k}")).collect(),
+        points: all.iter().map(place).collect(),
+        lines: lines.collect(),
+    })
+}
+
+/// The place of control point `i` of an undistorted net, 0 to 1: the mean of its knots, which are uniform and clamped.
+fn at_rest(i: usize, degree: usize, cells: usize) -> f64 {
+    let knot = |k: usize| k.saturating_sub(degree).min(cells) as f64 / cells as f64;
+    (i + 1..=i + degree).map(knot).sum::<f64>() / degree as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(name: &str, pairs: &[(&str, &str)]) -> Map<String, Value> {
+        let frame = Frame::new(Rect::new(0.0, 0.0, 90.0, 60.0));
+        of_step(Registry::builtin().get(name).unwrap().info(), &Args::from_pairs(pairs), &frame)
+    }
+
+    #[test]
+    fn kinds_and_notations_say_which_handles_there_are() {
+        let target = &of("projective", &[("target", "0%,100% 100%,100% 80,0 0,0")])["target"]["paths"][0][0];
+        assert_eq!(target["start"], json!([0.0, 60.0]));
+        assert_eq!(target["segments"], json!([[90.0, 60.0], [80.0, 0.0], [0.0, 0.0]]));
+        let shaper = &of("shaper", &[("shaper", "M0,60 Q45,60 90,60 L90,0 H0 Z")])["shaper"]["paths"][0][0];
+        assert_eq!(
+            (&shaper["segments"][0], &shaper["closed"]),
+            (&json!([30.0, 60.0, 60.0, 60.0, 90.0, 60.0]), &json!(true))
+        );
+        let mls = of("mls", &[("pin", "10,20"), ("pair", "50%,50%:50,40")]);
+        assert_eq!(mls["pin"]["points"], json!([[10.0, 20.0]]));
+        assert_eq!(mls["pair"]["pairs"], json!([[[45.0, 30.0], [50.0, 40.0]]]));
+        assert_eq!(of("swirl", &[])["center"]["point"], json!([45.0, 30.0]));
+    }
+
+    #[test]
+    fn nets_stand_where_they_are_moved_to() {
+        let net = &of("ffd", &[("degree", "3x2"), ("move", "1,0:5,10%"), ("at", "0,2:-1,60")])["at"]["net"];
+        assert_eq!((&net["names"][5], net["points"].as_array().unwrap().len()), (&json!("1,1"), 12));
+        assert_eq!((&net["points"][1], &net["points"][8]), (&json!([35.0, 6.0]), &json!([-1.0, 60.0])));
+        let triangle = &of("triangle", &[("reference", "0,0 90,0 0,60"), ("at", "1,1,0:40,-9")])["at"]["net"];
+        let at = |name: &str| {
+            let names = triangle["names"].as_array().unwrap();
+            &triangle["points"][names.iter().position(|n| n == name).unwrap()]
+        };
+        assert_eq!(
+            (at("2,0,0"), at("0,1,1"), at("1,1,0")),
+            (&json!([0.0, 0.0]), &json!([45.0, 30.0]), &json!([40.0, -9.0]))
+        );
+        // A clamped quadratic B-spline of two cells: knots 0 0 0 ½ 1 1 1.
+        let places: Vec<f64> = (0..4).map(|i| at_rest(i, 2, 2)).collect();
+        assert_eq!(places, [0.0, 0.25, 0.75, 1.0]);
+    }
+}

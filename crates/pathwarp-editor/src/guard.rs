@@ -1,0 +1,92 @@
+//! Who may talk to the server: a browser on this computer that knows the token, from the server's own page.
+//!
+//! The token in the address keeps out other users of the computer. The `Host` header keeps out pages that reach the server by a
+//! name of their own (DNS rebinding), and `Origin` keeps out the scripts of other pages, which browsers let open WebSockets anywhere.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::URL_SAFE_NO_PAD;
+use std::io;
+
+/// Bytes of the token: too many to guess.
+const TOKEN_BYTES: usize = 24;
+
+/// What a request must have to be answered.
+#[derive(Debug, Clone)]
+pub(crate) struct Guard {
+    token: String,
+    port: u16,
+}
+
+/// The reason for a refusal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Refusal {
+    /// The host's name is not this computer's own.
+    Host,
+    /// The request comes from the page of another server.
+    Origin,
+    /// The address lacks the token.
+    Token,
+}
+
+impl Guard {
+    /// A guard with a new token for the server at `port`.
+    pub(crate) fn new(port: u16) -> io::Result<Self> {
+        let mut bytes = [0; TOKEN_BYTES];
+        getrandom::fill(&mut bytes).map_err(|e| io::Error::other(e.to_string()))?;
+        Ok(Self { token: URL_SAFE_NO_PAD.encode(bytes), port })
+    }
+
+    /// The address of the page.
+    pub(crate) fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/?token={}", self.port, self.token)
+    }
+
+    /// Checks the host and, if the browser names one, the origin.
+    pub(crate) fn check_place(&self, host: Option<&str>, origin: Option<&str>) -> Result<(), Refusal> {
+        let port = self.port;
+        let own = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
+        let is_own = |host: &str| own.iter().any(|o| o.eq_ignore_ascii_case(host));
+        if !host.is_some_and(is_own) {
+            return Err(Refusal::Host);
+        }
+        match origin {
+            None => Ok(()),
+            Some(origin) if origin.strip_prefix("http://").is_some_and(is_own) => Ok(()),
+            Some(_) => Err(Refusal::Origin),
+        }
+    }
+
+    /// Checks the token in the query of an address.
+    pub(crate) fn check_token(&self, query: &str) -> Result<(), Refusal> {
+        let given = query.split('&').find_map(|pair| pair.strip_prefix("token="));
+        if given.is_some_and(|g| same(g.as_bytes(), self.token.as_bytes())) { Ok(()) } else { Err(Refusal::Token) }
+    }
+}
+
+/// Compares in a time that does not depend on the place of the first difference.
+fn same(a: &[u8], b: &[u8]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).fold(0, |sum, (x, y)| sum | (x ^ y)) == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_own_page_with_the_token_passes() {
+        let guard = Guard::new(4000).unwrap();
+        let place = |host, origin| guard.check_place(host, origin);
+        assert_eq!(place(Some("127.0.0.1:4000"), None), Ok(()));
+        assert_eq!(place(Some("localhost:4000"), Some("http://localhost:4000")), Ok(()));
+        assert_eq!(place(Some("127.0.0.1:4000"), Some("http://127.0.0.1:4001")), Err(Refusal::Origin));
+        assert_eq!(place(Some("127.0.0.1:4000"), Some("null")), Err(Refusal::Origin));
+        assert_eq!(place(Some("rebound.example:4000"), None), Err(Refusal::Host));
+        assert_eq!(place(None, None), Err(Refusal::Host));
+        let address = guard.address();
+        let (_, query) = address.split_once('?').unwrap();
+        assert_eq!(guard.check_token(query), Ok(()));
+        assert_eq!(guard.check_token(&query[..query.len() - 1]), Err(Refusal::Token));
+        assert_eq!(guard.check_token(""), Err(Refusal::Token));
+        assert_ne!(Guard::new(4000).unwrap().address(), address);
+    }
+}

@@ -1,0 +1,113 @@
+//! [`Host`]: what the editor needs from the program around it, which knows files, formats and options.
+
+use pathwarp::Outline;
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp_svg::Document;
+use std::path::Path;
+
+/// The program around the editor. Errors are sentences for the user.
+pub trait Host: Send + Sync {
+    /// The deformations on offer.
+    fn registry(&self) -> &Registry;
+
+    /// Reads a drawing. If it is the result of an earlier run with its source embedded, that source is opened, with its recipe.
+    ///
+    /// # Errors
+    /// The bytes are not a drawing that can be read.
+    fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String>;
+
+    /// Converts a finished drawing into the format that the extension of `to` names. Returns the bytes and what the format cannot
+    /// hold.
+    ///
+    /// # Errors
+    /// The format is unknown, or the drawing cannot be converted.
+    fn export(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), String>;
+
+    /// Writes a file completely or not at all.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String>;
+}
+
+/// A drawing that has been read.
+pub struct Opened {
+    /// The drawing to be bent.
+    pub artwork: Box<dyn Artwork>,
+    /// The steps that the file was made by; empty for a drawing that was not bent.
+    pub recipe: Recipe,
+    /// The file is the result of an earlier run, so saving replaces it.
+    pub is_result: bool,
+}
+
+/// A drawing, ready to be bent again and again.
+pub trait Artwork: Send {
+    /// The drawing.
+    fn document(&self) -> &Document;
+
+    /// The box that percentages of the first step refer to.
+    fn frame(&self) -> Rect;
+
+    /// The outlines of the artwork.
+    fn outlines(&self) -> Vec<&Outline>;
+
+    /// Bends the drawing by a recipe.
+    ///
+    /// # Errors
+    /// A step cannot be built, or the drawing cannot be bent.
+    fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String>;
+
+    /// Looks up the recipe's references and builds its steps, without bending anything.
+    ///
+    /// # Errors
+    /// A step cannot be built.
+    fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String>;
+
+    /// The text of a recipe file with these steps.
+    ///
+    /// # Errors
+    /// The recipe cannot be written as text.
+    fn recipe_text(&self, recipe: &Recipe) -> Result<String, String>;
+}
+
+/// The effort that a picture is worth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fineness {
+    /// While something is dragged: curves within this distance in user units, gradients by affine fits, no report.
+    Draft(f64),
+    /// As the program writes it.
+    Exact,
+    /// As the program writes it, with the recipe and the source embedded.
+    Saved,
+}
+
+/// A drawing under a recipe.
+pub struct Bent {
+    /// The text of the result.
+    pub svg: String,
+    /// The recipe with its references looked up.
+    pub resolved: Recipe,
+    /// The recipe, built.
+    pub built: BuiltRecipe,
+    /// What was done; `None` for a draft.
+    pub summary: Option<Summary>,
+    /// Messages about the result.
+    pub warnings: Vec<String>,
+}
+
+/// What was done to a drawing.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Summary {
+    /// Segments of the drawing before.
+    pub segments_in: usize,
+    /// Segments of the result.
+    pub segments_out: usize,
+    /// The largest distance to the exact image, in user units.
+    pub max_error: f64,
+    /// The distance that was asked for, in user units.
+    pub tolerance: f64,
+    /// The shapes that fold over, with the places in the source where they begin to.
+    pub folds: Vec<(String, Point)>,
+}

@@ -1,0 +1,136 @@
+//! The requests of a page: its few files, and the upgrade to a WebSocket. Each connection carries one request.
+
+use crate::assets::ASSETS;
+use crate::guard::{Guard, Refusal};
+use std::io::{self, Read as _, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+use tungstenite::handshake::server::{create_response, write_response};
+use tungstenite::http::{Method, Request, Version};
+
+/// Most bytes of a request's head. Browsers send less than two thousand.
+const LONGEST_HEAD: usize = 16 << 10;
+/// Most headers of a request.
+const MOST_HEADERS: usize = 64;
+/// A browser that has connected sends its request at once.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// The rules for the page. Its own script and style are files; a drawing may hold styles in attributes and embedded pictures, but
+/// nothing is ever loaded from elsewhere.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src data: blob:; connect-src 'self'; \
+                      base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// Answers the request on a new connection. Returns the connection if it has become a WebSocket.
+pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<TcpStream>> {
+    stream.set_read_timeout(Some(PATIENCE))?;
+    stream.set_nodelay(true)?;
+    let Some(request) = read(&mut stream)? else {
+        return refuse(&mut stream, "400 Bad Request", "this is not a request of a browser");
+    };
+    let header = |name: &str| request.headers().get(name).and_then(|v| v.to_str().ok());
+    if let Err(refusal) = guard.check_place(header("host"), header("origin")) {
+        return refuse(&mut stream, "403 Forbidden", explain(refusal));
+    }
+    if request.method() != Method::GET {
+        return refuse(&mut stream, "405 Method Not Allowed", "only GET is allowed");
+    }
+    let (path, query) = (request.uri().path(), request.uri().query().unwrap_or_default());
+    // The script and the style hold nothing of the user's; browsers ask for them without the page's query.
+    let public = path == "/editor.js" || path == "/editor.css";
+    if !public && let Err(refusal) = guard.check_token(query) {
+        return refuse(&mut stream, "403 Forbidden", explain(refusal));
+    }
+    if path == "/socket" {
+        // Browsers name the origin of every WebSocket.
+        if header("origin").is_none() {
+            return refuse(&mut stream, "403 Forbidden", explain(Refusal::Origin));
+        }
+        return match create_response(&request) {
+            Ok(response) => {
+                write_response(&mut stream, &response).map_err(io::Error::other)?;
+                Ok(Some(stream))
+            }
+            Err(_) => refuse(&mut stream, "400 Bad Request", "this is not a WebSocket"),
+        };
+    }
+    match ASSETS.iter().find(|a| a.path == path) {
+        Some(asset) => respond(&mut stream, "200 OK", asset.kind, asset.text)?,
+        None => return refuse(&mut stream, "404 Not Found", "there is no such page"),
+    }
+    Ok(None)
+}
+
+fn explain(refusal: Refusal) -> &'static str {
+    match refusal {
+        Refusal::Host => "this server answers at 127.0.0.1 only",
+        Refusal::Origin => "this server answers its own page only",
+        Refusal::Token => "open the whole address that `pathwarp edit` has printed, with its token",
+    }
+}
+
+/// Reads the head of a request; `None` if it is none.
+fn read(stream: &mut TcpStream) -> io::Result<Option<Request<()>>> {
+    let mut head = Vec::new();
+    let mut piece = [0; 2048];
+    loop {
+        let n = stream.read(&mut piece)?;
+        head.extend_from_slice(piece.get(..n).unwrap_or_default());
+        if let Some(parsed) = parse(&head) {
+            return Ok(parsed);
+        }
+        if n == 0 || head.len() > LONGEST_HEAD {
+            return Ok(None);
+        }
+    }
+}
+
+/// Parses a head. The outer option is `None` while it is incomplete, the inner one if it is wrong.
+fn parse(head: &[u8]) -> Option<Option<Request<()>>> {
+    let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
+    let mut parsed = httparse::Request::new(&mut headers);
+    match parsed.parse(head) {
+        Ok(httparse::Status::Partial) => return None,
+        Ok(httparse::Status::Complete(_)) => {}
+        Err(_) => return Some(None),
+    }
+    let version = if parsed.version == Some(1) { Version::HTTP_11 } else { Version::HTTP_10 };
+    let mut request = Request::builder()
+        .method(parsed.method.unwrap_or_default())
+        .uri(parsed.path.unwrap_or_default())
+        .version(version);
+    for h in parsed.headers.iter() {
+        request = request.header(h.name, h.value);
+    }
+    Some(request.body(()).ok())
+}
+
+fn refuse(stream: &mut TcpStream, status: &str, why: &str) -> io::Result<Option<TcpStream>> {
+    respond(stream, status, "text/plain; charset=utf-8", &format!("{why}\n"))?;
+    Ok(None)
+}
+
+fn respond(stream: &mut TcpStream, status: &str, kind: &str, text: &str) -> io::Result<()> {
+    let length = text.len();
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nContent-Security-Policy: {POLICY}\r\n\
+         X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nCross-Origin-Opener-Policy: same-origin\r\n\
+         Cross-Origin-Resource-Policy: same-origin\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes())?;
+    stream.write_all(text.as_bytes())?;
+    stream.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heads_are_parsed_once_complete() {
+        assert!(parse(b"GET / HTTP/1.1\r\nHost: a").is_none());
+        let request = parse(b"GET /x?token=1 HTTP/1.1\r\nHost: a\r\n\r\n").unwrap().unwrap();
+        assert_eq!((request.uri().path(), request.uri().query()), ("/x", Some("token=1")));
+        assert_eq!(request.headers()["host"], "a");
+        assert!(parse(b"\x00\x01 nonsense\r\n\r\n").unwrap().is_none());
+    }
+}

@@ -1,0 +1,33 @@
+//! Bends artwork by hand: a page in the browser, and a server on this computer that computes every picture.
+//!
+//! The page ([`assets`]) draws and drags; it computes nothing. The server listens on the loopback interface only, and answers only
+//! a browser that knows the token in its address. A program supplies what it knows about files and formats as a [`Host`] and
+//! calls [`serve`]:
+//!
+//! * `http`, `guard`: the few requests of a page, and who may make them;
+//! * `socket`: one connection of a page, with messages in JSON (`protocol`);
+//! * `session`: the document, its steps, undo, and the draft on disk;
+//! * `picture`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
+//! * `catalogue`, `openings`, `grips`: the deformations, their first values, and the geometry that handles show.
+
+mod assets;
+mod catalogue;
+mod command_line;
+mod draft;
+mod grips;
+mod guard;
+mod host;
+mod http;
+mod openings;
+mod picture;
+mod presets;
+mod protocol;
+mod saving;
+mod server;
+mod session;
+mod shared;
+mod socket;
+mod stretch;
+
+pub use host::{Artwork, Bent, Fineness, Host, Opened, Summary};
+pub use server::{Options, serve};

@@ -1,0 +1,128 @@
+//! Named sets of steps, for any drawing: kept in one file in the user's folder for settings.
+//!
+//! Percentages fit every drawing by themselves. Path data is in the units of one drawing, so the frames are kept as well, and paths
+//! are laid from the old frame onto the new one.
+
+use crate::grips::path_data;
+use crate::host::Host;
+use crate::protocol::PageStep;
+use pathwarp::Outline;
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Affine, Rect};
+use pathwarp::param::Kind;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The version of the file's format.
+const VERSION: u32 = 1;
+/// Longest name, in characters.
+const LONGEST_NAME: usize = 60;
+
+/// A named set of steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Preset {
+    pub(crate) name: String,
+    pub(crate) steps: Vec<PageStep>,
+    /// The frame of every step, as x0, y0, x1, y1.
+    frames: Vec<[f64; 4]>,
+}
+
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct PresetFile {
+    pathwarp: u32,
+    presets: Vec<Preset>,
+}
+
+/// The file, if the user has a folder for settings.
+fn file() -> Option<PathBuf> {
+    let folder = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    let settings = if cfg!(windows) {
+        folder("APPDATA")?
+    } else {
+        folder("XDG_CONFIG_HOME").or_else(|| Some(folder("HOME")?.join(".config")))?
+    };
+    Some(settings.join("pathwarp").join("presets.json"))
+}
+
+/// All presets, by name.
+pub(crate) fn all() -> Result<Vec<Preset>, String> {
+    let Some(file) = file().filter(|f| f.exists()) else { return Ok(Vec::new()) };
+    let wrong = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
+    let text = std::fs::read_to_string(&file).map_err(|e| wrong(&e))?;
+    let read: PresetFile = serde_json::from_str(&text).map_err(|e| wrong(&e))?;
+    if read.pathwarp != VERSION {
+        return Err(wrong(&format!("has version {}; this program reads version {VERSION}", read.pathwarp)));
+    }
+    Ok(read.presets)
+}
+
+fn write(host: &dyn Host, mut presets: Vec<Preset>) -> Result<(), String> {
+    let file = file().ok_or("there is no folder for settings (HOME is not set)")?;
+    presets.sort_by(|a, b| a.name.to_lowercase().cmp(&b.name.to_lowercase()));
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    }
+    let text = serde_json::to_string_pretty(&PresetFile { pathwarp: VERSION, presets }).map_err(|e| e.to_string())?;
+    host.write(&file, text.as_bytes())
+}
+
+/// Keeps steps under a name; those of the same name are replaced.
+pub(crate) fn keep(host: &dyn Host, name: &str, steps: Vec<PageStep>, frames: &[Rect]) -> Result<(), String> {
+    let name = name.trim();
+    if name.is_empty() || name.chars().count() > LONGEST_NAME {
+        return Err(format!("a preset needs a name of up to {LONGEST_NAME} characters"));
+    }
+    let frames = frames.iter().map(|r| [r.x0, r.y0, r.x1, r.y1]).collect();
+    let mut presets: Vec<Preset> = all()?.into_iter().filter(|p| p.name != name).collect();
+    presets.push(Preset { name: name.to_owned(), steps, frames });
+    write(host, presets)
+}
+
+/// Forgets a preset.
+pub(crate) fn forget(host: &dyn Host, name: &str) -> Result<(), String> {
+    write(host, all()?.into_iter().filter(|p| p.name != name).collect())
+}
+
+impl Preset {
+    /// Step `i` for artwork in `frame`.
+    pub(crate) fn step_for(&self, registry: &Registry, i: usize, frame: Rect) -> Option<PageStep> {
+        let mut step = self.steps.get(i)?.clone();
+        let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+        if let Some([x0, y0, x1, y1]) = self.frames.get(i) {
+            let onto = onto(Rect::new(*x0, *y0, *x1, *y1), frame);
+            for p in params.iter().filter(|p| p.kind == Kind::Path) {
+                for value in step.args.get_mut(p.name).into_iter().flatten() {
+                    if value.trim_start().starts_with(['M', 'm'])
+                        && let Ok(outline) = Outline::from_svg(value)
+                    {
+                        *value = path_data(&outline.transformed(onto));
+                    }
+                }
+            }
+        }
+        Some(step)
+    }
+}
+
+/// The map of one box onto another; a box without width or height keeps its scale there.
+fn onto(from: Rect, to: Rect) -> Affine {
+    let scale = |from: f64, to: f64| if from > 0.0 && to > 0.0 { to / from } else { 1.0 };
+    Affine::translate(to.origin().to_vec2())
+        * Affine::scale_non_uniform(scale(from.width(), to.width()), scale(from.height(), to.height()))
+        * Affine::translate(-from.origin().to_vec2())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_laid_onto_the_new_frame() {
+        let args = [("shaper".to_owned(), vec!["M0,10 L10,10 L10,0 L0,0 Z".to_owned()])];
+        let step = PageStep { deformation: "shaper".into(), inverse: false, args: args.into() };
+        let preset = Preset { name: "a".into(), steps: vec![step], frames: vec![[0.0, 0.0, 10.0, 10.0]] };
+        let laid = preset.step_for(&Registry::builtin(), 0, Rect::new(5.0, 5.0, 25.0, 10.0)).unwrap();
+        assert_eq!(laid.args["shaper"], ["M5,10 L25,10 L25,5 L5,5 Z"]);
+        assert_eq!(preset.step_for(&Registry::builtin(), 1, Rect::ZERO), None);
+    }
+}

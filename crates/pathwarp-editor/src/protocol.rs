@@ -1,0 +1,128 @@
+//! The messages between page and server: one JSON object each.
+//!
+//! A page sends requests with a number, and gets one answer with the same number for each, in order. It sends the next picture
+//! of a drag only when it has the last one, so nothing piles up.
+
+use pathwarp::param::Args;
+use pathwarp::recipe::{Recipe, Step};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A step as pages and drafts have it: values as typed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PageStep {
+    pub(crate) deformation: String,
+    #[serde(default)]
+    pub(crate) inverse: bool,
+    #[serde(default)]
+    pub(crate) args: BTreeMap<String, Vec<String>>,
+}
+
+/// A request.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Message {
+    pub(crate) id: u64,
+    #[serde(flatten)]
+    pub(crate) request: Request,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "kebab-case")]
+pub(crate) enum Request {
+    /// Everything a page needs to begin.
+    Hello,
+    /// A picture under these steps. They are not stored.
+    Bend {
+        steps: Vec<PageStep>,
+        draft: Option<f64>,
+    },
+    /// The steps as they are to be from now on, and their picture.
+    Commit {
+        steps: Vec<PageStep>,
+        shown: Option<usize>,
+    },
+    Undo {
+        shown: Option<usize>,
+    },
+    Redo {
+        shown: Option<usize>,
+    },
+    /// The drawing without any steps.
+    Before,
+    /// How much these steps stretch the drawing.
+    Stretch {
+        steps: Vec<PageStep>,
+    },
+    /// The first values of a deformation that is put after these steps.
+    Opening {
+        deformation: String,
+        steps: Vec<PageStep>,
+    },
+    /// A small picture of the drawing under these steps, or under a deformation as its examples show it.
+    Thumbnail {
+        steps: Option<Vec<PageStep>>,
+        example: Option<String>,
+    },
+    /// Opens a file that was dropped on the page, as base64.
+    Open {
+        name: String,
+        bytes: String,
+    },
+    /// Writes the result to a file; without a name to the usual one.
+    Save {
+        name: Option<String>,
+        replace: bool,
+    },
+    /// The names of the sets of steps that were kept.
+    Presets,
+    /// Keeps the present steps under a name.
+    KeepPreset {
+        name: String,
+    },
+    ForgetPreset {
+        name: String,
+    },
+    /// The steps of a preset for this drawing.
+    Preset {
+        name: String,
+    },
+    /// The command line with the same effect.
+    CommandLine,
+}
+
+/// The recipe of steps.
+pub(crate) fn recipe(steps: &[PageStep]) -> Recipe {
+    let step = |s: &PageStep| {
+        let mut args = Args::new();
+        for (name, values) in s.args.iter().filter(|(_, values)| !values.is_empty()) {
+            args.set(name, values.clone());
+        }
+        Step { inverse: s.inverse, ..Step::new(s.deformation.clone(), args) }
+    };
+    Recipe { steps: steps.iter().map(step).collect() }
+}
+
+/// The steps of a recipe.
+pub(crate) fn steps(recipe: &Recipe) -> Vec<PageStep> {
+    let step = |s: &Step| PageStep {
+        deformation: s.deformation.clone(),
+        inverse: s.inverse,
+        args: s.args.iter().map(|(name, values)| (name.to_owned(), values.to_vec())).collect(),
+    };
+    recipe.steps.iter().map(step).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_are_read() {
+        let text = r#"{"id":7,"do":"bend","steps":[{"deformation":"wave","args":{"height":["5%"]}}],"draft":0.5}"#;
+        let message: Message = serde_json::from_str(text).unwrap();
+        let Request::Bend { steps: given, draft } = message.request else { panic!() };
+        assert_eq!((message.id, draft), (7, Some(0.5)));
+        assert_eq!(steps(&recipe(&given)), given);
+        assert!(serde_json::from_str::<Message>(r#"{"id":1,"do":"format-disk"}"#).is_err());
+    }
+}

@@ -1,0 +1,54 @@
+//! Names of results: where *Save* writes, and which files it must not replace.
+
+use std::path::{Path, PathBuf};
+
+/// Added to the drawing's name.
+const SUFFIX: &str = "-bent";
+/// Most names that are tried.
+const MOST_NAMES: usize = 1000;
+
+/// The usual name of the result of `source`: a free one beside it.
+pub(crate) fn usual(source: &Path) -> PathBuf {
+    let stem = source.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = |n: usize| match n {
+        1 => source.with_file_name(format!("{stem}{SUFFIX}.svg")),
+        n => source.with_file_name(format!("{stem}{SUFFIX}-{n}.svg")),
+    };
+    (1..MOST_NAMES).map(name).find(|p| !p.exists()).unwrap_or_else(|| name(MOST_NAMES))
+}
+
+/// The file called `name` in the folder of `beside`. Pages name files, not folders.
+pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
+    let name = name.trim();
+    let wrong = |problem: &str| Err(format!("`{name}` {problem}"));
+    if name.is_empty() {
+        return Err("the file needs a name".into());
+    }
+    if name.contains(['/', '\\', '\0']) || name.starts_with('.') {
+        return wrong("is not a plain file name");
+    }
+    let path = Path::new(name);
+    let with_extension = if path.extension().is_some() { path.to_owned() } else { path.with_extension("svg") };
+    Ok(beside.with_file_name(with_extension))
+}
+
+/// Returns `true` if both are the same file.
+pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
+    a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stay_in_the_folder() {
+        let beside = Path::new("/art/logo.svg");
+        assert_eq!(usual(beside), Path::new("/art/logo-bent.svg"));
+        assert_eq!(named("flag", beside), Ok("/art/flag.svg".into()));
+        assert_eq!(named("flag.pdf", beside), Ok("/art/flag.pdf".into()));
+        for wrong in ["", "../x.svg", "a/b.svg", ".hidden", "a\\b"] {
+            assert!(named(wrong, beside).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! The session: one drawing with its steps, shared by all pages that are open.
+
+use crate::command_line::command_line;
+use crate::draft::{Draft, Kept};
+use crate::grips::grips;
+use crate::host::{Bent, Fineness, Host, Opened};
+use crate::openings::{example, opening};
+use crate::picture::Picture;
+use crate::presets;
+use crate::protocol::{PageStep, recipe, steps};
+use crate::saving;
+use crate::stretch::stretch;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::map::Map as _;
+use pathwarp::recipe::BuiltRecipe;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Most states that can be undone.
+const MOST_UNDO: usize = 500;
+/// Decimals of the coordinates of pictures, in px: a picture is zoomed, a draft hardly.
+const DECIMALS: u8 = 4;
+const DRAFT_DECIMALS: u8 = 2;
+/// Tolerance of small pictures, as a share of the artwork's diagonal: far below a pixel of any of them.
+const THUMBNAIL_TOLERANCE: f64 = 1e-3;
+
+/// The drawing and its steps.
+pub(crate) struct Session {
+    host: Arc<dyn Host>,
+    /// The file that the editor was started with; results go beside it.
+    file: PathBuf,
+    /// The file that the user asked for.
+    out: Option<PathBuf>,
+    opened: Opened,
+    kept: Kept,
+    draft: Draft,
+    /// The last file saved, and its steps.
+    saved: Option<(PathBuf, Vec<PageStep>)>,
+    /// The steps come from a draft that was left behind.
+    restored: bool,
+    /// The draft cannot be written.
+    problem: Option<String>,
+}
+
+/// A picture with everything that a page shows about it.
+pub(crate) struct Shown {
+    pub(crate) picture: Picture,
+    pub(crate) about: Value,
+}
+
+impl Session {
+    /// Opens a drawing, with its draft if one was left behind.
+    pub(crate) fn open(
+        host: Arc<dyn Host>,
+        file: &Path,
+        bytes: &[u8],
+        out: Option<PathBuf>,
+        draft: Draft,
+    ) -> Result<Self, String> {
+        let mut kept = draft.read();
+        let dropped = kept.as_ref().and_then(|k| k.dropped.as_ref());
+        let dropped = dropped.and_then(|(name, bytes)| Some((PathBuf::from(name), STANDARD.decode(bytes).ok()?)));
+        let opened = match dropped {
+            Some((name, bytes)) => host.open(&file.with_file_name(name), &bytes)?,
+            None => host.open(file, bytes)?,
+        };
+        let restored = kept.is_some();
+        let as_opened = steps(&opened.recipe);
+        let saved = opened.is_result.then(|| (file.to_owned(), as_opened.clone()));
+        let kept = kept.take().unwrap_or_else(|| Kept::new(as_opened));
+        Ok(Self { host, file: file.to_owned(), out, opened, kept, draft, saved, restored, problem: None })
+    }
+
+    /// Opens a drawing that was dropped on the page instead of the present one.
+    pub(crate) fn replace(&mut self, name: &str, bytes: &str) -> Result<(), String> {
+        let file = saving::named(name, &self.file)?;
+        let content = STANDARD.decode(bytes).map_err(|e| format!("{name}: {e}"))?;
+        self.opened = self.host.open(&file, &content)?;
+        self.kept = Kept::new(steps(&self.opened.recipe));
+        self.kept.dropped = Some((name.to_owned(), bytes.to_owned()));
+        self.file = file;
+        (self.out, self.saved, self.restored) = (None, None, false);
+        self.keep();
+        Ok(())
+    }
+
+    /// What a page shows about the session.
+    pub(crate) fn state(&self) -> Value {
+        let document = self.opened.artwork.document();
+        let page = document.view_box();
+        let name = |p: &Path| p.file_name().map(|n| n.to_string_lossy().into_owned());
+        let folder = self.file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        json!({
+            "file": name(&self.file),
+            "folder": folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).display().to_string(),
+            "steps": self.kept.steps,
+            "undo": !self.kept.undo.is_empty(),
+            "redo": !self.kept.redo.is_empty(),
+            "saved": self.saved.as_ref().is_some_and(|(_, steps)| *steps == self.kept.steps),
+            "savedTo": self.saved.as_ref().and_then(|(p, _)| name(p)),
+            "target": name(&self.target()),
+            "restored": self.restored,
+            "problem": self.problem,
+            "toPx": document.user_to_px().as_coeffs(),
+            "page": [page.x0, page.y0, page.width(), page.height()],
+            "missing": document.missing(),
+        })
+    }
+
+    pub(crate) fn catalogue(&self) -> Value {
+        crate::catalogue::catalogue(self.host.registry())
+    }
+
+    /// The drawing under these steps; `draft` is the tolerance while something is dragged.
+    pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
+        let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
+        let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
+        let picture = Picture::of(&bent.svg, if draft.is_some() { DRAFT_DECIMALS } else { DECIMALS })?;
+        Ok(Shown { picture, about: self.about(&bent) })
+    }
+
+    /// The drawing as it is without steps.
+    pub(crate) fn before(&self) -> Result<Picture, String> {
+        Picture::of(self.opened.artwork.document().text(), DECIMALS)
+    }
+
+    fn about(&self, bent: &Bent) -> Value {
+        let mut about = json!({
+            "grips": grips(self.host.registry(), &bent.resolved, &bent.built),
+            "guides": guides(&bent.built),
+            "warnings": bent.warnings,
+        });
+        if let Some(s) = &bent.summary {
+            let image = |p: Point| bent.built.map.point(p);
+            let folds = s.folds.iter().map(|(id, p)| (id, image(*p))).filter(|(_, p)| p.is_finite());
+            let folds: Vec<Value> = folds.map(|(id, p)| json!([id, [p.x, p.y]])).collect();
+            about["summary"] = json!({
+                "segmentsIn": s.segments_in, "segmentsOut": s.segments_out,
+                "error": s.max_error, "tolerance": s.tolerance, "folds": folds,
+            });
+        }
+        about
+    }
+
+    /// Takes over these steps, unless the drawing cannot be bent by them.
+    pub(crate) fn commit(&mut self, given: Vec<PageStep>, shown: Option<usize>) -> Result<Shown, String> {
+        let visible = visible(&given, shown);
+        let picture = self.bend(visible, None)?;
+        if visible.len() < given.len() {
+            self.opened.artwork.settle(&recipe(&given))?;
+        }
+        if given != self.kept.steps {
+            let old = std::mem::replace(&mut self.kept.steps, given);
+            self.kept.undo.push(old);
+            if self.kept.undo.len() > MOST_UNDO {
+                self.kept.undo.remove(0);
+            }
+            self.kept.redo.clear();
+            self.keep();
+        }
+        Ok(picture)
+    }
+
+    /// Takes back the last change.
+    pub(crate) fn undo(&mut self, shown: Option<usize>) -> Result<Shown, String> {
+        if let Some(old) = self.kept.undo.pop() {
+            let new = std::mem::replace(&mut self.kept.steps, old);
+            self.kept.redo.push(new);
+            self.keep();
+        }
+        self.now(shown)
+    }
+
+    /// Makes the change again that was taken back last.
+    pub(crate) fn redo(&mut self, shown: Option<usize>) -> Result<Shown, String> {
+        if let Some(new) = self.kept.redo.pop() {
+            let old = std::mem::replace(&mut self.kept.steps, new);
+            self.kept.undo.push(old);
+            self.keep();
+        }
+        self.now(shown)
+    }
+
+    fn now(&mut self, shown: Option<usize>) -> Result<Shown, String> {
+        let given = self.kept.steps.clone();
+        self.bend(visible(&given, shown), None)
+    }
+
+    fn keep(&mut self) {
+        let is_saved = self.saved.as_ref().is_some_and(|(_, steps)| *steps == self.kept.steps);
+        self.problem = if is_saved {
+            self.draft.remove();
+            None
+        } else {
+            self.draft.keep(&*self.host, &self.kept).err()
+        };
+    }
+
+    /// The stretch of these steps over the artwork's box.
+    pub(crate) fn stretch(&mut self, given: &[PageStep]) -> Result<Value, String> {
+        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        Ok(stretch(&built.map, self.opened.artwork.frame()))
+    }
+
+    /// The first values of a deformation after these steps.
+    pub(crate) fn opening(&mut self, deformation: &str, given: &[PageStep]) -> Result<PageStep, String> {
+        let host = Arc::clone(&self.host);
+        let entry = host.registry().get(deformation).ok_or_else(|| format!("there is no deformation {deformation}"))?;
+        let args = opening(entry.info(), self.frame_after(given)?);
+        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args })
+    }
+
+    /// The frame of a step after these.
+    fn frame_after(&mut self, given: &[PageStep]) -> Result<Rect, String> {
+        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let artwork = &self.opened.artwork;
+        let image = (!given.is_empty()).then(|| built.image_box(artwork.outlines().into_iter(), &[])).flatten();
+        Ok(image.unwrap_or_else(|| artwork.frame()))
+    }
+
+    /// The names of all presets.
+    pub(crate) fn presets(&self) -> Result<Vec<String>, String> {
+        Ok(presets::all()?.into_iter().map(|p| p.name).collect())
+    }
+
+    /// Keeps the present steps as a preset.
+    pub(crate) fn keep_preset(&mut self, name: &str) -> Result<(), String> {
+        let given = self.kept.steps.clone();
+        let (_, built) = self.opened.artwork.settle(&recipe(&given))?;
+        let frames: Vec<Rect> = built.frames.iter().map(|f| f.rect).collect();
+        presets::keep(&*self.host, name, given, &frames)
+    }
+
+    pub(crate) fn forget_preset(&self, name: &str) -> Result<(), String> {
+        presets::forget(&*self.host, name)
+    }
+
+    /// The steps of a preset, laid onto this drawing.
+    pub(crate) fn preset(&mut self, name: &str) -> Result<Vec<PageStep>, String> {
+        let preset = presets::all()?.into_iter().find(|p| p.name == name);
+        let preset = preset.ok_or_else(|| format!("there is no preset {name}"))?;
+        let mut steps = Vec::with_capacity(preset.steps.len());
+        for i in 0..preset.steps.len() {
+            let frame = self.frame_after(&steps)?;
+            steps.extend(preset.step_for(self.host.registry(), i, frame));
+        }
+        Ok(steps)
+    }
+
+    /// A small picture of the drawing under these steps.
+    pub(crate) fn thumbnail(&mut self, given: &[PageStep]) -> Result<String, String> {
+        let frame = self.opened.artwork.frame();
+        let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
+        let bent = self.opened.artwork.bend(&recipe(given), Fineness::Draft(tolerance))?;
+        Picture::small(&bent.svg)
+    }
+
+    /// A deformation with the values of its examples.
+    pub(crate) fn example(&self, deformation: &str) -> Result<PageStep, String> {
+        let entry = self.host.registry().get(deformation);
+        let entry = entry.ok_or_else(|| format!("there is no deformation {deformation}"))?;
+        let args = example(entry.info(), self.opened.artwork.frame());
+        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args })
+    }
+
+    /// The file that *Save* writes unless another is named.
+    fn target(&self) -> PathBuf {
+        let saved = self.saved.as_ref().map(|(p, _)| p.clone());
+        saved.or_else(|| self.out.clone()).unwrap_or_else(|| saving::usual(&self.file))
+    }
+
+    /// Writes the result. Answers with the name, or says that the file exists.
+    pub(crate) fn save(&mut self, name: Option<&str>, replace: bool) -> Result<Value, String> {
+        let to = name.map_or_else(|| Ok(self.target()), |name| saving::named(name, &self.file))?;
+        let own = self.saved.as_ref().is_some_and(|(p, _)| saving::same_file(p, &to));
+        if !own && !self.opened.is_result && saving::same_file(&to, &self.file) {
+            return Err(format!("{} is the drawing itself; choose another name", to.display()));
+        }
+        let asked = self.out.as_ref().is_some_and(|out| saving::same_file(out, &to));
+        if to.exists() && !own && !asked && !replace {
+            return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
+        }
+        let extension = to.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let given = recipe(&self.kept.steps);
+        let is_svg = matches!(extension.as_str(), "svg" | "svgz");
+        let (bytes, lost) = if extension == "toml" {
+            (self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new())
+        } else {
+            let fineness = if is_svg { Fineness::Saved } else { Fineness::Exact };
+            let svg = self.opened.artwork.bend(&given, fineness)?.svg;
+            self.host.export(svg, &to)?
+        };
+        self.host.write(&to, &bytes)?;
+        if is_svg {
+            self.saved = Some((to.clone(), self.kept.steps.clone()));
+            self.draft.remove();
+            self.restored = false;
+        }
+        Ok(json!({ "written": to.display().to_string(), "warnings": lost }))
+    }
+
+    pub(crate) fn command_line(&self) -> String {
+        let given = recipe(&self.kept.steps);
+        command_line(self.host.registry(), &given, &self.file, &self.target())
+    }
+}
+
+/// The steps that a page shows.
+fn visible(steps: &[PageStep], shown: Option<usize>) -> &[PageStep] {
+    steps.get(..shown.unwrap_or(steps.len()).min(steps.len())).unwrap_or_default()
+}
+
+/// Guides of the last step that no parameter shows: cages and images of the base.
+fn guides(built: &BuiltRecipe) -> Value {
+    let overlays = built.steps.last().map(|s| s.explanation.overlays.as_slice()).unwrap_or_default();
+    overlays.iter().map(|o| o.path.to_svg()).collect()
+}

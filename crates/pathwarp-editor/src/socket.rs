@@ -1,0 +1,159 @@
+//! One connection of a page: requests are answered in order, and changes that other pages make are announced.
+
+use crate::picture::Picture;
+use crate::protocol::{Message, Request};
+use crate::session::{Session, Shown};
+use crate::shared::Shared;
+use serde_json::{Value, json};
+use std::io;
+use std::net::TcpStream;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+use tungstenite::protocol::{Role, WebSocketConfig};
+use tungstenite::{Error, WebSocket};
+
+/// Largest message: a dropped drawing.
+const LARGEST_MESSAGE: usize = 256 << 20;
+/// The time after which a quiet page learns of changes made elsewhere.
+const GLANCE: Duration = Duration::from_millis(200);
+
+/// Answers a page until it closes.
+pub(crate) fn run(stream: TcpStream, shared: &Arc<Shared>) -> Result<(), Error> {
+    stream.set_read_timeout(Some(GLANCE))?;
+    let config =
+        WebSocketConfig::default().max_message_size(Some(LARGEST_MESSAGE)).max_frame_size(Some(LARGEST_MESSAGE));
+    let mut page = Page {
+        socket: WebSocket::from_raw_socket(stream, Role::Server, Some(config)),
+        shared: Arc::clone(shared),
+        picture: None,
+        seen: shared.pages.changes.load(Ordering::SeqCst),
+    };
+    loop {
+        match page.socket.read() {
+            Ok(tungstenite::Message::Text(text)) => page.answer(&text)?,
+            Ok(tungstenite::Message::Close(_)) | Err(Error::ConnectionClosed | Error::AlreadyClosed) => return Ok(()),
+            Ok(_) => {}
+            Err(Error::Io(e)) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+                page.announce()?;
+            }
+            Err(e) => return Err(e),
+        }
+    }
+}
+
+struct Page {
+    socket: WebSocket<TcpStream>,
+    shared: Arc<Shared>,
+    /// The last picture sent.
+    picture: Option<Picture>,
+    /// The number of changes that the page knows of.
+    seen: usize,
+}
+
+impl Page {
+    fn send(&mut self, value: &Value) -> Result<(), Error> {
+        self.socket.send(tungstenite::Message::text(value.to_string()))
+    }
+
+    /// Tells of changes by other pages.
+    fn announce(&mut self) -> Result<(), Error> {
+        let now = self.shared.pages.changes.load(Ordering::SeqCst);
+        if now == self.seen {
+            return Ok(());
+        }
+        self.seen = now;
+        let state = self.shared.with_session(|s| s.state());
+        self.send(&json!({ "event": "changed", "state": state }))
+    }
+
+    fn answer(&mut self, text: &str) -> Result<(), Error> {
+        let Message { id, request } = match serde_json::from_str(text) {
+            Ok(message) => message,
+            Err(e) => return self.send(&json!({ "error": format!("this request is not understood: {e}") })),
+        };
+        let shared = Arc::clone(&self.shared);
+        let mut answer = match shared.with_session(|session| self.respond(session, request)) {
+            Ok(answer) => answer,
+            Err(problem) => json!({ "error": problem }),
+        };
+        answer["id"] = json!(id);
+        self.send(&answer)
+    }
+
+    fn respond(&mut self, session: &mut Session, request: Request) -> Result<Value, String> {
+        match request {
+            Request::Hello => {
+                self.picture = None;
+                Ok(json!({ "catalogue": session.catalogue(), "state": session.state() }))
+            }
+            Request::Bend { steps, draft } => {
+                let shown = session.bend(&steps, draft)?;
+                Ok(self.show(shown))
+            }
+            Request::Commit { steps, shown } => {
+                let shown = session.commit(steps, shown)?;
+                Ok(self.changed(session, shown))
+            }
+            Request::Undo { shown } => {
+                let shown = session.undo(shown)?;
+                Ok(self.changed(session, shown))
+            }
+            Request::Redo { shown } => {
+                let shown = session.redo(shown)?;
+                Ok(self.changed(session, shown))
+            }
+            Request::Before => Ok(json!({ "svg": session.before()?.text() })),
+            Request::Stretch { steps } => Ok(json!({ "stretch": session.stretch(&steps)? })),
+            Request::Opening { deformation, steps } => Ok(json!({ "step": session.opening(&deformation, &steps)? })),
+            Request::Thumbnail { steps, example } => {
+                let example = example.map(|name| session.example(&name)).transpose()?;
+                let steps = steps.or_else(|| example.map(|step| vec![step])).unwrap_or_default();
+                Ok(json!({ "svg": session.thumbnail(&steps)? }))
+            }
+            Request::Open { name, bytes } => {
+                session.replace(&name, &bytes)?;
+                self.count_change();
+                Ok(json!({ "state": session.state() }))
+            }
+            Request::Save { name, replace } => {
+                let mut answer = session.save(name.as_deref(), replace)?;
+                self.count_change();
+                answer["state"] = session.state();
+                Ok(answer)
+            }
+            Request::Presets => Ok(json!({ "presets": session.presets()? })),
+            Request::KeepPreset { name } => {
+                session.keep_preset(&name)?;
+                Ok(json!({ "presets": session.presets()? }))
+            }
+            Request::ForgetPreset { name } => {
+                session.forget_preset(&name)?;
+                Ok(json!({ "presets": session.presets()? }))
+            }
+            Request::Preset { name } => Ok(json!({ "steps": session.preset(&name)? })),
+            Request::CommandLine => Ok(json!({ "text": session.command_line() })),
+        }
+    }
+
+    /// The message with a picture.
+    fn show(&mut self, shown: Shown) -> Value {
+        let mut answer = shown.about;
+        answer["picture"] = shown.picture.message(self.picture.as_ref());
+        self.picture = Some(shown.picture);
+        answer
+    }
+
+    /// The message after a change of the steps.
+    fn changed(&mut self, session: &Session, shown: Shown) -> Value {
+        self.count_change();
+        let mut answer = self.show(shown);
+        answer["state"] = session.state();
+        answer
+    }
+
+    /// Counts a change that this page knows of.
+    fn count_change(&mut self) {
+        self.seen = self.shared.pages.changes.fetch_add(1, Ordering::SeqCst) + 1;
+    }
+}

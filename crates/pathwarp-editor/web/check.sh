@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Builds the page anew and compares it with the files in the repository. `--write` stores it there instead.
+set -euo pipefail
+cd "$(dirname "$0")"
+[ -d node_modules ] || npm ci --silent --no-audit --no-fund || {
+    echo "npm could not fetch esbuild and TypeScript; the editor's page in the repository is used as it is" >&2
+    exit 0
+}
+npx tsc --noEmit
+if [ "${1:-}" = --write ]; then
+    node build.mjs
+    exit
+fi
+built=$(mktemp -d)
+trap 'rm -rf "$built"' EXIT
+node build.mjs "$built"
+diff -r "$built" ../assets >/dev/null || {
+    echo "crates/pathwarp-editor/assets is not what web/ builds; run crates/pathwarp-editor/web/check.sh --write" >&2
+    exit 1
+}

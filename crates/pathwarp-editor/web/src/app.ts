@@ -1,0 +1,259 @@
+// The state of the page: the steps, which of them is being changed, and the pictures that the server makes of them.
+
+import { Connection, Gone } from "./connection";
+import { Handles } from "./handles";
+import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
+
+/** While something is dragged, curves may be off by this share of a px of the screen. */
+const DRAFT = 0.35;
+
+export type Change = "state" | "steps" | "picture" | "handles" | "report" | "link";
+
+/** Where a picture goes. */
+export interface Screen {
+  show(answer: Answer): void;
+  readonly pixel: number;
+}
+
+export class App {
+  catalogue: Deformation[] = [];
+  state: State | null = null;
+  steps: Step[] = [];
+  /** The step whose handles and settings are shown. */
+  selected = 0;
+  /** The steps are a first proposal that nothing has been done with. */
+  isProposal = false;
+  grips: StepGrips[] = [];
+  handles: Handles | null = null;
+  summary: Summary | null = null;
+  warnings: string[] = [];
+  problem: string | null = null;
+  isConnected = false;
+  /** A handle is being dragged, so the handles stay as they are. */
+  isDragging = false;
+  screen: Screen = { show: () => {}, pixel: 1 };
+
+  private listeners: ((change: Change) => void)[] = [];
+  private isBusy = false;
+  private isWanted = false;
+  private since = 0;
+  readonly connection: Connection;
+
+  constructor() {
+    this.connection = new Connection(
+      () => void this.begin(),
+      () => {
+        this.isConnected = false;
+        this.tell("link");
+      },
+      (news) => void this.hear(news),
+    );
+  }
+
+  listen(listener: (change: Change) => void): void {
+    this.listeners.push(listener);
+  }
+
+  tell(change: Change): void {
+    for (const listener of this.listeners) listener(change);
+  }
+
+  get step(): Step | undefined {
+    return this.steps[this.selected];
+  }
+
+  deformation(name: string | undefined): Deformation | undefined {
+    return this.catalogue.find((d) => d.name === name);
+  }
+
+  /** The steps up to the one being changed. */
+  get visible(): Step[] {
+    return this.steps.slice(0, this.selected + 1);
+  }
+
+  private async begin(): Promise<void> {
+    const answer = await this.connection.ask({ do: "hello" });
+    this.catalogue = answer.catalogue ?? [];
+    this.isConnected = true;
+    this.tell("link");
+    await this.load(answer.state!);
+  }
+
+  /** Takes over a state of the server, with a proposal if nothing has been done yet. */
+  async load(state: State): Promise<void> {
+    this.state = state;
+    this.steps = structuredClone(state.steps);
+    this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
+    this.isProposal = false;
+    this.tell("state");
+    const first = this.catalogue[0];
+    if (this.steps.length === 0 && first) {
+      const step = await this.opening(first.name, []);
+      if (step) {
+        this.steps = [step];
+        this.selected = 0;
+        this.isProposal = true;
+      }
+    }
+    this.tell("steps");
+    await this.refresh();
+  }
+
+  /** The first values of a deformation after these steps. */
+  async opening(deformation: string, steps: Step[]): Promise<Step | null> {
+    return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, steps })).step ?? null);
+  }
+
+  /** Shows the picture of the present steps, exactly. */
+  async refresh(): Promise<void> {
+    await this.attempt(async () => this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null })));
+  }
+
+  /** Shows a quick picture of the present steps. While one is being made, only the newest wish counts. */
+  draft(since: number): void {
+    this.since = since;
+    if (this.isBusy) {
+      this.isWanted = true;
+      return;
+    }
+    this.isBusy = true;
+    void this.drafts();
+  }
+
+  private async drafts(): Promise<void> {
+    do {
+      this.isWanted = false;
+      const start = this.since;
+      await this.attempt(async () => {
+        const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
+        this.take(answer);
+        performance.measure("drag to picture", { start, end: performance.now() });
+      });
+    } while (this.isWanted);
+    this.isBusy = false;
+  }
+
+  /** Makes the present steps the ones to undo from and to save. */
+  async commit(): Promise<void> {
+    this.isWanted = false;
+    const done = await this.attempt(async () => {
+      const answer = await this.connection.ask({ do: "commit", steps: this.steps, shown: this.selected + 1 });
+      this.isProposal = false;
+      this.take(answer);
+      return true;
+    });
+    if (done || !this.state || !this.isConnected) return;
+    // Back to what can be bent, with the reason on show.
+    const { problem } = this;
+    await this.load(this.state);
+    this.fail(problem);
+  }
+
+  /** Undoes or redoes. */
+  async turn(direction: "undo" | "redo"): Promise<void> {
+    if (this.isProposal && direction === "undo") return;
+    await this.attempt(async () => {
+      const answer = await this.connection.ask({ do: direction, shown: null });
+      // Later pictures are sent as changes to this one.
+      this.screen.show(answer);
+      await this.load(answer.state!);
+    });
+  }
+
+  /** Replaces the step being changed, or appends one. */
+  async choose(deformation: string, args: Record<string, string[]>, append: boolean): Promise<void> {
+    const at = append ? this.steps.length : this.selected;
+    const before = this.steps.slice(0, at);
+    const step = await this.opening(deformation, before);
+    if (!step) return;
+    Object.assign(step.args, args);
+    this.steps = append ? [...this.steps, step] : this.steps.map((s, i) => (i === at ? step : s));
+    if (this.steps.length === 0) this.steps = [step];
+    this.selected = Math.min(at, this.steps.length - 1);
+    this.tell("steps");
+    await this.commit();
+    this.tell("steps");
+  }
+
+  /** Changes the list of steps. */
+  async arrange(steps: Step[], selected: number): Promise<void> {
+    this.steps = steps;
+    this.selected = Math.max(0, Math.min(selected, steps.length - 1));
+    this.tell("steps");
+    await this.commit();
+    if (this.steps.length === 0 && this.state) await this.load(this.state);
+    this.tell("steps");
+  }
+
+  async select(step: number): Promise<void> {
+    this.selected = step;
+    this.tell("steps");
+    await this.refresh();
+  }
+
+  /** Sets a parameter of the step being changed. */
+  set(name: string, values: string[], isDone: boolean): void {
+    const { step } = this;
+    if (!step) return;
+    if (values.length === 0) delete step.args[name];
+    else step.args[name] = values;
+    if (isDone) void this.commit();
+    else this.draft(performance.now());
+  }
+
+  grip(name: string): Grip | undefined {
+    return this.grips[this.selected]?.params[name];
+  }
+
+  private take(answer: Answer): void {
+    this.problem = null;
+    if (answer.state) {
+      this.state = answer.state;
+      this.tell("state");
+    }
+    this.warnings = answer.warnings ?? [];
+    this.summary = answer.summary ?? null;
+    if (answer.grips) this.grips = answer.grips;
+    this.screen.show(answer);
+    this.tell("picture");
+    if (!this.isDragging) this.takeHandles();
+    this.tell("report");
+  }
+
+  private takeHandles(): void {
+    const deformation = this.deformation(this.step?.deformation);
+    const grips = this.grips[this.selected];
+    this.handles = this.step && deformation && grips ? new Handles(deformation, this.step, grips) : null;
+    this.tell("handles");
+  }
+
+  /** Another page has changed the steps. */
+  private async hear(news: Answer): Promise<void> {
+    if (news.event === "changed" && news.state && !this.isDragging) await this.load(news.state);
+  }
+
+  /** Does something that the server may refuse; then the message is shown. */
+  async attempt<T>(work: () => Promise<T>): Promise<T | null> {
+    try {
+      return await work();
+    } catch (e) {
+      if (!(e instanceof Gone)) this.fail(e instanceof Error ? e.message : String(e));
+      return null;
+    }
+  }
+
+  fail(problem: string | null): void {
+    this.problem = problem;
+    this.tell("report");
+  }
+
+  /** Adds a point at a place, where the step takes any number. */
+  addPoint(at: XY): string | null {
+    const key = this.handles?.add(at) ?? null;
+    if (key) {
+      this.tell("handles");
+      void this.commit();
+    }
+    return key;
+  }
+}

@@ -1,0 +1,61 @@
+// The camera: from user units of the drawing over its px to px of the screen.
+
+import type { XY } from "./types";
+
+type Affine = [number, number, number, number, number, number];
+
+/** The smallest and largest magnification. */
+const RANGE: XY = [0.02, 200];
+
+export class Camera {
+  /** Screen = scale · px + shift. */
+  scale = 1;
+  shift: XY = [0, 0];
+  /** From user units to px of the drawing. */
+  toPx: Affine = [1, 0, 0, 1, 0, 0];
+
+  toScreen([x, y]: XY): XY {
+    const [a, b, c, d, e, f] = this.toPx;
+    return [this.scale * (a * x + c * y + e) + this.shift[0], this.scale * (b * x + d * y + f) + this.shift[1]];
+  }
+
+  toUser([x, y]: XY): XY {
+    const [a, b, c, d, e, f] = this.toPx;
+    const [px, py] = [(x - this.shift[0]) / this.scale - e, (y - this.shift[1]) / this.scale - f];
+    const det = a * d - b * c;
+    return [(d * px - c * py) / det, (a * py - b * px) / det];
+  }
+
+  /** The length of a px of the screen, in user units. */
+  get pixel(): number {
+    const [a, b, c, d] = this.toPx;
+    return 1 / (this.scale * Math.sqrt(Math.abs(a * d - b * c)));
+  }
+
+  /** The transform of the drawing, which is in px. */
+  get transform(): string {
+    return `matrix(${this.scale} 0 0 ${this.scale} ${this.shift[0]} ${this.shift[1]})`;
+  }
+
+  /** Magnifies by a factor about a point of the screen. */
+  zoom(factor: number, [x, y]: XY): void {
+    const scale = Math.min(Math.max(this.scale * factor, RANGE[0]), RANGE[1]);
+    const by = scale / this.scale;
+    this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
+    this.scale = scale;
+  }
+
+  /** Shows a box of the drawing, in user units, in the middle of a view of this size. */
+  fit([x, y, w, h]: [number, number, number, number], [width, height]: XY, margin: number): void {
+    this.scale = 1;
+    this.shift = [0, 0];
+    const corners = ([[x, y], [x + w, y], [x, y + h], [x + w, y + h]] as XY[]).map((p) => this.toScreen(p));
+    const xs = corners.map((p) => p[0]);
+    const ys = corners.map((p) => p[1]);
+    const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    const room = (size: number) => Math.max(size - 2 * margin, size / 3);
+    const scale = Math.min(room(width) / Math.max(x1 - x0, 1e-9), room(height) / Math.max(y1 - y0, 1e-9));
+    this.scale = Math.min(Math.max(scale, RANGE[0]), RANGE[1]);
+    this.shift = [(width - this.scale * (x0 + x1)) / 2, (height - this.scale * (y0 + y1)) / 2];
+  }
+}

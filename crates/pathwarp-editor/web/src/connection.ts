@@ -1,0 +1,62 @@
+// The socket: requests with their answers, and news from the server.
+
+import type { Answer } from "./types";
+
+type Waiting = { resolve: (answer: Answer) => void; reject: (problem: Error) => void };
+
+/** The pause before the page tries to connect again, in ms. */
+const RETRY = 700;
+
+/** The server cannot do what it was asked. The message is for the user. */
+export class Refused extends Error {}
+/** The server does not answer. */
+export class Gone extends Error {}
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private waiting = new Map<number, Waiting>();
+  private next = 1;
+
+  constructor(
+    private onOpen: () => void,
+    private onGone: () => void,
+    private onEvent: (answer: Answer) => void,
+  ) {
+    this.connect();
+  }
+
+  private connect(): void {
+    const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
+    socket.onopen = () => {
+      this.socket = socket;
+      this.onOpen();
+    };
+    socket.onmessage = (message) => this.take(JSON.parse(message.data as string) as Answer);
+    socket.onclose = () => {
+      this.socket = null;
+      for (const { reject } of this.waiting.values()) reject(new Gone("pathwarp has ended"));
+      this.waiting.clear();
+      this.onGone();
+      setTimeout(() => this.connect(), RETRY);
+    };
+  }
+
+  private take(answer: Answer): void {
+    if (answer.id === undefined) return this.onEvent(answer);
+    const waiting = this.waiting.get(answer.id);
+    this.waiting.delete(answer.id);
+    if (answer.error === undefined) waiting?.resolve(answer);
+    else waiting?.reject(new Refused(answer.error));
+  }
+
+  /** Sends a request. */
+  ask(request: Record<string, unknown> & { do: string }): Promise<Answer> {
+    const { socket } = this;
+    if (!socket) return Promise.reject(new Gone("pathwarp has ended"));
+    const id = this.next++;
+    return new Promise((resolve, reject) => {
+      this.waiting.set(id, { resolve, reject });
+      socket.send(JSON.stringify({ ...request, id }));
+    });
+  }
+}

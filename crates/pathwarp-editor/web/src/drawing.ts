@@ -1,0 +1,93 @@
+// The drawing in the page. The server sends elements that usvg has written; only those of a list are taken over all the same.
+
+import type { Picture } from "./types";
+
+const SVG = "http://www.w3.org/2000/svg";
+const XLINK = "http://www.w3.org/1999/xlink";
+
+/** Everything that usvg writes. */
+const ELEMENTS = new Set(
+  ("svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer " +
+    "feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG " +
+    "feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight feSpecularLighting feSpotLight feTile " +
+    "feTurbulence use").split(" "),
+);
+
+/** Links lead into the drawing or hold a picture. */
+const LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
+
+/** Copies an element with what is allowed of it. */
+function copy(from: Element, lines: (Element | null)[] | null): Element | null {
+  if (from.namespaceURI !== SVG || !ELEMENTS.has(from.localName)) {
+    skip(from, lines);
+    return null;
+  }
+  const to = document.createElementNS(SVG, from.localName);
+  for (const { name, value } of Array.from(from.attributes)) set(to, name, value);
+  lines?.push(to);
+  for (const child of Array.from(from.children)) {
+    const copied = copy(child, lines);
+    if (copied) to.append(copied);
+  }
+  // The line of the closing tag.
+  if (from.children.length > 0) lines?.push(null);
+  return to;
+}
+
+/** Counts the lines of an element that is left out. */
+function skip(element: Element, lines: (Element | null)[] | null): void {
+  lines?.push(null);
+  for (const child of Array.from(element.children)) skip(child, lines);
+  if (element.children.length > 0) lines?.push(null);
+}
+
+/** Sets an attribute of the drawing. */
+function set(element: Element, name: string, value: string): void {
+  if (name.startsWith("on") || name.startsWith("xmlns")) return;
+  if (name === "href" || name === "xlink:href") {
+    if (LINK.test(value)) element.setAttributeNS(name === "href" ? null : XLINK, name, value);
+    return;
+  }
+  if (name === "style") {
+    // The page's policy forbids style attributes; properties can be set one by one.
+    for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
+      if (property) (element as SVGElement).style.setProperty(property.trim(), rest.join(":").trim());
+    }
+    return;
+  }
+  if (/url\(\s*["']?(?!#)/i.test(value)) return;
+  element.setAttribute(name, value);
+}
+
+/** Parses a drawing into elements that are safe to show. */
+export function parse(text: string, lines: (Element | null)[] | null = null): Element | null {
+  const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+  return copy(root, lines);
+}
+
+/** The drawing on the canvas. */
+export class Drawing {
+  /** The element that each line of the server's text opens. */
+  private lines: (Element | null)[] = [];
+
+  constructor(private layer: SVGGElement) {}
+
+  /** Shows a picture. */
+  show(picture: Picture): void {
+    if ("changes" in picture) {
+      for (const [line, name, value] of picture.changes) {
+        const element = this.lines[line];
+        if (element) set(element, name, value);
+      }
+      return;
+    }
+    this.lines = [];
+    const root = parse(picture.whole, this.lines);
+    this.layer.replaceChildren(...(root ? Array.from(root.children) : []));
+  }
+
+  /** The paths of the drawing, for nodes and handles. */
+  paths(): SVGPathElement[] {
+    return Array.from(this.layer.querySelectorAll<SVGPathElement>("path")).filter((p) => !p.closest("defs"));
+  }
+}

@@ -1,0 +1,175 @@
+// The choice of shapes: every deformation and every preset, each with a small picture of this very artwork.
+
+import type { App } from "./app";
+import { byId, called, h, icon, words } from "./dom";
+import type { Deformation, Step } from "./types";
+
+interface Card {
+  button: HTMLButtonElement;
+  image: HTMLImageElement;
+  /** The steps of the picture, or the deformation to show by its example. */
+  steps: Step[] | null;
+  deformation: string;
+  args: Record<string, string[]>;
+  /** What the search looks at. */
+  words: string;
+}
+
+/** Parameters of these kinds and notations are dragged on the canvas. */
+const DRAGGED = new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
+
+export class Gallery {
+  private box = byId("gallery");
+  private search = byId<HTMLInputElement>("search");
+  private cards: Card[] = [];
+  private queue: Card[] = [];
+  private isDrawing = false;
+  private own = h("section", { hidden: true });
+  private shownFile = "";
+  /** The next choice is put after the other steps. */
+  appends = false;
+  private seen = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      const card = this.cards.find((c) => c.button === entry.target);
+      if (!entry.isIntersecting || !card) continue;
+      this.seen.unobserve(entry.target);
+      this.queue.push(card);
+      void this.draw();
+    }
+  }, { rootMargin: "150px" });
+
+  constructor(private app: App) {
+    app.listen((change) => {
+      if (change === "state") this.build();
+      if (change === "steps") this.mark();
+    });
+    this.search.addEventListener("input", () => this.filter());
+  }
+
+  private build(): void {
+    if (this.shownFile === "") void this.loadPresets();
+    const file = `${this.app.state?.folder}/${this.app.state?.file}`;
+    if (file === this.shownFile || this.app.catalogue.length === 0) return;
+    this.shownFile = file;
+    for (const { image } of this.cards) URL.revokeObjectURL(image.src);
+    this.cards = [];
+    this.queue = [];
+    const all = this.app.catalogue;
+    const byHand = all.filter((d) => isDragged(d) && !d.gallery);
+    const effects = all.filter((d) => !isDragged(d) && !d.gallery);
+    const styles = all.filter((d) => d.gallery);
+    this.box.replaceChildren(
+      this.own,
+      this.section("Bend by hand", byHand.map((d) => this.whole(d))),
+      ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery!.title), this.presets(d))),
+      this.section("Effects", effects.map((d) => this.whole(d))),
+    );
+    this.mark();
+    this.filter();
+  }
+
+  private async loadPresets(): Promise<void> {
+    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "presets" }));
+    if (answer?.presets) this.showPresets(answer.presets);
+  }
+
+  /** Lists the user's presets. */
+  showPresets(names: string[]): void {
+    const entry = (name: string) => {
+      const use = h("button", { type: "button", class: "preset" }, name);
+      use.addEventListener("click", async () => {
+        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
+        if (answer?.steps) await this.app.arrange(answer.steps, answer.steps.length - 1);
+        document.body.classList.remove("shapes-open");
+      });
+      const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
+      forget.addEventListener("click", async () => {
+        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
+        if (answer?.presets) this.showPresets(answer.presets);
+      });
+      return h("li", {}, use, forget);
+    };
+    this.own.hidden = names.length === 0;
+    this.own.replaceChildren(h("h3", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+  }
+
+  private section(title: string, cards: Card[]): HTMLElement {
+    const items = h("div", { class: "grid" }, ...cards.map((c) => c.button));
+    return h("section", {}, h("h3", {}, title), items);
+  }
+
+  private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, ...text: Node[]): Card {
+    const image = h("img", { alt: "", draggable: "false" });
+    const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), ...text);
+    const card: Card = { button, image, steps, deformation, args, words: button.textContent ?? "" };
+    button.addEventListener("click", () => {
+      void this.app.choose(deformation, args, this.appends);
+      this.appends = false;
+      document.body.classList.remove("shapes-open");
+    });
+    this.cards.push(card);
+    this.seen.observe(button);
+    return card;
+  }
+
+  private whole(d: Deformation): Card {
+    const card = this.card(d.name, {}, null, h("span", { class: "name" }, called(d)));
+    card.button.title = capital(d.title);
+    // What it does is looked for, too.
+    card.words = `${called(d)} ${d.name} ${d.title}`;
+    return card;
+  }
+
+  private presets(d: Deformation): Card[] {
+    const { presets } = d.gallery!;
+    const names = d.params.find((p) => p.name === presets)?.words ?? [];
+    return names.map((name) => {
+      const args = { [presets]: [name] };
+      return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, words(name)));
+    });
+  }
+
+  /** Draws what is in view, one after another, so that dragging does not wait. */
+  private async draw(): Promise<void> {
+    if (this.isDrawing) return;
+    this.isDrawing = true;
+    for (let card = this.queue.shift(); card; card = this.queue.shift()) {
+      while (this.app.isDragging) await new Promise((done) => setTimeout(done, 100));
+      const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation };
+      try {
+        const { svg } = await this.app.connection.ask(request);
+        card.image.src = URL.createObjectURL(new Blob([svg ?? ""], { type: "image/svg+xml" }));
+      } catch {
+        // Without a picture, the name is left.
+        card.button.classList.add("bare");
+      }
+    }
+    this.isDrawing = false;
+  }
+
+  /** Marks the shape of the step being changed. */
+  private mark(): void {
+    const { step } = this.app;
+    for (const { button, deformation, args } of this.cards) {
+      const isChosen = step?.deformation === deformation && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
+      button.setAttribute("aria-pressed", String(isChosen));
+    }
+  }
+
+  private filter(): void {
+    const wanted = this.search.value.trim().toLowerCase();
+    for (const { button, words } of this.cards) button.hidden = !words.toLowerCase().includes(wanted);
+    for (const section of Array.from(this.box.children) as HTMLElement[]) {
+      if (section === this.own) continue;
+      section.hidden = !Array.from(section.querySelectorAll<HTMLElement>(".card")).some((c) => !c.hidden);
+    }
+  }
+}
+
+function isDragged(d: Deformation): boolean {
+  return d.params.some((p) => (p.kind === "path" && p.name !== "base") || DRAGGED.has(p.notation ?? ""));
+}
+
+function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

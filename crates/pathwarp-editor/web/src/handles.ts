@@ -1,0 +1,306 @@
+// The handles of a step, from the geometry of its parameters.
+
+import type { Deformation, Grip, Net, Step, StepGrips, Subpath, XY } from "./types";
+import { length, node, valuesOf } from "./values";
+import { called, words } from "./dom";
+
+export type Shape = "node" | "control" | "source";
+
+export interface Handle {
+  /** The same for the same handle of another picture. */
+  key: string;
+  param: string;
+  shape: Shape;
+  label: string;
+  /** The row or path it belongs to: symmetry looks for partners there. */
+  group: string;
+  get: () => XY;
+  /** Moves it, and what is tied to it. */
+  set: (to: XY, smooth: boolean) => void;
+  /** Takes it away; only handles of which there may be any number can. */
+  remove?: () => void;
+}
+
+export interface Line {
+  kind: "path" | "arm" | "net";
+  points: XY[];
+  /** Control points of cubics, as in path data. */
+  cubic?: boolean;
+  closed?: boolean;
+}
+
+/** The handles of a step while they are moved. */
+export class Handles {
+  handles: Handle[] = [];
+  private grips: Record<string, Grip>;
+  /** Control points of nets that have been moved. */
+  private moved: Record<string, Set<number>> = {};
+
+  constructor(private deformation: Deformation, private step: Step, grips: StepGrips) {
+    this.frame = grips.frame;
+    this.grips = structuredClone(grips.params);
+    this.collect();
+  }
+
+  readonly frame: [number, number, number, number];
+
+  private collect(): void {
+    this.handles = [];
+    for (const { name } of this.deformation.params) {
+      const grip = this.grips[name];
+      if (!grip) continue;
+      if (grip.point) this.addPoint(name, grip);
+      grip.points?.forEach((_, i) => this.addOneOf(name, grip.points!, i));
+      grip.pairs?.forEach((_, i) => this.addPair(name, grip.pairs!, i));
+      grip.net?.points.forEach((_, i) => this.addNode(name, grip.net!, i));
+      if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
+      if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
+      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, sub, `${i}.${j}`)));
+    }
+  }
+
+  private addPoint(param: string, grip: Grip): void {
+    this.handles.push({
+      key: param, param, shape: "node", label: words(param), group: param,
+      get: () => grip.point!, set: (to) => void (grip.point = to),
+    });
+  }
+
+  /** The amount by which a preset bends the artwork: pulled up or down from the middle, half a height being all of it. */
+  private addBend(param: string, grip: Grip): void {
+    const [x, y, w, h] = this.frame;
+    const middle: XY = [x + w / 2, y + h / 2];
+    this.handles.push({
+      key: param, param, shape: "node", label: words(param), group: param,
+      get: () => [middle[0], middle[1] - (grip.value! * h) / 2],
+      set: (to) => void (grip.value = Math.max(-2, Math.min(2, (2 * (middle[1] - to[1])) / Math.max(h, 1e-9)))),
+    });
+  }
+
+  /** A radius about a centre: a handle on the circle. */
+  private addRadius(param: string, grip: Grip): void {
+    const centre = () => this.grips.center!.point!;
+    this.handles.push({
+      key: param, param, shape: "control", label: words(param), group: param,
+      get: () => [centre()[0] + grip.value!, centre()[1]],
+      set: (to) => void (grip.value = Math.hypot(to[0] - centre()[0], to[1] - centre()[1])),
+    });
+  }
+
+  private addOneOf(param: string, points: XY[], i: number): void {
+    this.handles.push({
+      key: `${param}/${i}`, param, shape: "node", label: `${words(param)} ${i + 1}`, group: param,
+      get: () => points[i]!, set: (to) => void (points[i] = to),
+      remove: () => { points.splice(i, 1); this.collect(); },
+    });
+  }
+
+  private addPair(param: string, pairs: [XY, XY][], i: number): void {
+    const remove = () => { pairs.splice(i, 1); this.collect(); };
+    const handle = (end: 0 | 1, shape: Shape, label: string): Handle => ({
+      key: `${param}/${i}/${end}`, param, shape, label: `${words(param)} ${i + 1}, ${label}`, group: `${param}/${end}`,
+      get: () => pairs[i]![end], set: (to) => void (pairs[i]![end] = to), remove,
+    });
+    this.handles.push(handle(0, "source", "place in the artwork"), handle(1, "node", "where it goes"));
+  }
+
+  private addNode(param: string, net: Net, i: number): void {
+    const label = `Control point ${net.names[i]}`;
+    this.handles.push({
+      key: `${param}/${i}`, param, shape: "node", label, group: param,
+      get: () => net.points[i]!,
+      set: (to) => {
+        net.points[i] = to;
+        (this.moved[param] ??= new Set()).add(i);
+      },
+    });
+  }
+
+  /** The nodes and control points of a path. Nodes carry their control points along; the ends of a closed path are one node. */
+  private addSubpath(param: string, path: Subpath[], sub: Subpath, id: string): void {
+    const { segments } = sub;
+    const end = (k: number): XY => {
+      const seg = segments[k]!;
+      return [seg[seg.length - 2]!, seg[seg.length - 1]!];
+    };
+    const last = segments.length - 1;
+    const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(last), sub.start);
+    const nodes = joined ? segments.length : segments.length + 1;
+    const before = (n: number) => (n > 0 ? segments[n - 1] : joined ? segments[last] : undefined);
+    const after = (n: number) => segments[n];
+    const at = (n: number): XY => (n === 0 ? sub.start : end(n - 1));
+    const name = param === this.deformation.name ? called(this.deformation) : words(param);
+    for (let n = 0; n < nodes; n++) {
+      const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
+      const key = `${param}/${id}/${n}`;
+      this.handles.push({
+        key, param, shape: "node", label, group: `${param}/${id}`,
+        get: () => at(n),
+        set: (to) => {
+          const from = at(n);
+          const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+          const arrive = before(n);
+          const leave = after(n);
+          if (arrive?.length === 6) { arrive[2]! += dx; arrive[3]! += dy; }
+          if (leave?.length === 6) { leave[0]! += dx; leave[1]! += dy; }
+          if (n === 0) sub.start = to;
+          if (n > 0 || joined) arrive!.splice(arrive!.length - 2, 2, ...to);
+        },
+      });
+      const arm = (side: "in" | "out") => {
+        const seg = side === "in" ? before(n) : after(n);
+        if (seg?.length !== 6) return;
+        const k = side === "in" ? 2 : 0;
+        this.handles.push({
+          key: `${key}/${side}`, param, shape: "control", label: `${label}, handle ${side === "in" ? 1 : 2}`, group: `${param}/${id}`,
+          get: () => [seg[k]!, seg[k + 1]!],
+          set: (to, smooth) => {
+            const other = side === "in" ? after(n) : before(n);
+            const m = side === "in" ? 0 : 2;
+            // A corner stays one.
+            const turns = smooth && other?.length === 6 && isSmooth(at(n), [seg[k]!, seg[k + 1]!], [other[m]!, other[m + 1]!]);
+            seg[k] = to[0];
+            seg[k + 1] = to[1];
+            if (turns) align(other, m, at(n), to);
+          },
+        });
+      };
+      arm("in");
+      arm("out");
+    }
+  }
+
+  /** The lines to draw under the handles. */
+  lines(): Line[] {
+    const out: Line[] = [];
+    for (const grip of Object.values(this.grips)) {
+      for (const pair of grip.pairs ?? []) out.push({ kind: "arm", points: [...pair] });
+      if (grip.value !== undefined && grip === this.grips[this.deformation.gallery?.bend ?? ""]) {
+        const [x, y, w, h] = this.frame;
+        out.push({ kind: "arm", points: [[x + w / 2, y + h / 2], [x + w / 2, y + h / 2 - (grip.value * h) / 2]] });
+      }
+      if (grip === this.grips.radius && grip.value !== undefined && this.grips.center?.point) {
+        out.push(circle(this.grips.center.point, grip.value));
+      }
+      if (grip.net) {
+        const { points } = grip.net;
+        for (const line of grip.net.lines) out.push({ kind: "net", points: line.map((i) => points[i]!) });
+      }
+      for (const path of grip.paths ?? []) path.forEach((sub) => this.subpathLines(sub, out));
+    }
+    return out;
+  }
+
+  private subpathLines(sub: Subpath, out: Line[]): void {
+    let at = sub.start;
+    const pieces: XY[] = [at];
+    for (const seg of sub.segments) {
+      const points: XY[] = [];
+      for (let i = 0; i + 1 < seg.length; i += 2) points.push([seg[i]!, seg[i + 1]!]);
+      const to = points[points.length - 1]!;
+      if (points.length === 3) {
+        out.push({ kind: "arm", points: [at, points[0]!] }, { kind: "arm", points: [points[1]!, to] });
+        pieces.push(...points);
+      } else {
+        pieces.push(at, to, to);
+      }
+      at = to;
+    }
+    // Four points without curves are corners.
+    const isQuadrangle = sub.segments.length === 3 && sub.segments.every((seg) => seg.length === 2);
+    out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed || isQuadrangle });
+  }
+
+  /** Writes the values of a parameter into the step. */
+  write(name: string): void {
+    const param = this.deformation.params.find((p) => p.name === name);
+    const grip = this.grips[name];
+    if (!param || !grip) return;
+    if (grip.net) this.writeNet(name, grip.net);
+    else if (grip.value !== undefined) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];
+    else this.step.args[name] = valuesOf(param, grip, this.frame, this.step.args[name] ?? []);
+  }
+
+  /** A net's moved control points each have a value, which replaces an earlier one and a shift. */
+  private writeNet(name: string, net: Net): void {
+    for (const i of this.moved[name] ?? []) {
+      const index = `${net.names[i]}:`;
+      const without = (key: string) =>
+        (this.step.args[key] ?? []).flatMap((v) => v.split(/\s+/)).filter((v) => v && !v.startsWith(index));
+      if (this.step.args.move) this.step.args.move = without("move");
+      this.step.args[name] = [...without(name), node(net.names[i]!, net.points[i]!, this.frame)];
+    }
+  }
+
+  /** Adds a point where the step takes any number of them. Returns the key of its handle. */
+  add(at: XY): string | null {
+    if (!this.grows) return null;
+    for (const { name, repeat, notation } of this.deformation.params) {
+      const grip = this.grips[name];
+      if (!repeat || !grip) continue;
+      if (notation === "X,Y:X,Y" && grip.pairs) {
+        grip.pairs.push([[...at], [...at]]);
+        this.collect();
+        this.write(name);
+        return `${name}/${grip.pairs.length - 1}/1`;
+      }
+      if (notation === "X,Y" && grip.points) {
+        grip.points.push(at);
+        this.collect();
+        this.write(name);
+        return `${name}/${grip.points.length - 1}`;
+      }
+    }
+    return null;
+  }
+
+  /** Returns `true` if points can be added. */
+  get grows(): boolean {
+    // A net's own points are its handles.
+    if (Object.values(this.grips).some((grip) => grip.net)) return false;
+    return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
+  }
+
+  /** The handle on the other side of the frame's middle, if one is there. */
+  partner(of: Handle): Handle | null {
+    const [x, y, w, h] = this.frame;
+    const [px, py] = of.get();
+    const mirrored: XY = [2 * x + w - px, py];
+    const near = 1e-3 * Math.hypot(w, h);
+    const candidates = this.handles.filter((o) => o !== of && o.shape === of.shape && o.param === of.param);
+    void y;
+    return candidates.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < near) ?? null;
+  }
+}
+
+/** A circle as cubics. */
+function circle([x, y]: XY, r: number): Line {
+  const k = 0.5522848 * r;
+  const points: XY[] = [
+    [x + r, y], [x + r, y + k], [x + k, y + r], [x, y + r], [x - k, y + r], [x - r, y + k], [x - r, y],
+    [x - r, y - k], [x - k, y - r], [x, y - r], [x + k, y - r], [x + r, y - k], [x + r, y],
+  ];
+  return { kind: "path", points, cubic: true, closed: true };
+}
+
+function same(a: XY, b: XY): boolean {
+  return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
+}
+
+/** The cosine of the angle at which two handles count as opposite each other: within about two degrees. */
+const OPPOSITE = -0.9995;
+
+function isSmooth(node: XY, a: XY, b: XY): boolean {
+  const [ax, ay, bx, by] = [a[0] - node[0], a[1] - node[1], b[0] - node[0], b[1] - node[1]];
+  return ax * bx + ay * by < OPPOSITE * Math.hypot(ax, ay) * Math.hypot(bx, by);
+}
+
+/** Turns the control point at `k` of a segment about a node so that it lies opposite of `to`, at its own distance. */
+function align(segment: number[], k: number, node: XY, to: XY): void {
+  const [dx, dy] = [node[0] - to[0], node[1] - to[1]];
+  const length = Math.hypot(dx, dy);
+  const own = Math.hypot(segment[k]! - node[0], segment[k + 1]! - node[1]);
+  if (length === 0 || own === 0) return;
+  segment[k] = node[0] + (own * dx) / length;
+  segment[k + 1] = node[1] + (own * dy) / length;
+}

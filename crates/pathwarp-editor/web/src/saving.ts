@@ -1,0 +1,127 @@
+// Saving: the result beside the drawing, other formats, the recipe, the command line.
+
+import type { App } from "./app";
+import { byId, h } from "./dom";
+
+const FORMATS: [string, string, string][] = [
+  ["svg", "SVG", "Can be opened here again"],
+  ["pdf", "PDF", "For print"],
+  ["dxf", "DXF", "For cutters and CAD"],
+  ["png", "PNG", "A picture"],
+  ["toml", "Recipe", "For other drawings"],
+];
+
+export class Saving {
+  private dialog = byId<HTMLDialogElement>("save-dialog");
+  private name = byId<HTMLInputElement>("save-name");
+  private extension = "svg";
+  private message = byId("save-message");
+  private replace = byId<HTMLButtonElement>("save-replace");
+
+  constructor(private app: App) {
+    const formats = byId("save-formats");
+    for (const [extension, title, use] of FORMATS) {
+      const input = h("input", { type: "radio", name: "format", value: extension });
+      input.addEventListener("change", () => this.choose(extension));
+      formats.append(h("label", { class: "format" }, input, h("span", {}, h("b", {}, title), h("small", {}, use))));
+    }
+    byId("save").addEventListener("click", () => void this.quick());
+    byId("save-as").addEventListener("click", () => this.open());
+    byId("save-cancel").addEventListener("click", () => this.dialog.close());
+    this.dialog.querySelector("form")!.addEventListener("submit", (e) => {
+      e.preventDefault();
+      void this.write(this.name.value, false);
+    });
+    this.replace.addEventListener("click", () => void this.write(this.name.value, true));
+    this.name.addEventListener("input", () => this.say(""));
+    byId("copy-command").addEventListener("click", () => void this.copyCommand());
+    app.listen((change) => {
+      if (change === "state") this.show();
+    });
+  }
+
+  private show(): void {
+    const { state } = this.app;
+    if (!state) return;
+    byId("file").textContent = state.file;
+    byId("saved").textContent = state.saved ? `Saved as ${state.savedTo}` : state.steps.length === 0 ? "" : "Not saved yet";
+    byId<HTMLButtonElement>("save").disabled = state.steps.length === 0 || state.saved;
+    document.title = `${state.saved || state.steps.length === 0 ? "" : "• "}${state.file} — pathwarp`;
+  }
+
+  /** Saves where it was saved last; the first time, under the usual name. */
+  async quick(): Promise<void> {
+    const { state } = this.app;
+    if (!state || state.steps.length === 0) return;
+    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
+    if (answer?.exists) return this.open();
+    if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
+  }
+
+  open(): void {
+    const { state } = this.app;
+    if (!state || state.steps.length === 0) return;
+    this.name.value = state.target;
+    this.choose("svg");
+    byId("save-folder").textContent = state.folder;
+    this.dialog.showModal();
+    this.name.select();
+  }
+
+  private choose(extension: string): void {
+    this.extension = extension;
+    this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|toml)$/i, "")}.${extension}`;
+    for (const input of Array.from(this.dialog.querySelectorAll<HTMLInputElement>("input[type=radio]"))) {
+      input.checked = input.value === this.extension;
+    }
+    this.say("");
+  }
+
+  private say(text: string, offersReplace = false): void {
+    this.message.textContent = text;
+    this.replace.hidden = !offersReplace;
+  }
+
+  private async write(name: string, replace: boolean): Promise<void> {
+    try {
+      const answer = await this.app.connection.ask({ do: "save", name, replace });
+      if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
+      this.dialog.close();
+      this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
+    } catch (e) {
+      this.say(e instanceof Error ? e.message : String(e));
+    }
+  }
+
+  private done(written: string, state: typeof this.app.state | undefined, warnings: string[]): void {
+    if (state) {
+      this.app.state = state;
+      this.app.tell("state");
+    }
+    const name = written.split(/[\\/]/).pop() ?? written;
+    toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
+  }
+
+  private async copyCommand(): Promise<void> {
+    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
+    if (!answer?.text) return;
+    try {
+      await navigator.clipboard.writeText(answer.text);
+      toast("The command line is on the clipboard");
+    } catch {
+      toast(answer.text);
+    }
+    this.dialog.close();
+  }
+}
+
+let fading = 0;
+
+/** Shows a short message. */
+export function toast(text: string): void {
+  const box = byId("toast");
+  box.textContent = text;
+  box.classList.add("on");
+  clearTimeout(fading);
+  fading = window.setTimeout(() => box.classList.remove("on"), 5000);
+}

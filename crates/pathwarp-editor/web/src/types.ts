@@ -1,0 +1,118 @@
+// The messages of the server, and geometry.
+
+export type XY = [number, number];
+
+export interface Step {
+  deformation: string;
+  inverse: boolean;
+  args: Record<string, string[]>;
+}
+
+export type Kind =
+  | "flag" | "number" | "numbers" | "length" | "angle" | "count" | "point" | "path" | "choice" | "text" | "name" | "file";
+
+export interface Param {
+  name: string;
+  kind: Kind;
+  needed: boolean;
+  repeat: boolean;
+  help: string;
+  slider: [number, number];
+  words?: string[];
+  notation?: string;
+  axis?: "x" | "y" | "diagonal";
+  default?: string;
+  least?: number;
+  most?: number;
+}
+
+export interface Deformation {
+  name: string;
+  /** A name for people, if the registry's own is not one. */
+  label: string | null;
+  title: string;
+  group: string;
+  about: string;
+  params: Param[];
+  gallery: { title: string; presets: string; bend: string | null; axis: string | null } | null;
+}
+
+export interface Subpath {
+  start: XY;
+  segments: number[][];
+  closed: boolean;
+}
+
+/** Control points with their indices as typed, and the lines that join them. */
+export interface Net {
+  names: string[];
+  points: XY[];
+  lines: number[][];
+}
+
+export interface Stretch {
+  columns: number;
+  points: (XY | null)[];
+  factors: (number | null)[];
+}
+
+export interface Grip {
+  point?: XY;
+  points?: XY[];
+  pairs?: [XY, XY][];
+  net?: Net;
+  paths?: Subpath[][];
+  value?: number;
+}
+
+export interface StepGrips {
+  frame: [number, number, number, number];
+  params: Record<string, Grip>;
+}
+
+export interface State {
+  file: string;
+  folder: string;
+  steps: Step[];
+  undo: boolean;
+  redo: boolean;
+  saved: boolean;
+  savedTo: string | null;
+  target: string;
+  restored: boolean;
+  problem: string | null;
+  toPx: [number, number, number, number, number, number];
+  page: [number, number, number, number];
+  missing: string[];
+}
+
+export interface Summary {
+  segmentsIn: number;
+  segmentsOut: number;
+  error: number;
+  tolerance: number;
+  folds: [string, XY][];
+}
+
+export type Picture = { whole: string } | { changes: [number, string, string][] };
+
+export interface Answer {
+  id?: number;
+  error?: string;
+  picture?: Picture;
+  grips?: StepGrips[];
+  guides?: string[];
+  warnings?: string[];
+  summary?: Summary;
+  state?: State;
+  catalogue?: Deformation[];
+  svg?: string;
+  step?: Step;
+  text?: string;
+  written?: string;
+  exists?: string;
+  presets?: string[];
+  steps?: Step[];
+  stretch?: Stretch | null;
+  event?: string;
+}

@@ -1,0 +1,72 @@
+// Keyboard alone, names for screen readers, small and large screens, dark and light.
+import { becomes, check, choose, edit, folder, middle, open, paths, quiet, sample } from "./harness.mjs";
+
+async function within(test, options) {
+  const dir = folder({ "logo.svg": sample("logo.svg") });
+  const editor = await edit(`${dir}/logo.svg`);
+  const page = await open(editor.address, options);
+  try {
+    await test(page);
+    check(page.problems.length === 0, page.problems.join("; "));
+  } finally {
+    editor.stop();
+    await page.context().close();
+  }
+}
+
+export const keyboard_alone = () => within(async (page) => {
+  const before = await paths(page);
+  for (let i = 0; i < 200 && !(await page.evaluate(() => document.activeElement.matches(".knob"))); i++) await page.keyboard.press("Tab");
+  const key = await page.evaluate(() => document.activeElement.dataset.key);
+  check(key, "no handle can be reached with Tab");
+  const [x, y] = await middle(page, key);
+  await page.keyboard.press("Shift+ArrowUp");
+  await page.keyboard.press("ArrowRight");
+  await page.waitForTimeout(900);
+  const [nx, ny] = await middle(page, key);
+  check(Math.abs(nx - x - 1) < 0.6 && Math.abs(ny - y + 10) < 0.6, `moved by ${nx - x},${ny - y}`);
+  check((await paths(page)) !== before, "the picture did not follow");
+  check((await page.evaluate(() => document.activeElement.dataset.key)) === key, "the focus was lost");
+  await page.keyboard.press("Control+z");
+  await becomes(page, before, "Ctrl Z does nothing");
+});
+
+export const typed_numbers = () => within(async (page) => {
+  await page.locator('.knob[data-key="shaper/0.0/2"]').focus();
+  await page.fill("#place-x", "600");
+  await page.keyboard.press("Enter");
+  await page.waitForTimeout(900);
+  check((await page.inputValue("#place-x")) === "600", "the number is not kept");
+});
+
+export const everything_has_a_name = () => within(async (page) => {
+  await choose(page, "Swirl");
+  const nameless = await page.$$eval("button, input, select, textarea, .knob", (all) => all.filter((e) => {
+    const label = e.getAttribute("aria-label") ?? e.labels?.[0]?.textContent ?? e.textContent ?? "";
+    return label.trim() === "" && e.type !== "hidden";
+  }).map((e) => e.outerHTML));
+  check(nameless.length === 0, nameless.join("\n"));
+});
+
+export const fits_any_screen = async () => {
+  for (const [width, height] of [[320, 568], [768, 1024], [1280, 800], [3840, 2160]]) {
+    await within(async (page) => {
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      check(wide <= width, `${width} px: the page is ${wide} px wide`);
+      const stage = await page.locator("#stage").boundingBox();
+      check(stage.width > 250 && stage.height > 200, `${width} px: the canvas is ${stage.width} × ${stage.height}`);
+    }, { viewport: { width, height } });
+  }
+};
+
+export const touch_drags = () => within(async (page) => {
+  const before = await paths(page);
+  const [x, y] = await middle(page, "shaper/0.0/2");
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points });
+  await touch("touchStart", [{ x, y }]);
+  for (let i = 1; i <= 8; i++) await touch("touchMove", [{ x: x - 5 * i, y: y + 6 * i }]);
+  await touch("touchEnd", []);
+  await quiet(page);
+  check((await paths(page)) !== before, "touch does not drag");
+}, { hasTouch: true });

@@ -1,0 +1,175 @@
+// Saving, opening again, drafts, dropped files, two pages, the end of the server.
+import { existsSync, readFileSync, readdirSync } from "node:fs";
+import { becomes, check, choose, drag, edit, folder, middle, open, paths, quiet, sample } from "./harness.mjs";
+
+async function within(file, test, ...args) {
+  const dir = folder({ "logo.svg": file ?? sample("logo.svg") });
+  const editor = await edit(`${dir}/logo.svg`, ...args);
+  const page = await open(editor.address);
+  try {
+    await test({ dir, editor, page });
+    check(page.problems.length === 0, page.problems.join("; "));
+  } finally {
+    editor.stop();
+    await page.context().close();
+  }
+}
+
+export const a_flag_is_saved_and_opened_again = () => within(null, async ({ dir, page, editor }) => {
+  await choose(page, "Flag");
+  await page.click("#save");
+  await page.waitForSelector("#toast.on");
+  const saved = `${dir}/logo-bent.svg`;
+  check(existsSync(saved), "nothing was saved");
+  check(readFileSync(saved, "utf8").includes("style = \"flag\""), "the recipe is not in the file");
+  check(readdirSync(dir).every((f) => !f.endsWith("pathwarp-edit")), "the draft was left");
+  const before = await paths(page);
+  editor.stop();
+  const again = await edit(saved);
+  const page2 = await open(again.address);
+  try {
+    check((await paths(page2)) === before, "the file looks different when opened again");
+    check((await page2.textContent("#steps")).includes("Flag"), "the step is not there again");
+    await page2.locator("#settings input[type=range]").first().focus();
+    await page2.keyboard.press("ArrowRight");
+    await quiet(page2);
+    check((await paths(page2)) !== before, "it cannot be changed");
+    await page2.click("#save");
+    await page2.waitForSelector("#toast.on");
+    check(readdirSync(dir).filter((f) => f.endsWith(".svg")).length === 2, "a result is saved to its own file");
+  } finally {
+    again.stop();
+    await page2.context().close();
+  }
+});
+
+export const every_format_is_written = () => within(null, async ({ dir, page }) => {
+  await choose(page, "Arc");
+  for (const [format, start] of [["pdf", "%PDF"], ["dxf", "  0"], ["png", "\x89PNG"], ["toml", "pathwarp = 1"], ["svg", "<svg"]]) {
+    await page.click("#save-as");
+    await page.check(`input[value=${format}]`);
+    await page.click("#save-dialog button[type=submit]");
+    await page.waitForFunction(() => !document.querySelector("#save-dialog").open);
+    const bytes = readFileSync(`${dir}/logo-bent.${format}`, "latin1");
+    check(bytes.startsWith(start), `${format} begins with ${JSON.stringify(bytes.slice(0, 8))}`);
+  }
+  await page.click("#save-as");
+  await page.fill("#save-name", "logo.svg");
+  await page.click("#save-dialog button[type=submit]");
+  await page.waitForFunction(() => document.querySelector("#save-message").textContent.includes("the drawing itself"));
+});
+
+export const a_crash_loses_nothing = () => within(null, async ({ dir, page, editor }) => {
+  await drag(page, "shaper/0.0/1", 20, 60);
+  const before = await paths(page);
+  editor.stop();
+  await page.waitForSelector("#gone:not([hidden])");
+  const again = await edit(`${dir}/logo.svg`);
+  const page2 = await open(again.address);
+  try {
+    check((await paths(page2)) === before, "the steps are not there again");
+    await page2.reload();
+    await page2.waitForSelector(".knob");
+    await quiet(page2);
+    check((await paths(page2)) === before, "a reload loses the steps");
+    await page2.click("#undo");
+    await quiet(page2);
+    check((await paths(page2)) !== before, "a crash loses the history");
+  } finally {
+    again.stop();
+    await page2.context().close();
+  }
+});
+
+export const two_pages_show_the_same = () => within(null, async ({ page, editor }) => {
+  const other = await open(editor.address);
+  await drag(page, "shaper/0.0/2", 30, 50);
+  await becomes(other, await paths(page), "the other page did not follow");
+  await other.context().close();
+});
+
+export const the_program_ends_with_the_page = () => within(null, async ({ page, editor }) => {
+  await page.reload();
+  await page.waitForSelector(".knob");
+  await page.goto("about:blank");
+  const code = await Promise.race([editor.ended, new Promise((r) => setTimeout(() => r("still running"), 9000))]);
+  check(code === 0, `exit ${code}`);
+});
+
+export const a_port_is_chosen_and_ctrl_c_ends = async () => {
+  const dir = folder({ "logo.svg": sample("logo.svg") });
+  // A port that is free: another server had it a moment ago.
+  const { createServer } = await import("node:net");
+  const port = await new Promise((done) => {
+    const server = createServer().listen(0, "127.0.0.1", () => {
+      const { port } = server.address();
+      server.close(() => done(port));
+    });
+  });
+  const editor = await edit(`${dir}/logo.svg`, "--port", String(port));
+  check(new URL(editor.address).port === String(port), editor.address);
+  editor.child.kill("SIGINT");
+  const code = await Promise.race([editor.ended, new Promise((r) => setTimeout(() => r("still running"), 5000))]);
+  check(code === 130, `exit ${code}`);
+};
+
+export const a_dropped_file_is_opened = () => within(null, async ({ page, dir }) => {
+  const text = readFileSync(sample("badge.svg"), "utf8");
+  await page.evaluate((svg) => {
+    const data = new DataTransfer();
+    data.items.add(new File([svg], "badge.svg"));
+    document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, text);
+  await page.waitForFunction(() => document.querySelector("#file").textContent === "badge.svg");
+  await quiet(page);
+  await drag(page, "shaper/0.0/2", 20, 30);
+  await page.click("#save");
+  await page.waitForSelector("#toast.on");
+  check(existsSync(`${dir}/badge-bent.svg`), "it was not saved beside the first file");
+});
+
+export const presets_fit_other_drawings = () => within(null, async ({ page }) => {
+  await drag(page, "shaper/0.0/2", 0, 60);
+  await page.click("#keep-preset");
+  await page.fill("#preset-name", "My wave");
+  await page.click("#preset-dialog button[type=submit]");
+  await page.waitForSelector(".preset");
+  const dir = folder({ "badge.svg": sample("badge.svg") });
+  const editor = await edit(`${dir}/badge.svg`);
+  const other = await open(editor.address);
+  try {
+    const width = () => other.$eval("#stage .line.path", (cage) => cage.getBoundingClientRect().width);
+    const [before, cage] = [await paths(other), await width()];
+    await other.locator(".preset", { hasText: "My wave" }).click();
+    await quiet(other);
+    check((await paths(other)) !== before, "the preset does nothing");
+    check(Math.abs((await width()) - cage) < 0.05 * cage, `the cage is ${await width()} px wide, that of the artwork ${cage}`);
+    await other.click(".presets .small");
+    await other.waitForFunction(() => document.querySelectorAll(".preset").length === 0);
+  } finally {
+    editor.stop();
+    await other.context().close();
+  }
+});
+
+export const steps_are_added_moved_and_removed = () => within(null, async ({ page }) => {
+  await choose(page, "Flag");
+  await page.click("#add-step");
+  await choose(page, "Perspective");
+  check((await page.locator("#steps li").count()) === 2, "the step was not added");
+  await drag(page, "target/0.0/2", -60, 30);
+  const both = await paths(page);
+  await page.locator("#steps li").nth(0).locator("button.step").click();
+  await quiet(page);
+  check((await paths(page)) !== both, "the first step alone looks like both");
+  await page.locator("#steps li").nth(1).locator("button.step").click();
+  await quiet(page);
+  check((await paths(page)) === both, "selecting steps changed the picture");
+  await page.locator("[aria-label^='Move Perspective up']").click();
+  await quiet(page);
+  check(/^1\. Perspective/.test(await page.locator("#steps li").nth(0).textContent()), "the step did not move");
+  await page.locator("[aria-label^='Remove Perspective']").click();
+  await quiet(page);
+  check((await page.locator("#steps li").count()) === 1, "the step was not removed");
+  void middle;
+});

@@ -1,0 +1,134 @@
+// Runs `pathwarp edit` and a headless Chromium for the tests.
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, copyFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, basename } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+export const root = fileURLToPath(new URL("../../../../", import.meta.url));
+const program = process.env.PATHWARP ?? join(root, "target/debug/pathwarp");
+const browserPath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((p) => existsSync(p));
+const FLAGS = [
+  "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync",
+  // A page that is swapped in counts as one from elsewhere.
+  ...(process.env.ASSETS ? ["--disable-features=LocalNetworkAccessChecks"] : []),
+];
+
+/** A new folder with copies of files, or with a text as a file. */
+export function folder(files) {
+  const dir = mkdtempSync(join(tmpdir(), "pathwarp-editor-"));
+  for (const [name, from] of Object.entries(files)) {
+    if (from.startsWith("/")) copyFileSync(from, join(dir, name));
+    else writeFileSync(join(dir, name), from);
+  }
+  return dir;
+}
+
+export const sample = (name) => join(root, "samples", name);
+
+/** A folder for settings, so that the user's own presets stay out of the tests. */
+const settings = mkdtempSync(join(tmpdir(), "pathwarp-settings-"));
+
+// One listener for every program that is started.
+process.setMaxListeners(0);
+
+/** Starts the editor on a file. */
+export async function edit(file, ...args) {
+  const child = spawn(program, ["edit", basename(file), "--no-open", ...args], {
+    cwd: join(file, ".."), stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, XDG_CONFIG_HOME: settings },
+  });
+  // A test that fails leaves no program behind.
+  process.once("exit", () => child.kill("SIGKILL"));
+  let errors = "";
+  child.stderr.on("data", (text) => (errors += text));
+  const address = await new Promise((resolve, reject) => {
+    child.stdout.once("data", (text) => resolve(String(text).split("\n")[0]));
+    child.once("exit", (code) => reject(new Error(`edit ended with ${code}: ${errors}`)));
+  });
+  const ended = new Promise((resolve) => child.once("exit", (code, signal) => resolve(code ?? signal)));
+  return { address, child, ended, stop: () => child.kill("SIGKILL") };
+}
+
+let browser;
+
+/** Opens a page; anything that goes wrong in it is an error of the test. */
+export async function open(address, options = {}) {
+  browser ??= await chromium.launch({ executablePath: browserPath, headless: true, args: FLAGS });
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
+  const page = await context.newPage();
+  page.problems = [];
+  page.requests = [];
+  page.on("pageerror", (e) => page.problems.push(String(e)));
+  page.on("console", (m) => {
+    if (m.type() === "error" && !/WebSocket|ERR_CONNECTION/.test(m.text())) page.problems.push(m.text());
+  });
+  page.on("request", (r) => page.requests.push(r.url()));
+  // ASSETS=FOLDER tries a page that is not built into the program yet.
+  for (const name of process.env.ASSETS ? ["editor.js", "editor.css"] : []) {
+    await page.route(`**/${name}`, (route) => route.fulfill({ path: join(process.env.ASSETS, name) }));
+  }
+  if (process.env.ASSETS) {
+    await page.route((url) => url.pathname === "/", (route) => route.fulfill({ path: join(process.env.ASSETS, "index.html") }));
+  }
+  await page.goto(address);
+  await page.waitForSelector("#stage .art *", { state: "attached" });
+  return page;
+}
+
+export async function close() {
+  await browser?.close();
+  browser = undefined;
+}
+
+/** The middle of a handle on the screen. */
+export async function middle(page, key) {
+  return page.evaluate((k) => {
+    const box = document.querySelector(`.knob[data-key="${k}"] .body`).getBoundingClientRect();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  }, key);
+}
+
+/** The handles of the page, by key. */
+export const keys = (page) => page.$$eval(".knob", (all) => all.map((k) => k.dataset.key));
+
+/** Waits until the server has nothing left to answer. */
+export async function quiet(page) {
+  await page.waitForTimeout(60);
+  await page.waitForFunction(() => !document.querySelector(".knob.held"));
+  await page.waitForTimeout(150);
+}
+
+/** Drags a handle by so many px, in steps. */
+export async function drag(page, key, dx, dy, steps = 12) {
+  const [x, y] = await middle(page, key);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + dx, y + dy, { steps });
+  await page.mouse.up();
+  await quiet(page);
+}
+
+/** All path data of the drawing. */
+export const paths = (page) => page.$$eval("#stage .art:not([visibility=hidden]) path", (all) => all.map((p) => p.getAttribute("d")).join("|"));
+
+/** Chooses a shape by its name. */
+export async function choose(page, name, section = "") {
+  const within = page.locator("#gallery section", { hasText: section });
+  await within.locator(".card", { hasText: new RegExp(`^${name}$`) }).first().click();
+  await quiet(page);
+}
+
+/** Waits until the picture is this one. */
+export async function becomes(page, picture, message) {
+  for (let i = 0; i < 50; i++) {
+    if ((await paths(page)) === picture) return;
+    await page.waitForTimeout(100);
+  }
+  throw new Error(message);
+}
+
+export function check(condition, message) {
+  if (!condition) throw new Error(message);
+}

@@ -1,0 +1,86 @@
+//! What both forms of the protocol have in common: questions, answers, and what a program says when it builds a map.
+
+use crate::fault::Fault;
+use pathwarp::kurbo::{Point, Rect, Vec2};
+use pathwarp::map::{Crease, CreaseKind, Creases, Jet, Level};
+use std::sync::Arc;
+
+/// The kinds of batches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ask {
+    /// Values.
+    Points,
+    /// Values with both partial derivatives.
+    Jets,
+    /// Values of the inverse.
+    Inverse,
+}
+
+impl Ask {
+    /// The command of the text protocol.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::Jets => "jets",
+            Self::Inverse => "inverse",
+        }
+    }
+
+    /// Numbers in the answer for one point.
+    pub(crate) fn numbers(self) -> usize {
+        if self == Self::Jets { 6 } else { 2 }
+    }
+}
+
+/// The jet in six numbers of an answer: F, ∂F/∂x, ∂F/∂y.
+pub(crate) fn jet(n: &[f64]) -> Option<Jet> {
+    let [x, y, xx, xy, yx, yy] = *n else { return None };
+    Some(Jet { p: Point::new(x, y), dx: Vec2::new(xx, xy), dy: Vec2::new(yx, yy) })
+}
+
+/// What a program says about the map that it has built.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct BuildAnswer {
+    pub(crate) notes: Vec<String>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) creases: Vec<CreaseAnswer>,
+}
+
+/// A crease, or an edge of the domain, which is where the level is positive.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CreaseAnswer {
+    /// a·x + b·y + c.
+    pub(crate) line: Option<[f64; 3]>,
+    /// The part of the line within this box x0, y0, x1, y1.
+    pub(crate) within: Option<[f64; 4]>,
+    /// cx, cy, r: the distance from the center less r.
+    pub(crate) circle: Option<[f64; 3]>,
+    pub(crate) edge: bool,
+}
+
+impl CreaseAnswer {
+    fn crease(&self) -> Option<Crease> {
+        let level = match (self.line, self.circle, self.within) {
+            (Some([a, b, c]), None, None) if a.hypot(b) > 0.0 => Level::Line { a, b, c },
+            (Some([a, b, c]), None, Some([x0, y0, x1, y1])) if a.hypot(b) > 0.0 && !self.edge => {
+                Level::Stretch { a, b, c, within: Rect::new(x0, y0, x1, y1) }
+            }
+            (None, Some([x, y, r]), None) if r != 0.0 => {
+                // Inside of a circle with a negative radius the level is positive.
+                Level::Field(Arc::new(move |p: Point| r.signum() * (p.distance(Point::new(x, y)) - r.abs())))
+            }
+            _ => return None,
+        };
+        Some(Crease { level, kind: if self.edge { CreaseKind::Edge } else { CreaseKind::Kink } })
+    }
+}
+
+/// The creases that a program declares.
+pub(crate) fn creases(answers: &[CreaseAnswer]) -> Result<Creases, Fault> {
+    let mut out = Creases::default();
+    for answer in answers {
+        let wrong = || Fault::Garbage { expected: "a crease".into(), found: format!("{answer:?}") };
+        out.push(answer.crease().ok_or_else(wrong)?);
+    }
+    Ok(out)
+}

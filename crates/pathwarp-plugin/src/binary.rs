@@ -1,0 +1,84 @@
+//! The protocol as length-prefixed little-endian numbers.
+//!
+//! A message is its length in bytes without this prefix (u32), one byte for its kind, and a body.
+
+use crate::answer::Ask;
+use crate::fault::{Fault, beginning};
+use crate::limits::MESSAGE_BYTES;
+use pathwarp::kurbo::Point;
+
+/// Kinds of requests.
+const BUILD: u8 = 1;
+const POINTS: u8 = 2;
+const JETS: u8 = 3;
+const INVERSE: u8 = 4;
+
+/// Kinds of answers.
+const DONE: u8 = 0;
+const REFUSED: u8 = 1;
+
+/// Length prefix and kind.
+pub(crate) const HEAD: usize = 5;
+
+fn head(kind: u8, body: usize, out: &mut Vec<u8>) {
+    let length = u32::try_from(body + 1).unwrap_or(u32::MAX);
+    out.extend_from_slice(&length.to_le_bytes());
+    out.push(kind);
+}
+
+/// The request to build a map from `lines`.
+pub(crate) fn build(lines: &[String]) -> Vec<u8> {
+    let body = lines.concat();
+    let mut out = Vec::with_capacity(body.len() + HEAD);
+    head(BUILD, body.len(), &mut out);
+    out.extend_from_slice(body.as_bytes());
+    out
+}
+
+/// The request for a batch.
+pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
+    let kind = match ask {
+        Ask::Points => POINTS,
+        Ask::Jets => JETS,
+        Ask::Inverse => INVERSE,
+    };
+    out.reserve(HEAD + 16 * points.len());
+    head(kind, 16 * points.len(), out);
+    for p in points {
+        out.extend_from_slice(&p.x.to_le_bytes());
+        out.extend_from_slice(&p.y.to_le_bytes());
+    }
+}
+
+/// The length of the message at the beginning of `bytes`, once its head is there. `body` is the length of the body if it is known;
+/// a message instead of it may have up to [`MESSAGE_BYTES`].
+pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &str) -> Result<Option<usize>, Fault> {
+    let Some((head, _)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
+    let [a, b, c, d, kind] = *head;
+    let length = u32::from_le_bytes([a, b, c, d]) as usize;
+    let garbage = || Err(Fault::Garbage { expected: expected.to_owned(), found: beginning(bytes) });
+    match (kind, body) {
+        (DONE, Some(body)) if length == body + 1 => Ok(Some(length + 4)),
+        (DONE, Some(body)) if length % 16 == 1 && length < 100 * (body + 16) => Err(Fault::Count {
+            expected: expected.to_owned(),
+            found: format!("has {} bytes of numbers instead of {body}", length - 1),
+        }),
+        (DONE, None) | (REFUSED, _) if (1..=MESSAGE_BYTES).contains(&length) => Ok(Some(length + 4)),
+        _ => garbage(),
+    }
+}
+
+/// The body of a whole message.
+pub(crate) fn body(bytes: &[u8]) -> Result<&[u8], Fault> {
+    let body = bytes.get(HEAD..).unwrap_or_default();
+    match bytes.get(HEAD - 1) {
+        Some(&REFUSED) => Err(Fault::Refused(String::from_utf8_lossy(body).into_owned())),
+        _ => Ok(body),
+    }
+}
+
+/// Reads the numbers of an answer to a batch.
+pub(crate) fn read_batch(bytes: &[u8], out: &mut Vec<f64>) -> Result<(), Fault> {
+    out.extend(body(bytes)?.chunks_exact(8).filter_map(|c| c.try_into().ok().map(f64::from_le_bytes)));
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! Starting and ending the processes. None outlives this one, however it ends, short of being killed.
+
+use crate::fault::Fault;
+use std::path::Path;
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Every process that runs.
+static LIVE: Mutex<Vec<Shared>> = Mutex::new(Vec::new());
+
+/// A process until it is ended: its number may then belong to another.
+type Shared = Arc<Mutex<Option<Child>>>;
+
+/// A running program, in a process group of its own where the system has them. Killed and waited for when dropped.
+pub(crate) struct Running {
+    child: Shared,
+}
+
+impl Running {
+    /// Starts the program, with pipes for its three streams.
+    pub(crate) fn start(path: &Path) -> Result<Self, Fault> {
+        check_file(path)?;
+        let mut command = Command::new(path);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        #[cfg(unix)]
+        {
+            use std::os::unix::process::CommandExt;
+            command.process_group(0);
+        }
+        // Held until the process is known, so that `end_all` misses none.
+        let mut live = live();
+        let child = command.spawn().map_err(|e| Fault::NotStarted(e.to_string()))?;
+        let child = Arc::new(Mutex::new(Some(child)));
+        live.push(Arc::clone(&child));
+        Ok(Self { child })
+    }
+
+    /// The ends of its pipes, once.
+    pub(crate) fn pipes(&self) -> Option<(ChildStdin, ChildStdout, ChildStderr)> {
+        let mut child = self.child();
+        let child = child.as_mut()?;
+        Some((child.stdin.take()?, child.stdout.take()?, child.stderr.take()?))
+    }
+
+    fn child(&self) -> MutexGuard<'_, Option<Child>> {
+        self.child.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns `true` if the process has ended.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.child().as_mut().is_none_or(has_ended)
+    }
+
+    /// Kills the process and its children, and returns its exit status, which is its own one if it has ended already.
+    pub(crate) fn end(&mut self) -> Option<ExitStatus> {
+        let status = self.child().take().and_then(kill);
+        live().retain(|c| !Arc::ptr_eq(c, &self.child));
+        status
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// Kills every program that runs. For processes that are about to end without unwinding; no program can be started after it.
+pub fn end_all() {
+    let live = live();
+    for child in live.iter() {
+        child.lock().unwrap_or_else(PoisonError::into_inner).take().and_then(kill);
+    }
+    // Whoever is about to start another waits here until the process ends.
+    std::mem::forget(live);
+}
+
+fn live() -> MutexGuard<'static, Vec<Shared>> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(unix)]
+fn has_ended(child: &mut Child) -> bool {
+    use rustix::process::{WaitId, WaitIdOptions, waitid};
+    let Some(pid) = pid(child) else { return true };
+    // Not waited for yet: until then nothing else can have its number.
+    let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    !matches!(waitid(WaitId::Pid(pid), options), Ok(None))
+}
+
+#[cfg(not(unix))]
+fn has_ended(child: &mut Child) -> bool {
+    !matches!(child.try_wait(), Ok(None))
+}
+
+#[cfg(unix)]
+fn pid(child: &Child) -> Option<rustix::process::Pid> {
+    rustix::process::Pid::from_raw(i32::try_from(child.id()).ok()?)
+}
+
+fn kill(mut child: Child) -> Option<ExitStatus> {
+    #[cfg(unix)]
+    if let Some(pid) = pid(&child) {
+        // The whole group, which may have a member left although the program itself has ended.
+        let _ = rustix::process::kill_process_group(pid, rustix::process::Signal::KILL);
+    }
+    let _ = child.kill();
+    child.wait().ok()
+}
+
+/// Checks that the file can be started.
+fn check_file(path: &Path) -> Result<(), Fault> {
+    let meta = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).ok_or(Fault::NoFile)?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        if meta.permissions().mode() & 0o111 == 0 {
+            return Err(Fault::NotExecutable);
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = meta;
+    Ok(())
+}

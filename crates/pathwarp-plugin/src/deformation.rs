@@ -1,0 +1,104 @@
+//! A program as an entry of the registry.
+
+use crate::answer;
+use crate::entry::{Entry, Reserved, read};
+use crate::fault::Fault;
+use crate::instance::Instance;
+use crate::map::{Abilities, ProgramMap};
+use crate::pool::Program;
+use crate::session::{Protocol, Session};
+use crate::{binary, text, values};
+use pathwarp::Error;
+use pathwarp::deform::{Built, Deformation, Info};
+use pathwarp::param::{Axis, Settings};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+/// A program as a deformation.
+#[derive(Clone)]
+pub struct Plugin {
+    info: &'static Info,
+    abilities: Abilities,
+    program: Arc<Program>,
+}
+
+impl Plugin {
+    /// Starts the program at `path` and reads its entry. Returns the entry's text, too.
+    ///
+    /// # Errors
+    /// The program cannot be started, or its entry is not what the protocol says.
+    pub fn start(path: &Path, reserved: Reserved<'_>) -> Result<(Self, String), Fault> {
+        // A name without a folder would be looked for in PATH.
+        let path = path.canonicalize().map_err(|_| Fault::NoFile)?;
+        let (session, text) = Session::start(&path)?;
+        let entry = read(&text, reserved)?;
+        Ok((Self::new(&path, &entry, Some(session)), String::from_utf8_lossy(&text).into_owned()))
+    }
+
+    /// The program at `path`, whose entry is known, without starting it.
+    ///
+    /// # Errors
+    /// The entry is not what the protocol says.
+    pub(crate) fn known(path: &Path, text: &str, reserved: Reserved<'_>) -> Result<Self, Fault> {
+        Ok(Self::new(path, &read(text.as_bytes(), reserved)?, None))
+    }
+
+    fn new(path: &Path, entry: &Entry, running: Option<Session>) -> Self {
+        let program = Arc::new(Program::new(path.to_owned(), entry.protocol, running));
+        Self { info: entry.info, abilities: entry.abilities, program }
+    }
+
+    /// The file of the program.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.program.path
+    }
+
+    /// Returns `true` if the program gives derivatives itself.
+    #[must_use]
+    pub fn gives_jacobian(&self) -> bool {
+        self.abilities.jacobian
+    }
+
+    /// Returns `true` if the program gives the inverse itself.
+    #[must_use]
+    pub fn gives_inverse(&self) -> bool {
+        self.abilities.inverse
+    }
+}
+
+impl Deformation for Plugin {
+    fn info(&self) -> &Info {
+        self.info
+    }
+
+    fn build(&self, settings: &Settings<'_>) -> Result<Built, Error> {
+        let frame = settings.frame();
+        let lines = values::lines(self.info.params, settings)?;
+        let request = match self.program.protocol {
+            Protocol::Text => text::build(&lines),
+            Protocol::Binary => binary::build(&lines),
+        };
+        let instance = Arc::new(Instance::new(request));
+        let refused = |fault: Fault| match fault {
+            Fault::Refused(why) => Error::input(self.info.name, why),
+            fault => fault.of(&self.program.path),
+        };
+        let answer = self.program.build(&instance).map_err(refused)?;
+        let creases = answer::creases(&answer.creases).map_err(refused)?;
+        if !creases.items().is_empty() && !self.abilities.jacobian {
+            let why = "it declares creases but no derivatives (\"jacobian\": true), and differences would cross them";
+            return Err(Fault::Entry(why.to_owned()).of(&self.program.path));
+        }
+        let (program, abilities) = (Arc::clone(&self.program), self.abilities);
+        let failed = Arc::new(OnceLock::new());
+        let size = frame.extent(Axis::Diagonal).max(f64::MIN_POSITIVE);
+        let map = ProgramMap { program, instance, abilities, creases, size, failed: Arc::clone(&failed) };
+        let mut built = Built::new(Arc::new(map));
+        answer.notes.into_iter().for_each(|n| built.note(n));
+        answer.warnings.into_iter().for_each(|w| built.warn(w));
+        let path = self.program.path.clone();
+        built.failure = Some(Arc::new(move || failed.get().map(|fault: &Fault| fault.of(&path))));
+        Ok(built)
+    }
+}

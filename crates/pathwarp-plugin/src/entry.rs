@@ -1,0 +1,274 @@
+//! The entry of a program: JSON with the schema of `pathwarp list --json`, as a description for the registry.
+
+use crate::fault::Fault;
+use crate::map::Abilities;
+use crate::session::Protocol;
+use pathwarp::deform::{Case, Example, Info, Law, Pairs};
+use pathwarp::param::{Axis, Kind, Param};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+/// The version of the protocol.
+pub(crate) const VERSION: u32 = 1;
+
+/// Names that a program may not use.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Reserved<'a> {
+    /// Names of commands and of other deformations.
+    pub names: &'a [&'a str],
+    /// Names of options that every command has.
+    pub parameters: &'a [&'a str],
+}
+
+/// An entry, read and checked.
+pub(crate) struct Entry {
+    pub(crate) info: &'static Info,
+    pub(crate) protocol: Protocol,
+    pub(crate) abilities: Abilities,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    #[serde(rename = "pathwarp-plugin")]
+    _version: u32,
+    name: String,
+    title: String,
+    #[serde(default)]
+    group: Option<String>,
+    about: String,
+    #[serde(default)]
+    source: Option<String>,
+    #[serde(default)]
+    protocol: Protocol,
+    #[serde(default)]
+    jacobian: bool,
+    #[serde(default)]
+    inverse: bool,
+    #[serde(default)]
+    domain: Domain,
+    #[serde(default)]
+    parameters: Vec<WrittenParam>,
+    #[serde(default)]
+    demo: Map<String, Value>,
+    #[serde(default)]
+    examples: Vec<WrittenExample>,
+    #[serde(default)]
+    laws: Vec<WrittenLaw>,
+    #[serde(default)]
+    cases: Vec<WrittenCase>,
+}
+
+/// Where the map is defined.
+#[derive(Deserialize, Default, PartialEq)]
+#[serde(rename_all = "lowercase")]
+enum Domain {
+    /// Everywhere, but for the edges that it declares.
+    #[default]
+    Plane,
+    /// Where it does not answer NaN.
+    Partial,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenParam {
+    name: String,
+    help: String,
+    kind: String,
+    #[serde(default)]
+    axis: Option<String>,
+    #[serde(default)]
+    default: Option<Value>,
+    #[serde(default)]
+    needed: bool,
+    #[serde(default)]
+    repeat: bool,
+    #[serde(default)]
+    range: Option<[Option<f64>; 2]>,
+    #[serde(default)]
+    slider: Option<[f64; 2]>,
+    #[serde(default)]
+    choices: Vec<String>,
+    #[serde(default)]
+    names: Vec<String>,
+    #[serde(default)]
+    count: Option<usize>,
+    #[serde(default)]
+    value: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum WrittenExample {
+    Command(String),
+    Captioned { what: String, command: String },
+}
+
+type Values = Map<String, Value>;
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum WrittenLaw {
+    Identity(Values),
+    Same(Values, Values),
+    KeepsLines(Values),
+    KeepsLinesAlong(Values, (f64, f64)),
+    FixedOutside(Values, [f64; 4]),
+    Area(Values, f64),
+    KeepsAngles(Values),
+    Undoes(Values, Values),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenCase {
+    #[serde(default)]
+    args: Values,
+    at: (f64, f64),
+    to: (f64, f64),
+    tolerance: f64,
+}
+
+/// Reads an entry. Its texts are kept until the process ends, as those of built-in deformations are.
+pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault> {
+    let wrong = |problem: String| Fault::Entry(problem);
+    let json: Value = serde_json::from_slice(bytes).map_err(|e| wrong(format!("it is not JSON: {e}")))?;
+    match json.get("pathwarp-plugin") {
+        Some(v) if v.as_u64() == Some(VERSION.into()) => {}
+        Some(v) => return Err(Fault::Version { found: v.to_string(), known: VERSION }),
+        None => return Err(wrong(format!("it lacks \"pathwarp-plugin\": {VERSION}"))),
+    }
+    // From the text again, for the line of an error.
+    let written: Written = serde_json::from_slice(bytes).map_err(|e| wrong(e.to_string()))?;
+    if !is_kebab(&written.name) {
+        return Err(wrong(format!("its name `{}` is not lower-case words joined by hyphens", written.name)));
+    }
+    if reserved.names.contains(&written.name.as_str()) {
+        return Err(Fault::NameTaken(written.name));
+    }
+    let params: Vec<Param> = written.parameters.into_iter().map(param).collect::<Result<_, _>>().map_err(wrong)?;
+    for (i, p) in params.iter().enumerate() {
+        if params[..i].iter().any(|q| q.name == p.name) || !is_kebab(p.name) {
+            return Err(wrong(format!("the parameter `{}` is not a new name of lower-case words", p.name)));
+        }
+        if reserved.parameters.contains(&p.name) {
+            return Err(wrong(format!("the parameter `{}` has the name of an option of every command", p.name)));
+        }
+    }
+    let source = written.source.unwrap_or_else(|| "a plug-in".to_owned());
+    let info = Info::new(kept(written.name), kept(written.title))
+        .group(written.group.map_or("Plug-ins", kept))
+        .about(kept(written.about))
+        .source(kept(source))
+        .params(params.leak())
+        .demo(pairs(&written.demo))
+        .examples(written.examples.into_iter().map(example).collect::<Vec<_>>().leak())
+        .laws(written.laws.iter().map(law).collect::<Vec<_>>().leak())
+        .cases(written.cases.iter().map(case).collect::<Vec<_>>().leak());
+    let partial = written.domain == Domain::Partial;
+    let abilities = Abilities { jacobian: written.jacobian, inverse: written.inverse, partial };
+    Ok(Entry { info: Box::leak(Box::new(info)), protocol: written.protocol, abilities })
+}
+
+/// Keeps a text until the process ends.
+fn kept(text: String) -> &'static str {
+    text.leak()
+}
+
+fn kept_all(words: Vec<String>) -> &'static [&'static str] {
+    words.into_iter().map(kept).collect::<Vec<_>>().leak()
+}
+
+fn is_kebab(name: &str) -> bool {
+    let is_word = |w: &str| !w.is_empty() && w.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
+    name.len() <= 64 && name.split('-').all(is_word)
+}
+
+/// A value as it would be typed.
+fn typed(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Array(list) => list.iter().map(typed).collect::<Vec<_>>().join(","),
+        other => other.to_string(),
+    }
+}
+
+fn pairs(values: &Values) -> Pairs {
+    let pair = |(name, value): (&String, &Value)| (kept(name.clone()), kept(typed(value)));
+    values.iter().map(pair).collect::<Vec<_>>().leak()
+}
+
+fn param(w: WrittenParam) -> Result<Param, String> {
+    let name = w.name.clone();
+    let lacks = |what: &str| format!("the parameter `{name}` of kind `{}` lacks \"{what}\"", w.kind);
+    let kind = match w.kind.as_str() {
+        "flag" => Kind::Flag,
+        "number" => Kind::Number,
+        "numbers" => Kind::Numbers(w.count.filter(|n| (1..=64).contains(n)).ok_or_else(|| lacks("count"))?),
+        "length" => Kind::Length(match w.axis.as_deref() {
+            Some("x") => Axis::X,
+            Some("y") => Axis::Y,
+            None | Some("diagonal") => Axis::Diagonal,
+            Some(other) => return Err(format!("the parameter `{name}` has the axis `{other}`, not x, y or diagonal")),
+        }),
+        "angle" => Kind::Angle,
+        "count" => Kind::Count,
+        "point" => Kind::Point,
+        "path" => Kind::Path,
+        "choice" if w.choices.is_empty() => return Err(lacks("choices")),
+        "choice" => Kind::Choice(kept_all(w.choices)),
+        "text" => Kind::Text(kept(w.value.unwrap_or_else(|| "TEXT".to_owned()))),
+        "name-or-file" => Kind::NameOrFile(kept_all(w.names)),
+        "file" => Kind::File,
+        other => {
+            return Err(format!(
+                "the parameter `{name}` has the kind `{other}`; kinds are flag, number, numbers, length, angle, count, point, \
+                 path, choice, text, name-or-file and file"
+            ));
+        }
+    };
+    let mut out = Param::new(kept(w.name), kind, kept(w.help));
+    if kind == Kind::Angle {
+        out = out.slider(-180.0, 180.0);
+    }
+    if let Some([least, most]) = w.range {
+        let (least, most) = (least.unwrap_or(f64::NEG_INFINITY), most.unwrap_or(f64::INFINITY));
+        if least.is_nan() || least > most {
+            return Err(format!("the parameter `{}` has an empty range", out.name));
+        }
+        let ui = if least.is_finite() && most.is_finite() { (least, most) } else { out.ui };
+        out = Param { range: (least, most), ui, ..out };
+    }
+    if let Some([from, to]) = w.slider {
+        out = out.slider(from, to);
+    }
+    if let Some(default) = w.default.filter(|d| !d.is_null()) {
+        out = out.default(kept(typed(&default)));
+    }
+    Ok(Param { needed: w.needed, repeat: w.repeat, ..out })
+}
+
+fn example(e: WrittenExample) -> Example {
+    match e {
+        WrittenExample::Command(command) => Example { what: "Example", command: kept(command) },
+        WrittenExample::Captioned { what, command } => Example { what: kept(what), command: kept(command) },
+    }
+}
+
+fn law(law: &WrittenLaw) -> Law {
+    match law {
+        WrittenLaw::Identity(v) => Law::Identity(pairs(v)),
+        WrittenLaw::Same(a, b) => Law::Same(pairs(a), pairs(b)),
+        WrittenLaw::KeepsLines(v) => Law::KeepsLines(pairs(v)),
+        WrittenLaw::KeepsLinesAlong(v, along) => Law::KeepsLinesAlong(pairs(v), *along),
+        WrittenLaw::FixedOutside(v, area) => Law::FixedOutside(pairs(v), *area),
+        WrittenLaw::Area(v, factor) => Law::Area(pairs(v), *factor),
+        WrittenLaw::KeepsAngles(v) => Law::KeepsAngles(pairs(v)),
+        WrittenLaw::Undoes(a, b) => Law::Undoes(pairs(a), pairs(b)),
+    }
+}
+
+fn case(c: &WrittenCase) -> Case {
+    Case { args: pairs(&c.args), at: c.at, to: c.to, tolerance: c.tolerance }
+}

@@ -1,0 +1,133 @@
+//! The ways in which a program fails.
+
+use crate::limits::{ERROR_BYTES, QUOTED_BYTES};
+use pathwarp::Error;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use thiserror::Error;
+
+/// The reason why a program cannot be used, or was ended.
+#[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Fault {
+    /// The file is not there, or not a file.
+    #[error("is not a file")]
+    NoFile,
+    /// The file may not be executed.
+    #[error("is not executable; allow it with chmod +x")]
+    NotExecutable,
+    /// The system cannot start it.
+    #[error("cannot be started: {0}; a script needs a first line such as #!/usr/bin/env python3")]
+    NotStarted(String),
+    /// It ended while an answer was expected.
+    #[error("ended while {expected} was expected ({status}){}", quoted(.said))]
+    Ended {
+        /// The expected answer.
+        expected: String,
+        /// The exit status.
+        status: String,
+        /// The end of its standard error.
+        said: String,
+    },
+    /// It closed its standard output or input and runs on.
+    #[error("closed its standard {stream} while {expected} was expected{}", quoted(.said))]
+    Closed {
+        /// Input or output.
+        stream: String,
+        /// The expected answer.
+        expected: String,
+        /// The end of its standard error.
+        said: String,
+    },
+    /// It did not answer in time.
+    #[error("did not give {expected} within {seconds} seconds (PATHWARP_PLUGIN_SECONDS allows more){}", quoted(.said))]
+    Silent {
+        /// The expected answer.
+        expected: String,
+        /// The limit.
+        seconds: f64,
+        /// The end of its standard error.
+        said: String,
+    },
+    /// It wrote more than an answer can have.
+    #[error("wrote more than {limit} bytes where {expected} was expected")]
+    Flood {
+        /// The expected answer.
+        expected: String,
+        /// The limit.
+        limit: usize,
+    },
+    /// It wrote too much to standard error.
+    #[error("wrote more than {ERROR_BYTES} bytes to standard error{}", quoted(.0))]
+    ErrorFlood(String),
+    /// The entry is not what the protocol says.
+    #[error("has a wrong entry: {0}")]
+    Entry(String),
+    /// The entry is of another version of the protocol.
+    #[error("speaks version {found} of the protocol; this program speaks version {known}")]
+    Version {
+        /// The version of the entry.
+        found: String,
+        /// The version known here.
+        known: u32,
+    },
+    /// Its name is taken by a command or a built-in deformation.
+    #[error("has the name of a command, {0}; rename it")]
+    NameTaken(String),
+    /// An answer cannot be read.
+    #[error("wrote {found} where {expected} was expected")]
+    Garbage {
+        /// The expected answer.
+        expected: String,
+        /// The beginning of what it wrote.
+        found: String,
+    },
+    /// An answer has the wrong number of points.
+    #[error("answered too much or too little: {expected} {found}")]
+    Count {
+        /// The expected answer.
+        expected: String,
+        /// What it has instead: the end of a sentence.
+        found: String,
+    },
+    /// A value is not a number.
+    #[error("answered NaN or infinity for the point {0},{1}, and its entry does not say \"domain\": \"partial\"")]
+    NotFinite(f64, f64),
+    /// It refused the parameters or a batch, with this message.
+    #[error("{0}")]
+    Refused(String),
+}
+
+impl Fault {
+    /// As an error of the file at `path`.
+    #[must_use]
+    pub fn of(&self, path: &Path) -> Error {
+        Error::input(format!("plug-in {}", path.display()), self.to_string())
+    }
+}
+
+/// What a program said on standard error, for the end of a message.
+fn quoted(said: &str) -> String {
+    if said.is_empty() { String::new() } else { format!("; it said: {said}") }
+}
+
+/// The last lines of `bytes` on one line, without characters that would change the terminal.
+pub(crate) fn readable(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let line: Vec<&str> = text.split(|c: char| c.is_control()).map(str::trim).filter(|l| !l.is_empty()).collect();
+    let line = line.join(" | ");
+    let skipped = line.char_indices().rev().nth(QUOTED_BYTES).map_or(0, |(i, _)| i);
+    if skipped == 0 { line } else { format!("…{}", &line[skipped..]) }
+}
+
+/// The beginning of `bytes` in quotes.
+pub(crate) fn beginning(bytes: &[u8]) -> String {
+    /// Characters shown.
+    const SHOWN: usize = 40;
+    let text = String::from_utf8_lossy(bytes);
+    let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_default).collect();
+    if text.chars().nth(SHOWN).is_some() {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}

@@ -1,0 +1,167 @@
+//! The three pipes of a program, on Unix: one loop writes, reads, and looks at the clock, so that no side can block the other.
+
+use crate::child::Running;
+use crate::fault::{Fault, readable};
+use crate::limits::{ERROR_BYTES, time};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{OFlags, fcntl_setfl};
+use std::io::{ErrorKind, Read, Write};
+use std::process::{ChildStderr, ChildStdin, ChildStdout};
+use std::time::{Duration, Instant};
+
+/// Time between two looks whether the program has ended while its pipes are held open by a child of it.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Time for a program whose pipe has closed to end, so that its exit status can be told.
+const GRACE: Duration = Duration::from_millis(200);
+
+/// Bytes of standard error that are kept for messages.
+const KEPT: usize = 4096;
+
+/// The pipes of a running program.
+pub(crate) struct Pipes {
+    input: ChildStdin,
+    output: ChildStdout,
+    errors: Option<ChildStderr>,
+    /// What has arrived and was not taken.
+    incoming: Vec<u8>,
+    said: Vec<u8>,
+    said_in_all: usize,
+    chunk: Box<[u8]>,
+}
+
+impl Pipes {
+    pub(crate) fn new(running: &Running) -> Result<Self, Fault> {
+        let (input, output, errors) = running.pipes().ok_or_else(|| Fault::NotStarted("without pipes".into()))?;
+        let unblocked = fcntl_setfl(&input, OFlags::NONBLOCK)
+            .and_then(|()| fcntl_setfl(&output, OFlags::NONBLOCK))
+            .and_then(|()| fcntl_setfl(&errors, OFlags::NONBLOCK));
+        unblocked.map_err(|e| Fault::NotStarted(e.to_string()))?;
+        Ok(Self {
+            input,
+            output,
+            errors: Some(errors),
+            incoming: Vec::new(),
+            said: Vec::new(),
+            said_in_all: 0,
+            chunk: vec![0; 1 << 16].into_boxed_slice(),
+        })
+    }
+
+    /// Sends `request` and reads until `whole` finds the end of the answer, which may have up to `limit` bytes.
+    pub(crate) fn exchange(
+        &mut self,
+        running: &mut Running,
+        request: &[u8],
+        (expected, limit): (&str, usize),
+        mut whole: impl FnMut(&[u8]) -> Result<Option<usize>, Fault>,
+    ) -> Result<Vec<u8>, Fault> {
+        let (mut rest, until) = (request, Instant::now() + time());
+        loop {
+            if let Some(length) = whole(&self.incoming)?.filter(|n| *n <= self.incoming.len()) {
+                let later = self.incoming.split_off(length);
+                return Ok(std::mem::replace(&mut self.incoming, later));
+            }
+            if self.incoming.len() > limit {
+                return Err(Fault::Flood { expected: expected.to_owned(), limit });
+            }
+            rest = self.write(rest).or_else(|()| self.stopped(running, "input", expected).map(|()| &[][..]))?;
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(Fault::Silent {
+                    expected: expected.to_owned(),
+                    seconds: time().as_secs_f64(),
+                    said: readable(&self.said),
+                });
+            }
+            let [can_read, can_hear] = self.wait(!rest.is_empty(), left.min(LOOK));
+            if can_hear {
+                self.hear()?;
+            }
+            if can_read && !self.read() || !can_read && running.has_ended() && !self.wait(false, Duration::ZERO)[0] {
+                self.stopped(running, "output", expected)?;
+            }
+        }
+    }
+
+    /// What has arrived beyond the last answer.
+    pub(crate) fn left_over(&self) -> &[u8] {
+        &self.incoming
+    }
+
+    /// Writes as much as fits. `Err`: nobody reads any longer.
+    fn write<'a>(&mut self, mut rest: &'a [u8]) -> Result<&'a [u8], ()> {
+        while !rest.is_empty() {
+            match self.input.write(rest) {
+                Ok(n) => rest = rest.get(n..).unwrap_or_default(),
+                Err(e) if e.kind() == ErrorKind::WouldBlock => break,
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                Err(_) => return Err(()),
+            }
+        }
+        Ok(rest)
+    }
+
+    /// Waits until there is something to do; says whether output and errors have something to read, or have ended.
+    fn wait(&self, write: bool, time: Duration) -> [bool; 2] {
+        let mut fds = vec![PollFd::new(&self.output, PollFlags::IN)];
+        fds.extend(self.errors.as_ref().map(|e| PollFd::new(e, PollFlags::IN)));
+        if write {
+            fds.push(PollFd::new(&self.input, PollFlags::OUT));
+        }
+        let time = Timespec { tv_sec: 0, tv_nsec: time.subsec_nanos().into() };
+        // An interrupted wait is repeated by the caller.
+        if poll(&mut fds, Some(&time)).is_err() {
+            return [false; 2];
+        }
+        let ready = |i: usize| fds.get(i).is_some_and(|fd| !fd.revents().is_empty());
+        [ready(0), self.errors.is_some() && ready(1)]
+    }
+
+    /// Reads what there is. Returns `false` at the end of the stream.
+    fn read(&mut self) -> bool {
+        match self.output.read(&mut self.chunk) {
+            Ok(0) => false,
+            Ok(n) => {
+                self.incoming.extend_from_slice(self.chunk.get(..n).unwrap_or_default());
+                true
+            }
+            Err(e) => matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted),
+        }
+    }
+
+    /// Reads what was said on standard error.
+    fn hear(&mut self) -> Result<(), Fault> {
+        let Some(errors) = &mut self.errors else { return Ok(()) };
+        match errors.read(&mut self.chunk) {
+            Ok(0) => self.errors = None,
+            Ok(n) => {
+                self.said_in_all += n;
+                self.said.extend_from_slice(self.chunk.get(..n).unwrap_or_default());
+                let surplus = self.said.len().saturating_sub(KEPT);
+                self.said.drain(..surplus);
+            }
+            Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
+            Err(_) => self.errors = None,
+        }
+        if self.said_in_all > ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
+    }
+
+    /// The fault of a program that has ended, or closed a stream.
+    fn stopped(&mut self, running: &mut Running, stream: &str, expected: &str) -> Result<(), Fault> {
+        let until = Instant::now() + GRACE;
+        while Instant::now() < until && !(running.has_ended() && self.errors.is_none()) {
+            if !self.wait(false, LOOK.min(GRACE / 10))[1] && running.has_ended() {
+                break;
+            }
+            self.hear()?;
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let (expected, said) = (expected.to_owned(), readable(&self.said));
+        if !running.has_ended() {
+            return Err(Fault::Closed { stream: stream.to_owned(), expected, said });
+        }
+        let status = running.end().map_or_else(|| "unknown status".to_owned(), |s| s.to_string());
+        Err(Fault::Ended { expected, status, said })
+    }
+}

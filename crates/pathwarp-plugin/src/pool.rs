@@ -1,0 +1,99 @@
+//! The processes of one program: as many as threads ask at the same time.
+
+use crate::answer::{Ask, BuildAnswer};
+use crate::fault::Fault;
+use crate::instance::Instance;
+use crate::limits::MOST_POINTS;
+use crate::session::{Protocol, Session};
+use pathwarp::kurbo::Point;
+use std::path::PathBuf;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Times that the program may fail to answer in time before it is not asked again.
+const MOST_SILENT: usize = 3;
+
+/// A program with its processes.
+pub(crate) struct Program {
+    pub(crate) path: PathBuf,
+    pub(crate) protocol: Protocol,
+    state: Mutex<State>,
+    returned: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    idle: Vec<Session>,
+    /// All processes, idle or not.
+    running: usize,
+    silent: usize,
+}
+
+impl Program {
+    /// A program, with a process that runs already.
+    pub(crate) fn new(path: PathBuf, protocol: Protocol, running: Option<Session>) -> Self {
+        let idle = Vec::from_iter(running);
+        let state = State { running: idle.len(), idle, silent: 0 };
+        Self { path, protocol, state: Mutex::new(state), returned: Condvar::new() }
+    }
+
+    /// Builds a map.
+    pub(crate) fn build(&self, instance: &Instance) -> Result<BuildAnswer, Fault> {
+        self.with_session(0, |s| s.build(self.protocol, instance))
+    }
+
+    /// Asks for points of a map, in batches. Returns the numbers of all answers.
+    pub(crate) fn ask(&self, instance: &Instance, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Fault> {
+        let mut out = Vec::with_capacity(ask.numbers() * points.len());
+        self.with_session(instance.id, |s| {
+            points.chunks(MOST_POINTS).try_for_each(|ps| s.ask(self.protocol, instance, (ask, ps), &mut out))
+        })?;
+        Ok(out)
+    }
+
+    /// Runs `f` with a process, preferably one that has built the map `id`. A process that fails is ended.
+    fn with_session<T>(&self, id: u64, f: impl FnOnce(&mut Session) -> Result<T, Fault>) -> Result<T, Fault> {
+        let mut session = self.take(id)?;
+        let result = f(&mut session);
+        let mut state = self.state();
+        if result.is_ok() {
+            state.idle.push(session);
+        } else {
+            state.running -= 1;
+            state.silent += usize::from(matches!(result, Err(Fault::Silent { .. })));
+            drop(state);
+            drop(session);
+        }
+        self.returned.notify_one();
+        result
+    }
+
+    fn take(&self, id: u64) -> Result<Session, Fault> {
+        let most = std::thread::available_parallelism().map_or(1, usize::from);
+        let mut state = self.state();
+        loop {
+            if state.silent >= MOST_SILENT {
+                return Err(Fault::Refused(format!(
+                    "gave no answer in time {MOST_SILENT} times; it is not asked again"
+                )));
+            }
+            let same = state.idle.iter().position(|s| s.instance == id);
+            if let Some(i) = same.or_else(|| state.idle.len().checked_sub(1)) {
+                return Ok(state.idle.swap_remove(i));
+            }
+            if state.running < most {
+                state.running += 1;
+                break;
+            }
+            state = self.returned.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        drop(state);
+        Session::start(&self.path).map(|(session, _)| session).inspect_err(|_| {
+            self.state().running -= 1;
+            self.returned.notify_one();
+        })
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,116 @@
+//! The protocol as lines of text, for programs written by hand.
+
+use crate::answer::{Ask, BuildAnswer, CreaseAnswer};
+use crate::fault::{Fault, beginning};
+use pathwarp::kurbo::Point;
+use std::fmt::Write as _;
+
+/// The request to build a map from `lines`.
+pub(crate) fn build(lines: &[String]) -> Vec<u8> {
+    format!("build {}\n{}", lines.len(), lines.concat()).into_bytes()
+}
+
+/// The request for a batch.
+pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
+    let mut text = String::with_capacity(40 * points.len() + 16);
+    let _ = writeln!(text, "{} {}", ask.word(), points.len());
+    for p in points {
+        let _ = writeln!(text, "{} {}", p.x, p.y);
+    }
+    out.extend_from_slice(text.as_bytes());
+}
+
+/// The length of the answer to `build` at the beginning of `bytes`: up to the line `ok`, or one that begins with `error`.
+pub(crate) fn build_length(bytes: &[u8]) -> Option<usize> {
+    let mut at = 0;
+    for line in bytes.split_inclusive(|b| *b == b'\n') {
+        at += line.len();
+        let last = matches!(line.split(u8::is_ascii_whitespace).next(), Some(b"ok" | b"error"));
+        if line.ends_with(b"\n") && last {
+            return Some(at);
+        }
+    }
+    None
+}
+
+/// Reads the lines of the answer to `build`.
+pub(crate) fn read_build(bytes: &[u8]) -> Result<BuildAnswer, Fault> {
+    let mut out = BuildAnswer::default();
+    for line in String::from_utf8_lossy(bytes).lines() {
+        let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
+        match word {
+            "ok" => {}
+            "error" => return Err(Fault::Refused(rest.to_owned())),
+            "note" => out.notes.push(rest.to_owned()),
+            "warning" => out.warnings.push(rest.to_owned()),
+            "crease" | "edge" => out.creases.push(crease(rest, word == "edge").ok_or_else(|| garbage(line))?),
+            _ => return Err(garbage(line)),
+        }
+    }
+    Ok(out)
+}
+
+fn garbage(line: &str) -> Fault {
+    Fault::Garbage { expected: "ok, error, note, warning, crease or edge".into(), found: beginning(line.as_bytes()) }
+}
+
+/// `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`.
+fn crease(text: &str, edge: bool) -> Option<CreaseAnswer> {
+    let mut words = text.split_whitespace();
+    let shape = words.next()?;
+    let numbers = words.map(str::parse).collect::<Result<Vec<f64>, _>>().ok()?;
+    let none = CreaseAnswer { line: None, within: None, circle: None, edge };
+    match (shape, numbers.as_slice()) {
+        ("line", &[a, b, c]) => Some(CreaseAnswer { line: Some([a, b, c]), ..none }),
+        ("line", &[a, b, c, x0, y0, x1, y1]) => {
+            Some(CreaseAnswer { line: Some([a, b, c]), within: Some([x0, y0, x1, y1]), ..none })
+        }
+        ("circle", &[x, y, r]) => Some(CreaseAnswer { circle: Some([x, y, r]), ..none }),
+        _ => None,
+    }
+}
+
+/// Counts the lines of an answer as it arrives.
+#[derive(Default)]
+pub(crate) struct LineCount {
+    lines: usize,
+    seen: usize,
+}
+
+impl LineCount {
+    /// The length of the first `wanted` lines, once they are there. An answer of one line that begins with `error` is whole.
+    pub(crate) fn length(&mut self, bytes: &[u8], wanted: usize) -> Option<usize> {
+        for (i, b) in bytes.iter().enumerate().skip(self.seen) {
+            if *b == b'\n' {
+                self.lines += 1;
+                if self.lines == wanted || bytes.starts_with(b"error ") {
+                    return Some(i + 1);
+                }
+            }
+        }
+        self.seen = bytes.len();
+        None
+    }
+}
+
+/// Reads the numbers of an answer to a batch.
+pub(crate) fn read_batch(bytes: &[u8], ask: Ask, out: &mut Vec<f64>) -> Result<(), Fault> {
+    let text = std::str::from_utf8(bytes).map_err(|_| wrong_line(ask, bytes))?;
+    for line in text.lines() {
+        let before = out.len();
+        for word in line.split_ascii_whitespace() {
+            out.push(word.parse().map_err(|_| match line.strip_prefix("error ") {
+                Some(message) => Fault::Refused(message.to_owned()),
+                None => wrong_line(ask, line.as_bytes()),
+            })?);
+        }
+        if out.len() - before != ask.numbers() {
+            return Err(wrong_line(ask, line.as_bytes()));
+        }
+    }
+    Ok(())
+}
+
+fn wrong_line(ask: Ask, line: &[u8]) -> Fault {
+    Fault::Garbage { expected: format!("a line of {} numbers", ask.numbers()), found: beginning(line) }
+}

@@ -1,0 +1,63 @@
+//! Points per second of the maps in batches, on one thread: `cargo bench -p pathwarp-solid`.
+//!
+//! Each figure is the best of several rounds over a million points, with the bytes read and written per second, and the time
+//! of a plain copy of the same points for comparison.
+
+#![allow(clippy::print_stdout)]
+
+use pathwarp::deform::Pairs;
+use pathwarp::param::Args;
+use pathwarp_solid::deform::Registry3;
+use pathwarp_solid::glam::DVec3;
+use pathwarp_solid::{Box3, Frame3, map::Map3};
+use std::hint::black_box;
+use std::time::Instant;
+
+const POINTS: usize = 1_000_000;
+const ROUNDS: usize = 15;
+
+/// The best time of a batch, in seconds.
+fn best(points: &[DVec3], work: impl Fn(&mut [DVec3])) -> f64 {
+    let mut best = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let mut own = points.to_vec();
+        let start = Instant::now();
+        work(black_box(&mut own));
+        best = best.min(start.elapsed().as_secs_f64());
+        black_box(own);
+    }
+    best
+}
+
+fn show(name: &str, seconds: f64) {
+    let bytes = 2.0 * (POINTS * size_of::<DVec3>()) as f64;
+    println!("{name:32} {:8.1} M points/s {:8.2} GB/s", POINTS as f64 / seconds / 1e6, bytes / seconds / 1e9);
+}
+
+/// Name, deformation and parameters.
+const CASES: [(&str, &str, Pairs); 6] = [
+    (
+        "collineation",
+        "anamorph",
+        &[("eye", "50,50,400"), ("reference", "0,0,0 100,0,0 0,100,0 0,0,100"), ("push", "0,0,0,1:1.5")],
+    ),
+    ("anamorphosis 2x2x2", "anamorph", &[("eye", "50,50,400"), ("push", "1,1,1:1.5")]),
+    ("lattice 2x2x2", "ffd", &[("degree", "1"), ("move", "1,1,1:5,5,5")]),
+    ("lattice 4x4x4", "ffd", &[("degree", "3"), ("move", "1,2,1:5,5,5")]),
+    ("rational lattice 4x4x4", "ffd", &[("degree", "3"), ("move", "1,2,1:5,5,5"), ("weight", "1,2,1:2")]),
+    ("bend of degree 3", "bend", &[("skeleton", "0,50,50 33,50,50 66,55,45 100,70,40")]),
+];
+
+fn main() {
+    let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(100.0)));
+    let at = |i: usize| DVec3::new((i % 97) as f64, (i % 89) as f64, (i % 83) as f64);
+    let points: Vec<DVec3> = (0..POINTS).map(at).collect();
+    show("copy", best(&points, |ps| ps.copy_from_slice(&points)));
+    for (name, deformation, pairs) in CASES {
+        let registry = Registry3::builtin();
+        let built = registry.get(deformation).map(|e| e.build_from(&Args::from_pairs(pairs), &frame));
+        if let Some(Ok(built)) = built {
+            show(name, best(&points, |ps| built.map.points(ps)));
+        }
+    }
+}

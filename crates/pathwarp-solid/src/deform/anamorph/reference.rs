@@ -1,0 +1,133 @@
+//! The reference: a regular net of control points, before it is moved.
+
+use crate::box3::Box3;
+use glam::DVec3;
+use pathwarp::Error;
+
+/// A regular net of control points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reference3 {
+    /// Points (i·A + j·B + k·C + l·D)/n with i + j + k + l = n.
+    Tetrahedron([DVec3; 4], usize),
+    /// A sheet: points (i·A + j·B + k·C)/n with i + j + k = n.
+    Triangle([DVec3; 3], usize),
+    /// Points i, j, k of a box, with degrees along the axes.
+    Cuboid(Box3, [usize; 3]),
+    /// A sheet: a box that is flat along the given axis, where its points have the number 0.
+    Rectangle(Box3, usize, [usize; 3]),
+}
+
+/// Thinner than this share of its size is flat.
+const FLAT: f64 = 1e-9;
+
+impl Reference3 {
+    /// The reference with these points (four corners of a tetrahedron, three of a triangle, two of a box) for an eye.
+    ///
+    /// # Errors
+    /// The points do not span such a reference, or the eye lies in the plane of a sheet.
+    pub fn new(points: &[DVec3], degree: [usize; 3], eye: DVec3) -> Result<Self, Error> {
+        let wrong = |problem: &str| Error::usage("reference", "", problem);
+        let even = degree[0] == degree[1] && degree[1] == degree[2];
+        if points.len() > 2 && !even {
+            let text = format!("{}x{}x{}", degree[0], degree[1], degree[2]);
+            return Err(Error::usage("degree", text, "must be one number for a tetrahedron or a triangle"));
+        }
+        let in_plane = || wrong("is a sheet seen edge-on: the eye lies in its plane; move the eye or the reference");
+        match *points {
+            [a, b, c, d] => {
+                let size = (b - a).length().max((c - a).length()).max((d - a).length());
+                let volume = (b - a).cross(c - a).dot(d - a).abs();
+                if volume.is_nan() || volume <= FLAT * size.powi(3) {
+                    return Err(wrong("has four corners in one plane; move one of them"));
+                }
+                Ok(Self::Tetrahedron([a, b, c, d], degree[0]))
+            }
+            [a, b, c] => {
+                let normal = (b - a).cross(c - a);
+                let size = (b - a).length().max((c - a).length());
+                if normal.length().is_nan() || normal.length() <= FLAT * size * size {
+                    return Err(wrong("has three corners on one line; move one of them"));
+                }
+                if (eye - a).dot(normal.normalize()).abs() <= FLAT * size {
+                    return Err(in_plane());
+                }
+                Ok(Self::Triangle([a, b, c], degree[0]))
+            }
+            [a, b] => {
+                let b = Box3::new(a, b);
+                let size = b.size();
+                let flat: Vec<usize> = (0..3).filter(|k| size[*k] <= FLAT * b.diagonal()).collect();
+                match flat[..] {
+                    [] => Ok(Self::Cuboid(b, degree)),
+                    [axis] if (eye[axis] - b.min[axis]).abs() <= FLAT * b.diagonal() => Err(in_plane()),
+                    [axis] => {
+                        let mut degree = degree;
+                        degree[axis] = 0;
+                        Ok(Self::Rectangle(b, axis, degree))
+                    }
+                    _ => Err(wrong("has no area; name two opposite corners of a box or a rectangle")),
+                }
+            }
+            _ => Err(wrong(
+                "must have four points (a tetrahedron), three (a triangle) or two (a box, or a rectangle if flat)",
+            )),
+        }
+    }
+
+    /// The control points' numbers. Only a tetrahedron's have a fourth.
+    #[must_use]
+    pub fn nodes(&self) -> Vec<[usize; 4]> {
+        match *self {
+            Self::Tetrahedron(_, n) => {
+                let rows = (0..=n).flat_map(|l| (0..=n - l).map(move |k| (k, l)));
+                rows.flat_map(|(k, l)| (0..=n - l - k).map(move |j| [n - j - k - l, j, k, l])).collect()
+            }
+            Self::Triangle(_, n) => (0..=n).flat_map(|k| (0..=n - k).map(move |j| [n - j - k, j, k, 0])).collect(),
+            Self::Cuboid(_, [l, m, n]) | Self::Rectangle(_, _, [l, m, n]) => {
+                let rows = (0..=n).flat_map(|k| (0..=m).map(move |j| (j, k)));
+                rows.flat_map(|(j, k)| (0..=l).map(move |i| [i, j, k, 0])).collect()
+            }
+        }
+    }
+
+    /// A control point.
+    #[must_use]
+    pub fn point(&self, node: [usize; 4]) -> DVec3 {
+        let weighted = |corners: &[DVec3], n: usize| {
+            corners.iter().zip(node).map(|(c, i)| *c * (i as f64 / n as f64)).sum::<DVec3>()
+        };
+        match self {
+            Self::Tetrahedron(c, n) => weighted(c, *n),
+            Self::Triangle(c, n) => weighted(c, *n),
+            Self::Cuboid(b, degree) | Self::Rectangle(b, _, degree) => {
+                let t = DVec3::from_array([0, 1, 2].map(|a| node[a] as f64 / degree[a].max(1) as f64));
+                b.min + t * b.size()
+            }
+        }
+    }
+
+    /// Describes the numbers of its control points.
+    #[must_use]
+    pub fn numbers(&self) -> String {
+        match self {
+            Self::Tetrahedron(_, n) => format!("I,J,K,L must add up to {n}, the degree"),
+            Self::Triangle(_, n) => format!("I,J,K must add up to {n}, the degree"),
+            Self::Cuboid(_, [l, m, n]) | Self::Rectangle(_, _, [l, m, n]) => {
+                format!("I runs from 0 to {l}, J from 0 to {m}, K from 0 to {n}")
+            }
+        }
+    }
+
+    /// Returns `true` for control points that a prescribed point must not move: the face ABC of a tetrahedron, the side AB of a
+    /// triangle, and if `local` the boundary of a box or rectangle.
+    #[must_use]
+    pub(super) fn held(&self, node: [usize; 4], local: bool) -> bool {
+        match self {
+            Self::Tetrahedron(..) => node[3] == 0,
+            Self::Triangle(..) => node[2] == 0,
+            Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => {
+                local && (0..3).any(|a| degree[a] > 0 && (node[a] == 0 || node[a] == degree[a]))
+            }
+        }
+    }
+}

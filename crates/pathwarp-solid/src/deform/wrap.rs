@@ -1,0 +1,202 @@
+//! Wrapping round a cylinder: a mug, a bottle, a ring.
+//!
+//! θ = (x − x₀)/R and ρ = R + (z − z₀) are the angle and the distance from the axis: (x₀ + ρ·sin θ, y, z₀ − R + ρ·cos θ). Lengths on
+//! the surface z = z₀ are kept, volumes grow by ρ/R. The inverse is in closed form.
+
+use super::built::Built3;
+use super::entry::{About3, Case3, Deformation3, Law3};
+use crate::box3::Box3;
+use crate::map::{Creases3, Jet3, Map3};
+use crate::settings::{Extent, Settings3};
+use glam::{DMat3, DVec3};
+use pathwarp::Error;
+use pathwarp::deform::{Example, Info};
+use pathwarp::param::{Kind, Param};
+use std::sync::Arc;
+
+/// Wraps a model round a cylinder.
+///
+/// ```
+/// use glam::DVec3;
+/// use pathwarp_solid::{Box3, deform::Wrap3, map::Map3};
+///
+/// let label = Box3::new(DVec3::ZERO, DVec3::new(80.0, 30.0, 2.0));
+/// let built = Wrap3::new(label, 40.0).build()?;
+/// // A point at the right end, on the surface: 1 radian from the middle.
+/// let p = built.map.point(DVec3::new(80.0, 10.0, 0.0));
+/// assert!((p - DVec3::new(40.0 + 40.0 * 1f64.sin(), 10.0, 40.0 * 1f64.cos() - 40.0)).length() < 1e-13);
+/// # Ok::<(), pathwarp::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wrap3 {
+    bounds: Box3,
+    radius: f64,
+    level: bool,
+    surface: Option<f64>,
+}
+
+impl Wrap3 {
+    /// Wraps a model in this box round an upright cylinder of this radius, which its back touches in the middle.
+    #[must_use]
+    pub fn new(bounds: Box3, radius: f64) -> Self {
+        Self { bounds, radius, level: false, surface: None }
+    }
+
+    /// Lays the cylinder's axis along x instead of y.
+    #[must_use]
+    pub fn level(self, level: bool) -> Self {
+        Self { level, ..self }
+    }
+
+    /// Sets the z at which lengths are kept: what is there comes to lie on the cylinder. Default: the back of the box.
+    #[must_use]
+    pub fn surface(self, z: f64) -> Self {
+        Self { surface: Some(z), ..self }
+    }
+
+    /// Builds the map. A model that is longer than the circumference gives a warning.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a radius that is not positive.
+    pub fn build(&self) -> Result<Built3, Error> {
+        if !(self.radius > 0.0 && self.radius.is_finite()) {
+            return Err(Error::usage("radius", self.radius.to_string(), "is not positive"));
+        }
+        let across = usize::from(self.level);
+        let map = Cylinder {
+            across,
+            middle: self.bounds.center()[across],
+            surface: self.surface.unwrap_or(self.bounds.min.z),
+            radius: self.radius,
+        };
+        let (length, around) = (self.bounds.size()[across], std::f64::consts::TAU * self.radius);
+        let mut built = Built3::new(Arc::new(map));
+        built.note(format!(
+            "wrapped through {:.4}°, on a circumference of {around:.6}",
+            (length / self.radius).to_degrees()
+        ));
+        if length > around {
+            built.warn(format!("the model is {length:.6} long and the circumference {around:.6}: its ends overlap; use a larger `radius`"));
+        }
+        Ok(built)
+    }
+}
+
+/// Round a cylinder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cylinder {
+    /// The axis along which the model is wrapped: 0 or 1.
+    across: usize,
+    middle: f64,
+    surface: f64,
+    radius: f64,
+}
+
+impl Cylinder {
+    /// Distance from the axis.
+    fn rho(&self, p: DVec3) -> f64 {
+        self.radius + p.z - self.surface
+    }
+}
+
+impl Map3 for Cylinder {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        let rho = self.rho(p);
+        let (sin, cos) = ((p[self.across] - self.middle) / self.radius).sin_cos();
+        let mut image = p;
+        image[self.across] = self.middle + rho * sin;
+        image.z = self.surface - self.radius + rho * cos;
+        let unit = DVec3::AXES[self.across];
+        let mut columns = DVec3::AXES;
+        columns[self.across] = (unit * cos - DVec3::Z * sin) * (rho / self.radius);
+        columns[2] = unit * sin + DVec3::Z * cos;
+        Jet3 { p: image, d: DMat3::from_cols(columns[0], columns[1], columns[2]) }
+    }
+
+    fn creases(&self, out: &mut Creases3) {
+        let own = *self;
+        out.edge(move |p| own.rho(p));
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(Unwrapped(*self)))
+    }
+}
+
+/// The inverse, for angles up to half a turn to both sides.
+#[derive(Debug, Clone, Copy)]
+struct Unwrapped(Cylinder);
+
+impl Map3 for Unwrapped {
+    fn jet(&self, q: DVec3) -> Jet3 {
+        let c = &self.0;
+        let (side, depth) = (q[c.across] - c.middle, q.z - (c.surface - c.radius));
+        let mut p = q;
+        p[c.across] = c.middle + c.radius * side.atan2(depth);
+        p.z = c.surface + side.hypot(depth) - c.radius;
+        Jet3 { p, d: c.jet(p).d.inverse() }
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(self.0))
+    }
+}
+
+/// The registry's entry.
+pub(super) struct Entry;
+
+static ABOUT: About3 = About3 {
+    info: Info::new("wrap", "wrap a model round a mug, a bottle or a ring")
+        .group("Along a curve")
+        .about("Rolls the model round a cylinder of the given radius, which it touches with its back (--surface): lengths there are \
+kept, so that a word of 50 mm is 50 mm long on the mug. The middle stays where it is. Use --refine to give long faces enough corners.")
+        .source("(x, y, z) to cylinder coordinates: θ = x/R, ρ = R + z")
+        .params(&[
+            Param::new("radius", Kind::Text("LENGTH"), "Radius of the cylinder.").needed(),
+            Param::new("axis", Kind::Choice(&["y", "x"]), "The cylinder's axis: y for upright, x for level.").default("y"),
+            Param::new("surface", Kind::Text("Z"), "The z that comes to lie on the cylinder. Default: the back of the model."),
+        ])
+        .demo(&[("radius", "60")])
+        .examples(&[
+            Example {
+                what: "A word 3 mm thick, for a mug of 41 mm radius",
+                command: "solid wrap samples/lettering.svg --extrude 3mm --radius 41mm --refine 0.05mm -o out.obj",
+            },
+            Example {
+                what: "The same round a bottle that lies",
+                command: "solid wrap samples/lettering.svg --extrude 2mm --radius 30mm --axis x --refine 0.05mm -o out.obj",
+            },
+        ]),
+    laws: &[
+        Law3::KeepsLinesAlong(&[("radius", "70")], [0.0, 1.0, 0.0]),
+        Law3::KeepsLinesAlong(&[("radius", "70")], [0.0, 0.0, 1.0]),
+        Law3::KeepsLinesAlong(&[("radius", "70"), ("axis", "x")], [1.0, 0.0, 0.0]),
+    ],
+    cases: &[
+        // A quarter turn: 50 is a quarter of the circumference of radius 100/π.
+        Case3 {
+            args: &[("radius", "31.830988618379067"), ("surface", "0")],
+            at: [100.0, 20.0, 0.0],
+            to: [81.830_988_618_379_07, 20.0, -31.830_988_618_379_067],
+            tolerance: 1e-12,
+        },
+        Case3 { args: &[("radius", "30"), ("axis", "x")], at: [10.0, 50.0, 25.0], to: [10.0, 50.0, 25.0], tolerance: 1e-13 },
+    ],
+};
+
+impl Deformation3 for Entry {
+    fn about(&self) -> &About3 {
+        &ABOUT
+    }
+
+    fn build(&self, s: &Settings3<'_>) -> Result<Built3, Error> {
+        let radius = s.last("radius").unwrap_or_default();
+        let radius = s.length_in("radius", radius, Extent::X)?;
+        let mut wrap = Wrap3::new(s.bounds(), radius).level(s.flat().choice("axis")? == "x");
+        if let Some(z) = s.last("surface") {
+            let from = if z.trim().ends_with('%') { s.bounds().min.z } else { 0.0 };
+            wrap = wrap.surface(from + s.length_in("surface", z, Extent::Z)?);
+        }
+        wrap.build()
+    }
+}

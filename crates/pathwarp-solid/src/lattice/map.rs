@@ -1,0 +1,173 @@
+//! The lattice as a map, and its inverse.
+
+use super::grid::{Lattice3, Piece};
+use crate::box3::Box3;
+use crate::map::{Creases3, Displaced, Jet3, Local, Map3, NewtonInverse3, Quotient, for_all};
+use glam::{DMat3, DVec3};
+use std::sync::Arc;
+
+/// Distance from the faces, relative to the coordinates, within which outside points count as inside.
+const ROUNDING: f64 = 1e-12;
+
+/// Free-form deformation of space by a [`Lattice3`] of control points.
+///
+/// ```
+/// use glam::DVec3;
+/// use pathwarp_solid::{Box3, Lattice3, LatticeMap3, map::Map3};
+///
+/// let mut lattice = Lattice3::regular(Box3::new(DVec3::ZERO, DVec3::splat(90.0)), [2, 2, 2], [1, 1, 1]);
+/// lattice.shift([1, 1, 1], DVec3::new(0.0, 16.0, 0.0));
+/// let map = LatticeMap3::new(&lattice, false);
+/// assert_eq!(map.point(DVec3::splat(45.0)), DVec3::new(45.0, 47.0, 45.0));
+/// assert_eq!(map.point(DVec3::splat(100.0)), DVec3::splat(100.0)); // outside the box
+/// ```
+#[derive(Debug, Clone)]
+pub struct LatticeMap3 {
+    region: Box3,
+    /// The region, enlarged by rounding.
+    inside: Box3,
+    cells: [usize; 3],
+    /// x runs fastest.
+    pieces: Arc<[(Local, Piece)]>,
+    /// The outermost pieces continue beyond the region.
+    extended: bool,
+}
+
+impl LatticeMap3 {
+    /// The map of `lattice`. Outside its box it is the identity or, if `extended`, continues the outermost pieces.
+    #[must_use]
+    pub fn new(lattice: &Lattice3, extended: bool) -> Self {
+        let region = lattice.region();
+        let reach = ROUNDING * (region.min.abs().max_element() + region.max.abs().max_element());
+        let [nx, ny, nz] = lattice.cells();
+        let cells = (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
+        Self {
+            region,
+            inside: region.inflate(DVec3::splat(reach)),
+            cells: lattice.cells(),
+            pieces: cells.map(|c| (lattice.local(c), lattice.piece(c))).collect(),
+            extended,
+        }
+    }
+
+    /// The piece at `p`; `None` outside the region, where nothing moves.
+    fn piece(&self, p: DVec3) -> Option<&(Local, Piece)> {
+        if !self.extended && !self.inside.contains(p) {
+            return None;
+        }
+        if self.pieces.len() == 1 {
+            return self.pieces.first();
+        }
+        let t = (p - self.region.min) / self.region.size();
+        // A cast of a negative number gives 0.
+        let at = |a: usize| ((t[a] * self.cells[a] as f64) as usize).min(self.cells[a] - 1);
+        self.pieces.get((at(2) * self.cells[1] + at(1)) * self.cells[0] + at(0))
+    }
+
+    /// The common denominator at `p`, positive where the map is defined.
+    fn denominator(&self, p: DVec3) -> f64 {
+        match self.piece(p) {
+            Some((local, Piece::Quotient(t))) => t.at((p - local.middle) * local.scale)[3],
+            _ => 1.0,
+        }
+    }
+
+    fn is_rational(&self) -> bool {
+        self.pieces.iter().any(|(_, p)| matches!(p, Piece::Quotient(_)))
+    }
+}
+
+impl Map3 for LatticeMap3 {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        match self.piece(p) {
+            None => Jet3::identity(p),
+            Some((local, Piece::Displacement(tensor))) => {
+                let d = tensor.jet((p - local.middle) * local.scale);
+                let column = |a: usize| DVec3::new(d[0][a + 1], d[1][a + 1], d[2][a + 1]) * local.scale[a];
+                let jacobian = DMat3::from_cols(column(0), column(1), column(2));
+                Jet3 { p: p + DVec3::new(d[0][0], d[1][0], d[2][0]), d: DMat3::IDENTITY + jacobian }
+            }
+            Some((local, Piece::Quotient(tensor))) => {
+                let d = tensor.jet((p - local.middle) * local.scale);
+                let w = d[3][0];
+                let image = DVec3::new(d[0][0], d[1][0], d[2][0]) / w;
+                // d(N/W) = (dN − image·dW)/W.
+                let column = |a: usize| {
+                    (DVec3::new(d[0][a + 1], d[1][a + 1], d[2][a + 1]) - image * d[3][a + 1]) * (local.scale[a] / w)
+                };
+                Jet3 { p: image, d: DMat3::from_cols(column(0), column(1), column(2)) }
+            }
+        }
+    }
+
+    fn point(&self, p: DVec3) -> DVec3 {
+        match self.piece(p) {
+            None => p,
+            Some((local, Piece::Displacement(tensor))) => {
+                p + DVec3::from_array(tensor.at((p - local.middle) * local.scale))
+            }
+            Some((local, Piece::Quotient(tensor))) => {
+                let [x, y, z, w] = tensor.at((p - local.middle) * local.scale);
+                DVec3::new(x, y, z) / w
+            }
+        }
+    }
+
+    fn points(&self, ps: &mut [DVec3]) {
+        let single = self.pieces.len() == 1 && (self.extended || ps.iter().all(|p| self.inside.contains(*p)));
+        match self.pieces.first() {
+            Some((local, Piece::Displacement(tensor))) if single => for_all(&Displaced { local: *local, tensor }, ps),
+            Some((local, Piece::Quotient(tensor))) if single => for_all(&Quotient { local: *local, tensor }, ps),
+            _ => ps.iter_mut().for_each(|p| *p = self.point(*p)),
+        }
+    }
+
+    fn creases(&self, out: &mut Creases3) {
+        for a in 0..3 {
+            let mut plane = |at: f64| out.kink(move |p| p[a] - at);
+            if !self.extended {
+                plane(self.inside.min[a]);
+                plane(self.inside.max[a]);
+            }
+            for c in 1..self.cells[a] {
+                plane(self.region.min[a] + self.region.size()[a] * (c as f64 / self.cells[a] as f64));
+            }
+        }
+        if self.is_rational() {
+            let map = self.clone();
+            out.edge(move |p| map.denominator(p));
+        }
+    }
+
+    /// By Newton's method over the region, or up to half its size outside if the map is extended. Outside points to which no
+    /// point of the region is taken stay where they are.
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        let beyond = if self.extended { 0.5 } else { 0.0 };
+        let domain = self.region.inflate(beyond * self.region.size());
+        // Newton steps may leave the region on their way and must not meet the identity there.
+        let smooth = Self { extended: true, ..self.clone() };
+        let reach = 1e3 * (self.inside.max - self.region.max).max_element();
+        let inner = NewtonInverse3::with_core(Arc::new(smooth), self.region, domain, reach, self.cells);
+        Some(Arc::new(LatticeInverse { map: self.clone(), inner }))
+    }
+}
+
+/// The inverse of a [`LatticeMap3`].
+struct LatticeInverse {
+    map: LatticeMap3,
+    inner: NewtonInverse3,
+}
+
+impl Map3 for LatticeInverse {
+    fn jet(&self, q: DVec3) -> Jet3 {
+        match self.inner.solve(q) {
+            Some(found) => found,
+            None if self.map.piece(q).is_none() => Jet3::identity(q),
+            None => Jet3::UNDEFINED,
+        }
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(self.map.clone()))
+    }
+}

@@ -1,0 +1,24 @@
+//! Maps of space: the result of a deformation once its parameters are known.
+//!
+//! A [`Map3`] takes every point of a model to a new place and knows its Jacobian there. Implement [`Map3::jet`]; the rest is
+//! speed and knowledge: batches, creases, the inverse, and whether planes stay planes. [`Chain3`] composes maps;
+//! [`NewtonInverse3`] inverts any smooth map over a box.
+
+mod batch;
+mod chain;
+mod collineation;
+mod crease;
+mod jet;
+mod newton;
+mod tensor;
+mod traits;
+
+pub use chain::Chain3;
+pub use collineation::Collineation;
+pub use crease::{Crease3, Creases3, Level3};
+pub use jet::Jet3;
+pub use newton::NewtonInverse3;
+pub use traits::Map3;
+
+pub(crate) use batch::{Displaced, Local, Quotient, Radial, for_all};
+pub(crate) use tensor::Tensor;

@@ -1,0 +1,183 @@
+//! Polynomials in three variables as tensor products, in powers of coordinates that run from −1 to 1.
+//!
+//! Centred powers keep the conversion from Bernstein form accurate: at degree 10 the largest coefficient of a basis function is
+//! below 3, where powers from 0 to 1 would reach 10⁴.
+
+use super::batch::{Lane, WIDTH};
+use glam::DVec3;
+
+/// C polynomials of the same degrees: Σ c[i,j,k]·xⁱyʲzᵏ.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Tensor<const C: usize> {
+    /// Numbers of powers along x, y and z.
+    size: [usize; 3],
+    /// x runs fastest.
+    c: Vec<[f64; C]>,
+}
+
+impl<const C: usize> Tensor<C> {
+    /// The polynomials with these Bernstein coefficients over [−1, 1]³, of degrees `size` − 1; x runs fastest.
+    pub(crate) fn bernstein(size: [usize; 3], mut c: Vec<[f64; C]>) -> Self {
+        let strides = [1, size[0], size[0] * size[1]];
+        for (n, stride) in size.iter().zip(strides) {
+            let matrix = powers(n - 1);
+            let starts = (0..c.len()).filter(|s| (s / stride) % n == 0);
+            for start in starts {
+                let column: Vec<[f64; C]> = (0..*n).map(|i| c[start + i * stride]).collect();
+                for (p, row) in matrix.iter().enumerate() {
+                    c[start + p * stride] =
+                        std::array::from_fn(|k| row.iter().zip(&column).map(|(m, v)| m * v[k]).sum());
+                }
+            }
+        }
+        Self { size, c }
+    }
+
+    /// The values.
+    pub(crate) fn at(&self, t: DVec3) -> [f64; C] {
+        let [nx, ny, _] = self.size;
+        let mut z = [0.0; C];
+        for layer in self.c.chunks(nx * ny).rev() {
+            let mut y = [0.0; C];
+            for row in layer.chunks(nx).rev() {
+                let mut x = [0.0; C];
+                for c in row.iter().rev() {
+                    x = std::array::from_fn(|k| x[k] * t.x + c[k]);
+                }
+                y = std::array::from_fn(|k| y[k] * t.y + x[k]);
+            }
+            z = std::array::from_fn(|k| z[k] * t.z + y[k]);
+        }
+        z
+    }
+
+    /// The values and their partial derivatives, as (value, ∂/∂x, ∂/∂y, ∂/∂z) of each polynomial.
+    pub(crate) fn jet(&self, t: DVec3) -> [[f64; 4]; C] {
+        let [nx, ny, _] = self.size;
+        let mut z = [[0.0; 4]; C];
+        for layer in self.c.chunks(nx * ny).rev() {
+            let mut y = [[0.0; 3]; C];
+            for row in layer.chunks(nx).rev() {
+                let mut x = [[0.0; 2]; C];
+                for c in row.iter().rev() {
+                    x = std::array::from_fn(|k| [x[k][0] * t.x + c[k], x[k][1] * t.x + x[k][0]]);
+                }
+                y = std::array::from_fn(|k| {
+                    [y[k][0] * t.y + x[k][0], y[k][1] * t.y + x[k][1], y[k][2] * t.y + y[k][0]]
+                });
+            }
+            z = std::array::from_fn(|k| {
+                let ([v, dx, dy, dz], [a, ax, ay]) = (z[k], y[k]);
+                [v * t.z + a, dx * t.z + ax, dy * t.z + ay, dz * t.z + v]
+            });
+        }
+        z
+    }
+
+    /// The values at a batch of points. Common sizes are compiled on their own, with all loops unrolled.
+    #[inline(always)]
+    pub(crate) fn lanes(&self, t: &[Lane; 3]) -> [Lane; C] {
+        match self.size {
+            [4, 4, 4] => self.horner([4; 3], t),
+            [3, 3, 3] => self.horner([3; 3], t),
+            [2, 2, 2] => self.horner([2; 3], t),
+            size => self.horner(size, t),
+        }
+    }
+
+    #[inline(always)]
+    fn horner(&self, [nx, ny, nz]: [usize; 3], t: &[Lane; 3]) -> [Lane; C] {
+        let c = &self.c[..nx * ny * nz];
+        let mut out = [[0.0; WIDTH]; C];
+        for (k, out) in out.iter_mut().enumerate() {
+            for layer in (0..nz).rev() {
+                let mut y = [0.0; WIDTH];
+                for row in (0..ny).rev() {
+                    let first = (layer * ny + row) * nx;
+                    let mut x = [c[first + nx - 1][k]; WIDTH];
+                    for i in (0..nx - 1).rev() {
+                        times_plus(&mut x, &t[0], &[c[first + i][k]; WIDTH]);
+                    }
+                    times_plus(&mut y, &t[1], &x);
+                }
+                times_plus(out, &t[2], &y);
+            }
+        }
+        out
+    }
+}
+
+/// a·t + b.
+#[inline(always)]
+fn times_plus(a: &mut Lane, t: &Lane, b: &Lane) {
+    for ((a, t), b) in a.iter_mut().zip(t).zip(b) {
+        *a = *a * t + b;
+    }
+}
+
+/// The matrix from Bernstein coefficients over [−1, 1] to powers: row p holds the coefficients of tᵖ in
+/// C(n,i)·(1+t)ⁱ(1−t)ⁿ⁻ⁱ/2ⁿ.
+fn powers(n: usize) -> Vec<Vec<f64>> {
+    let mut out = vec![vec![0.0; n + 1]; n + 1];
+    let mut binomial = 1.0;
+    for i in 0..=n {
+        let mut p = vec![binomial / 2f64.powi(i32::try_from(n).unwrap_or(0))];
+        for factor in 0..n {
+            let sign = if factor < i { 1.0 } else { -1.0 };
+            let mut next = vec![0.0; p.len() + 1];
+            for (k, v) in p.iter().enumerate() {
+                next[k] += v;
+                next[k + 1] += sign * v;
+            }
+            p = next;
+        }
+        for (row, v) in out.iter_mut().zip(&p) {
+            row[i] = *v;
+        }
+        binomial *= (n - i) as f64 / (i + 1) as f64;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the definition: Σ Bᵢ(s)Bⱼ(t)Bₖ(u), by de Casteljau's algorithm.
+    #[test]
+    fn values_and_derivatives_are_those_of_the_bernstein_form() {
+        for size in [[2, 2, 2], [3, 3, 3], [4, 4, 4], [1, 4, 2], [11, 2, 5]] {
+            let count = size.iter().product::<usize>();
+            let c: Vec<[f64; 2]> =
+                (0..count).map(|i| [((i * 37 + 11) % 17) as f64 - 8.0, ((i * 5) % 13) as f64]).collect();
+            let tensor = Tensor::bernstein(size, c.clone());
+            let slow = |t: DVec3| -> [f64; 2] {
+                let bezier = |c: &[[f64; 2]], t: f64| {
+                    let (mut row, s) = (c.to_vec(), 0.5 * (t + 1.0));
+                    for n in (1..row.len()).rev() {
+                        for i in 0..n {
+                            row[i] = [0, 1].map(|k| row[i][k] + s * (row[i + 1][k] - row[i][k]));
+                        }
+                    }
+                    row[0]
+                };
+                let rows: Vec<_> = c.chunks(size[0]).map(|r| bezier(r, t.x)).collect();
+                let layers: Vec<_> = rows.chunks(size[1]).map(|r| bezier(r, t.y)).collect();
+                bezier(&layers, t.z)
+            };
+            for t in [DVec3::new(0.3, -0.7, 0.1), DVec3::new(-1.0, 1.0, 0.9), DVec3::ZERO] {
+                let (v, j, truth) = (tensor.at(t), tensor.jet(t), slow(t));
+                let lanes = tensor.lanes(&t.to_array().map(|v| [v; WIDTH]));
+                for k in 0..2 {
+                    assert!((v[k] - truth[k]).abs() < 1e-12, "{size:?} {t}: {v:?} {truth:?}");
+                    assert_eq!((v[k], v[k]), (j[k][0], lanes[k][5]));
+                    const H: f64 = 1e-5;
+                    for (axis, e) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+                        let slope = (slow(t + e * H)[k] - slow(t - e * H)[k]) / (2.0 * H);
+                        assert!((slope - j[k][axis + 1]).abs() < 1e-6, "{size:?} {t} {axis}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The trait that every map of space implements.
+
+use super::{Collineation, Creases3, Jet3};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A differentiable map of space: x right, y up, z towards the viewer.
+///
+/// Only [`Map3::jet`] is required. [`point`](Map3::point), [`points`](Map3::points) and [`jets`](Map3::jets) are faster ways to
+/// the same values.
+pub trait Map3: Send + Sync {
+    /// Value and Jacobian at `p`. On a crease, those of either side; outside the domain, not finite.
+    fn jet(&self, p: DVec3) -> Jet3;
+
+    /// The value alone.
+    fn point(&self, p: DVec3) -> DVec3 {
+        self.jet(p).p
+    }
+
+    /// The jets at `ps`. `out` has the length of `ps`.
+    fn jets(&self, ps: &[DVec3], out: &mut [Jet3]) {
+        for (p, o) in ps.iter().zip(out) {
+            *o = self.jet(*p);
+        }
+    }
+
+    /// Replaces points by their images.
+    fn points(&self, ps: &mut [DVec3]) {
+        for p in ps {
+            *p = self.point(*p);
+        }
+    }
+
+    /// The map as a collineation, if it is one: planes stay planes. Neighbours fold into one in a [`Chain3`](super::Chain3).
+    fn collineation(&self) -> Option<&Collineation> {
+        None
+    }
+
+    /// Adds the surfaces on which the map is not smooth, and the boundary of its domain.
+    fn creases(&self, _out: &mut Creases3) {}
+
+    /// The inverse map, if there is a better one than [`NewtonInverse3`](super::NewtonInverse3).
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        None
+    }
+}
+
+/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
+impl<M: Map3 + ?Sized> Map3 for Arc<M> {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        (**self).jet(p)
+    }
+    fn point(&self, p: DVec3) -> DVec3 {
+        (**self).point(p)
+    }
+    fn jets(&self, ps: &[DVec3], out: &mut [Jet3]) {
+        (**self).jets(ps, out);
+    }
+    fn points(&self, ps: &mut [DVec3]) {
+        (**self).points(ps);
+    }
+    fn collineation(&self) -> Option<&Collineation> {
+        (**self).collineation()
+    }
+    fn creases(&self, out: &mut Creases3) {
+        (**self).creases(out);
+    }
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        (**self).inverse()
+    }
+}

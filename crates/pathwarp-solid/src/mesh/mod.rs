@@ -1,0 +1,17 @@
+//! Polygon meshes: vertices, faces of any number of corners, groups, materials, texture coordinates and normals.
+
+mod deform;
+mod error;
+mod extrude;
+mod model;
+pub mod obj;
+mod refine;
+pub mod stl;
+mod topology;
+
+pub use deform::{Deformed, Undefined3, deform};
+pub use error::{MeshError, MeshFault};
+pub use extrude::{FlatShape, extrude};
+pub use model::{Corner, Mark, Mesh, NONE, Polygon, PolygonKind};
+pub use refine::refine;
+pub use topology::{Topology, topology};

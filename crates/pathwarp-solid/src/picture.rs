@@ -1,0 +1,194 @@
+//! Pictures of meshes: a small rasteriser with depth and shading.
+
+use crate::box3::Box3;
+use crate::mesh::Mesh;
+use glam::{DMat3, DVec3};
+
+/// A camera in perspective.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera3 {
+    eye: DVec3,
+    /// Rows: right, up and forward.
+    axes: DMat3,
+    /// Half the height of the picture at distance 1.
+    half: f64,
+}
+
+/// Nearer than this share of the distance to the middle of the scene, nothing is drawn.
+const NEAR: f64 = 1e-3;
+
+impl Camera3 {
+    /// A camera at `eye` that looks at the middle of a box and holds all of it, y up. `None` if the eye is inside the box.
+    #[must_use]
+    pub fn at(eye: DVec3, scene: Box3) -> Option<Self> {
+        let to = scene.center() - eye;
+        let forward = to.try_normalize()?;
+        // Looking straight down, the back is up in the picture.
+        let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+        let axes = DMat3::from_cols(right, right.cross(forward), forward).transpose();
+        let sight = |p: DVec3| axes * (p - eye);
+        let mut half: f64 = 0.0;
+        for p in scene.corners().map(sight) {
+            if p.z <= NEAR * to.length() {
+                return None;
+            }
+            half = half.max(p.x.abs().max(p.y.abs()) / p.z);
+        }
+        Some(Self { eye, axes, half: half * 1.04 })
+    }
+
+    /// A camera in this direction from the middle of a box, twice its diagonal away.
+    #[must_use]
+    pub fn towards(direction: DVec3, scene: Box3) -> Option<Self> {
+        Self::at(scene.center() + direction.try_normalize()? * 2.0 * scene.diagonal(), scene)
+    }
+
+    /// Place in a square picture of `side` pixels, and depth.
+    fn project(&self, p: DVec3, side: f64) -> DVec3 {
+        let q = self.axes * (p - self.eye);
+        let k = 0.5 * side / (self.half * q.z);
+        DVec3::new(0.5 * side + k * q.x, 0.5 * side - k * q.y, q.z)
+    }
+}
+
+/// Colours of objects in order, red, green, blue.
+const PALETTE: [[f64; 3]; 6] = [
+    [0.36, 0.55, 0.76],
+    [0.87, 0.56, 0.29],
+    [0.45, 0.68, 0.43],
+    [0.80, 0.43, 0.45],
+    [0.58, 0.47, 0.70],
+    [0.62, 0.55, 0.45],
+];
+/// Back faces, seen through openings or where a map turned them.
+const INSIDE: [f64; 3] = [0.75, 0.72, 0.68];
+/// Guides.
+const GUIDE: [f64; 3] = [0.80, 0.10, 0.35];
+/// Samples of a pixel along each side.
+const SAMPLES: usize = 2;
+
+/// Draws a mesh with guides over it as a square of `side` × `side` pixels: red, green, blue, opaque, on white.
+#[must_use]
+pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -> Vec<u8> {
+    let fine = side * SAMPLES;
+    let mut canvas = Canvas { side: fine, color: vec![[1.0; 3]; fine * fine], near: vec![0.0; fine * fine] };
+    let places: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine as f64)).collect();
+    let light = camera.axes.transpose() * DVec3::new(-0.4, 0.6, -0.7).normalize();
+    let least = NEAR * places.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
+    let mut names: Vec<&str> = Vec::new();
+    let mut marks = mesh.marks.iter().peekable();
+    for (n, (kind, corners)) in mesh.polygons().enumerate() {
+        while let Some((_, mark)) = marks.next_if(|(first, _)| *first as usize <= n) {
+            if let crate::mesh::Mark::Object(name) | crate::mesh::Mark::Group(name) = mark {
+                names.push(name);
+            }
+        }
+        if kind != crate::mesh::PolygonKind::Face {
+            continue;
+        }
+        let base = PALETTE[names.len().saturating_sub(1) % PALETTE.len()];
+        for w in corners.windows(2).skip(1) {
+            let t = [corners[0], w[0], w[1]].map(|c| c.vertex as usize);
+            let [a, b, c] = t.map(|v| mesh.positions[v]);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let facing = normal.dot(camera.eye - a) >= 0.0;
+            let shade = 0.35 + 0.65 * (normal.dot(light) * if facing { 1.0 } else { -1.0 }).max(0.0);
+            let color = (if facing { base } else { INSIDE }).map(|v| v * shade);
+            if t.iter().all(|v| places[*v].z > least) {
+                canvas.triangle(t.map(|v| places[v]), color);
+            }
+        }
+    }
+    for guide in guides {
+        for w in guide.windows(2) {
+            canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), least);
+        }
+    }
+    canvas.pixels()
+}
+
+struct Canvas {
+    side: usize,
+    color: Vec<[f64; 3]>,
+    /// Reciprocal depths.
+    near: Vec<f64>,
+}
+
+impl Canvas {
+    fn triangle(&mut self, [a, b, c]: [DVec3; 3], color: [f64; 3]) {
+        let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+        if area == 0.0 || !area.is_finite() {
+            return;
+        }
+        let limit = self.side as f64;
+        let span = |u: f64, v: f64, w: f64| {
+            let (from, to) = (u.min(v).min(w).clamp(0.0, limit), u.max(v).max(w).clamp(0.0, limit));
+            from as usize..(to.ceil() as usize).min(self.side)
+        };
+        let (columns, rows) = (span(a.x, b.x, c.x), span(a.y, b.y, c.y));
+        for y in rows {
+            for x in columns.clone() {
+                let (px, py) = (x as f64 + 0.5, y as f64 + 0.5);
+                let part = |p: DVec3, q: DVec3| ((q.x - p.x) * (py - p.y) - (q.y - p.y) * (px - p.x)) / area;
+                let (u, v, w) = (part(b, c), part(c, a), part(a, b));
+                let near = u / a.z + v / b.z + w / c.z;
+                let at = y * self.side + x;
+                if u >= 0.0 && v >= 0.0 && w >= 0.0 && near > self.near[at] {
+                    (self.near[at], self.color[at]) = (near, color);
+                }
+            }
+        }
+    }
+
+    /// A thin line over everything.
+    fn line(&mut self, [a, b]: [DVec3; 2], least: f64) {
+        if a.z <= least || b.z <= least || !(a.is_finite() && b.is_finite()) {
+            return;
+        }
+        let limit = self.side as f64;
+        let steps = (b - a).truncate().abs().max_element().ceil().clamp(1.0, 8.0 * limit);
+        for i in 0..=steps as usize {
+            let p = a.lerp(b, i as f64 / steps);
+            if (0.0..limit).contains(&p.x) && (0.0..limit).contains(&p.y) {
+                self.color[p.y as usize * self.side + p.x as usize] = GUIDE;
+            }
+        }
+    }
+
+    /// The means of the samples.
+    fn pixels(&self) -> Vec<u8> {
+        let side = self.side / SAMPLES;
+        let mut out = Vec::with_capacity(4 * side * side);
+        for y in 0..side {
+            for x in 0..side {
+                for k in 0..3 {
+                    let sample =
+                        |i: usize| self.color[(y * SAMPLES + i / SAMPLES) * self.side + x * SAMPLES + i % SAMPLES][k];
+                    let mean = (0..SAMPLES * SAMPLES).map(sample).sum::<f64>() / (SAMPLES * SAMPLES) as f64;
+                    out.push((mean.clamp(0.0, 1.0) * 255.0).round() as u8);
+                }
+                out.push(255);
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::obj;
+
+    #[test]
+    fn the_nearer_face_is_seen_and_the_background_is_white() {
+        let two = "o far\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\no near\nv -.5 -.5 1\nv .5 -.5 1\nv .5 .5 1\nv -.5 .5 1\nf 5 6 7 8\n";
+        let mesh = obj::read(two.as_bytes()).unwrap();
+        let camera = Camera3::at(DVec3::new(0.0, 0.0, 10.0), mesh.bounds().unwrap()).unwrap();
+        let picture = draw(&mesh, &[], &camera, 64);
+        let at = |x: usize, y: usize| &picture[4 * (y * 64 + x)..][..3];
+        assert!(at(32, 32)[0] > at(32, 32)[2], "orange: {:?}", at(32, 32));
+        assert!(at(6, 32)[0] < at(6, 32)[2], "blue: {:?}", at(6, 32));
+        assert_eq!(at(0, 0), [255; 3]);
+        assert!(Camera3::at(DVec3::new(0.0, 0.0, 0.5), mesh.bounds().unwrap()).is_none());
+    }
+}

@@ -1,0 +1,233 @@
+//! Typed access to the values of parameters, with lengths, points and boxes in space.
+
+use crate::box3::Box3;
+use glam::DVec3;
+use pathwarp::Error;
+use pathwarp::kurbo::Rect;
+use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit, NamedText, Param, Settings};
+
+/// Millimetres of a px, in which lengths with units are counted.
+const MM_PER_PX: f64 = 25.4 / 96.0;
+
+/// An axis of space, or the diagonal of a box: the length to which percentages refer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// The width.
+    X,
+    /// The height.
+    Y,
+    /// The depth.
+    Z,
+    /// The diagonal.
+    Diagonal,
+}
+
+/// The box that percentages refer to, and the size of a unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame3 {
+    /// The box, usually the model's.
+    pub bounds: Box3,
+    /// Units of the model in a millimetre: 1, as programs for 3D printing take it, unless the file's format says otherwise.
+    pub units_per_mm: f64,
+}
+
+impl Frame3 {
+    /// A frame in which a unit is a millimetre.
+    #[must_use]
+    pub fn new(bounds: Box3) -> Self {
+        Self { bounds, units_per_mm: 1.0 }
+    }
+
+    /// The front of the box as a frame of the plane, for values that are read as in the plane.
+    #[must_use]
+    pub fn front(&self) -> Frame {
+        let Box3 { min, max } = self.bounds;
+        let units_per_px = self.units_per_mm * MM_PER_PX;
+        Frame::new(Rect::new(min.x, min.y, max.x, max.y)).with_units_per_px([units_per_px; 2])
+    }
+
+    fn extent(&self, along: Extent) -> f64 {
+        let size = self.bounds.size();
+        match along {
+            Extent::X => size.x,
+            Extent::Y => size.y,
+            Extent::Z => size.z,
+            Extent::Diagonal => size.length(),
+        }
+    }
+}
+
+/// The parameters of a deformation of space with their values, from which it is built.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings3<'a> {
+    flat: Settings<'a>,
+    frame: &'a Frame3,
+}
+
+impl<'a> Settings3<'a> {
+    /// Checks `args` against the table, as [`Settings::new`] does. `front` is [`Frame3::front`] of `frame`.
+    ///
+    /// # Errors
+    /// As [`Settings::new`].
+    pub fn new(params: &'a [Param], args: &'a Args, frame: &'a Frame3, front: &'a Frame) -> Result<Self, Error> {
+        Ok(Self { flat: Settings::new(params, args, front)?, frame })
+    }
+
+    /// The values that need no third dimension: flags, numbers, angles, words, texts and files.
+    #[must_use]
+    pub fn flat(&self) -> &Settings<'a> {
+        &self.flat
+    }
+
+    /// The box to which percentages refer.
+    #[must_use]
+    pub fn bounds(&self) -> Box3 {
+        self.frame.bounds
+    }
+
+    /// The last value of a text parameter, or its default.
+    #[must_use]
+    pub fn last(&self, name: &str) -> Option<&'a str> {
+        self.flat.texts(name).last().copied()
+    }
+
+    /// The words of all values of a text parameter.
+    #[must_use]
+    pub fn words(&self, name: &str) -> Vec<&'a str> {
+        self.flat.texts(name).into_iter().flat_map(str::split_whitespace).collect()
+    }
+
+    /// A length within a text parameter, in units of the model.
+    ///
+    /// # Errors
+    /// `text` is not a length. The message names the parameter.
+    pub fn length_in(&self, name: &str, text: &str, along: Extent) -> Result<f64, Error> {
+        let length: Length = text.trim().parse().map_err(|e| Error::usage(name, text, format!("{e}")))?;
+        if length.unit == LengthUnit::Percent {
+            return Ok(length.value / 100.0 * self.frame.extent(along));
+        }
+        Ok(length.in_units(Axis::X, &self.frame.front()))
+    }
+
+    /// A vector `dx,dy,dz` of lengths within a text parameter.
+    ///
+    /// # Errors
+    /// `text` is not three lengths. The message names the parameter.
+    pub fn vector_in(&self, name: &str, text: &str) -> Result<DVec3, Error> {
+        let parts: Vec<&str> = text.split(',').collect();
+        let [x, y, z] = parts[..] else {
+            return Err(Error::usage(name, text, "is not three lengths x,y,z"));
+        };
+        let along = |t: &str, e| self.length_in(name, t, e);
+        Ok(DVec3::new(along(x, Extent::X)?, along(y, Extent::Y)?, along(z, Extent::Z)?))
+    }
+
+    /// A point `x,y,z` within a text parameter. Percentages count from the left, bottom and back of the frame.
+    ///
+    /// # Errors
+    /// `text` is not a point. The message names the parameter.
+    pub fn point_in(&self, name: &str, text: &str) -> Result<DVec3, Error> {
+        let mut p = self.vector_in(name, text)?.to_array();
+        for ((v, word), origin) in p.iter_mut().zip(text.split(',')).zip(self.frame.bounds.min.to_array()) {
+            if word.trim().ends_with('%') {
+                *v += origin;
+            }
+        }
+        Ok(DVec3::from_array(p))
+    }
+
+    /// The point given for a text parameter; `None` if there is neither a value nor a default.
+    ///
+    /// # Errors
+    /// As [`Settings3::point_in`].
+    pub fn point_if(&self, name: &str) -> Result<Option<DVec3>, Error> {
+        self.last(name).map(|t| self.point_in(name, t)).transpose()
+    }
+
+    /// Points `x,y,z x,y,z …` given for a text parameter.
+    ///
+    /// # Errors
+    /// As [`Settings3::point_in`].
+    pub fn points(&self, name: &str) -> Result<Vec<DVec3>, Error> {
+        self.words(name).into_iter().map(|w| self.point_in(name, w)).collect()
+    }
+
+    /// Pairs of points `x,y,z:x,y,z …` given for a text parameter.
+    ///
+    /// # Errors
+    /// A word is not a pair of points.
+    pub fn point_pairs(&self, name: &str) -> Result<Vec<(DVec3, DVec3)>, Error> {
+        let pair = |word: &str| {
+            let wrong = || Error::usage(name, word, "is not FROM:TO, such as 10,20,5:15,25,5");
+            let (from, to) = word.split_once(':').ok_or_else(wrong)?;
+            Ok((self.point_in(name, from)?, self.point_in(name, to)?))
+        };
+        self.words(name).into_iter().map(pair).collect()
+    }
+
+    /// The box given by a text parameter: the word `model` (the frame), or `x,y,z,w,h,d`. `None` if it is the frame or not given.
+    ///
+    /// # Errors
+    /// The value is not a box, or has no volume.
+    pub fn box_if(&self, name: &str) -> Result<Option<Box3>, Error> {
+        let Some(text) = self.last(name).filter(|t| *t != "model") else { return Ok(None) };
+        let words: Vec<&str> = text.split(',').collect();
+        let wrong = || Error::usage(name, text, "is neither a box x,y,z,w,h,d with positive sizes nor the word model");
+        if words.len() != 6 {
+            return Err(wrong());
+        }
+        let min = self.point_in(name, &words[..3].join(","))?;
+        let size = self.vector_in(name, &words[3..].join(","))?;
+        if size.min_element() > 0.0 { Ok(Some(Box3 { min, max: min + size })) } else { Err(wrong()) }
+    }
+
+    /// Up to three whole numbers from 1 to `most`, `4x3x2`, or one number for all three; `None` if not given.
+    ///
+    /// # Errors
+    /// The value is something else.
+    pub fn counts_if(&self, name: &str, most: usize) -> Result<Option<[usize; 3]>, Error> {
+        let Some(text) = self.last(name) else { return Ok(None) };
+        let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=most).contains(n));
+        let numbers: Option<Vec<usize>> = text.split(['x', 'X', '×']).map(number).collect();
+        match numbers.as_deref() {
+            Some([n]) => Ok(Some([*n; 3])),
+            Some([a, b, c]) => Ok(Some([*a, *b, *c])),
+            _ => Err(Error::usage(name, text, format!("is not three numbers from 1 to {most}, such as 3x2x2"))),
+        }
+    }
+
+    /// The file named by a parameter, already read.
+    ///
+    /// # Errors
+    /// The file was not read.
+    pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
+        self.flat.file_if(name)
+    }
+}
+
+/// A point in messages, to six decimals.
+pub(crate) fn show(p: DVec3) -> String {
+    let round = |v: f64| pathwarp::decimal::trimmed(v, 6);
+    format!("{},{},{}", round(p.x), round(p.y), round(p.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_lengths_and_boxes() {
+        const PARAMS: [Param; 1] = [Param::new("region", pathwarp::param::Kind::Text("B"), "A box.")];
+        let frame = Frame3 {
+            bounds: Box3::new(DVec3::new(10.0, 20.0, 30.0), DVec3::new(20.0, 40.0, 34.0)),
+            units_per_mm: 0.001,
+        };
+        let (args, front) = (Args::from_pairs(&[("region", "50%,1,0%,10mm,50%,25%")]), frame.front());
+        let s = Settings3::new(&PARAMS, &args, &frame, &front).unwrap();
+        let b = s.box_if("region").unwrap().unwrap();
+        assert!((b.min - DVec3::new(15.0, 1.0, 30.0)).length() < 1e-12, "{b:?}");
+        assert!((b.size() - DVec3::new(0.01, 10.0, 1.0)).length() < 1e-12, "{b:?}");
+        assert!(s.point_in("region", "1,2").is_err() && s.vector_in("region", "1,2,x").is_err());
+        assert_eq!(s.vector_in("region", "1,-50%,100%").unwrap(), DVec3::new(1.0, -10.0, 4.0));
+    }
+}

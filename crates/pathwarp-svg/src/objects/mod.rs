@@ -1,0 +1,25 @@
+//! Objects that remember what they were: a warped element carries its source and its recipe in attributes, so that editors keep
+//! them when they save, copy and paste it.
+//!
+//! [`remember`] adds the attributes to the result of a warp, [`restore`] puts sources back in place, and [`objects`] lists the
+//! elements of a file with what they remember. None of them resolves what a drawing shows.
+
+mod guides;
+mod moving;
+mod names;
+mod nodes;
+mod package;
+mod patches;
+mod remembering;
+mod restoring;
+mod restyling;
+
+pub use guides::Guides;
+pub use moving::moved;
+pub use nodes::{Object, objects};
+pub use remembering::{Memory, remember};
+pub use restoring::{Restored, RestoredObject, restore};
+pub use restyling::restyled;
+
+#[cfg(test)]
+mod tests;

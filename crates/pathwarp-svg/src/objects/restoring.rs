@@ -1,0 +1,219 @@
+//! Puts the sources of warped objects back in place.
+
+use super::guides::Guides;
+use super::names::{MADE, NAMESPACE, NODES, RECIPE, SOURCE, referred, renaming};
+use super::nodes::{by_id, parse};
+use super::package::{Package, unpack};
+use super::patches::apply;
+use crate::source::tags::SVG;
+use pathwarp::Error;
+use pathwarp::budget::Limits;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+use usvg::roxmltree::{Document, Node};
+
+/// A file with sources back in place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Restored {
+    /// Its text.
+    pub svg: String,
+    /// The objects that are their sources again.
+    pub objects: Vec<RestoredObject>,
+}
+
+/// An object that is its source again.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RestoredObject {
+    /// Its id, as in the warped file.
+    pub id: String,
+    /// The recipe that it was warped by.
+    pub recipe: String,
+    /// The paths that the recipe refers to, as they were then.
+    pub guides: Guides,
+    /// The summary of the warped object's nodes that it was given.
+    pub nodes: String,
+}
+
+/// Replaces the objects with these ids by their sources, byte for byte. Ids in a source that are in use elsewhere, as after copying
+/// the object, are changed. Definitions that the warp or an editor changed or removed come back; those that the warp added and
+/// nothing else uses are removed. An object without a source stays, and is not in the list.
+///
+/// # Errors
+/// Returns [`Error::Input`] if the file is not XML, a source is damaged, or either takes more work than the limits allow.
+pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, Error> {
+    let doc = parse(svg, limits)?;
+    let found = by_id(&doc);
+    let targets: Vec<Node<'_, '_>> = ids.iter().filter_map(|id| found.get(id.as_str()).copied()).collect();
+    let packages = targets.iter().filter_map(|n| Some((*n, n.attribute((NAMESPACE, SOURCE))?)));
+    let packages: Vec<(Node<'_, '_>, String)> =
+        packages.map(|(n, v)| Ok((n, unpack(v, &limits.for_input(svg.len()))?))).collect::<Result<_, Error>>()?;
+    let around = Around::new(svg, &doc, packages.iter().map(|(n, _)| *n).collect());
+    let mut work =
+        Work { around, taken: HashSet::new(), patches: Vec::new(), defs: String::new(), removed: HashSet::new() };
+    let mut objects = Vec::new();
+    for (n, text) in &packages {
+        let package = parse(text, limits)?;
+        let damaged = || Error::input("the source of a warped object", "is damaged: it has no element");
+        let package = Package::of(&package).ok_or_else(damaged)?;
+        work.replace(*n, text, &package);
+        objects.push(RestoredObject {
+            id: n.attribute("id").unwrap_or_default().to_owned(),
+            recipe: n.attribute((NAMESPACE, RECIPE)).unwrap_or_default().to_owned(),
+            nodes: n.attribute((NAMESPACE, NODES)).unwrap_or_default().to_owned(),
+            guides: Guides { markup: inside(text, package.guides) },
+        });
+    }
+    let Work { around, mut patches, defs, .. } = work;
+    if !defs.is_empty() {
+        patches.push(around.insertion(defs));
+    }
+    Ok(Restored { svg: apply(svg, patches), objects })
+}
+
+/// The text between the tags of an element.
+fn inside(text: &str, n: Node<'_, '_>) -> String {
+    let ends = n.first_child().zip(n.last_child());
+    ends.map_or_else(String::new, |(first, last)| text[first.range().start..last.range().end].to_owned())
+}
+
+/// The file around the objects to be replaced.
+struct Around<'a, 'i> {
+    text: &'a str,
+    doc: &'a Document<'i>,
+    by_id: HashMap<&'a str, Node<'a, 'i>>,
+    replaced: HashSet<Node<'a, 'i>>,
+}
+
+impl<'a, 'i> Around<'a, 'i> {
+    fn new(text: &'a str, doc: &'a Document<'i>, replaced: HashSet<Node<'a, 'i>>) -> Self {
+        Self { text, doc, by_id: by_id(doc), replaced }
+    }
+
+    /// Returns `true` for an element that stays.
+    fn stays(&self, n: Node<'a, 'i>) -> bool {
+        !n.ancestors().any(|a| self.replaced.contains(&a))
+    }
+
+    /// Returns `true` if something that stays, outside of the definition `n` and of those in `except`, refers to `name`.
+    fn is_used(&self, name: &str, n: Node<'a, 'i>, except: &HashSet<String>) -> bool {
+        let counts = |o: &Node<'a, 'i>| {
+            self.stays(*o) && !o.ancestors().any(|a| a == n || a.attribute("id").is_some_and(|id| except.contains(id)))
+        };
+        let own = |o: Node<'a, 'i>| {
+            let values = o.attributes().map(|a| a.value());
+            values.into_iter().any(|v| super::names::references(v).any(|r| &v[r] == name))
+        };
+        self.doc.descendants().filter(Node::is_element).filter(counts).any(own)
+    }
+
+    /// The insertion of definitions into the file.
+    fn insertion(&self, defs: String) -> (Range<usize>, String) {
+        let root = self.doc.root_element();
+        let home = root.children().find(|n| {
+            n.tag_name().name() == "defs" && n.tag_name().namespace() == Some(SVG) && n.last_child().is_some()
+        });
+        if let Some(last) = home.and_then(|h| h.last_child()) {
+            let end = last.range().end;
+            return (end..end, defs);
+        }
+        let end = self.text[..root.range().end].rfind("</").unwrap_or(root.range().end);
+        (end..end, format!("<defs>{defs}</defs>"))
+    }
+}
+
+struct Work<'a, 'i> {
+    around: Around<'a, 'i>,
+    /// Ids of the sources already in place.
+    taken: HashSet<String>,
+    patches: Vec<(Range<usize>, String)>,
+    /// Definitions to be added.
+    defs: String,
+    /// Ids of the definitions removed or replaced.
+    removed: HashSet<String>,
+}
+
+impl<'a, 'i> Work<'a, 'i> {
+    fn replace(&mut self, n: Node<'a, 'i>, text: &str, package: &Package<'_, '_>) {
+        let mut names: HashMap<String, String> = HashMap::new();
+        let made: HashSet<String> =
+            n.attribute((NAMESPACE, MADE)).unwrap_or_default().split_whitespace().map(ToOwned::to_owned).collect();
+        // The object keeps the id it has now.
+        if let (Some(old), Some(now)) = (package.element.attribute("id"), n.attribute("id"))
+            && old != now
+        {
+            names.insert(old.to_owned(), now.to_owned());
+        }
+        for inner in package.element.descendants().skip(1).filter_map(|d| d.attribute("id")) {
+            let elsewhere =
+                self.around.by_id.get(inner).is_some_and(|o| self.around.stays(*o)) && !made.contains(inner);
+            if elsewhere || self.taken.contains(inner) {
+                let new = self.fresh(inner);
+                names.insert(inner.to_owned(), new);
+            }
+        }
+        let mut added = Vec::new();
+        for d in &package.definitions {
+            let Some(id) = d.attribute("id") else { continue };
+            match self.around.by_id.get(id).copied().filter(|o| self.around.stays(*o)) {
+                None if self.taken.contains(id) => {}
+                None => added.push(*d),
+                Some(old) if same_words(&self.around.text[old.range()], &text[d.range()]) => {}
+                Some(old) if self.removed.contains(id) || !self.around.is_used(id, old, &made) => {
+                    if self.removed.insert(id.to_owned()) {
+                        self.patches.push((old.range(), text[d.range()].to_owned()));
+                    }
+                }
+                Some(_) => {
+                    let new = self.fresh(id);
+                    names.insert(id.to_owned(), new);
+                    added.push(*d);
+                }
+            }
+        }
+        for d in added {
+            let id = d.attribute("id").unwrap_or_default();
+            self.taken.insert(names.get(id).map_or(id, String::as_str).to_owned());
+            self.defs += &renamed(text, d, &names);
+        }
+        self.remove_made(&made);
+        let source = renamed(text, package.element, &names);
+        let ids = package.element.descendants().filter_map(|d| d.attribute("id"));
+        self.taken.extend(ids.map(|id| names.get(id).map_or(id, String::as_str).to_owned()));
+        self.patches.push((n.range(), source));
+    }
+
+    /// Removes the definitions that the warp added, unless something else uses them by now.
+    fn remove_made(&mut self, made: &HashSet<String>) {
+        for id in made {
+            let Some(&d) = self.around.by_id.get(id.as_str()) else { continue };
+            if self.around.stays(d) && !self.around.is_used(id, d, made) && self.removed.insert(id.clone()) {
+                let range = d.range();
+                self.patches.push((self.around.text[..range.start].trim_end().len()..range.end, String::new()));
+            }
+        }
+    }
+
+    /// An id like `id` that is not in use.
+    fn fresh(&self, id: &str) -> String {
+        let numbered = (2..).map(|n: u64| format!("{id}-{n}"));
+        let free = |new: &String| !self.around.by_id.contains_key(new.as_str()) && !self.taken.contains(new);
+        numbered.into_iter().find(free).unwrap_or_else(|| id.to_owned())
+    }
+}
+
+/// The text of an element with other ids.
+fn renamed(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> String {
+    let refers = || referred(n).iter().any(|r| names.contains_key(r));
+    let has = || n.descendants().any(|d| d.attribute("id").is_some_and(|id| names.contains_key(id)));
+    if names.is_empty() || !(refers() || has()) {
+        return text[n.range()].to_owned();
+    }
+    let start = n.range().start;
+    let patches = renaming(text, n, names).into_iter().map(|(r, new)| (r.start - start..r.end - start, new));
+    apply(&text[n.range()], patches.collect())
+}
+
+/// Returns `true` if two texts differ in white space only, as an editor may lay them out anew.
+fn same_words(a: &str, b: &str) -> bool {
+    a.split_ascii_whitespace().eq(b.split_ascii_whitespace())
+}

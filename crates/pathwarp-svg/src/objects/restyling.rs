@@ -1,0 +1,111 @@
+//! Appearance that was changed by hand: what differs between an object as the warp left it and as it is now goes into the object
+//! warped again.
+
+use super::nodes::{by_id, parse};
+use super::patches::apply;
+use crate::source::style::{declarations, with_declaration};
+use crate::source::tags::INKSCAPE;
+use crate::source::xml::escape;
+use pathwarp::Error;
+use pathwarp::budget::Limits;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use usvg::roxmltree::Node;
+
+/// Presentation attributes that editors write.
+const PROPERTIES: [&str; 17] = [
+    "fill",
+    "fill-opacity",
+    "fill-rule",
+    "stroke",
+    "stroke-opacity",
+    "stroke-width",
+    "stroke-linecap",
+    "stroke-linejoin",
+    "stroke-miterlimit",
+    "stroke-dasharray",
+    "stroke-dashoffset",
+    "opacity",
+    "display",
+    "visibility",
+    "paint-order",
+    "color",
+    "mix-blend-mode",
+];
+
+/// Copies to the object `id` of `new`, and to what it holds, the properties and labels that differ between `then` and `now`.
+/// References to gradients, patterns and the like are left as the warp makes them, and so are the properties in `except`.
+///
+/// # Errors
+/// Returns [`Error::Input`] if one of the files is not XML, or takes more work than the limits allow.
+pub fn restyled([then, now, new]: [&str; 3], id: &str, except: &[&str], limits: &Limits) -> Result<String, Error> {
+    let docs = (parse(then, limits)?, parse(now, limits)?, parse(new, limits)?);
+    let (thens, nows, news) = (by_id(&docs.0), by_id(&docs.1), by_id(&docs.2));
+    let mut patches: Vec<(Range<usize>, String)> = Vec::new();
+    let inside = nows.get(id).into_iter().flat_map(Node::descendants);
+    for n in inside.filter(Node::is_element) {
+        let Some(name) = n.attribute("id") else { continue };
+        if let (Some(was), Some(will)) = (thens.get(name), news.get(name)) {
+            patches.extend(changes(*was, n, *will, new, except));
+        }
+    }
+    Ok(if patches.is_empty() { new.to_owned() } else { apply(new, patches) })
+}
+
+/// The edits to `will` that repeat what happened between `was` and `is`.
+fn changes(
+    was: Node<'_, '_>,
+    is: Node<'_, '_>,
+    will: Node<'_, '_>,
+    text: &str,
+    except: &[&str],
+) -> Vec<(Range<usize>, String)> {
+    let mut out = Vec::new();
+    let (old, now) = (properties(was), properties(is));
+    let names = old.keys().chain(now.keys()).collect::<std::collections::BTreeSet<_>>();
+    let refers = |v: Option<&String>| v.is_some_and(|v| v.contains("url("));
+    let differs = |name: &&&String| {
+        let (a, b) = (old.get(**name), now.get(**name));
+        a != b && !refers(a) && !refers(b) && !except.contains(&name.as_str())
+    };
+    let style = will.attribute("style").unwrap_or_default();
+    // A property that was removed is inherited again.
+    let set = |style: String, name: &&String| {
+        with_declaration(&style, name, now.get(*name).map_or("inherit", String::as_str))
+    };
+    let new = names.iter().filter(differs).fold(style.to_owned(), set);
+    if new != style {
+        out.push(attribute(will, text, None, "style", &new));
+    }
+    let label = |n: Node<'_, '_>| n.attribute((INKSCAPE, "label")).map(ToOwned::to_owned);
+    if let Some(label) = label(is).filter(|l| Some(l) != label(was).as_ref()) {
+        out.push(attribute(will, text, Some(INKSCAPE), "label", &label));
+    }
+    out
+}
+
+/// The properties of an element, by its attributes and its style.
+fn properties(n: Node<'_, '_>) -> BTreeMap<String, String> {
+    let plain = PROPERTIES.iter().filter_map(|p| Some(((*p).to_owned(), n.attribute(*p)?.to_owned())));
+    let mut out: BTreeMap<String, String> = plain.collect();
+    let style = n.attribute("style").unwrap_or_default();
+    out.extend(declarations(style).map(|(name, value)| (name.to_owned(), value.to_owned())));
+    out
+}
+
+/// Sets an attribute.
+fn attribute(n: Node<'_, '_>, text: &str, namespace: Option<&str>, name: &str, value: &str) -> (Range<usize>, String) {
+    let found = n.attributes().find(|a| a.name() == name && a.namespace() == namespace);
+    if let Some(a) = found {
+        // Escaped for either kind of quotes.
+        return (a.range_value(), escape(value).replace('\'', "&apos;"));
+    }
+    let start = n.range().start + 1;
+    let rest = &text[start..];
+    let end = start + rest.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).unwrap_or(rest.len());
+    let prefix = namespace.map_or_else(String::new, |uri| match n.lookup_prefix(uri) {
+        Some(prefix) => format!("{prefix}:"),
+        None => format!("xmlns:inkscape=\"{uri}\" inkscape:"),
+    });
+    (end..end, format!(" {prefix}{name}=\"{}\"", escape(value)))
+}

@@ -1,0 +1,20 @@
+//! Drawings read, warped and written. One program: linking takes longer than most of these tests run.
+
+mod arcs;
+#[path = "../common/mod.rs"]
+mod common;
+mod degenerate_strokes;
+mod features;
+mod keeping;
+mod lettering;
+mod live;
+mod open_fills;
+mod page;
+mod patterns;
+mod reading;
+mod report;
+mod seen;
+mod strokes;
+mod structure;
+mod unsupported;
+mod vector_images;

@@ -1,0 +1,49 @@
+//! `pathwarp edit` in a headless Chromium: the tests of the page (`crates/pathwarp-editor/web/tests`) with the real program.
+
+mod support;
+
+use std::path::Path;
+use std::process::Command;
+use support::{pathwarp_program, root};
+
+/// What the tests need besides the program.
+fn missing(web: &Path) -> Option<&'static str> {
+    let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success());
+    let browsers = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+    if !is_there("node") {
+        Some("node")
+    } else if !web.join("node_modules/playwright-core").is_dir() {
+        Some("playwright-core (npm ci in crates/pathwarp-editor/web)")
+    } else if !browsers.iter().any(|b| Path::new(b).exists()) {
+        Some("Chromium")
+    } else {
+        None
+    }
+}
+
+#[test]
+fn the_page_works_in_a_browser() {
+    let web = root().join("crates/pathwarp-editor/web");
+    if let Some(what) = missing(&web) {
+        println!("skipped: the page is not tested without {what}");
+        return;
+    }
+    let out = Command::new("node").arg("tests/run.mjs").current_dir(&web).env("PATHWARP", pathwarp_program()).output();
+    let out = out.unwrap();
+    let said = String::from_utf8_lossy(&out.stdout);
+    println!("{said}");
+    assert!(out.status.success(), "{said}{}", String::from_utf8_lossy(&out.stderr));
+}
+
+#[test]
+fn what_cannot_be_edited_is_said() {
+    let out = support::pathwarp(&["edit", "-"]);
+    assert_eq!(out.status.code(), Some(2));
+    let folder = tempfile::tempdir().unwrap();
+    let bad = folder.path().join("bad.svg");
+    std::fs::write(&bad, "<svg").unwrap();
+    let out = support::pathwarp(&["edit", "--no-open", bad.to_str().unwrap()]);
+    assert_eq!(out.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&out.stderr).contains("bad.svg"), "{out:?}");
+    assert!(out.stdout.is_empty(), "the address is printed before the drawing is read");
+}

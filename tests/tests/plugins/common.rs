@@ -1,0 +1,107 @@
+//! A folder of plug-ins, and runs of the program with it.
+
+use crate::support::pathwarp_program;
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// A folder with plug-ins and a drawing, whose entries are remembered in it as well.
+pub struct Scratch {
+    pub dir: TempDir,
+}
+
+/// Seconds that a program has for an answer.
+const SECONDS: &str = "2";
+
+impl Scratch {
+    pub fn new() -> Self {
+        let dir = tempfile::tempdir().unwrap();
+        fs::create_dir(dir.path().join("plug-ins")).unwrap();
+        let drawing = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M10,10 C40,0 60,30 90,10 L80,90 Q40,60 10,80 Z'/></svg>";
+        fs::write(dir.path().join("in.svg"), drawing).unwrap();
+        Self { dir }
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.dir.path().join(name)
+    }
+
+    /// Writes a script into the plug-in folder.
+    pub fn install(&self, name: &str, script: &str) -> PathBuf {
+        let file = self.dir.path().join("plug-ins").join(name);
+        fs::write(&file, script).unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).unwrap();
+        file
+    }
+
+    /// A command that runs the program here.
+    pub fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(pathwarp_program());
+        command.args(args).current_dir(self.dir.path()).stdin(Stdio::null());
+        command.env("PATHWARP_PLUGINS", self.dir.path().join("plug-ins"));
+        command.env("XDG_CACHE_HOME", self.dir.path().join("cache")).env("HOME", self.dir.path());
+        command.env("PATHWARP_PLUGIN_SECONDS", SECONDS);
+        command
+    }
+
+    pub fn run(&self, args: &[&str]) -> Output {
+        self.command(args).output().unwrap()
+    }
+
+    /// Runs the program, asserts its exit code, and returns standard output and standard error.
+    pub fn expect(&self, code: i32, args: &[&str]) -> (String, String) {
+        let out = self.run(args);
+        let (stdout, stderr) = (text(&out.stdout), text(&out.stderr));
+        assert_eq!(out.status.code(), Some(code), "{args:?}\n{stdout}\n{stderr}");
+        (stdout, stderr)
+    }
+}
+
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// An entry named `name` that speaks text.
+pub fn entry(name: &str) -> String {
+    format!(
+        r#"{{"pathwarp-plugin": 1, "protocol": "text", "name": "{name}", "title": "a test", "about": "A test.", "source": "a test"}}"#
+    )
+}
+
+/// A shell script with that entry, which builds, and answers points by the shell command `answer`; `$line` is the point.
+pub fn script(name: &str, answer: &str) -> String {
+    format!(
+        r#"#!/bin/sh
+echo '{entry}'
+lines() {{ i=0; while [ $i -lt $1 ]; do read -r line; $2; i=$((i+1)); done; }}
+point() {{ {answer}; }}
+while read -r command count; do
+    case $command in
+        build) lines $count :; echo ok;;
+        points) lines $count point;;
+    esac
+done
+"#,
+        entry = entry(name)
+    )
+}
+
+/// Returns `true` if a process has `word` in its command line.
+pub fn is_running(word: &str) -> bool {
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let of = |p: &Path| fs::read(p.join("cmdline")).unwrap_or_default();
+    processes
+        .filter(|p| p.file_name().to_str().is_some_and(|n| n.bytes().all(|b| b.is_ascii_digit())))
+        .any(|p| text(&of(&p.path())).contains(word))
+}
+
+/// The path of Python 3, if there is one.
+pub fn python() -> bool {
+    let found = Command::new("python3").arg("--version").output().is_ok_and(|o| o.status.success());
+    if !found {
+        eprintln!("Python 3 is not installed; this test is skipped");
+    }
+    found
+}
