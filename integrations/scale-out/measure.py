@@ -48,6 +48,7 @@ class Watch(threading.Thread):
         self.first: Dict[Any, float] = {}
         self.last: Dict[Any, float] = {}
         self.ended = threading.Event()
+        self.own = 0.0
         self.look(begin=True)
 
     def look(self, begin: bool = False) -> List[psutil.Process]:
@@ -68,7 +69,8 @@ class Watch(threading.Thread):
     def run(self) -> None:
         random.seed(1)
         next_kill = time.monotonic() + 2
-        while not self.ended.wait(0.05):
+        while not self.ended.wait(0.2):
+            self.own = time.thread_time()
             alive = self.look()
             if self.killed < self.kills and time.monotonic() > next_kill:
                 workers = [p for p in alive if self.is_worker(p)]
@@ -81,13 +83,14 @@ class Watch(threading.Thread):
         self.ended.set()
         self.join()
         self.look()
-        return sum(last - self.first.get(key, 0.0) for key, last in self.last.items())
+        return sum(last - self.first.get(key, 0.0) for key, last in self.last.items()) - self.own
 
 
 def digests(folder: pathlib.Path) -> Dict[str, str]:
     found = {}
     for file in folder.rglob("*"):
-        if file.is_file():
+        # A killed worker may leave its temporary file.
+        if file.is_file() and not file.name.startswith(".pathwarp-"):
             found[str(file.relative_to(folder))] = hashlib.sha256(file.read_bytes()).hexdigest()
     return found
 
@@ -122,11 +125,11 @@ def by_ray(args: Any, source: pathlib.Path, folder: pathlib.Path, deformation: p
     import ray_warp
 
     ray.data.DataContext.get_current().enable_progress_bars = False
-    ray.init(num_cpus=args.workers, _node_ip_address="127.0.0.1", include_dashboard=False, log_to_driver=False)
+    ray.init(num_cpus=args.workers, _node_ip_address="127.0.0.2", include_dashboard=False, log_to_driver=False)
     warm = folder.parent / "warm"
     copies(args.source, warm / "in", 64)
     ray_warp.run(str(warm / "in"), str(warm / "out"), deformation, {}, args.workers)
-    is_worker = lambda p: p.name().startswith("ray::") and "IDLE" not in " ".join(p.cmdline())  # noqa: E731
+    is_worker = lambda p: "warp" in " ".join(p.cmdline()) and p.cmdline()[0].startswith("ray::")  # noqa: E731
     return Watch(is_worker, args.kill), lambda: ray_warp.run(str(source), str(folder), deformation, {}, args.workers).to_pandas()
 
 

@@ -63,7 +63,7 @@ def main() -> None:
     import ray
 
     # Nothing listens beyond this machine.
-    ray.init(num_cpus=given.workers, _node_ip_address="127.0.0.1", include_dashboard=False)
+    ray.init(num_cpus=given.workers, _node_ip_address="127.0.0.2", include_dashboard=False)
     deformation = pathwarp.Deformation(given.deformation, **dict(p.split("=", 1) for p in given.parameters))
     done = run(given.source, given.folder, deformation, {}, given.workers).to_pandas()
     failed = done[done.error != ""]

@@ -20,9 +20,10 @@ const PER_SEGMENT: usize = 64;
 /// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
 
-/// Work of looking at a box, and at a segment, in comparisons of the budget.
-const BOX: f64 = 0.1;
-const SEGMENT: f64 = 8.0;
+/// Work of looking at a box, at a line and at a curve, in comparisons of the budget.
+const BOX: f64 = 0.05;
+const LINE: f64 = 0.2;
+const CURVE: f64 = 3.0;
 
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
@@ -84,6 +85,11 @@ impl Target<'_> {
         if matches!(self, Self::Seg(_)) { PER_SEGMENT } else { 0 }
     }
 
+    /// The work of [`distance`](Self::distance).
+    fn work(&self) -> f64 {
+        if matches!(self, Self::Seg(Seg::Quad(_) | Seg::Cubic(_) | Seg::Arc(_))) { CURVE } else { LINE }
+    }
+
     fn eval(&self, t: f64) -> Point {
         match self {
             Self::Seg(s) => s.eval(t),
@@ -131,7 +137,7 @@ impl<'a> Targets<'a> {
     fn distance(&mut self, p: Point, enough: f64, work: &mut f64) -> f64 {
         let leaves = self.boxes.len() / 2;
         let mut best = self.all[self.last].distance(p, f64::INFINITY);
-        *work += SEGMENT;
+        *work += self.all[self.last].work();
         self.pending.clear();
         self.pending.push(1);
         while let Some(node) = self.pending.pop()
@@ -150,7 +156,7 @@ impl<'a> Targets<'a> {
                 continue;
             }
             let Some(target) = self.all.get(node - leaves) else { continue };
-            *work += SEGMENT;
+            *work += target.work();
             let d = target.distance(p, best);
             if d < best {
                 (best, self.last) = (d, node - leaves);

@@ -11,7 +11,7 @@ use picture::Camera;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use support::{pathwarp, pathwarp_in, root, sample};
+use support::{pathwarp, pathwarp_in, root, sample, words};
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -40,7 +40,7 @@ fn the_examples_of_help_run() {
     for e in Registry3::builtin().entries() {
         for example in e.about().info.examples {
             let command = example.command.replace("out.", &format!("{}/out.", dir.path().display()));
-            let out = pathwarp(&command.split_whitespace().collect::<Vec<_>>());
+            let out = pathwarp(&words(&command));
             assert_eq!(out.status.code(), Some(0), "{command}: {}", text(&out.stderr));
             assert_eq!(text(&out.stderr), "", "{command}");
             let after = Model::read(&fs::read_to_string(dir.path().join("out.obj")).unwrap());

@@ -172,7 +172,8 @@ impl Warper {
             let frame = plain_frame(&options, bounds)?;
             let alone = self.typed.steps.len() == 1 && !self.typed.steps.iter().any(|s| s.inverse);
             let outline = if alone { Outline::default() } else { cloud() };
-            Ok(PointMap::new(self.build(&frame, &outline)?.map))
+            let budget = Budget::new(options.reading.limits);
+            Ok(PointMap::new(self.build(&frame, &outline, &budget)?.map))
         })
     }
 
@@ -199,8 +200,8 @@ impl Warper {
             let bounds = outline.bounding_box();
             let frame = plain_frame(&options, || bounds)?;
             let tolerance = options.tolerance_for(bounds, &frame)?;
-            let built = self.build(&frame, outline)?;
             let budget = Arc::new(Budget::new(options.reading.limits));
+            let built = self.build(&frame, outline, &budget)?;
             let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
             let copies = &built.placement.copies;
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
@@ -230,10 +231,13 @@ impl Warper {
     }
 
     /// Builds the recipe without a drawing.
-    fn build(&self, frame: &Frame, outline: &Outline) -> Result<BuiltRecipe, Failure> {
+    fn build(&self, frame: &Frame, outline: &Outline, budget: &Budget) -> Result<BuiltRecipe, Failure> {
         let mut recipe = self.resolved.clone();
         references::resolve_names(&self.registry, &mut recipe, |name| Err(no_document(name)))?;
-        recipe.build(&self.registry, frame.clone(), &std::iter::once(outline)).map_err(Failure::of_recipe)
+        let outlines = std::iter::once(outline);
+        let built = recipe.build_within(&self.registry, frame.clone(), &outlines, budget);
+        let built = built.map_err(Failure::of_recipe)?;
+        built.failure().map_or(Ok(built.clone()), |e| Err(Failure::of_recipe(e)))
     }
 }
 

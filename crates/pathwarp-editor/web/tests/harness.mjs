@@ -31,11 +31,16 @@ export const sample = (name) => join(root, "samples", name);
 /** A folder for settings, so that the user's own presets stay out of the tests. */
 const settings = mkdtempSync(join(tmpdir(), "pathwarp-settings-"));
 
+// One listener for every program that is started.
+process.setMaxListeners(0);
+
 /** Starts the editor on a file. */
 export async function edit(file, ...args) {
   const child = spawn(program, ["edit", basename(file), "--no-open", ...args], {
     cwd: join(file, ".."), stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, XDG_CONFIG_HOME: settings },
   });
+  // A test that fails leaves no program behind.
+  process.once("exit", () => child.kill("SIGKILL"));
   let errors = "";
   child.stderr.on("data", (text) => (errors += text));
   const address = await new Promise((resolve, reject) => {

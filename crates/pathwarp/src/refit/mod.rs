@@ -104,5 +104,6 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
         }
     }
     out.report.segments_in = outline.segs().count();
+    out.report.name_a_miss(outline, options.tolerance);
     Ok(out.finish())
 }
