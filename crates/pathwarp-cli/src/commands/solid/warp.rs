@@ -22,7 +22,7 @@ use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::mesh::{Deformed, MeshError, MeshFault, Undefined3, deform, refine};
 use pathwarp_solid::{Box3, Frame3, recipe};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 pub(super) fn command(info: &Info) -> Command {
@@ -98,7 +98,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    fn run(&self, input: &PathBuf) -> Result<Status, Failure> {
+    fn run(&self, input: &Path) -> Result<Status, Failure> {
         let started = Instant::now();
         let options = self.options;
         let flags = Flags::of(self.registry as &dyn Catalogue);
