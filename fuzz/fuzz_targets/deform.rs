@@ -24,8 +24,8 @@ const SPECIAL: [f64; 12] = [0.0, 1.0, -1.0, 0.5, 100.0, 50.0, 1e-9, -1e-300, 1e6
 
 /// Pieces of formulas, for parameters of text.
 const WORDS: [&str; 24] = [
-    "x", "y", "+", "-", "*", "/", "sin(", "abs(", "sqrt(", "pow(", ",", ")", "min(", "if(", "<", "3", "0.1", "1e3", ":", " ", "w", "^",
-    "frac(", "atan2(",
+    "x", "y", "+", "-", "*", "/", "sin(", "abs(", "sqrt(", "pow(", ",", ")", "min(", "if(", "<", "3", "0.1", "1e3",
+    ":", " ", "w", "^", "frac(", "atan2(",
 ];
 
 /// What is fuzzed.
@@ -68,7 +68,8 @@ fn number(u: &mut Unstructured<'_>) -> Result<f64> {
 fn path(u: &mut Unstructured<'_>) -> Result<String> {
     let mut out = format!("M{} {}", number(u)?, number(u)?);
     for _ in 0..u.int_in_range(1..=SEGMENTS)? {
-        let (letter, numbers) = *u.choose(&[('L', 2), ('C', 6), ('Q', 4), ('c', 6), ('l', 2), ('A', 5), ('Z', 0), ('M', 2), ('S', 4)])?;
+        let (letter, numbers) =
+            *u.choose(&[('L', 2), ('C', 6), ('Q', 4), ('c', 6), ('l', 2), ('A', 5), ('Z', 0), ('M', 2), ('S', 4)])?;
         if letter == 'A' {
             let (large, sweep): (bool, bool) = u.arbitrary()?;
             let _ = write!(out, "A{} {} {} ", number(u)?, number(u)?, number(u)?);

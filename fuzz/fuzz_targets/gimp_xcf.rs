@@ -6,7 +6,13 @@ use std::io::Cursor;
 
 fuzz_target!(|data: &[u8]| {
     let Ok(salvaged) = pathwarp_gimp::salvage(Cursor::new(data)) else { return };
-    assert!(salvaged.file.paths.iter().flat_map(|p| &p.strokes).all(|s| s.points.as_flattened().iter().all(|v| v.is_finite())));
+    assert!(
+        salvaged.file.paths.iter().flat_map(|p| &p.strokes).all(|s| s
+            .points
+            .as_flattened()
+            .iter()
+            .all(|v| v.is_finite()))
+    );
     if salvaged.damage.is_some() || !matches!(salvaged.file.kind, pathwarp_gimp::FileKind::Xcf(_)) {
         return;
     }

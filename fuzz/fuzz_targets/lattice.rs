@@ -19,7 +19,8 @@ use std::sync::LazyLock;
 const FILE: &str = "f.json";
 
 static REGISTRY: LazyLock<Registry> = LazyLock::new(Registry::builtin);
-static PATH: LazyLock<Outline> = LazyLock::new(|| Outline::from_svg_lossy("M10 10C40 0 60 30 90 10V60A20 10 0 0 1 50 70L10 60Z"));
+static PATH: LazyLock<Outline> =
+    LazyLock::new(|| Outline::from_svg_lossy("M10 10C40 0 60 30 90 10V60A20 10 0 0 1 50 70L10 60Z"));
 
 /// All parameters that read files, with their deformations' tables.
 static READERS: LazyLock<Vec<(&'static str, &'static [Param], &'static str)>> = LazyLock::new(|| {

@@ -14,7 +14,8 @@ use pathwarp_cli::Bender;
 use pathwarp_fuzz::{bounded, let_libraries_panic, limits};
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::{
-    Document, Gradients, Images, OnError, PageFit, Patterns, ReadOptions, Selection, Strokes, Structure, WarpOptions, usvg_tree,
+    Document, Gradients, Images, OnError, PageFit, Patterns, ReadOptions, Selection, Strokes, Structure, WarpOptions,
+    usvg_tree,
 };
 use std::sync::Arc;
 
@@ -41,7 +42,9 @@ fn built(choice: u8, document: &Document) -> Option<BuiltRecipe> {
 fn options(choice: u8, built: &BuiltRecipe, document: &Document) -> WarpOptions {
     let bender = Arc::new(Bender::new(Arc::new(built.map.clone()), None).with_limits(limits()));
     let size = document.view_box().size().to_vec2().hypot();
-    let refit = refit::Options::new(1e-3 * size.clamp(1.0, 1e6)).with_merge(choice & 8 != 0).with_budget(document.budget().clone());
+    let refit = refit::Options::new(1e-3 * size.clamp(1.0, 1e6))
+        .with_merge(choice & 8 != 0)
+        .with_budget(document.budget().clone());
     let bit = |n: u8| choice & n != 0;
     WarpOptions::new(refit)
         .with_on_error(OnError::Skip)

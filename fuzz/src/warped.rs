@@ -2,11 +2,11 @@
 
 use crate::limits;
 use pathwarp::budget::Budget;
-use pathwarp::kurbo::{CubicBez, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect};
+use pathwarp::kurbo::{CubicBez, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp::refit::{Assurance, Options, RefittedPath, warp_path};
-use pathwarp::Outline;
+use pathwarp::{Outline, Seg};
 use std::sync::Arc;
 
 /// Samples of each source segment.
@@ -44,7 +44,7 @@ pub fn check_map(path: &Outline, map: &dyn Map, options: &Options) {
     assert!(warped.path.is_finite(), "{:?}", warped.path);
     let report = &warped.report;
     assert!(report.max_error >= 0.0, "{report:?}");
-    let size = largest(path.bounding_box()).max(largest(Some(warped.path.control_box())));
+    let size = path.segs().map(extent).chain([largest(warped.path.control_box())]).fold(0.0, f64::max);
     if !report.over_budget.is_empty() || options.tolerance < FINEST * size {
         return;
     }
@@ -54,8 +54,16 @@ pub fn check_map(path: &Outline, map: &dyn Map, options: &Options) {
 }
 
 /// The largest coordinate of a box.
-fn largest(bounds: Option<Rect>) -> f64 {
-    bounds.map_or(0.0, |b| [b.x0, b.y0, b.x1, b.y1].iter().fold(0.0, |a: f64, v| a.max(v.abs())))
+fn largest(b: Rect) -> f64 {
+    [b.x0, b.y0, b.x1, b.y1].iter().fold(0.0, |a: f64, v| a.max(v.abs()))
+}
+
+/// The size of the numbers that a segment is computed with.
+fn extent(seg: &Seg) -> f64 {
+    match seg {
+        Seg::Arc(a) => a.center.to_vec2().hypot() + a.a.hypot() + a.b.hypot(),
+        other => largest(other.to_cubic().bounding_box()),
+    }
 }
 
 /// The same bits, also for numbers that are not equal to themselves.
@@ -73,10 +81,10 @@ fn measure(path: &Outline, map: &dyn Map, warped: &RefittedPath, tolerance: f64)
         for i in 0..=SAMPLES {
             let at = seg.eval(i as f64 / SAMPLES as f64);
             let image = map.point(at);
-            if !image.is_finite() {
+            let size = image.to_vec2().hypot() + derivative_size(map, at) * at.to_vec2().hypot();
+            if !image.is_finite() || !size.is_finite() {
                 continue;
             }
-            let size = image.to_vec2().hypot() + derivative_size(map, at) * at.to_vec2().hypot();
             let estimated = if warped.report.assurance == Assurance::Checked { ESTIMATED } else { 1.0 };
             let allowed = tolerance * (estimated + ACCURACY) + ROUNDING * size;
             let found = distance(&pieces, image, ACCURACY * tolerance, allowed);
@@ -116,7 +124,10 @@ fn distance(pieces: &[PathSeg], p: Point, accuracy: f64, enough: f64) -> f64 {
 fn sampled(c: &CubicBez, p: Point) -> f64 {
     const STEPS: usize = 64;
     let at = |t: f64| c.eval(t).distance(p);
-    let (near, _) = (0..=STEPS).map(|i| i as f64 / STEPS as f64).map(|t| (t, at(t))).fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
+    let (near, _) = (0..=STEPS)
+        .map(|i| i as f64 / STEPS as f64)
+        .map(|t| (t, at(t)))
+        .fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
     let (mut low, mut high) = ((near - 1.0 / STEPS as f64).max(0.0), (near + 1.0 / STEPS as f64).min(1.0));
     for _ in 0..60 {
         let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);

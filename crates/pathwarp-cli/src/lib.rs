@@ -18,6 +18,7 @@ mod bitmap;
 mod catalogue;
 mod commands;
 mod decimals;
+pub mod embed;
 mod export;
 mod failure;
 mod format;

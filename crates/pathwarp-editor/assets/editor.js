@@ -270,7 +270,7 @@
       const before2 = (n) => n > 0 ? segments[n - 1] : joined ? segments[last] : void 0;
       const after = (n) => segments[n];
       const at = (n) => n === 0 ? sub.start : end(n - 1);
-      const name = words(param);
+      const name = param === this.deformation.name ? called(this.deformation) : words(param);
       for (let n = 0; n < nodes; n++) {
         const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
         const key = `${param}/${id}/${n}`;
@@ -310,10 +310,12 @@
             group: `${param}/${id}`,
             get: () => [seg[k], seg[k + 1]],
             set: (to, smooth) => {
+              const other = side === "in" ? after(n) : before2(n);
+              const m = side === "in" ? 0 : 2;
+              const turns = smooth && other?.length === 6 && isSmooth(at(n), [seg[k], seg[k + 1]], [other[m], other[m + 1]]);
               seg[k] = to[0];
               seg[k + 1] = to[1];
-              const other = side === "in" ? after(n) : before2(n);
-              if (smooth && other?.length === 6) align(other, side === "in" ? 0 : 2, at(n), to);
+              if (turns) align(other, m, at(n), to);
             }
           });
         };
@@ -356,7 +358,8 @@
         }
         at = to;
       }
-      out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed });
+      const isQuadrangle = sub.segments.length === 3 && sub.segments.every((seg) => seg.length === 2);
+      out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed || isQuadrangle });
     }
     /** Writes the values of a parameter into the step. */
     write(name) {
@@ -378,6 +381,7 @@
     }
     /** Adds a point where the step takes any number of them. Returns the key of its handle. */
     add(at) {
+      if (!this.grows) return null;
       for (const { name, repeat, notation } of this.deformation.params) {
         const grip = this.grips[name];
         if (!repeat || !grip) continue;
@@ -398,6 +402,7 @@
     }
     /** Returns `true` if points can be added. */
     get grows() {
+      if (Object.values(this.grips).some((grip) => grip.net)) return false;
       return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
     }
     /** The handle on the other side of the frame's middle, if one is there. */
@@ -432,6 +437,11 @@
   }
   function same(a, b) {
     return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
+  }
+  var OPPOSITE = -0.9995;
+  function isSmooth(node2, a, b) {
+    const [ax, ay, bx, by] = [a[0] - node2[0], a[1] - node2[1], b[0] - node2[0], b[1] - node2[1]];
+    return ax * bx + ay * by < OPPOSITE * Math.hypot(ax, ay) * Math.hypot(bx, by);
   }
   function align(segment, k, node2, to) {
     const [dx, dy] = [node2[0] - to[0], node2[1] - to[1]];
@@ -558,7 +568,10 @@
         this.take(answer);
         return true;
       });
-      if (!done && this.state && this.isConnected) await this.load(this.state).then(() => this.fail(this.problem));
+      if (done || !this.state || !this.isConnected) return;
+      const { problem } = this;
+      await this.load(this.state);
+      this.fail(problem);
     }
     /** Undoes or redoes. */
     async turn(direction) {
@@ -952,7 +965,8 @@
         this.app.state = state;
         this.app.tell("state");
       }
-      toast([`Saved ${written}`, ...warnings].join(". "));
+      const name = written.split(/[\\/]/).pop() ?? written;
+      toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
     }
     async copyCommand() {
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
@@ -1006,7 +1020,7 @@
       const more = deformation.params.filter((p) => !isMain(p));
       const gives = more.some((p) => p.kind === "file" && step2.args[p.name]);
       const parts = [
-        h("p", { class: "about" }, sentence(deformation.about || deformation.title)),
+        h("p", { class: "about" }, sentence(deformation.title)),
         ...main.map((p) => this.control(p)),
         more.length > 0 && h("details", { class: "more", open: gives }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p)))
       ];
@@ -1149,10 +1163,8 @@
     const raw = (to - from) / 400;
     return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
   }
-  function sentence(text) {
-    const first = capital2(text.split("\n")[0] ?? "");
-    const end = first.indexOf(". ");
-    return end < 0 ? first : first.slice(0, end + 1);
+  function sentence(title) {
+    return `${capital2(title)}${/[.…]$/.test(title) ? "" : "."}`;
   }
   function capital2(text) {
     return plain(text.charAt(0).toUpperCase() + text.slice(1));
@@ -1295,15 +1307,17 @@
       const colour = shade(factor);
       byColour.set(colour, [...byColour.get(colour) ?? [], `M${d}Z`]);
     });
-    return Array.from(byColour, ([fill2, d]) => s("path", { d: d.join(""), fill: fill2 }));
+    return Array.from(byColour, ([colour, d]) => {
+      const [fill2, opacity] = colour.split("/");
+      return s("path", { d: d.join(""), fill: fill2, "fill-opacity": opacity });
+    });
   }
+  var STRONGEST = 0.8;
   function shade(factor) {
-    if (factor < 0) return "#e11d2e";
+    if (factor < 0) return "#e11d2e/0.85";
     const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));
     const step2 = Math.round(amount * 8) / 8;
-    const [r, g, b] = step2 < 0 ? [37, 99, 235] : [234, 119, 6];
-    const mix = (c) => Math.round(255 + (c - 255) * Math.abs(step2));
-    return `rgb(${mix(r)} ${mix(g)} ${mix(b)})`;
+    return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
   }
 
   // src/nodes.ts
@@ -1404,9 +1418,12 @@
     /** Shows the whole page. */
     fit() {
       const { state } = this.app;
-      const [width, height] = this.size;
+      const [width, whole] = this.size;
+      const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
+      const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
+      const height = Math.max(whole - covered, whole / 4);
       if (!state || width === 0 || height === 0) return;
-      this.camera.fit(state.page, this.size, Math.min(MARGIN, width / 10));
+      this.camera.fit(state.page, [width, height], Math.min(MARGIN, width / 10));
       this.isFitted = true;
       this.layout();
     }
@@ -1775,8 +1792,16 @@
   on("zoom-out", () => stage.zoom(1 / ZOOM));
   on("fit", () => stage.fit());
   on("start-over", () => void app.arrange([], 0));
-  on("open-shapes", () => document.body.classList.toggle("shapes-open"));
-  on("open-settings", () => document.body.classList.toggle("settings-open"));
+  function sheet(name) {
+    const { classList } = document.body;
+    const opens = name !== null && !classList.contains(name);
+    if (!opens && !classList.contains("shapes-open") && !classList.contains("settings-open")) return;
+    classList.remove("shapes-open", "settings-open");
+    if (opens) classList.add(name);
+    stage.fit();
+  }
+  on("open-shapes", () => sheet("shapes-open"));
+  on("open-settings", () => sheet("settings-open"));
   stage.onZoom = () => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
@@ -1833,7 +1858,9 @@
       if (key === "escape") stage.pick(null);
     }
   });
-  byId("stage").addEventListener("pointerdown", () => document.body.classList.remove("shapes-open", "settings-open"));
+  byId("stage").addEventListener("pointerdown", (e) => {
+    if (!e.target.closest(".knob")) sheet(null);
+  });
   window.addEventListener("keyup", (e) => {
     if (e.key.toLowerCase() === "b") void stage.before(false);
   });
@@ -1883,14 +1910,17 @@
     if (change === "handles") {
       const grows = app.handles?.grows ?? false;
       const has = (app.handles?.handles.length ?? 0) > 0;
-      const isCurve = app.handles?.handles.some((h2) => h2.shape === "control") ?? false;
+      const isCurve = app.handles?.handles.some((h2) => /\/(in|out)$/.test(h2.key)) ?? false;
       byId("smooth").hidden = !isCurve;
       byId("mirror").hidden = !has;
       byId("snap").hidden = !has;
-      const note = !has ? "Use the settings on the right" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
+      const note = !has ? "Change the settings" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
       byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
     }
-    if (change === "link") byId("gone").hidden = app.isConnected;
+    if (change === "link") {
+      byId("gone").hidden = app.isConnected;
+      byId("gone-kept").textContent = state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing.";
+    }
     if (change === "state" && state?.restored && !announced) {
       announced = true;
       toast("Your last, unsaved steps are here again");

@@ -9,7 +9,7 @@ const LABELS: [(&str, &str); 15] = [
     ("shaper", "Cage"),
     ("warp", "Style"),
     ("wordart", "Text shape"),
-    ("bilinear", "Even quadrangle"),
+    ("bilinear", "Four corners"),
     ("birational", "Two rows"),
     ("polar", "Ring"),
     ("ffd", "Grid"),

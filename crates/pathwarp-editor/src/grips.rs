@@ -112,7 +112,12 @@ pub(crate) fn path_data(outline: &Outline) -> String {
     let mut out = String::new();
     for s in &outline.subpaths {
         let _ = write!(out, "M{},{} ", s.start.x, s.start.y);
-        for seg in &s.segs {
+        // `Z` draws the closing line.
+        let segs = match s.segs.split_last() {
+            Some((Seg::Line(_), rest)) if s.closed => rest,
+            _ => &s.segs,
+        };
+        for seg in segs {
             let _ = match seg {
                 Seg::Line(l) => write!(out, "L{},{} ", l.p1.x, l.p1.y),
                 other => {

@@ -25,6 +25,7 @@ mod protocol;
 mod saving;
 mod server;
 mod session;
+mod shared;
 mod socket;
 mod stretch;
 

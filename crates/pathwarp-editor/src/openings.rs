@@ -39,6 +39,10 @@ const NEUTRAL: [(&str, &str, &[&str]); 13] = [
     ("ffd", "degree", &["3x3"]),
 ];
 
+/// Values that show something, where the registry's example suits its own drawing only.
+const SHOWING: [(&str, &str, &[&str]); 2] =
+    [("anamorph", "distance", &["300%"]), ("anamorph", "onto", &["cylinder:radius=80%"])];
+
 /// The first values of a deformation for artwork in `frame`.
 pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
     let mut out: BTreeMap<String, Vec<String>> = BTreeMap::new();
@@ -62,6 +66,12 @@ pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>>
 /// The values that show the effect of a deformation on artwork in `frame`.
 pub(crate) fn example(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
     let mut out: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (_, param, values) in SHOWING.iter().filter(|(deformation, ..)| *deformation == info.name) {
+        out.insert((*param).to_owned(), values.iter().map(|v| (*v).to_owned()).collect());
+    }
+    if !out.is_empty() {
+        return out;
+    }
     for (name, value) in info.demo {
         if let Some(p) = info.params.iter().find(|p| p.name == *name) {
             out.entry((*name).to_owned()).or_default().push(from_demo(p, value, frame));

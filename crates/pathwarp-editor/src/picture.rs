@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn nothing_that_runs_or_loads_is_left() {
-        let hostile = "<script>alert(1)</script><path d='M0,0 H9 V9' onclick='alert(2)' style='fill:url(http://a.example/p)'/>\
+        let hostile = "<script>alert(1)</script><path d='M0,0 H9 V9' onclick='alert(2)' style='fill:green;background:url(http://a.example/p)'/>\
             <foreignObject width='9' height='9'><body xmlns='http://www.w3.org/1999/xhtml'><img src='http://b.example/'/></body>\
             </foreignObject><a xlink:href='javascript:alert(3)'><rect width='3' height='3'/></a>\
             <image xlink:href='http://c.example/x.png' width='5' height='5'/><animate onbegin='alert(4)'/>\

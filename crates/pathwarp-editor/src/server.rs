@@ -4,12 +4,13 @@ use crate::draft::Draft;
 use crate::guard::Guard;
 use crate::host::Host;
 use crate::session::Session;
+use crate::shared::{OpenPage, Shared};
 use crate::{http, socket};
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A page that is reloaded connects again within this time.
@@ -32,38 +33,6 @@ pub struct Options {
     pub open: bool,
 }
 
-/// What the connections share.
-pub(crate) struct Shared {
-    pub(crate) session: Mutex<Session>,
-    pub(crate) pages: Pages,
-}
-
-/// The pages that are open.
-#[derive(Default)]
-pub(crate) struct Pages {
-    open: AtomicUsize,
-    ever: AtomicUsize,
-    /// Counts the changes of the session, so that every page notices those of the others.
-    pub(crate) changes: AtomicUsize,
-}
-
-/// A page while it is connected.
-pub(crate) struct OpenPage(Arc<Shared>);
-
-impl OpenPage {
-    pub(crate) fn new(shared: &Arc<Shared>) -> Self {
-        shared.pages.open.fetch_add(1, Ordering::SeqCst);
-        shared.pages.ever.fetch_add(1, Ordering::SeqCst);
-        Self(Arc::clone(shared))
-    }
-}
-
-impl Drop for OpenPage {
-    fn drop(&mut self) {
-        self.0.pages.open.fetch_sub(1, Ordering::SeqCst);
-    }
-}
-
 /// Opens the drawing, calls `announce` with the address of the page, and answers it until it is closed.
 ///
 /// # Errors
@@ -83,7 +52,7 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl FnOnce(&str)
             let _ = open::that_detached(&address);
         }
         listener.set_nonblocking(true)?;
-        let shared = Arc::new(Shared { session: Mutex::new(session), pages: Pages::default() });
+        let shared = Arc::new(Shared::new(session));
         accept(&listener, &guard, &shared);
         Ok(())
     };
@@ -101,7 +70,7 @@ fn accept(listener: &TcpListener, guard: &Guard, shared: &Arc<Shared>) {
     let busy = Arc::new(AtomicUsize::new(0));
     let mut last_open = Instant::now();
     loop {
-        if shared.pages.open.load(Ordering::SeqCst) > 0 || shared.pages.ever.load(Ordering::SeqCst) == 0 {
+        if shared.pages.is_awaited() {
             last_open = Instant::now();
         }
         if last_open.elapsed() > GRACE {
@@ -132,12 +101,5 @@ fn connection(stream: TcpStream, guard: &Guard, shared: &Arc<Shared>) {
         let page = OpenPage::new(shared);
         let _ = socket::run(stream, shared);
         drop(page);
-    }
-}
-
-impl Shared {
-    /// Works on the session. A panic in another connection does not end the editor: the steps are stored before work begins.
-    pub(crate) fn with_session<T>(&self, f: impl FnOnce(&mut Session) -> T) -> T {
-        f(&mut self.session.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::picture::Picture;
 use crate::protocol::{Message, Request};
-use crate::server::Shared;
 use crate::session::{Session, Shown};
+use crate::shared::Shared;
 use serde_json::{Value, json};
 use std::io;
 use std::net::TcpStream;

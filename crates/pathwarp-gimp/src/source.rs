@@ -47,11 +47,11 @@ impl<'a> ByteSource<'a> {
         Self { backend, at: 0, end: limits.of(Limit::ImageBytes) as u64, limits, unpacked: 0 }
     }
 
-    /// The error about byte `to`, which is beyond the end; `problem` is for files, whose end is known.
-    pub(crate) fn beyond(&self, at: u64, to: u64, problem: String) -> Error {
+    /// The error about byte `to`, which is beyond the end: that of a file is `known`, that of a stream is a limit.
+    pub(crate) fn beyond(&self, to: u64, known: Error) -> Error {
         match (&self.backend, self.limits.check(Limit::ImageBytes, to as f64)) {
-            (Backend::Stream(_), Err(e)) => Error::too_large(at, "unpacked, the file takes", e.cut_short()),
-            _ => Error::damaged(at, problem),
+            (Backend::Stream(_), Err(e)) => Error::too_large(known.offset, "unpacked, the file takes", e.cut_short()),
+            _ => known,
         }
     }
 
@@ -138,7 +138,7 @@ impl<'a> ByteSource<'a> {
     pub(crate) fn seek(&mut self, to: u64, what: &str) -> Result<(), Error> {
         if to > self.end {
             let problem = format!("{what} points to byte {to}, but the file ends at {}", self.end);
-            return Err(self.beyond(self.at, to, problem));
+            return Err(self.beyond(to, Error::damaged(self.at, problem)));
         }
         match &mut self.backend {
             Backend::File(f) => {
@@ -166,7 +166,8 @@ impl<'a> ByteSource<'a> {
 
     pub(crate) fn skip(&mut self, count: u64, what: &str) -> Result<(), Error> {
         if count > self.left() {
-            return Err(Error::truncated(self.at, &format!("{what} needs {count} bytes"), self.left()));
+            let known = Error::truncated(self.at, &format!("{what} needs {count} bytes"), self.left());
+            return Err(self.beyond(self.at.saturating_add(count), known));
         }
         self.seek(self.at + count, what)
     }

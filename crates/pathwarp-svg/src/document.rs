@@ -89,6 +89,11 @@ impl Document {
         &self.drawing.budget
     }
 
+    /// Forgets what is used of the limits: for programs that warp a drawing again and again, to which the limits apply each time.
+    pub fn renew_budget(&mut self) {
+        self.drawing.budget = Arc::new(Budget::new(*self.drawing.budget.limits()));
+    }
+
     #[cfg(feature = "usvg")]
     pub(crate) fn drawing(&self) -> &Drawing {
         &self.drawing

@@ -21,14 +21,30 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 //!
-//! # Structure
+//! [`WarpOptions`] say what is warped ([`Selection`]) and what becomes of text, strokes, gradients, patterns, images and the page.
+//! Nothing is lost silently: the [`WarpedDocument`] has a [`ShapeReport`] for every shape, with the error of its curves, and names
+//! what was left as it was and what was changed:
 //!
-//! Four rooms, each of which may use those before it: `source` (the text and its elements), `scene` (the drawing as it is
-//! painted), `bend` (its image under the map), `write` (the result as text).
+//! ```
+//! # use pathwarp::{deform::Swirl, kurbo::Point, refit};
+//! # use pathwarp_svg::{Document, ReadOptions, Warning, WarpOptions};
+//! let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 50'><text id='a' y='30' font-family='Nowhere'>Hi</text></svg>";
+//! let document = Document::read(svg.as_bytes(), "example.svg", &ReadOptions::default().with_system_fonts(false))?;
+//! let swirl = Swirl::new(Point::new(10.0, 25.0), 60.0).build()?;
+//!
+//! let warped = document.warp(&swirl.map, &WarpOptions::new(refit::Options::new(0.01)))?;
+//! assert!(warped.shapes.iter().all(|shape| shape.max_error <= 0.01));
+//! assert!(warped.skipped.is_empty());
+//! assert_eq!(warped.warnings, [Warning::MissingFonts(vec!["Nowhere".into()])]);
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
+//!
+//! A [`Document`] also lists its shapes and named paths as [`Outline`](pathwarp::Outline)s, which can serve as cages and guides.
+//! [`Plot`] flattens it for machines that cut, and [`Origin`] embeds the source of a result, to undo the warp later.
 //!
 //! # Features
 //!
-//! - `parallel` (default): bend shapes on all processors.
+//! - `parallel` (default): bends shapes on all processors.
 //! - `usvg`: adds the module `usvg_tree`, which exposes types of usvg and is exempt from semantic versioning.
 
 mod bend;
@@ -48,6 +64,7 @@ pub use bend::letter_places::LetterPlaces;
 pub use bend::options::{Clones, Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions};
 pub use bend::outcome::{Overhang, ShapeReport, Skipped, WarpedDocument};
 pub use bend::picture::{BentImage, PictureError};
+pub use bend::plain::{WarpedPath, warp_path};
 pub use bend::warning::Warning;
 pub use document::Document;
 pub use embed::Origin;

@@ -1,4 +1,15 @@
-//! The Hausdorff distance between two paths.
+//! The Hausdorff distance between two paths: how far two drawings of the same shape are apart.
+//!
+//! ```
+//! use pathwarp::{Outline, distance};
+//!
+//! let circle = Outline::from_svg("M90,50 A40,40 0 1 1 10,50 A40,40 0 1 1 90,50 Z")?;
+//! let octagon = Outline::from_svg("M90,50 L78,78 L50,90 L22,78 L10,50 L22,22 L50,10 L78,22 Z")?;
+//! let apart = distance::symmetric(&circle, &octagon).unwrap_or_default();
+//! // In the middle of each side.
+//! assert!((3.0..3.3).contains(&apart), "{apart}");
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
 
 use crate::budget::{Budget, Exceeded, Limit, Limits};
 use crate::outline::{Outline, Seg};
@@ -9,9 +20,10 @@ const PER_SEGMENT: usize = 64;
 /// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
 
-/// Work of looking at a box, and at a segment, in comparisons of the budget.
-const BOX: f64 = 0.1;
-const SEGMENT: f64 = 8.0;
+/// Work of looking at a box, at a line and at a curve, in comparisons of the budget.
+const BOX: f64 = 0.05;
+const LINE: f64 = 0.2;
+const CURVE: f64 = 3.0;
 
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
@@ -40,7 +52,7 @@ fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<
     if targets.all.is_empty() {
         return Ok(None);
     }
-    let samples = from.segs().map(|s| Target::Seg(s));
+    let samples = from.segs().map(Target::Seg);
     let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut most = None;
     for sampled in samples.chain(alone) {
@@ -71,6 +83,11 @@ impl Target<'_> {
 
     fn intervals(&self) -> usize {
         if matches!(self, Self::Seg(_)) { PER_SEGMENT } else { 0 }
+    }
+
+    /// The work of [`distance`](Self::distance).
+    fn work(&self) -> f64 {
+        if matches!(self, Self::Seg(Seg::Quad(_) | Seg::Cubic(_) | Seg::Arc(_))) { CURVE } else { LINE }
     }
 
     fn eval(&self, t: f64) -> Point {
@@ -120,7 +137,7 @@ impl<'a> Targets<'a> {
     fn distance(&mut self, p: Point, enough: f64, work: &mut f64) -> f64 {
         let leaves = self.boxes.len() / 2;
         let mut best = self.all[self.last].distance(p, f64::INFINITY);
-        *work += SEGMENT;
+        *work += self.all[self.last].work();
         self.pending.clear();
         self.pending.push(1);
         while let Some(node) = self.pending.pop()
@@ -139,7 +156,7 @@ impl<'a> Targets<'a> {
                 continue;
             }
             let Some(target) = self.all.get(node - leaves) else { continue };
-            *work += SEGMENT;
+            *work += target.work();
             let d = target.distance(p, best);
             if d < best {
                 (best, self.last) = (d, node - leaves);

@@ -25,6 +25,7 @@
 //!
 //! - `serde` (default): reads JSON. Without it there are no warp styles and text shapes ([`deform::Warp`], [`deform::WordArt`]),
 //!   which are JSON themselves, and the registry's entries refuse files of lattices, meshes and handles.
+//! - `parallel`: refits long paths on all processors. The result does not depend on their number.
 //!
 //! The crate is pure: no I/O, no globals, no printing. All numbers are `f64`; coordinates are user units, y down.
 

@@ -1,4 +1,26 @@
 //! Recipes: deformations one after another, composed before anything is refitted.
+//!
+//! A [`Step`] names a deformation of a [`Registry`] and holds its arguments as text; a [`Recipe`] builds all of them into one
+//! [`Chain`]:
+//!
+//! ```
+//! use pathwarp::deform::Registry;
+//! use pathwarp::kurbo::Rect;
+//! use pathwarp::param::{Args, Frame};
+//! use pathwarp::recipe::{Recipe, Step};
+//! use pathwarp::{Outline, refit};
+//!
+//! let square = Outline::from_svg("M0,0 H100 V100 H0 Z")?;
+//! let flag = Step::new("warp", Args::from_pairs(&[("style", "flag"), ("bend", "40%")]));
+//! let turn = Step::new("affine", Args::from_pairs(&[("rotate", "10")]));
+//!
+//! let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+//! let recipe = Recipe { steps: vec![flag, turn] };
+//! let built = recipe.build(&Registry::builtin(), frame, &std::iter::once(&square))?;
+//! let warped = refit::warp_path(&square, &built.map, &refit::Options::new(0.01))?;
+//! assert!(warped.report.max_error <= 0.01);
+//! # Ok::<(), pathwarp::Error>(())
+//! ```
 
 use crate::ambiguity::ambiguity;
 use crate::budget::{Budget, Limit};

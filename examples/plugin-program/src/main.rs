@@ -3,6 +3,7 @@
 //! docs/plugin-protocol.md describes what pathwarp and this program say to each other.
 
 use std::collections::HashMap;
+use std::fs::File;
 use std::io::{self, Read, Write};
 
 const ENTRY: &str = r#"{
@@ -81,9 +82,8 @@ const DONE: u8 = 0;
 const REFUSED: u8 = 1;
 
 fn main() -> io::Result<()> {
-    let (mut input, mut output) = (io::stdin().lock(), io::stdout().lock());
+    let (mut input, mut output) = (io::stdin().lock(), unbuffered()?);
     output.write_all(ENTRY.as_bytes())?;
-    output.flush()?;
     let mut map = None;
     let mut body = Vec::new();
     // A request is the length of what follows, its kind, and its body. Without a further one, the program ends.
@@ -113,9 +113,17 @@ fn main() -> io::Result<()> {
         answer.push(kind);
         answer.extend(body);
         output.write_all(&answer)?;
-        output.flush()?;
     }
     Ok(())
+}
+
+/// Standard output without the buffer that cuts an answer in two wherever it has a byte like a line break.
+fn unbuffered() -> io::Result<File> {
+    #[cfg(unix)]
+    let output = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
+    #[cfg(windows)]
+    let output = std::os::windows::io::AsHandle::as_handle(&io::stdout()).try_clone_to_owned()?;
+    Ok(output.into())
 }
 
 /// The lines `NAME VALUE` of a request to build.

@@ -128,7 +128,7 @@ fn artwork_on_a_mug_is_written_as_a_mesh() {
 
 #[test]
 fn a_crate_of_one_file_adds_its_deformation() {
-    let program = support::program("pathwarp-ripple", "pathwarp-ripple");
+    let program = support::program("pathwarp-ripple");
     let dir = tempfile::tempdir().unwrap();
     let run = |args: &[&str]| std::process::Command::new(&program).args(args).current_dir(root()).output().unwrap();
     assert!(text(&run(&["list"]).stdout).contains("rings on water"));
@@ -177,6 +177,14 @@ fn list_prints_json_and_man_prints_one_command() {
     }
     let (man, _) = expect_code(0, &["man", "warp"]);
     assert!(man.contains("pathwarp-warp") && man.contains("bend") && !man.contains("anamorph"), "{man}");
+    let dir = tempfile::tempdir().unwrap();
+    let pages = dir.path().join("man/man1");
+    expect_code(0, &["man", "--out-dir", pages.to_str().unwrap()]);
+    assert_eq!(fs::read_to_string(pages.join("pathwarp-warp.1")).unwrap(), man);
+    let others = ["run", "render", "man"].iter().all(|name| pages.join(format!("pathwarp-{name}.1")).exists());
+    assert!(
+        others && fs::read_dir(&pages).unwrap().count() > registry.entries().len() && pages.join("pathwarp.1").exists()
+    );
     let (_, said) = expect_code(2, &["man", "wrap"]);
     assert!(said.contains("did you mean `warp`"), "{said}");
 }

@@ -72,7 +72,7 @@ fn overlapping_layers_are_damage() {
     let folder = Folder::with(&[("a.xcf", &file)]);
     for command in COMMANDS {
         let (code, said) = folder.run(command);
-        let rewrites = command[3..].contains(&"o.xcf");
+        let rewrites = command.last() == Some(&"o.xcf");
         assert_eq!(code != 0, rewrites, "{command:?}: {code} {said}");
     }
     assert!(!folder.path().join("o.xcf").exists());

@@ -174,7 +174,7 @@ fn never_starts() {
     fails_at_start("no program", "\u{7f}ELF and then nothing", 0o755, &["cannot be started"]);
     let scratch = Scratch::new();
     let (_, stderr) = scratch.expect(3, &["bad", "in.svg", "--plugin", "./nothing.py"]);
-    assert!(stderr.contains("nothing.py is not a file"), "{stderr}");
+    assert!(stderr.contains("nothing.py: is not a file"), "{stderr}");
 }
 
 /// A shape or an input that fails because of a plug-in does not count as skipped.

@@ -11,7 +11,7 @@ use picture::Camera;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use support::{pathwarp, pathwarp_in, root, sample};
+use support::{pathwarp, pathwarp_in, root, sample, words};
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -40,7 +40,7 @@ fn the_examples_of_help_run() {
     for e in Registry3::builtin().entries() {
         for example in e.about().info.examples {
             let command = example.command.replace("out.", &format!("{}/out.", dir.path().display()));
-            let out = pathwarp(&command.split_whitespace().collect::<Vec<_>>());
+            let out = pathwarp(&words(&command));
             assert_eq!(out.status.code(), Some(0), "{command}: {}", text(&out.stderr));
             assert_eq!(text(&out.stderr), "", "{command}");
             let after = Model::read(&fs::read_to_string(dir.path().join("out.obj")).unwrap());
@@ -288,7 +288,7 @@ fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("plate.svg"), PLATE).unwrap();
     let area = 50.0 * 20.0 - std::f64::consts::PI * 25.0;
-    let flat = report(dir.path(), &["ffd", "plate.svg", "-o", "flat.stl"]);
+    let flat = report(dir.path(), &["bend", "plate.svg", "--preset", "twist", "--angle", "0", "-o", "flat.stl"]);
     assert!((flat["after"]["area"].as_f64().unwrap() - area).abs() < 0.5, "{flat}");
     assert!(!flat["after"]["closed"].as_bool().unwrap());
     let args = ["wrap", "plate.svg", "--extrude", "3mm", "--radius", "41mm", "--refine", "0.01mm", "-o", "mug.stl"];

@@ -7,16 +7,16 @@ use pathwarp::param::Letter;
 use std::collections::HashMap;
 
 /// A fold of one shape.
-pub(super) struct Fold {
+pub(crate) struct Fold {
     /// Number of orientation changes along the shape, at least 1; 0 if it does not fold.
-    pub(super) count: usize,
+    pub(crate) count: usize,
     /// The first place where it folds.
-    pub(super) at: Option<Point>,
+    pub(crate) at: Option<Point>,
 }
 
 impl Fold {
     /// Compares the orientation of one shape with that of all artwork.
-    pub(super) fn of(shape: &Orientation, all: &Orientation) -> Self {
+    pub(crate) fn of(shape: &Orientation, all: &Orientation) -> Self {
         let at = shape.folded_against(all);
         Self { count: if at.is_some() { shape.changes.max(1) } else { 0 }, at }
     }

@@ -28,11 +28,20 @@ impl Input {
             let file = display(input);
             return Err(Failure::usage(format!("--into copies an XCF with its paths warped; {file} is not an XCF")));
         }
-        let bytes = bytes(input)?;
-        if Picture::sniff(&bytes) {
-            return Ok(Self::Picture(PictureArtwork::read(&bytes, input, options, target)?));
+        Self::of_bytes(&bytes(input)?, input, options, target)
+    }
+
+    /// A drawing or picture with this content. `input` is its name.
+    pub(crate) fn of_bytes(
+        bytes: &[u8],
+        input: &Path,
+        options: &CommonOptions,
+        target: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        if Picture::sniff(bytes) {
+            return Ok(Self::Picture(PictureArtwork::read(bytes, input, options, target)?));
         }
-        Ok(Self::Svg(Box::new(SvgArtwork::read(&bytes, input, options, target)?)))
+        Ok(Self::Svg(Box::new(SvgArtwork::read(bytes, input, options, target)?)))
     }
 
     pub(crate) fn artwork(&mut self) -> &mut dyn Artwork {

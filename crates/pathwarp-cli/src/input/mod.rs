@@ -17,6 +17,7 @@ mod svg;
 
 pub(crate) use artwork::{Artwork, Baseline, WarpRequest, WarpedResult};
 pub(crate) use data_file::read_data_file;
+pub(crate) use folds::Fold;
 pub(crate) use gimp_file::GimpFile;
 pub(crate) use gimp_format::{file_name, svg_name};
 pub(crate) use kind::Input;

@@ -15,9 +15,13 @@ fn is_stdin(input: &Path) -> bool {
     input.as_os_str() == "-"
 }
 
-/// The name of an input in messages and reports.
+/// The name of an input in messages and reports. A drawing in memory may have none.
 pub(crate) fn display(input: &Path) -> String {
-    if is_stdin(input) { "standard input".into() } else { input.display().to_string() }
+    match input.to_str() {
+        Some("-") => "standard input".into(),
+        Some("") => "the drawing".into(),
+        _ => input.display().to_string(),
+    }
 }
 
 /// Reads all bytes of a file or of standard input.

@@ -43,8 +43,6 @@ pub(crate) struct SvgArtwork {
     selection: Selection,
     /// The format of the result.
     format: Format,
-    /// The drawing is bent again and again: the work of each time is counted anew.
-    is_bent_often: bool,
 }
 
 impl SvgArtwork {
@@ -60,12 +58,12 @@ impl SvgArtwork {
         let selection =
             Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
         doc.check_selection(&selection)?;
-        Ok(Self { name, doc, read, selection, format, is_bent_often: false })
+        Ok(Self { name, doc, read, selection, format })
     }
 
-    /// The same, to be bent any number of times: limits on work then hold for each of them.
-    pub(crate) fn to_be_bent_often(self) -> Self {
-        Self { is_bent_often: true, ..self }
+    /// Counts the work from here on anew, for a drawing that is bent again and again.
+    pub(crate) fn renew_budget(&mut self) {
+        self.doc.renew_budget();
     }
 
     pub(crate) fn document(&self) -> &Document {
@@ -80,14 +78,9 @@ impl SvgArtwork {
         options.refit = options.refit.with_merge(false);
         if let Images::Warp(_) = options.images {
             let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
-            options.images = Images::Warp(Arc::new(bender.with_limits(*self.doc.budget().limits())));
+            options.images = Images::Warp(Arc::new(bender.with_budget(self.doc.budget().clone())));
         }
         Ok(self.doc.warp(&built.map, &options)?.svg)
-    }
-
-    fn budget(&self) -> Arc<Budget> {
-        let budget = self.doc.budget();
-        if self.is_bent_often { Arc::new(Budget::new(*budget.limits())) } else { budget.clone() }
     }
 
     fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
@@ -102,7 +95,7 @@ impl SvgArtwork {
         };
         let letters = LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
-        let refit = refit.with_budget(self.budget());
+        let refit = refit.with_budget(self.doc.budget().clone());
         WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(options.strokes)

@@ -66,11 +66,22 @@ impl Given {
                 "{name} is not for recipes, which describe the deformation only; give it on the command line"
             ));
         }
+        self.set(name, value)
+    }
+
+    /// Adds the value of any option. Of several values for an option that does not repeat, the last wins.
+    pub(crate) fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let option = OPTIONS.iter().find(|o| o.name == name).ok_or_else(|| unknown(name))?;
         option.check(value).map_err(|e| format!("{name}: {e}"))?;
         let mut all = std::mem::take(self);
         all.values.push((option, vec![value.into()]));
         *self = Self::default().overridden_by(&all);
         Ok(())
+    }
+
+    /// The names of the options given.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.values.iter().map(|(o, _)| o.name)
     }
 
     /// Merges the options of two parts of a chain.

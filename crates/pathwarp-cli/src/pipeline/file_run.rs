@@ -9,7 +9,7 @@ use crate::output::PendingFile;
 use crate::report::{FileReport, ReportedShape};
 use crate::units::MM_PER_PX;
 use crate::{recipe_file, references};
-use pathwarp::deform::{Explanation, Registry};
+use pathwarp::deform::{Explanation, Registry, SavedFile};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
@@ -24,7 +24,22 @@ pub(super) struct Batch<'a> {
     pub(super) flags: Flags,
 }
 
-/// One input, warped. Nothing is written yet.
+/// One input, warped. Nothing is written yet, not even to temporary files, except for `files`.
+pub(super) struct WarpedInput {
+    pub(super) result: WarpedResult,
+    pub(super) report: FileReport,
+    /// As in [`FileRun`].
+    past_page: Option<f64>,
+    pub(super) notes: Vec<String>,
+    partial: bool,
+    /// Files that deformations save.
+    saves: Vec<SavedFile>,
+    /// Files besides the result.
+    files: Vec<PendingFile>,
+    preview: Option<Vec<u8>>,
+}
+
+/// One input, warped. No file is in place yet.
 pub(super) struct FileRun {
     pub(super) report: FileReport,
     pub(super) files: Vec<PendingFile>,
@@ -38,9 +53,30 @@ pub(super) struct FileRun {
 impl Batch<'_> {
     /// Warps one input; without a target the result goes to standard output.
     pub(super) fn run(&self, job: &Job) -> Result<FileRun, Failure> {
-        let Batch { registry, options, .. } = self;
         let target = job.target.as_deref();
-        let mut input = Input::open(&job.input, options, target)?;
+        let mut input = Input::open(&job.input, self.options, target)?;
+        let WarpedInput { result, mut report, past_page, notes, partial, saves, preview, files: others } =
+            self.warp(&mut input)?;
+        report.output = target.or(self.options.into.as_deref()).map(|t| t.display().to_string());
+        let mut files = Vec::new();
+        match (result, target) {
+            (WarpedResult::File(file), _) => files.push(file),
+            (WarpedResult::Bytes(bytes), Some(t)) => files.push(PendingFile::new(t, &bytes)?),
+            (WarpedResult::Bytes(bytes), None) => files.push(PendingFile::stdout(bytes)),
+        }
+        files.extend(others);
+        for file in saves {
+            files.push(PendingFile::new(Path::new(&file.name), file.text.as_bytes())?);
+        }
+        if let (Some(file), Some(png)) = (&job.preview, preview) {
+            files.push(PendingFile::new(file, &png)?);
+        }
+        Ok(FileRun { report, files, past_page, notes, partial })
+    }
+
+    /// Warps one input and writes nothing. The report names no output.
+    pub(super) fn warp(&self, input: &mut Input) -> Result<WarpedInput, Failure> {
+        let Batch { registry, options, .. } = self;
         let artwork = input.artwork();
         let mut recipe = self.recipe.clone();
         let guides = references::resolve_names(registry, &mut recipe, |name| artwork.path_named(name))?;
@@ -66,24 +102,11 @@ impl Batch<'_> {
         sound()?;
         let warped = warped.map_err(|f| explained(f, &built))?;
 
-        let mut files = Vec::new();
-        match (warped.result, target) {
-            (WarpedResult::File(file), _) => files.push(file),
-            (WarpedResult::Bytes(bytes), Some(t)) => files.push(PendingFile::new(t, &bytes)?),
-            (WarpedResult::Bytes(bytes), None) => files.push(PendingFile::stdout(bytes)),
-        }
-        files.extend(warped.files);
-        for file in built.steps.iter().flat_map(|s| &s.saves) {
-            files.push(PendingFile::new(Path::new(&file.name), file.text.as_bytes())?);
-        }
-        if let (Some(file), Some(png)) = (&job.preview, warped.preview) {
-            files.push(PendingFile::new(file, &png)?);
-        }
         let mut warnings: Vec<String> = self.in_flags(&built, |e| &e.warnings).chain(warped.warnings).collect();
         warnings.extend(warped.overhang.map(advice::overhang));
         let report = FileReport {
             file: artwork.file_name(),
-            output: target.or(options.into.as_deref()).map(|t| t.display().to_string()),
+            output: None,
             error: None,
             tolerance: Some(tolerance),
             frame: Some([frame_box.x0, frame_box.y0, frame_box.width(), frame_box.height()]),
@@ -94,7 +117,16 @@ impl Batch<'_> {
         };
         let partial = warped.partial || report.is_partial();
         let notes = self.notes(&built, framed, &report.shapes);
-        Ok(FileRun { report, files, past_page: warped.overhang.map(|o| o.share), notes, partial })
+        Ok(WarpedInput {
+            result: warped.result,
+            past_page: warped.overhang.map(|o| o.share),
+            saves: built.steps.into_iter().flat_map(|s| s.saves).collect(),
+            files: warped.files,
+            preview: warped.preview,
+            report,
+            notes,
+            partial,
+        })
     }
 
     /// The decisions made on the user's behalf.

@@ -4,6 +4,7 @@
 mod file_run;
 mod folders;
 mod inputs;
+mod memory;
 mod messages;
 mod naming;
 mod plan;
@@ -22,6 +23,7 @@ use file_run::{Batch, FileRun};
 pub(crate) use file_run::{explained, first_baseline};
 use folders::Folders;
 use indicatif::ProgressBar;
+pub(crate) use memory::warp_bytes;
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use plan::Job;

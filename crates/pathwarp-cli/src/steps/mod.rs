@@ -4,4 +4,4 @@ mod chain;
 mod params;
 
 pub(crate) use chain::parts;
-pub(crate) use params::{INVERSE, args, step};
+pub(crate) use params::{INVERSE, args, in_lower_case, step};

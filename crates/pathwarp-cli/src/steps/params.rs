@@ -60,7 +60,7 @@ pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Ste
 }
 
 /// A name that differs from a known one only in case, as that one.
-fn in_lower_case(p: &Param, value: &str) -> String {
+pub(crate) fn in_lower_case(p: &Param, value: &str) -> String {
     let (Kind::NameOrFile(names) | Kind::Choice(names)) = p.kind else { return value.to_owned() };
     let same = names.iter().find(|n| n.eq_ignore_ascii_case(value));
     same.map_or_else(|| value.to_owned(), |n| (*n).to_owned())

@@ -142,7 +142,11 @@ export class App {
       this.take(answer);
       return true;
     });
-    if (!done && this.state && this.isConnected) await this.load(this.state).then(() => this.fail(this.problem));
+    if (done || !this.state || !this.isConnected) return;
+    // Back to what can be bent, with the reason on show.
+    const { problem } = this;
+    await this.load(this.state);
+    this.fail(problem);
   }
 
   /** Undoes or redoes. */

@@ -2,7 +2,7 @@
 
 import type { Deformation, Grip, Net, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, valuesOf } from "./values";
-import { words } from "./dom";
+import { called, words } from "./dom";
 
 export type Shape = "node" | "control" | "source";
 
@@ -129,7 +129,7 @@ export class Handles {
     const before = (n: number) => (n > 0 ? segments[n - 1] : joined ? segments[last] : undefined);
     const after = (n: number) => segments[n];
     const at = (n: number): XY => (n === 0 ? sub.start : end(n - 1));
-    const name = words(param);
+    const name = param === this.deformation.name ? called(this.deformation) : words(param);
     for (let n = 0; n < nodes; n++) {
       const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
       const key = `${param}/${id}/${n}`;
@@ -155,10 +155,13 @@ export class Handles {
           key: `${key}/${side}`, param, shape: "control", label: `${label}, handle ${side === "in" ? 1 : 2}`, group: `${param}/${id}`,
           get: () => [seg[k]!, seg[k + 1]!],
           set: (to, smooth) => {
+            const other = side === "in" ? after(n) : before(n);
+            const m = side === "in" ? 0 : 2;
+            // A corner stays one.
+            const turns = smooth && other?.length === 6 && isSmooth(at(n), [seg[k]!, seg[k + 1]!], [other[m]!, other[m + 1]!]);
             seg[k] = to[0];
             seg[k + 1] = to[1];
-            const other = side === "in" ? after(n) : before(n);
-            if (smooth && other?.length === 6) align(other, side === "in" ? 0 : 2, at(n), to);
+            if (turns) align(other, m, at(n), to);
           },
         });
       };
@@ -203,7 +206,9 @@ export class Handles {
       }
       at = to;
     }
-    out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed });
+    // Four points without curves are corners.
+    const isQuadrangle = sub.segments.length === 3 && sub.segments.every((seg) => seg.length === 2);
+    out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed || isQuadrangle });
   }
 
   /** Writes the values of a parameter into the step. */
@@ -229,6 +234,7 @@ export class Handles {
 
   /** Adds a point where the step takes any number of them. Returns the key of its handle. */
   add(at: XY): string | null {
+    if (!this.grows) return null;
     for (const { name, repeat, notation } of this.deformation.params) {
       const grip = this.grips[name];
       if (!repeat || !grip) continue;
@@ -250,6 +256,8 @@ export class Handles {
 
   /** Returns `true` if points can be added. */
   get grows(): boolean {
+    // A net's own points are its handles.
+    if (Object.values(this.grips).some((grip) => grip.net)) return false;
     return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
   }
 
@@ -277,6 +285,14 @@ function circle([x, y]: XY, r: number): Line {
 
 function same(a: XY, b: XY): boolean {
   return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
+}
+
+/** The cosine of the angle at which two handles count as opposite each other: within about two degrees. */
+const OPPOSITE = -0.9995;
+
+function isSmooth(node: XY, a: XY, b: XY): boolean {
+  const [ax, ay, bx, by] = [a[0] - node[0], a[1] - node[1], b[0] - node[0], b[1] - node[1]];
+  return ax * bx + ay * by < OPPOSITE * Math.hypot(ax, ay) * Math.hypot(bx, by);
 }
 
 /** Turns the control point at `k` of a segment about a node so that it lies opposite of `to`, at its own distance. */

@@ -18,15 +18,19 @@ export function cells({ columns, points, factors }: Stretch, place: (p: XY) => X
     const colour = shade(factor);
     byColour.set(colour, [...(byColour.get(colour) ?? []), `M${d}Z`]);
   });
-  return Array.from(byColour, ([fill, d]) => s("path", { d: d.join(""), fill }));
+  return Array.from(byColour, ([colour, d]) => {
+    const [fill, opacity] = colour.split("/");
+    return s("path", { d: d.join(""), fill: fill!, "fill-opacity": opacity! });
+  });
 }
 
-/** The colour of a factor, in few steps, so that equal cells are one shape. */
+/** The opacity of a full colour; the drawing shows through. */
+const STRONGEST = 0.8;
+
+/** The colour and opacity of a factor, in few steps, so that equal cells are one shape. */
 function shade(factor: number): string {
-  if (factor < 0) return "#e11d2e";
+  if (factor < 0) return "#e11d2e/0.85";
   const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));
   const step = Math.round(amount * 8) / 8;
-  const [r, g, b] = step < 0 ? [37, 99, 235] : [234, 119, 6];
-  const mix = (c: number) => Math.round(255 + (c - 255) * Math.abs(step));
-  return `rgb(${mix(r)} ${mix(g)} ${mix(b)})`;
+  return `${step < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step)).toFixed(3)}`;
 }

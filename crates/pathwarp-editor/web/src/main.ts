@@ -33,8 +33,17 @@ on("zoom-in", () => stage.zoom(ZOOM));
 on("zoom-out", () => stage.zoom(1 / ZOOM));
 on("fit", () => stage.fit());
 on("start-over", () => void app.arrange([], 0));
-on("open-shapes", () => document.body.classList.toggle("shapes-open"));
-on("open-settings", () => document.body.classList.toggle("settings-open"));
+/** Opens or closes one of the sheets of a narrow window; the drawing moves into the room that is left. */
+function sheet(name: "shapes-open" | "settings-open" | null): void {
+  const { classList } = document.body;
+  const opens = name !== null && !classList.contains(name);
+  if (!opens && !classList.contains("shapes-open") && !classList.contains("settings-open")) return;
+  classList.remove("shapes-open", "settings-open");
+  if (opens) classList.add(name);
+  stage.fit();
+}
+on("open-shapes", () => sheet("shapes-open"));
+on("open-settings", () => sheet("settings-open"));
 
 stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
@@ -101,7 +110,9 @@ window.addEventListener("keydown", (e) => {
     if (key === "escape") stage.pick(null);
   }
 });
-byId("stage").addEventListener("pointerdown", () => document.body.classList.remove("shapes-open", "settings-open"));
+byId("stage").addEventListener("pointerdown", (e) => {
+  if (!(e.target as Element).closest(".knob")) sheet(null);
+});
 window.addEventListener("keyup", (e) => {
   if (e.key.toLowerCase() === "b") void stage.before(false);
 });
@@ -155,14 +166,17 @@ app.listen((change) => {
   if (change === "handles") {
     const grows = app.handles?.grows ?? false;
     const has = (app.handles?.handles.length ?? 0) > 0;
-    const isCurve = app.handles?.handles.some((h) => h.shape === "control") ?? false;
+    const isCurve = app.handles?.handles.some((h) => /\/(in|out)$/.test(h.key)) ?? false;
     byId("smooth").hidden = !isCurve;
     byId("mirror").hidden = !has;
     byId("snap").hidden = !has;
-    const note = !has ? "Use the settings on the right" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
+    const note = !has ? "Change the settings" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
     byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
   }
-  if (change === "link") byId("gone").hidden = app.isConnected;
+  if (change === "link") {
+    byId("gone").hidden = app.isConnected;
+    byId("gone-kept").textContent = state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing.";
+  }
   if (change === "state" && state?.restored && !announced) {
     announced = true;
     toast("Your last, unsaved steps are here again");

@@ -98,7 +98,8 @@ export class Saving {
       this.app.state = state;
       this.app.tell("state");
     }
-    toast([`Saved ${written}`, ...warnings].join(". "));
+    const name = written.split(/[\\/]/).pop() ?? written;
+    toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
   }
 
   private async copyCommand(): Promise<void> {

@@ -38,7 +38,7 @@ export class Settings {
     const more = deformation.params.filter((p) => !isMain(p));
     const gives = more.some((p) => p.kind === "file" && step.args[p.name]);
     const parts = [
-      h("p", { class: "about" }, sentence(deformation.about || deformation.title)),
+      h("p", { class: "about" }, sentence(deformation.title)),
       ...main.map((p) => this.control(p)),
       more.length > 0 && h("details", { class: "more", open: gives }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p))),
     ];
@@ -192,11 +192,9 @@ function step([from, to]: [number, number]): number {
   return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
 }
 
-/** The first sentence of a text, without the dashes of the command line. */
-function sentence(text: string): string {
-  const first = capital(text.split("\n")[0] ?? "");
-  const end = first.indexOf(". ");
-  return end < 0 ? first : first.slice(0, end + 1);
+/** A title as a sentence. */
+function sentence(title: string): string {
+  return `${capital(title)}${/[.…]$/.test(title) ? "" : "."}`;
 }
 
 function capital(text: string): string {

@@ -72,9 +72,13 @@ export class Stage {
   /** Shows the whole page. */
   fit(): void {
     const { state } = this.app;
-    const [width, height] = this.size;
+    const [width, whole] = this.size;
+    // In a narrow window, a panel covers the lower part.
+    const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
+    const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
+    const height = Math.max(whole - covered, whole / 4);
     if (!state || width === 0 || height === 0) return;
-    this.camera.fit(state.page, this.size, Math.min(MARGIN, width / 10));
+    this.camera.fit(state.page, [width, height], Math.min(MARGIN, width / 10));
     this.isFitted = true;
     this.layout();
   }

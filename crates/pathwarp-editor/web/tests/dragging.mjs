@@ -96,3 +96,21 @@ async function speed(count, most) {
 }
 export const speed_of_500_segments = () => speed(500, 160);
 export const speed_of_10000_segments = () => speed(10000, 500);
+
+/** Every deformation can be chosen, and bends the drawing without a complaint. */
+export async function every_shape_opens() {
+  const { editor, page } = await started();
+  try {
+    const names = await page.$$eval("#gallery section .card[title]", (all) => all.map((c) => c.textContent));
+    check(names.length > 15, `only ${names.length} shapes`);
+    for (const name of names) {
+      await page.locator(".card[title]", { hasText: new RegExp(`^${name}$`) }).click();
+      await page.waitForFunction((n) => document.querySelector("#steps").textContent.includes(n), name);
+      check(!(await page.isVisible("#problem")), `${name}: ${await page.textContent("#problem")}`);
+    }
+    check(page.problems.length === 0, page.problems.join("; "));
+  } finally {
+    editor.stop();
+    await page.context().close();
+  }
+}

@@ -12,6 +12,8 @@ const browserPath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin
 const FLAGS = [
   "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync",
+  // A page that is swapped in counts as one from elsewhere.
+  ...(process.env.ASSETS ? ["--disable-features=LocalNetworkAccessChecks"] : []),
 ];
 
 /** A new folder with copies of files, or with a text as a file. */
@@ -29,11 +31,16 @@ export const sample = (name) => join(root, "samples", name);
 /** A folder for settings, so that the user's own presets stay out of the tests. */
 const settings = mkdtempSync(join(tmpdir(), "pathwarp-settings-"));
 
+// One listener for every program that is started.
+process.setMaxListeners(0);
+
 /** Starts the editor on a file. */
 export async function edit(file, ...args) {
   const child = spawn(program, ["edit", basename(file), "--no-open", ...args], {
     cwd: join(file, ".."), stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, XDG_CONFIG_HOME: settings },
   });
+  // A test that fails leaves no program behind.
+  process.once("exit", () => child.kill("SIGKILL"));
   let errors = "";
   child.stderr.on("data", (text) => (errors += text));
   const address = await new Promise((resolve, reject) => {
@@ -58,6 +65,13 @@ export async function open(address, options = {}) {
     if (m.type() === "error" && !/WebSocket|ERR_CONNECTION/.test(m.text())) page.problems.push(m.text());
   });
   page.on("request", (r) => page.requests.push(r.url()));
+  // ASSETS=FOLDER tries a page that is not built into the program yet.
+  for (const name of process.env.ASSETS ? ["editor.js", "editor.css"] : []) {
+    await page.route(`**/${name}`, (route) => route.fulfill({ path: join(process.env.ASSETS, name) }));
+  }
+  if (process.env.ASSETS) {
+    await page.route((url) => url.pathname === "/", (route) => route.fulfill({ path: join(process.env.ASSETS, "index.html") }));
+  }
   await page.goto(address);
   await page.waitForSelector("#stage .art *", { state: "attached" });
   return page;

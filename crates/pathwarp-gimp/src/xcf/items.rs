@@ -62,7 +62,7 @@ fn table(input: &mut ByteSource<'_>, xcf: &Xcf, of: &str) -> Result<Vec<(u64, u6
         }
         if to >= input.end {
             let problem = format!("a {of} pointer points to byte {to}, outside the file of {} bytes", input.end);
-            return Err(input.beyond(at, to, problem));
+            return Err(input.beyond(to, Error::damaged(at, problem)));
         }
         out.push((at, to));
     }

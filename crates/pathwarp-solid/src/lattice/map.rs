@@ -147,7 +147,7 @@ impl Map3 for LatticeMap3 {
         // Newton steps may leave the region on their way and must not meet the identity there.
         let smooth = Self { extended: true, ..self.clone() };
         let reach = 1e3 * (self.inside.max - self.region.max).max_element();
-        let inner = NewtonInverse3::new(Arc::new(smooth), domain, reach, self.cells);
+        let inner = NewtonInverse3::with_core(Arc::new(smooth), self.region, domain, reach, self.cells);
         Some(Arc::new(LatticeInverse { map: self.clone(), inner }))
     }
 }

@@ -6,6 +6,9 @@
 //! η = |J⁻¹(q − F(x))| and L a Lipschitz bound of the Jacobian: Kantorovich's condition (L. V. Kantorovich 1948; Ortega &
 //! Rheinboldt, *Iterative Solution of Nonlinear Equations*, theorem 12.6.2), measured between neighbouring starting points and
 //! doubled. The inverse is undefined (NaN) at every other point.
+//!
+//! If the map folds, a point can have several preimages. Those in the *core* of the box, the part that the map is designed for,
+//! take precedence; outside the core, only those with the orientation of the core's middle count, and of them the nearest.
 
 use super::jet::Jet3;
 use super::traits::Map3;
@@ -30,6 +33,9 @@ const MAX_TRIES: usize = 12;
 pub struct NewtonInverse3 {
     map: Arc<dyn Map3>,
     domain: Box3,
+    core: Box3,
+    /// The sign of the determinant in the middle of the core.
+    orientation: f64,
     reach: f64,
     /// Starting points with their images.
     starts: Vec<(DVec3, DVec3)>,
@@ -47,6 +53,11 @@ impl NewtonInverse3 {
     /// the map along each axis (1, 1, 1 for a single polynomial).
     #[must_use]
     pub fn new(map: Arc<dyn Map3>, domain: Box3, reach: f64, pieces: [usize; 3]) -> Self {
+        Self::with_core(map, domain, domain, reach, pieces)
+    }
+
+    /// As [`NewtonInverse3::new`], with a core smaller than the box.
+    pub(crate) fn with_core(map: Arc<dyn Map3>, core: Box3, domain: Box3, reach: f64, pieces: [usize; 3]) -> Self {
         let n = pieces.map(|n| (n * STARTS_PER_PIECE).clamp(MIN_STARTS, MAX_STARTS));
         let cell = domain.size() / DVec3::from_array(n.map(|n| n as f64));
         let at = |i: usize, j: usize, k: usize| {
@@ -76,9 +87,12 @@ impl NewtonInverse3 {
         let bounds = bounds.unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
         let side = n[0].max(n[1]).max(n[2]);
         let largest = bounds.min.abs().max(bounds.max.abs()).max_element().max(1e-300);
+        let orientation = map.jet(core.center()).det().signum();
         let mut out = Self {
             map,
             domain,
+            core,
+            orientation,
             reach,
             starts,
             buckets: vec![Vec::new(); side * side * side],
@@ -114,15 +128,33 @@ impl NewtonInverse3 {
         }
         let [i, j, k] = self.bucket(q);
         let near = &self.buckets[(k * self.side + j) * self.side + i];
-        let off = |s: usize| self.starts[s].1.distance_squared(q);
-        let all = near.iter().map(|s| *s as usize);
-        let mut order: Vec<(f64, usize)> = all.map(|s| (off(s), s)).collect();
+        let off = |s: usize| (!self.core.contains(self.starts[s].0), self.starts[s].1.distance_squared(q), s);
+        let less = |a: &(bool, f64, usize), b: &(bool, f64, usize)| {
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
+        };
+        let mut order: Vec<(bool, f64, usize)> = near.iter().map(|s| off(*s as usize)).collect();
         if order.is_empty() {
-            let nearest = (0..self.starts.len()).map(|s| (off(s), s)).min_by(|a, b| a.0.total_cmp(&b.0))?;
-            order.push(nearest);
+            order.extend((0..self.starts.len()).map(off).min_by(|a, b| a.1.total_cmp(&b.1)));
         }
-        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        order.iter().take(MAX_TRIES).find_map(|(_, s)| self.newton(self.starts[*s].0, q))
+        order.sort_by(less);
+        let mut best: Option<(f64, Jet3)> = None;
+        for (_, _, s) in order.iter().take(MAX_TRIES) {
+            let Some(found) = self.newton(self.starts[*s].0, q) else { continue };
+            let distance = self.distance_from_core(found.p);
+            if distance <= self.reach {
+                return Some(found);
+            }
+            let counts = found.det().signum() == self.orientation;
+            if counts && best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, found));
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// Distance from the core along the axis where it is largest; 0 inside.
+    fn distance_from_core(&self, p: DVec3) -> f64 {
+        (self.core.min - p).max(p - self.core.max).max_element().max(0.0)
     }
 
     /// Newton's method from one starting point.

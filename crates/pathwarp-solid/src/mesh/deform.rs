@@ -60,7 +60,8 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     }
     let moved = before.par_iter().zip(&mesh.positions).filter(|(p, q)| p != q).count();
     let mut out = Deformed { moved, ..Deformed::default() };
-    if map.collineation().is_none_or(|c| bounded || c.matrix().determinant() < 0.0) {
+    // The determinant of a collineation's Jacobian has the sign of its matrix's.
+    if map.collineation().is_none_or(|c| c.matrix().determinant() < 0.0) {
         let folded: Vec<(usize, DVec3)> = before
             .par_chunks(CHUNK)
             .filter_map(|ps| {

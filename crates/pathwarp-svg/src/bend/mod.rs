@@ -14,6 +14,7 @@ pub(crate) mod paint;
 mod part;
 pub(crate) mod picture;
 mod places;
+pub(crate) mod plain;
 mod shading;
 pub(crate) mod slots;
 mod spot;

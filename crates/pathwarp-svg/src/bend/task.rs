@@ -16,6 +16,25 @@ use std::sync::Arc;
 /// The fraction of the tolerance that rounding may use.
 const ROUNDING: f64 = 0.01;
 
+/// The number of decimals of coordinates: as given, or enough for [`ROUNDING`]. A unit as written is `size` units of root user
+/// space.
+pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
+    given.unwrap_or_else(|| {
+        let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
+        if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
+    })
+}
+
+/// Largest error from rounding to `decimals`, in root user units.
+pub(super) fn rounding(size: f64, decimals: u8) -> f64 {
+    size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals))
+}
+
+/// The tolerance less the room for rounding.
+pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
+    (tolerance - rounding).max(0.5 * tolerance)
+}
+
 /// The surroundings of a part.
 #[derive(Clone, Copy)]
 pub(super) struct PartContext<'a> {
@@ -76,11 +95,8 @@ impl<'a> PartTask<'a> {
         };
         let size = stretch(write);
         let tolerance = options.refit.tolerance;
-        let decimals = options.precision.unwrap_or_else(|| {
-            let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
-            if needed.is_finite() { needed.clamp(0.0, f64::from(MOST_DECIMALS)) as u8 } else { MOST_DECIMALS }
-        });
-        let rounding = size * std::f64::consts::FRAC_1_SQRT_2 * 0.1_f64.powi(i32::from(decimals));
+        let decimals = decimals(size, tolerance, options.precision);
+        let rounding = rounding(size, decimals);
         if outline.subpaths.iter().any(|s| stubs::has_closing_stub(s, rounding)) {
             let subpaths = &mut Arc::make_mut(&mut outline).subpaths;
             subpaths.iter_mut().for_each(|s| stubs::drop_closing_stub(s, rounding));
@@ -117,8 +133,7 @@ impl<'a> PartTask<'a> {
 
     /// The tolerance less the room for rounding.
     pub(super) fn allowed(&self) -> f64 {
-        let tolerance = self.options().refit.tolerance;
-        (tolerance - self.rounding).max(0.5 * tolerance)
+        allowed(self.options().refit.tolerance, self.rounding)
     }
 
     /// Transforms a path from root user space to the part's user space as written.

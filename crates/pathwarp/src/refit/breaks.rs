@@ -124,7 +124,7 @@ impl StretchFitter<'_> {
         let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
         plan.ends[n] = to;
         let places = |i: usize| from.t + (to.t - from.t) * i as f64 / n as f64;
-        gather::announce_parts(self.source, from.t, (1..n).map(places), to.t);
+        gather::announce_parts(self.source, from.t, &(1..n).map(places), to.t);
         for (i, end) in plan.ends.iter_mut().enumerate().take(n).skip(1) {
             *end = self.source.end(places(i))?;
         }
@@ -190,7 +190,7 @@ impl StretchFitter<'_> {
             let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
             *place = old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0);
         }
-        gather::announce_parts(self.source, old[0].t, places[1..next].iter().copied(), to.t);
+        gather::announce_parts(self.source, old[0].t, &places[1..next].iter().copied(), to.t);
         for (end, place) in plan.ends[1..next].iter_mut().zip(&places[1..next]) {
             *end = self.source.end(*place)?;
         }
@@ -239,7 +239,7 @@ impl StretchFitter<'_> {
             if !(t > lo + margin && t < hi - margin) {
                 t = 0.5 * (lo + hi);
             }
-            gather::announce_parts(self.source, from.t, std::iter::once(t), to.t);
+            gather::announce_parts(self.source, from.t, &std::iter::once(t), to.t);
             let mid = self.source.end(t)?;
             now = [self.attempt(&from, &mid)?, self.attempt(&mid, &to)?];
             match now.map(|o| o.fits()) {

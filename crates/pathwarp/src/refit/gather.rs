@@ -12,31 +12,19 @@ use super::samples::{CHECKED, FITTED, spaced};
 use super::source::SourceCurve;
 use super::split;
 use crate::map::Map;
-use crate::outline::Outline;
+use crate::outline::Seg;
 use kurbo::Point;
 
-/// Values announced at once. A longer path is announced in parts, by what comes after.
-const MOST_ANNOUNCED: usize = 1 << 17;
-
-/// Announces the nodes of an outline and the sixteen samples of every segment.
-pub(super) fn announce_outline(outline: &Outline, map: &dyn Map, options: &Options) {
-    if !map.prefers_batches() {
-        return;
-    }
+/// Announces the nodes and the sixteen samples of every segment.
+pub(super) fn announce_segments<'a>(segs: impl Iterator<Item = &'a Seg>, map: &dyn Map, options: &Options) {
     let (mut points, mut jets) = (Vec::new(), Vec::new());
-    for sub in &outline.subpaths {
-        jets.push(sub.start);
-        for seg in sub.segs.iter().filter(|s| s.is_finite()) {
-            jets.extend([seg.start(), seg.end()]);
-            let (canonical, _) = split::canonical(seg);
-            let source = SourceCurve::for_proof(&canonical, map, options.certify);
-            samples(&source, [&FITTED, &CHECKED].map(|set| spaced(0.0, 1.0, set)), &mut points);
-        }
-        // A long path is announced by and by.
-        if points.len() > MOST_ANNOUNCED {
-            break;
-        }
+    for seg in segs.filter(|s| s.is_finite()) {
+        jets.extend([seg.start(), seg.end()]);
+        let (canonical, _) = split::canonical(seg);
+        let source = SourceCurve::for_proof(&canonical, map, options.certify);
+        samples(&source, [&FITTED, &CHECKED].map(|set| spaced(0.0, 1.0, set)), &mut points);
     }
+    // Each segment begins where the one before ends.
     jets.dedup();
     map.prepare(&points, &jets);
 }
@@ -44,8 +32,8 @@ pub(super) fn announce_outline(outline: &Outline, map: &dyn Map, options: &Optio
 /// Announces values of one curve at `lanes`, and jets at `ends`.
 pub(super) fn announce(
     source: &SourceCurve<'_>,
-    lanes: impl Iterator<Item = Lane> + Clone,
-    ends: impl Iterator<Item = f64> + Clone,
+    lanes: &(impl Iterator<Item = Lane> + Clone),
+    ends: &(impl Iterator<Item = f64> + Clone),
 ) {
     if source.map.prefers_batches() {
         announce_all(source.map, std::slice::from_ref(source), lanes, ends);
@@ -56,8 +44,8 @@ pub(super) fn announce(
 pub(super) fn announce_all(
     map: &dyn Map,
     sources: &[SourceCurve<'_>],
-    lanes: impl Iterator<Item = Lane> + Clone,
-    ends: impl Iterator<Item = f64> + Clone,
+    lanes: &(impl Iterator<Item = Lane> + Clone),
+    ends: &(impl Iterator<Item = f64> + Clone),
 ) {
     let (mut points, mut jets) = (Vec::new(), Vec::new());
     for source in sources {
@@ -67,11 +55,18 @@ pub(super) fn announce_all(
     map.prepare(&points, &jets);
 }
 
+/// Announces values at eight parameters of each of several curves.
+pub(super) fn announce_each<'a, 's: 'a>(map: &dyn Map, lanes: impl Iterator<Item = (&'a SourceCurve<'s>, Lane)>) {
+    let mut points = Vec::new();
+    lanes.for_each(|(source, t)| samples(source, [t], &mut points));
+    map.prepare(&points, &[]);
+}
+
 /// Announces the break points `places` of the stretch from `first` to `last`, and sixteen samples of each part.
 pub(super) fn announce_parts(
     source: &SourceCurve<'_>,
     first: f64,
-    places: impl Iterator<Item = f64> + Clone,
+    places: &(impl Iterator<Item = f64> + Clone),
     last: f64,
 ) {
     if !source.map.prefers_batches() {
@@ -80,7 +75,7 @@ pub(super) fn announce_parts(
     let starts = std::iter::once(first).chain(places.clone());
     let ends = places.clone().chain([last]);
     let parts = starts.zip(ends).flat_map(|(a, b)| [&FITTED, &CHECKED].map(|set| spaced(a, b - a, set)));
-    announce(source, parts, places);
+    announce(source, &parts, places);
 }
 
 fn samples(source: &SourceCurve<'_>, lanes: impl IntoIterator<Item = Lane>, out: &mut Vec<Point>) {

@@ -65,6 +65,7 @@ pub use shared::SharedEdges;
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Gathered, Map};
 use crate::outline::Outline;
+use merge::MergeMemory;
 use piece::PathWriter;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`.
@@ -96,13 +97,15 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
         path::affine(outline, m, options, &mut out)?;
     } else {
         let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
-        gather::announce_outline(outline, map, options);
         let mut creases = Creases::default();
         map.creases(&mut creases);
+        let announced = path::announce_short(outline, map, &creases, options);
+        let mut memory = MergeMemory::default();
         for sub in &outline.subpaths {
-            path::subpath(sub, map, &creases, options, &mut out)?;
+            path::subpath(sub, map, &creases, (options, announced), &mut memory, &mut out)?;
         }
     }
     out.report.segments_in = outline.segs().count();
+    out.report.name_a_miss(outline, options.tolerance);
     Ok(out.finish())
 }

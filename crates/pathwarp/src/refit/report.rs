@@ -1,5 +1,6 @@
 //! The result of a refit: the path, its error, and how far that error can be trusted.
 
+use crate::outline::Outline;
 use kurbo::{BezPath, Point};
 
 /// Basis of the reported error, from the weakest to the strongest.
@@ -25,7 +26,7 @@ pub struct PathReport {
     pub max_error: f64,
     /// Basis of `max_error`: the weakest of all segments.
     pub assurance: Assurance,
-    /// Places in the source at which the work budget ran out before the tolerance was met.
+    /// Places in the source at which the tolerance was not met: the work budget ran out, or rounding is larger.
     pub over_budget: Vec<Point>,
 }
 
@@ -36,6 +37,16 @@ impl Default for PathReport {
 }
 
 impl PathReport {
+    /// Names a place if the tolerance was missed and none is named yet: coordinates so large that their rounding exceeds it.
+    pub(super) fn name_a_miss(&mut self, outline: &Outline, tolerance: f64) {
+        /// Sums of errors round up.
+        const ROUNDING: f64 = 1e-9;
+        let missed = self.max_error > tolerance * (1.0 + ROUNDING);
+        if missed && self.over_budget.is_empty() {
+            self.over_budget.extend(outline.subpaths.first().map(|s| s.start));
+        }
+    }
+
     /// Adds the pieces of another part of the path.
     pub(super) fn add(&mut self, part: Self) {
         self.add_error(part.max_error, part.assurance);

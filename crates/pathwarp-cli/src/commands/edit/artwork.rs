@@ -55,13 +55,17 @@ impl EditedArtwork {
 
     /// Looks up references, chooses the frame and builds the steps.
     fn ready(&mut self, recipe: &Recipe) -> Result<Ready, Failure> {
+        self.svg.renew_budget();
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
         let guides = references::resolve_names(&self.registry, &mut resolved, |name| self.svg.path_named(name))?;
         let Framed { bounds, frame, .. } = self.framed(guides, pipeline::first_baseline(&self.registry, &resolved))?;
         let tolerance = self.options.tolerance_for(bounds, &frame)?;
         let outlines = self.svg.outlines();
-        let built = resolved.build(&self.registry, frame, &outlines.iter().copied()).map_err(Failure::of_recipe)?;
+        let built = resolved
+            .build_within(&self.registry, frame, &outlines.iter().copied(), self.svg.budget())
+            .map_err(Failure::of_recipe)?;
+        sound(&built)?;
         Ok(Ready { resolved, built, bounds, tolerance })
     }
 
@@ -85,10 +89,14 @@ impl EditedArtwork {
         let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
         let request = WarpRequest { built: &built, options: &self.options, bounds, tolerance, embedded_recipe };
         if let Fineness::Draft(_) = fineness {
-            let svg = self.svg.draft(&request)?;
+            let svg = self.svg.draft(&request);
+            sound(&built)?;
+            let svg = svg?;
             return Ok(Bent { svg, resolved, built, summary: None, warnings: Vec::new() });
         }
-        let warped = self.svg.warp(&request).map_err(|f| pipeline::explained(f, &built))?;
+        let warped = self.svg.warp(&request);
+        sound(&built)?;
+        let warped = warped.map_err(|f| pipeline::explained(f, &built))?;
         let WarpedResult::Bytes(bytes) = warped.result else {
             return Err(Failure::Input("the result is not a drawing".into()));
         };
@@ -111,6 +119,11 @@ impl EditedArtwork {
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
         result.map_err(|f| f.message(&self.flags))
     }
+}
+
+/// The map of a plug-in may fail at any time. Nothing that was computed with it is used then.
+fn sound(built: &BuiltRecipe) -> Result<(), Failure> {
+    built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
 }
 
 impl Artwork for EditedArtwork {

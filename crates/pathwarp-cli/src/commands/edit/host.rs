@@ -56,7 +56,7 @@ impl EditorHost {
             None => (Recipe::default(), self.given.clone()),
         };
         let options = given.read()?;
-        let svg = SvgArtwork::read(source, file, &options, None)?.to_be_bent_often();
+        let svg = SvgArtwork::read(source, file, &options, None)?;
         let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }

@@ -48,7 +48,7 @@ control point that has most influence there and is not on the fixed face (the fi
         .examples(&[
             Example {
                 what: "Stretch a model away from the eye: a perspective collineation",
-                command: "solid anamorph samples/solid/teapot.obj --eye 50%,60%,600% --reference 0%,0%,100%;100%,0%,100%;0%,100%,100%;50%,50%,-50% \
+                command: "solid anamorph samples/solid/teapot.obj --eye 50%,60%,600% --reference '0%,0%,100% 100%,0%,100% 0%,100%,100% 50%,50%,-50%' \
 --push 0,0,0,1:160% -o out.obj",
             },
             Example {
@@ -59,7 +59,7 @@ control point that has most influence there and is not on the fixed face (the fi
             Example {
                 what: "Draw out the spout alone: the three corners around its foot stay",
                 command: "solid anamorph samples/solid/teapot.obj --eye 50%,60%,600% --local --reference \
-79%,-100%,-300%;79%,-100%,400%;79%,400%,50%;115%,60%,50% --point 98%,70%,50%:125% -o out.obj",
+'79%,-100%,-300% 79%,-100%,400% 79%,400%,50% 115%,60%,50%' --point 98%,70%,50%:125% -o out.obj",
             },
         ]),
     laws: &[

@@ -59,7 +59,7 @@ and bends towards the axis after --along.")
             },
             Example {
                 what: "Let it lean along a curve",
-                command: "solid bend samples/solid/teapot.obj --along y --skeleton 50%,0%,50%;50%,50%,50%;60%,80%,50%;85%,100%,50% -o out.obj",
+                command: "solid bend samples/solid/teapot.obj --along y --skeleton '50%,0%,50% 50%,50%,50% 60%,80%,50% 85%,100%,50%' -o out.obj",
             },
         ]),
     laws: &[

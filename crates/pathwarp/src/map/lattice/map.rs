@@ -105,7 +105,7 @@ impl LatticeMap {
 
 impl Map for LatticeMap {
     fn work(&self) -> f64 {
-        self.patches.first().map_or(1.0, |p| p.work())
+        self.patches.first().map_or(1.0, Map::work)
     }
 
     fn jet(&self, p: Point) -> Jet {

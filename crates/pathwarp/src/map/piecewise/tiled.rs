@@ -89,7 +89,7 @@ impl Tiled {
 
 impl Map for Tiled {
     fn work(&self) -> f64 {
-        self.rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max)
+        self.rows.iter().flat_map(|r| &r.maps).map(Map::work).fold(1.0, f64::max)
     }
 
     fn jet(&self, p: Point) -> Jet {

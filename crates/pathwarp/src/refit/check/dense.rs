@@ -29,7 +29,7 @@ pub(in crate::refit) fn dense(
     let mut sound = true;
     let mut even = [[0.0; 8]; DENSE_BATCHES];
     let tau = |k: usize| -> Lane { std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (DENSE_BATCHES * 8) as f64) };
-    gather::announce(source, (0..DENSE_BATCHES).map(|k| tau(k).map(|t| c.param(t))), std::iter::empty());
+    gather::announce(source, &(0..DENSE_BATCHES).map(|k| tau(k).map(|t| c.param(t))), &std::iter::empty());
     for (k, squares) in even.iter_mut().enumerate() {
         let (advances, d) = walk.advance(&tau(k), 0)?;
         sound &= advances;

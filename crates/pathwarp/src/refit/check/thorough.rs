@@ -19,7 +19,7 @@ pub(in crate::refit) fn thorough(
     let taus = places(c, slow);
     let mut images = Vec::with_capacity(taus.len());
     let lanes = taus.chunks_exact(8).map(|chunk| std::array::from_fn(|i| c.param(chunk[i])));
-    gather::announce(source, lanes, std::iter::empty());
+    gather::announce(source, &lanes, &std::iter::empty());
     for chunk in taus.chunks_exact(8) {
         let tau: Lane = std::array::from_fn(|i| chunk[i]);
         let g = c.images(source, &tau)?;

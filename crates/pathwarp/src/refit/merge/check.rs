@@ -3,6 +3,7 @@
 use super::cubic::RunCubic;
 use super::limits::COARSE_CHECK;
 use super::run::SegmentRun;
+use crate::refit::gather;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
 use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
 use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
@@ -30,31 +31,43 @@ impl Distances {
         if self.feet.windows(2).any(|w| w[1] < w[0] - FOOT_ROUNDING) || !self.advances(run, c) {
             return Ok(None);
         }
+        let doubtful = self.doubtful(run, c, enough);
+        if let ([_, _, ..], Some(segment)) = (doubtful.as_slice(), run.segments.first())
+            && segment.source.map.prefers_batches()
+        {
+            let source = |i: usize| run.segments.get(i).map(|s| &s.source);
+            let lanes = doubtful.iter().filter_map(|(i, between)| Some((source(*i)?, places(run, *i, *between))));
+            gather::announce_each(segment.source.map, lanes);
+        }
+        for (i, between) in doubtful {
+            worst = worst.max(self.closely(run, c, i, between)?);
+        }
+        Ok(Some(worst))
+    }
+
+    /// The pairs of samples, each with its segment, between which the error may exceed `enough`.
+    fn doubtful(&self, run: &SegmentRun<'_>, c: &RunCubic, enough: f64) -> Vec<(usize, [usize; 2])> {
+        let mut out = Vec::new();
         let [first, last] = c.samples;
         let coarse = COARSE_CHECK * (run.length[last] - run.length[first]);
         for (i, [from, to]) in parts(run.per_segment, [first, last]) {
-            for k in from..to {
-                if run.length[k + 1] - run.length[k] > coarse {
-                    worst = worst.max(self.closely(run, c, i, [k, k + 1])?);
-                }
-            }
+            let far = |k: &usize| run.length[k + 1] - run.length[*k] > coarse;
+            out.extend((from..to).filter(far).map(|k| (i, [k, k + 1])));
             let errors = &self.errors[from - first..=to - first];
             let end = errors.len() - 1;
-            for k in 0..=end {
-                let (before, after) = (k.max(1) - 1, (k + 1).min(end));
-                let peak = if k == 0 {
-                    predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR)
-                } else if k == end {
-                    predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], PEAK_FACTOR)
-                } else {
-                    predicted_peak([errors[before], errors[k], errors[after]], PEAK_FACTOR)
-                };
-                if peak > enough {
-                    worst = worst.max(self.closely(run, c, i, [from + before, from + after])?);
+            if predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR) > enough {
+                out.push((i, [from, from + 1]));
+            }
+            for (k, w) in errors.windows(3).enumerate() {
+                if predicted_peak([w[0], w[1], w[2]], PEAK_FACTOR) > enough {
+                    out.push((i, [from + k, from + k + 2]));
                 }
             }
+            if predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], PEAK_FACTOR) > enough {
+                out.push((i, [to - 1, to]));
+            }
         }
-        Ok(Some(worst))
+        out
     }
 
     /// The largest distance of a sample; too large a value if it is above `enough`.
@@ -104,11 +117,8 @@ impl Distances {
 
     /// The largest distance between two samples of segment `i`, by eight more and the parabolas through them.
     fn closely(&self, run: &SegmentRun<'_>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64, Point> {
-        let start = i * run.per_segment;
-        let param = |k: usize| (k - start) as f64 / run.per_segment as f64;
         let feet = [self.feet[a - c.samples[0]], self.feet[b - c.samples[0]]];
-        let spread = |[a, b]: [f64; 2]| -> Lane { std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 9.0) };
-        let mut g = run.images(i, &spread([param(a), param(b)]))?;
+        let mut g = run.images(i, &places(run, i, [a, b]))?;
         for i in 0..8 {
             g.x[i] -= c.ends[0].x;
             g.y[i] -= c.ends[0].y;
@@ -118,6 +128,17 @@ impl Distances {
         let tops = errors.windows(3).filter(|w| w[1] >= PEAK_NEAR * top && w[1] >= w[0] && w[1] >= w[2]);
         Ok(tops.map(|w| parabola_peak(w[0], w[1], w[2])).fold(top, f64::max))
     }
+}
+
+/// Eight parameters of segment `i` between two samples.
+fn places(run: &SegmentRun<'_>, i: usize, [a, b]: [usize; 2]) -> Lane {
+    let param = |k: usize| (k - i * run.per_segment) as f64 / run.per_segment as f64;
+    spread([param(a), param(b)])
+}
+
+/// Eight places evenly between two.
+fn spread([a, b]: [f64; 2]) -> Lane {
+    std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 9.0)
 }
 
 /// The segments between two samples, each with its first and last sample.

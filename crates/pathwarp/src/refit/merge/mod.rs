@@ -12,23 +12,33 @@ mod limits;
 mod own;
 mod proven;
 mod reach;
+mod repeats;
 mod run;
 mod search;
 
 use super::gather;
+use super::options::Options;
 use super::piece::FittedPiece;
 use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::source::SourceCurve;
-use crate::map::Jet;
+use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
 use own::OwnPieces;
-use reach::Reaches;
+use reach::{ReachMemory, Reaches};
+use repeats::{Repeats, Way};
 use run::{RunSegment, SegmentRun};
 use search::{Leg, fewest_legs};
+
+/// What outlasts a subpath.
+#[derive(Default)]
+pub(super) struct MergeMemory {
+    repeats: Repeats,
+    reach: ReachMemory,
+}
 
 /// Merges the pieces of consecutive segments.
 pub(super) struct Merger<'a> {
@@ -38,8 +48,7 @@ pub(super) struct Merger<'a> {
     jets: &'a [[Jet; 2]],
     pieces: Vec<FittedPiece>,
     report: PathReport,
-    /// Places that the last merged piece reached.
-    last_reach: usize,
+    memory: &'a mut MergeMemory,
 }
 
 /// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jet where they meet.
@@ -54,22 +63,38 @@ pub(super) fn may_be_smooth(before: &Seg, after: &Seg, jet: &Jet) -> bool {
     dot > 0.0 && cross <= SURE_CORNER * dot || !clear(into, before) || !clear(away, after)
 }
 
+/// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
+/// batches and knows the jets at the joints.
+pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
+    let mut sources = Vec::new();
+    for segs in runs {
+        let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
+            (Some(before), Some(after)) => may_be_smooth(before, after, &map.jet(after.start())),
+            _ => false,
+        };
+        let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
+        sources.extend(segs.iter().enumerate().filter_map(in_run));
+    }
+    let sources: Vec<_> = sources.iter().map(|seg| SourceCurve::for_proof(seg, map, options.certify)).collect();
+    let lanes = SegmentRun::new(map.rational_degree().is_some(), 0).lanes();
+    let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
+    gather::announce_all(map, &sources, &lanes, &ends);
+}
+
 impl<'a> Merger<'a> {
-    pub(super) fn new(fitter: &'a SegmentFitter<'a>, segs: &'a [Seg], jets: &'a [[Jet; 2]]) -> Self {
-        Self {
-            fitter,
-            segs,
-            jets,
-            pieces: Vec::with_capacity(segs.len()),
-            report: PathReport::default(),
-            last_reach: 0,
-        }
+    pub(super) fn new(
+        fitter: &'a SegmentFitter<'a>,
+        segs: &'a [Seg],
+        jets: &'a [[Jet; 2]],
+        memory: &'a mut MergeMemory,
+    ) -> Self {
+        memory.reach.last_reach = 0;
+        Self { fitter, segs, jets, pieces: Vec::with_capacity(segs.len()), report: PathReport::default(), memory }
     }
 
     /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
     /// begins.
     pub(super) fn merged(mut self, smooth: &[bool]) -> Result<(Vec<FittedPiece>, PathReport), Point> {
-        self.announce(smooth);
         let mut i = 0;
         while i < self.segs.len() {
             let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
@@ -109,19 +134,6 @@ impl<'a> Merger<'a> {
         Ok(run)
     }
 
-    /// Announces the samples of all segments that may be in a run, and the places where pieces may end.
-    fn announce(&self, smooth: &[bool]) {
-        let SegmentFitter { map, degree, options, .. } = *self.fitter;
-        if !map.prefers_batches() {
-            return;
-        }
-        let joined = |i: usize| smooth[i] || smooth.get(i + 1) == Some(&true);
-        let in_runs = (0..self.segs.len()).filter(|i| joined(*i));
-        let sources: Vec<_> = in_runs.map(|i| SourceCurve::for_proof(&self.segs[i], map, options.certify)).collect();
-        let ends = (1..MERGE_GRID).map(|k| k as f64 / MERGE_GRID as f64);
-        gather::announce_all(map, &sources, SegmentRun::new(degree.is_some(), 0).lanes(), ends);
-    }
-
     /// A segment of a run. `None` if it cannot be in one, be it that nothing could be proven about it.
     fn run_segment(&self, i: usize) -> Option<RunSegment<'a>> {
         let SegmentFitter { map, degree, options, .. } = *self.fitter;
@@ -132,14 +144,24 @@ impl<'a> Merger<'a> {
 
     /// Appends the fewest pieces for a run that begins with segment `start`.
     fn merge(&mut self, run: &SegmentRun<'a>, start: usize) -> Result<(), Point> {
-        let segments = start..start + run.segments.len();
-        let own = OwnPieces::new(self.fitter, &self.segs[segments.clone()], &self.jets[segments.clone()]);
-        let options = self.fitter.options;
+        let range = start..start + run.segments.len();
+        let (segs, options) = (&self.segs[range.clone()], self.fitter.options);
+        let own = OwnPieces::new(self.fitter, segs, &self.jets[range]);
         let proof = options.certify.then_some(options.tolerance);
-        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, self.last_reach);
+        let MergeMemory { repeats, reach } = &mut *self.memory;
+        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, reach);
         let assurance = if options.certify { Assurance::Certified } else { Assurance::Checked };
-        let legs = passed(&mut reaches)?;
-        self.last_reach = reaches.last_reach;
+        let shape = repeats.shape(segs, options.tolerance);
+        let legs = match repeated(repeats.ways(shape), &mut reaches)? {
+            Some(legs) => legs,
+            None => {
+                let legs = passed(&mut reaches)?;
+                let pieces = count(&mut reaches, legs.as_deref())?;
+                let found = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| *leg).collect());
+                repeats.add(shape, Way { legs: found, pieces });
+                legs
+            }
+        };
         match legs {
             Some(legs) => {
                 for (leg, piece) in legs {
@@ -153,7 +175,7 @@ impl<'a> Merger<'a> {
                 }
             }
             None => {
-                for i in 0..segments.len() {
+                for i in 0..segs.len() {
                     reaches.own.append(i, &mut self.pieces, &mut self.report)?;
                 }
             }
@@ -165,19 +187,47 @@ impl<'a> Merger<'a> {
 /// A leg with its piece and that one's error, if it is merged.
 type PassedLeg = (Leg, Option<(FittedPiece, f64)>);
 
+/// The first of the ways for other runs of the same shape that takes no more pieces here. The inner `None` stands for the segments' own.
+fn repeated(ways: &[Way], reaches: &mut Reaches<'_, '_>) -> Result<Option<Option<Vec<PassedLeg>>>, Point> {
+    for way in ways {
+        let legs = match &way.legs {
+            None => None,
+            Some(legs) => match pieces_of(reaches, legs)? {
+                None => continue,
+                found => found,
+            },
+        };
+        if count(reaches, legs.as_deref())? <= way.pieces {
+            return Ok(Some(legs));
+        }
+    }
+    Ok(None)
+}
+
+/// Number of pieces that a way takes; without one, of the segments' own.
+fn count(reaches: &mut Reaches<'_, '_>, legs: Option<&[PassedLeg]>) -> Result<usize, Point> {
+    let Some(legs) = legs else { return reaches.own.total() };
+    legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { reaches.own.count(leg.from / MERGE_GRID) }).sum()
+}
+
+/// The legs with their pieces. `None` if one of them does not pass its check.
+fn pieces_of(reaches: &mut Reaches<'_, '_>, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>, Point> {
+    let mut out = Vec::with_capacity(legs.len());
+    for leg in legs {
+        let piece = if leg.merged { reaches.piece(leg.from, leg.to)? } else { None };
+        if piece.is_some() || !leg.merged {
+            out.push((*leg, piece));
+        }
+    }
+    Ok((out.len() == legs.len()).then_some(out))
+}
+
 /// The way with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
 fn passed(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<PassedLeg>>, Point> {
     for _ in 0..MERGE_SEARCHES {
         let Some(legs) = fewest_legs(reaches)? else { return Ok(None) };
-        let mut out = Vec::with_capacity(legs.len());
-        for leg in &legs {
-            let piece = if leg.merged { reaches.piece(leg.from, leg.to)? } else { None };
-            // A piece that fails is left out of the next search.
-            if piece.is_some() || !leg.merged {
-                out.push((*leg, piece));
-            }
-        }
-        if out.len() == legs.len() {
+        // A piece that fails is left out of the next search.
+        if let Some(out) = pieces_of(reaches, &legs)? {
             return Ok(Some(out));
         }
     }

@@ -1,0 +1,194 @@
+//! Pointers from C and to C: checked for null, copied, and handed over.
+
+#![expect(unsafe_code, reason = "C's pointers can only be read and written so")]
+
+use pathwarp_cli::embed::{Error, ErrorKind};
+use std::ffi::{CStr, CString, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The statuses of `pathwarp.h`.
+pub(crate) const OK: i32 = 0;
+const USAGE: i32 = 2;
+const INPUT: i32 = 3;
+const GEOMETRY: i32 = 4;
+const LIMIT: i32 = 6;
+const INTERNAL: i32 = 7;
+
+/// A failed call: its status and message.
+pub(crate) struct Failed(i32, String);
+
+impl From<Error> for Failed {
+    fn from(e: Error) -> Self {
+        let status = match e.kind {
+            ErrorKind::Usage => USAGE,
+            ErrorKind::Input => INPUT,
+            ErrorKind::Geometry => GEOMETRY,
+            ErrorKind::Limit => LIMIT,
+            _ => INTERNAL,
+        };
+        Self(status, e.message)
+    }
+}
+
+/// The error for a wrong argument.
+pub(crate) fn wrong(message: String) -> Failed {
+    Failed(USAGE, message)
+}
+
+/// Calls `work`, and hands its status and message to C. Panics become [`INTERNAL`].
+///
+/// # Safety
+/// `error` is null, or may be written to.
+pub(crate) unsafe fn status(error: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failed>) -> i32 {
+    let done = catch_unwind(AssertUnwindSafe(work));
+    let (status, message) = match done {
+        Ok(Ok(())) => (OK, std::ptr::null_mut()),
+        Ok(Err(Failed(status, message))) => (status, owned_text(&message)),
+        Err(_) => (INTERNAL, owned_text("pathwarp failed; please report it")),
+    };
+    if error.is_null() {
+        // SAFETY: `owned_text` made it, and nobody else has it.
+        unsafe { drop_text(message) };
+    } else {
+        // SAFETY: not null, and the caller says that it may be written to.
+        unsafe { error.write(message) };
+    }
+    status
+}
+
+/// A text from C.
+///
+/// # Safety
+/// `text` is null, or points to bytes that end with a zero and stay as they are while the result is used.
+pub(crate) unsafe fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str, Failed> {
+    if text.is_null() {
+        return Err(wrong(format!("{name} is NULL")));
+    }
+    // SAFETY: not null, and the caller says that the bytes end with a zero.
+    let text = unsafe { CStr::from_ptr(text) };
+    text.to_str().map_err(|e| wrong(format!("{name} is not UTF-8 (byte {})", e.valid_up_to())))
+}
+
+/// An array from C. It may be null if it is empty.
+///
+/// # Safety
+/// `first` is null, or points to `count` values that stay as they are while the result is used.
+pub(crate) unsafe fn array<'a, T>(first: *const T, count: usize, name: &str) -> Result<&'a [T], Failed> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check(first, count, name)?;
+    // SAFETY: neither null, nor misaligned, nor too large, and the caller says that the values are there.
+    Ok(unsafe { std::slice::from_raw_parts(first, count) })
+}
+
+/// An array of C that is written to. It may be null if it is empty.
+///
+/// # Safety
+/// `first` is null, or points to `count` values that nobody else uses while the result is used.
+pub(crate) unsafe fn array_mut<'a, T>(first: *mut T, count: usize, name: &str) -> Result<&'a mut [T], Failed> {
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    check(first, count, name)?;
+    // SAFETY: neither null, nor misaligned, nor too large, and the caller says that nobody else uses the values.
+    Ok(unsafe { std::slice::from_raw_parts_mut(first, count) })
+}
+
+fn check<T>(first: *const T, count: usize, name: &str) -> Result<(), Failed> {
+    if first.is_null() {
+        return Err(wrong(format!("{name} is NULL")));
+    }
+    if !first.is_aligned() {
+        return Err(wrong(format!("{name} is not aligned")));
+    }
+    if count.checked_mul(size_of::<T>()).is_none_or(|bytes| isize::try_from(bytes).is_err()) {
+        return Err(wrong(format!("{name}: the count {count} is larger than memory")));
+    }
+    Ok(())
+}
+
+/// A value behind a handle.
+///
+/// # Safety
+/// `handle` is null, or came from [`hand_over`] and was not released.
+pub(crate) unsafe fn value<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Failed> {
+    // SAFETY: as the caller says.
+    unsafe { handle.as_ref() }.ok_or_else(|| wrong(format!("{name} is NULL")))
+}
+
+/// A value behind a handle, to be changed.
+///
+/// # Safety
+/// As [`value`], and nobody else uses it.
+pub(crate) unsafe fn value_mut<'a, T>(handle: *mut T, name: &str) -> Result<&'a mut T, Failed> {
+    // SAFETY: as the caller says.
+    unsafe { handle.as_mut() }.ok_or_else(|| wrong(format!("{name} is NULL")))
+}
+
+/// Checks that a place for a result is there.
+pub(crate) fn place<T>(result: *mut T, name: &str) -> Result<(), Failed> {
+    if result.is_null() { Err(wrong(format!("{name} is NULL"))) } else { Ok(()) }
+}
+
+/// Writes a result to its place, if that is not null.
+///
+/// # Safety
+/// `place` is null, or may be written to.
+pub(crate) unsafe fn put<T>(place: *mut T, value: T) {
+    if !place.is_null() {
+        // SAFETY: not null, and the caller says that it may be written to.
+        unsafe { place.write(value) };
+    }
+}
+
+/// Hands a value over to C.
+pub(crate) fn hand_over<T>(value: T) -> *mut T {
+    Box::into_raw(Box::new(value))
+}
+
+/// Takes a value back and drops it.
+///
+/// # Safety
+/// `handle` is null, or came from [`hand_over`] and was not released.
+pub(crate) unsafe fn take_back<T>(handle: *mut T) {
+    if !handle.is_null() {
+        // SAFETY: it came from `Box::into_raw`, and the caller gives it up.
+        drop(unsafe { Box::from_raw(handle) });
+    }
+}
+
+/// Hands a text over to C. It ends at its first zero byte.
+pub(crate) fn owned_text(text: &str) -> *mut c_char {
+    let end = text.find('\0').unwrap_or(text.len());
+    CString::new(&text[..end]).unwrap_or_default().into_raw()
+}
+
+/// Takes a text back and drops it.
+///
+/// # Safety
+/// `text` is null, or came from [`owned_text`] and was not released.
+pub(crate) unsafe fn drop_text(text: *mut c_char) {
+    if !text.is_null() {
+        // SAFETY: it came from `CString::into_raw`, and the caller gives it up.
+        drop(unsafe { CString::from_raw(text) });
+    }
+}
+
+/// Hands bytes over to C.
+pub(crate) fn owned_bytes(bytes: Vec<u8>) -> (*mut u8, usize) {
+    let bytes = bytes.into_boxed_slice();
+    let length = bytes.len();
+    (Box::into_raw(bytes).cast(), length)
+}
+
+/// Takes bytes back and drops them.
+///
+/// # Safety
+/// `bytes` is null, or came from [`owned_bytes`] with this length and was not released.
+pub(crate) unsafe fn drop_bytes(bytes: *mut u8, length: usize) {
+    if !bytes.is_null() {
+        // SAFETY: they came from a boxed slice of this length, and the caller gives them up.
+        drop(unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(bytes, length)) });
+    }
+}

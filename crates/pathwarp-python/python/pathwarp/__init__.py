@@ -1,0 +1,83 @@
+"""Bend, warp and deform vector paths and SVG drawings, and get clean Bézier curves back.
+
+    >>> import pathwarp
+    >>> pathwarp.warp_path("M0,0 H100 V50 H0 Z", "arc", bend=0.4, tolerance=1, precision=0)
+    'M-29,10 C18,-25 82,-25 129,10 L100,50 C70,28 30,28 0,50 Z'
+
+`Deformation` maps points, paths and drawings; `warp_path` and `warp_svg` are short forms. `deformations()` lists what there is, and
+`pathwarp.deform` has a function for each. The numbers are those of the command line, whose names and values these are.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, Mapping, Tuple, Union
+
+from ._catalog import Info, Parameter, deformations, find, options, python_name
+from ._deformation import Deformation, Frame, Steps, Warped, WarpedPath
+from ._errors import GeometryError, InputError, InternalError, LimitError, PathwarpError, UsageError
+from ._native import __version__, use_threads
+
+__all__ = [
+    "Deformation",
+    "Frame",
+    "GeometryError",
+    "Info",
+    "InputError",
+    "InternalError",
+    "LimitError",
+    "Parameter",
+    "PathwarpError",
+    "Steps",
+    "UsageError",
+    "Warped",
+    "WarpedPath",
+    "__version__",
+    "deformations",
+    "options",
+    "use_threads",
+    "warp_path",
+    "warp_svg",
+]
+
+for _error in (PathwarpError, UsageError, InputError, GeometryError, LimitError, InternalError):
+    _error.__module__ = __name__
+
+
+def warp_path(d: Any, deformation: Steps, /, **values: Any) -> WarpedPath:
+    """Bends SVG path data by a deformation, and returns path data.
+
+    `values` are parameters of the deformation, if that is given by its name, and the options `tolerance`, `frame`, `certify`,
+    `merge`, `precision` and `limit`: `warp_path("M0,0 H100", "arc", bend=0.4, tolerance=0.01)`.
+    """
+    chosen, given = _divided(deformation, values)
+    return chosen.warp_path(d, **given)
+
+
+def warp_svg(
+    svg: Union[bytes, bytearray, memoryview, str],
+    deformation: Steps,
+    /,
+    *,
+    name: Union[str, "os.PathLike[str]", None] = None,
+    **values: Any,
+) -> Warped:
+    """Warps a drawing, and returns the file that the command line would write.
+
+    `deformation` is a name, a Deformation, a list of them, or the Path of a recipe. `values` are parameters of the deformation, if that
+    is given by its name, and options: `warp_svg(svg, "arc", bend=0.4, fit="grow")`.
+    """
+    chosen, given = _divided(deformation, values)
+    return chosen.warp_svg(svg, name=name, **given)
+
+
+def _divided(deformation: Steps, values: Mapping[str, Any]) -> Tuple[Deformation, Dict[str, Any]]:
+    """The deformation with its parameters, and the options."""
+    known = options()
+    given = {name: value for name, value in values.items() if name in known}
+    parameters = {name: value for name, value in values.items() if name not in known}
+    if isinstance(deformation, str):
+        return Deformation(deformation, **parameters), given
+    if parameters:
+        raise UsageError(f"{', '.join(parameters)}: not an option; parameters belong to the deformation itself")
+    return Deformation.chain(deformation), given

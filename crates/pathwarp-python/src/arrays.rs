@@ -1,0 +1,94 @@
+//! Arrays of points under a map: read and written in place, block by block, with any strides.
+
+use numpy::ndarray::{ArrayView2, ArrayViewMut2, ArrayViewMut3, Axis};
+use pathwarp::Outline;
+use pathwarp::kurbo::{Point, Rect, Vec2};
+use pathwarp_cli::embed::PointMap;
+use rayon::prelude::*;
+
+/// Points mapped by one call of the map: few enough for the stack and the first cache.
+const BLOCK: usize = 256;
+/// Points that a thread takes at a time.
+const CHUNK: usize = 16 * 1024;
+
+/// The bounding box of the finite points.
+pub(crate) fn bounds(points: ArrayView2<'_, f64>) -> Option<Rect> {
+    let mut all: Option<[f64; 4]> = None;
+    for p in points.rows() {
+        let (x, y) = (p[0], p[1]);
+        if x.is_finite() && y.is_finite() {
+            let [x0, y0, x1, y1] = all.unwrap_or([x, y, x, y]);
+            all = Some([x0.min(x), y0.min(y), x1.max(x), y1.max(y)]);
+        }
+    }
+    all.map(|[x0, y0, x1, y1]| Rect::new(x0, y0, x1, y1))
+}
+
+/// The finite points as one polyline.
+pub(crate) fn cloud(points: ArrayView2<'_, f64>) -> Outline {
+    let points: Vec<Point> =
+        points.rows().into_iter().map(|p| Point::new(p[0], p[1])).filter(|p| p.is_finite()).collect();
+    Outline::from_points(&points, false)
+}
+
+/// Maps `from` to `to`, of the same shape; without `from`, `to` in place.
+pub(crate) fn map(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>) {
+    let to: Vec<_> = to.axis_chunks_iter_mut(Axis(0), CHUNK).collect();
+    match from {
+        Some(from) => {
+            let from: Vec<_> = from.axis_chunks_iter(Axis(0), CHUNK).collect();
+            from.into_par_iter().zip(to).for_each(|(from, to)| chunk(map, Some(from), to));
+        }
+        None => to.into_par_iter().for_each(|to| chunk(map, None, to)),
+    }
+}
+
+fn chunk(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>) {
+    let (mut source, mut image) = ([Point::ORIGIN; BLOCK], [Point::ORIGIN; BLOCK]);
+    for start in (0..to.nrows()).step_by(BLOCK) {
+        let rows = start..(start + BLOCK).min(to.nrows());
+        let (source, image) = (&mut source[..rows.len()], &mut image[..rows.len()]);
+        match &from {
+            Some(from) => read(from.slice_axis(Axis(0), rows.clone().into()), source),
+            None => read(to.slice_axis(Axis(0), rows.clone().into()), source),
+        }
+        map.points(source, image);
+        let mut to = to.slice_axis_mut(Axis(0), rows.into());
+        if let Some(flat) = to.as_slice_mut() {
+            for (out, p) in flat.as_chunks_mut().0.iter_mut().zip(image) {
+                *out = [p.x, p.y];
+            }
+        } else {
+            for (mut out, p) in to.rows_mut().into_iter().zip(image) {
+                (out[0], out[1]) = (p.x, p.y);
+            }
+        }
+    }
+}
+
+fn read(from: ArrayView2<'_, f64>, points: &mut [Point]) {
+    if let Some(flat) = from.as_slice() {
+        for ([x, y], p) in flat.as_chunks().0.iter().zip(points) {
+            *p = Point::new(*x, *y);
+        }
+    } else {
+        for (row, p) in from.rows().into_iter().zip(points) {
+            *p = Point::new(row[0], row[1]);
+        }
+    }
+}
+
+/// The Jacobians at `points`: `out[i]` is [[∂x'/∂x, ∂x'/∂y], [∂y'/∂x, ∂y'/∂y]].
+pub(crate) fn jacobian(map: &PointMap, points: ArrayView2<'_, f64>, mut out: ArrayViewMut3<'_, f64>) {
+    let out: Vec<_> = out.axis_chunks_iter_mut(Axis(0), BLOCK).collect();
+    let points: Vec<_> = points.axis_chunks_iter(Axis(0), BLOCK).collect();
+    points.into_par_iter().zip(out).for_each(|(points, mut out)| {
+        let (mut at, mut columns) = ([Point::ORIGIN; BLOCK], [[Vec2::ZERO; 2]; BLOCK]);
+        let n = points.nrows();
+        read(points, &mut at[..n]);
+        map.jacobians(&at[..n], &mut columns[..n]);
+        for (mut m, [dx, dy]) in out.outer_iter_mut().zip(&columns) {
+            (m[[0, 0]], m[[0, 1]], m[[1, 0]], m[[1, 1]]) = (dx.x, dy.x, dx.y, dy.y);
+        }
+    });
+}

@@ -1,0 +1,65 @@
+//! The deformations and options that there are, as JSON for the Python half.
+
+use pathwarp::deform::{Info, Registry};
+use pathwarp::param::{Kind, Param};
+use pathwarp_cli::embed;
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+
+/// The deformations with their parameters, as JSON.
+#[pyfunction]
+pub(crate) fn catalog() -> String {
+    let registry = Registry::builtin();
+    let all: Vec<Value> = registry.entries().iter().map(|e| deformation(&registry, e.info())).collect();
+    Value::from(all).to_string()
+}
+
+/// The names of the options of a warp, with their help.
+#[pyfunction]
+pub(crate) fn option_help() -> Vec<(&'static str, String)> {
+    embed::option_names().collect()
+}
+
+fn deformation(registry: &Registry, info: &Info) -> Value {
+    let params: Vec<Value> = info.params.iter().filter(|p| p.kind != Kind::Save).map(param).collect();
+    let names = info.gallery.and_then(|g| info.params.iter().find(|p| p.name == g.presets)).map(|p| p.kind);
+    let names = match names {
+        Some(Kind::NameOrFile(names) | Kind::Choice(names)) => names,
+        _ => &[],
+    };
+    // A preset's name may belong to a deformation, or to another's preset.
+    let own = |name: &&&str| {
+        let meaning = embed::preset(registry, name).is_some_and(|(i, ..)| i.name == info.name);
+        registry.get(name).is_none() && meaning
+    };
+    let presets: Vec<&&str> = names.iter().filter(own).collect();
+    let examples: Vec<&str> = info.examples.iter().map(|e| e.command).collect();
+    json!({
+        "name": info.name, "title": info.title, "group": info.group, "about": info.about, "source": info.source,
+        "parameters": params, "presets": presets, "examples": examples,
+        "preset_parameter": info.gallery.map(|g| g.presets),
+    })
+}
+
+fn param(p: &Param) -> Value {
+    let (kind, choices): (&str, &[&str]) = match p.kind {
+        Kind::Flag => ("flag", &[]),
+        Kind::Number => ("number", &[]),
+        Kind::Numbers(_) => ("numbers", &[]),
+        Kind::Length(_) => ("length", &[]),
+        Kind::Angle => ("angle", &[]),
+        Kind::Count => ("count", &[]),
+        Kind::Point => ("point", &[]),
+        Kind::Path => ("path", &[]),
+        Kind::Choice(words) => ("choice", words),
+        Kind::Text(_) => ("text", &[]),
+        Kind::NameOrFile(words) => ("name-or-file", words),
+        Kind::File | Kind::Save => ("file", &[]),
+    };
+    let limit = |v: f64| v.is_finite().then_some(v);
+    json!({
+        "name": p.name, "kind": kind, "notation": p.value_name(), "choices": choices, "default": p.default,
+        "needed": p.needed, "repeat": p.repeat, "help": p.help,
+        "range": [limit(p.range.0), limit(p.range.1)], "slider": [p.ui.0, p.ui.1],
+    })
+}

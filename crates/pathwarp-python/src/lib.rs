@@ -1,0 +1,27 @@
+//! The native half of the Python package `pathwarp`. The other half, in `python/pathwarp`, turns Python's values into the text
+//! that [`pathwarp_cli::embed`] takes, so that both the command line and Python mean the same by them.
+
+mod arrays;
+mod catalog;
+mod errors;
+mod outline;
+mod threads;
+mod warper;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::catalog::{catalog, option_help};
+    #[pymodule_export]
+    use super::threads::use_threads;
+    #[pymodule_export]
+    use super::warper::Warper;
+    use super::{Bound, PyModule, PyModuleMethods as _, PyResult};
+
+    #[pymodule_init]
+    fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        m.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

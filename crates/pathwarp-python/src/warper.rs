@@ -1,0 +1,196 @@
+//! The class `Warper`: [`pathwarp_cli::embed::Warper`] for Python. Work is done without the interpreter's lock.
+
+use crate::errors::{exception, usage};
+use crate::threads::on_threads;
+use crate::{arrays, outline};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
+use pathwarp::Outline;
+use pathwarp::deform::Registry;
+use pathwarp::refit::Assurance;
+use pathwarp_cli::embed::{self, Error, PointMap};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::path::{Path, PathBuf};
+
+/// Deformations one after another, with options.
+#[pyclass(frozen, module = "pathwarp._native")]
+pub(crate) struct Warper(embed::Warper);
+
+/// Verbs, coordinates and report of a path.
+type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
+
+#[pymethods]
+impl Warper {
+    #[new]
+    fn new(py: Python<'_>, name: &str, values: Vec<(String, String)>) -> PyResult<Self> {
+        done(py, py.detach(|| embed::Warper::new(&Registry::builtin(), name, &values))).map(Self)
+    }
+
+    /// The recipe in the text of a recipe file.
+    #[staticmethod]
+    fn from_recipe(py: Python<'_>, text: &str, folder: PathBuf, external: bool) -> PyResult<Self> {
+        let read = || embed::Warper::from_recipe(&Registry::builtin(), text, &folder, external);
+        done(py, py.detach(read)).map(Self)
+    }
+
+    /// The same with more options.
+    fn with_options(&self, py: Python<'_>, options: Vec<(String, String)>) -> PyResult<Self> {
+        let mut warper = self.0.clone();
+        for (name, value) in &options {
+            done(py, warper.set_option(name, value))?;
+        }
+        Ok(Self(warper))
+    }
+
+    fn then(&self, later: &Self) -> Self {
+        Self(self.0.then(&later.0))
+    }
+
+    fn inverted(&self) -> Self {
+        Self(self.0.inverted())
+    }
+
+    #[getter]
+    fn steps(&self) -> Vec<String> {
+        self.0.steps().map(str::to_owned).collect()
+    }
+
+    #[getter]
+    fn frame(&self) -> Option<String> {
+        self.0.frame()
+    }
+
+    fn to_recipe(&self, py: Python<'_>, folder: PathBuf) -> PyResult<String> {
+        done(py, self.0.to_recipe(&folder))
+    }
+
+    /// Maps points, to `out` if it is given, which may be the same array.
+    #[pyo3(signature = (points, out=None))]
+    fn map<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyArray2<f64>>,
+        out: Option<Bound<'py, PyArray2<f64>>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        pairs(points)?;
+        let borrowed = |e: &dyn std::fmt::Display| usage(py, &format!("out: {e}; give another array"));
+        if let Some(out) = out.as_ref().filter(|o| o.is(points)) {
+            let mut target = out.try_readwrite().map_err(|e| borrowed(&e))?;
+            let mut target = target.as_array_mut();
+            let map = || {
+                let map = self.point_map(target.view())?;
+                arrays::map(&map, None, target.view_mut());
+                Ok(())
+            };
+            done(py, py.detach(|| on_threads(map)))?;
+            return Ok(out.clone());
+        }
+        let out = out.unwrap_or_else(|| PyArray2::zeros(py, points.dims(), false));
+        if out.dims() != points.dims() {
+            return Err(usage(
+                py,
+                &format!("out: has shape {:?}, not {:?} as the points", out.shape(), points.shape()),
+            ));
+        }
+        let source = points.try_readonly().map_err(|e| borrowed(&e))?;
+        let mut target = out.try_readwrite().map_err(|e| borrowed(&e))?;
+        let (source, mut target) = (source.as_array(), target.as_array_mut());
+        let map = || {
+            let map = self.point_map(source)?;
+            arrays::map(&map, Some(source), target.view_mut());
+            Ok(())
+        };
+        done(py, py.detach(|| on_threads(map)))?;
+        Ok(out)
+    }
+
+    /// The Jacobians at points.
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyArray2<f64>>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        pairs(points)?;
+        let out = PyArray3::zeros(py, [points.dims()[0], 2, 2], false);
+        let source = points.try_readonly()?;
+        let mut target = out.try_readwrite()?;
+        let (source, mut target) = (source.as_array(), target.as_array_mut());
+        let map = || {
+            let map = self.point_map(source)?;
+            arrays::jacobian(&map, source, target.view_mut());
+            Ok(())
+        };
+        done(py, py.detach(|| on_threads(map)))?;
+        Ok(out)
+    }
+
+    /// Bends a path: its data and report.
+    fn warp_path<'py>(&self, py: Python<'py>, data: &str) -> PyResult<(String, Bound<'py, PyDict>)> {
+        let warped = done(py, py.detach(|| on_threads(|| self.0.warp_path(data))))?;
+        let report = report(py, &warped)?;
+        Ok((warped.path.data, report))
+    }
+
+    /// Bends a path of verbs and coordinates.
+    fn warp_verbs<'py>(
+        &self,
+        py: Python<'py>,
+        verbs: &str,
+        coordinates: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<VerbsOut<'py>> {
+        let path = outline::path(verbs, coordinates.as_slice()?).map_err(|e| usage(py, &e))?;
+        let outline = Outline::from(&path);
+        let warped = done(py, py.detach(|| on_threads(|| self.0.warp_outline(&outline))))?;
+        let (verbs, coordinates) = outline::verbs(&warped.path.path);
+        Ok((verbs, coordinates.into_pyarray(py), report(py, &warped)?))
+    }
+
+    /// Warps a drawing: its bytes, the report as JSON, and the notes that `explain` asks for.
+    fn warp_drawing<'py>(
+        &self,
+        py: Python<'py>,
+        data: &[u8],
+        name: Option<PathBuf>,
+    ) -> PyResult<(Bound<'py, PyBytes>, String, Vec<String>)> {
+        let name = name.as_deref();
+        let warped = done(py, py.detach(|| on_threads(|| self.0.warp_drawing(data, name.map(Path::new)))))?;
+        Ok((PyBytes::new(py, &warped.bytes), warped.report, warped.notes))
+    }
+}
+
+impl Warper {
+    fn point_map(&self, points: numpy::ndarray::ArrayView2<'_, f64>) -> Result<PointMap, Error> {
+        self.0.point_map(|| arrays::bounds(points), || arrays::cloud(points))
+    }
+}
+
+/// Checks that an array holds pairs.
+fn pairs(points: &Bound<'_, PyArray2<f64>>) -> PyResult<()> {
+    match points.dims()[1] {
+        2 => Ok(()),
+        _ => Err(usage(points.py(), &format!("points: has shape {:?}; it must be (n, 2)", points.shape()))),
+    }
+}
+
+fn done<T>(py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
+    result.map_err(|e| exception(py, &e))
+}
+
+/// The report of a path.
+fn report<'py>(py: Python<'py>, warped: &embed::Path) -> PyResult<Bound<'py, PyDict>> {
+    let r = &warped.path.report;
+    let out = PyDict::new(py);
+    out.set_item("segments_in", r.segments_in)?;
+    out.set_item("segments_out", r.segments_out)?;
+    out.set_item("max_error", r.max_error)?;
+    let assurance = match r.assurance {
+        Assurance::Exact => "exact",
+        Assurance::Certified => "certified",
+        Assurance::Checked => "checked",
+    };
+    out.set_item("assurance", assurance)?;
+    out.set_item("over_budget", r.over_budget.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>())?;
+    out.set_item("folds", warped.folds)?;
+    out.set_item("warnings", &warped.warnings)?;
+    Ok(out)
+}

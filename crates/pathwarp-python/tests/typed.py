@@ -1,0 +1,16 @@
+"""Use of the package that a strict type checker must accept."""
+
+from pathlib import Path
+
+import numpy as np
+
+import pathwarp
+from pathwarp import Deformation, deform
+
+d: str = pathwarp.warp_path("M0,0 H100", "arc", bend=0.4)
+shaper: Deformation = deform.shaper(shaper="M0,0 H9 V9 H0 Z", reverse_shaper=True, frame=(0, 0, 9, 9))
+points = shaper.map(np.zeros((3, 2)))
+points = shaper.inverse().map(points, out=points)
+drawing: bytes = pathwarp.warp_svg(b"<svg/>", [shaper, "swirl"], fit="grow")
+recipe: Deformation = Deformation.chain(Path("recipe.toml"))
+helps: list[str] = [p.help for i in pathwarp.deformations().values() for p in i.parameters]

@@ -1,0 +1,93 @@
+//! The work of a refit is counted by the parts of the map, and images that leave the range of numbers are errors.
+
+#![allow(clippy::unwrap_used)]
+
+use kurbo::{Affine, Rect};
+use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp::deform::Registry;
+use pathwarp::map::{AffineMap, Map};
+use pathwarp::param::{Args, Frame};
+use pathwarp::recipe::{Recipe, Step};
+use pathwarp::refit::{Options, warp_path};
+use pathwarp::{Error, GeometryError, Outline};
+use std::sync::Arc;
+
+fn path() -> Outline {
+    Outline::from_svg("M10 10C40 0 60 30 90 10V60L10 60Z").unwrap()
+}
+
+fn recipe(steps: &[(&str, &[(&str, &str)])]) -> Recipe {
+    Recipe { steps: steps.iter().map(|(name, args)| Step::new(*name, Args::from_pairs(args))).collect() }
+}
+
+fn map(recipe: &Recipe) -> Arc<dyn Map> {
+    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+    Arc::new(recipe.build(&Registry::builtin(), frame, &std::iter::once(&path())).unwrap().map)
+}
+
+/// Found by fuzzing: a point without segments became infinite under an affine map.
+#[test]
+fn images_out_of_range_are_errors() {
+    let huge = AffineMap(Affine::new([0.0, 2.0, 1.0, 0.5, 3.0, 4.0]));
+    for data in ["M1e308 1e308", "M1e308 1e308l1 1", "M0 0L1e99 1e99", "M1e99 0A1e99 1e99 0 0 1 5 9"] {
+        let outline = Outline::from_svg_lossy(data);
+        let warped = warp_path(&outline, &huge, &Options::new(1.0));
+        assert!(warped.as_ref().map_or(true, |w| w.path.is_finite()), "{data}: {warped:?}");
+        assert_eq!(warped.is_err(), data.contains("308"), "{data}: {warped:?}");
+    }
+}
+
+#[test]
+fn a_map_of_many_parts_counts_as_many() {
+    let one = map(&recipe(&[("wave", &[])]));
+    let three = map(&recipe(&[("wave", &[]), ("swirl", &[]), ("wave", &[])]));
+    assert_eq!((one.work(), three.work()), (1.0, 3.0));
+    let sum = (1..200).map(|i| format!("+sin(x*{i})")).collect::<String>();
+    assert!(map(&recipe(&[("expr", &[("x", &format!("x{sum}"))])])).work() > 30.0);
+    let flag = recipe(&[("warp", &[("style", "flag")])]);
+    assert!(map(&flag.inverted()).work() > 10.0 * map(&flag).work());
+}
+
+#[test]
+fn the_limit_holds_within_a_single_segment() {
+    let oscillating = map(&recipe(&[("expr", &[("x", "x+20*sin(x*2000)")])]));
+    let line = Outline::from_svg("M0 50C30 40 60 60 100 50").unwrap();
+    let budget = Arc::new(Budget::new(Limits::default().with(Limit::Evaluations, 5000.0)));
+    let e = warp_path(&line, &*oscillating, &Options::new(1e-3).with_budget(Arc::clone(&budget))).unwrap_err();
+    assert!(matches!(e, GeometryError::Limit(e) if e.limit == Limit::Evaluations), "{e:?}");
+    assert!(warp_path(&line, &*oscillating, &Options::new(1e-3)).is_ok());
+}
+
+#[test]
+fn placing_the_steps_of_a_recipe_is_counted() {
+    let no_args: &[(&str, &str)] = &[];
+    let waves = [("wave", no_args); 40];
+    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+    let build = |limit: f64| {
+        let budget = Budget::new(Limits::default().with(Limit::Evaluations, limit));
+        recipe(&waves).build_within(&Registry::builtin(), frame.clone(), &std::iter::once(&path()), &budget)
+    };
+    assert!(build(1e6).is_ok());
+    assert!(matches!(build(1e3).err().unwrap(), Error::Geometry(GeometryError::Limit(_))));
+}
+
+/// Found by fuzzing: the tolerance was missed, by rounding of coordinates beyond 1e15, and no place said so.
+#[test]
+fn a_missed_tolerance_is_always_reported() {
+    let swirl = map(&recipe(&[("swirl", &[])]));
+    let mut missed = 0;
+    for data in [
+        "M50 50A1e15 23.3 75 0 0 8755814 10",
+        "M85 4.7L1e15 70Q55 -82 55 10c72 55 -100 126 -120 75",
+        "M0 0C1e17 30 40 1e17 90 90",
+        "M1e16 1e16h30v40q9 3 4 4z",
+    ] {
+        for certify in [false, true] {
+            let options = Options::new(0.01).with_certify(certify).with_merge(true);
+            let Ok(w) = warp_path(&Outline::from_svg(data).unwrap(), &*swirl, &options) else { continue };
+            assert!(w.report.max_error <= 0.01 || !w.report.over_budget.is_empty(), "{data}: {:?}", w.report);
+            missed += usize::from(w.report.max_error > 0.01);
+        }
+    }
+    assert!(missed > 0);
+}

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Runs the pipelines for Ray and Spark over a few hundred drawings, kills a worker of each on the way, and compares the results with the
+# plain batch, byte for byte. Uses the wheel that python-tests.sh built. Skipped where Ray cannot be installed; Spark also needs Java.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+wheel=$(ls target/python-wheels/*.whl 2>/dev/null || true)
+if [ -z "$wheel" ]; then
+    echo "There is no wheel: the pipelines for clusters are not tested" >&2
+    exit 0
+fi
+env=target/scale-out-tests
+[ -x "$env/bin/python" ] || "${PYTHON:-python3}" -m venv "$env"
+systems=ray
+packages="ray[data] numpy pandas pyarrow psutil"
+if command -v java >/dev/null; then
+    systems="ray spark"
+    packages="$packages pyspark"
+else
+    echo "No Java: the pipeline for Spark is not tested" >&2
+fi
+# shellcheck disable=SC2086
+if ! "$env/bin/python" -m pip install --quiet --disable-pip-version-check $packages; then
+    echo "Ray cannot be installed: the pipelines for clusters are not tested" >&2
+    exit 0
+fi
+"$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheel"
+cargo build --quiet --locked -p pathwarp-cli
+# shellcheck disable=SC2086
+"$env/bin/python" -B integrations/scale-out/measure.py --program target/debug/pathwarp --source samples --count 600 --kill 1 --workers 2 $systems 2>&1 |
+    grep -v "INFO\|WARNING"
+exit "${PIPESTATUS[0]}"

@@ -1,0 +1,5 @@
+"""The command `pathwarp` of vpype."""
+
+from .command import pathwarp
+
+__all__ = ["pathwarp"]
