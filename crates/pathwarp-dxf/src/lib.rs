@@ -16,6 +16,7 @@
 //! let outline = Outline::from_svg("M0,0 H50 V20 A10,10 0 0 1 40,30 H0 Z").unwrap();
 //! let dxf = write(&[Shape { layer: "cut", color: Some([255, 0, 0]), outline: &outline }], &Options::default())?;
 //! assert!(dxf.contains("LWPOLYLINE"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod codes;

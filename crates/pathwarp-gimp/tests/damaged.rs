@@ -188,7 +188,8 @@ fn decompression_bombs_end_soon() {
         gz.write_all(&vec![0; 1 << 20]).unwrap();
     }
     let e = error_within(&gz.finish().unwrap(), 2.0);
-    assert!(e.problem.contains("ends"), "{e}");
+    // The announced size is refused before anything is unpacked.
+    assert!(e.limit.is_some(), "{e}");
     // More points than the limit for compressed data.
     let mut head = common::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 2, 0x4100_0000, 1, 0, 0, 0, 1, 1, 0, 2, 300_000_000] {
@@ -207,7 +208,7 @@ fn decompression_bombs_end_soon() {
         gz.write_all(&points.repeat(20_000)).unwrap();
     }
     let e = error_within(&gz.finish().unwrap(), 5.0);
-    assert!(e.problem.contains("unpack the file first"), "{e}");
+    assert!(e.limit.is_some(), "{e}");
     // A string of a gigabyte, all of it present in compressed form.
     let mut head = common::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 1 << 30] {

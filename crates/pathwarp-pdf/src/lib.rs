@@ -9,7 +9,7 @@
 //! ```
 //! let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="210mm" height="297mm"><circle cx="90" cy="90" r="40"/></svg>"#;
 //! let tree = usvg::Tree::from_str(svg, &usvg::Options::default())?;
-//! let written = pathwarp_pdf::write(&tree, &pathwarp_pdf::Options::default());
+//! let written = pathwarp_pdf::write(&tree, &pathwarp_pdf::Options::default())?;
 //! assert!(written.bytes.starts_with(b"%PDF-1.7"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -11,8 +11,9 @@ use pathwarp::map::Jet;
 /// 10⁻¹² there by either term. The others are for waves of a hundredth of the frame, and of a thousandth.
 const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
 
-/// An estimate of the relative error that is good enough: half the digits more than a tangent needs.
-const GOOD: f64 = 1e-9;
+/// An estimate of the relative error that is good enough. Where the third derivative happens to be small, the error is a few tens
+/// of times the estimate; a tangent needs half as many digits.
+const GOOD: f64 = 3e-11;
 
 /// Values at a point's four neighbours at the whole step, then at half of it.
 const STENCIL: [(f64, f64); 8] =

@@ -9,24 +9,28 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) struct Flags {
     params: BTreeSet<&'static str>,
     /// The names that a parameter's value may have.
-    names: BTreeMap<&'static str, &'static [&'static str]>,
+    names: BTreeMap<&'static str, Vec<&'static str>>,
 }
 
 impl Flags {
     /// The parameters of all deformations.
     pub(crate) fn of(catalogue: &dyn Catalogue) -> Self {
         let params = || catalogue.infos().into_iter().flat_map(|i| i.params);
-        let names = params().filter_map(|p| match p.kind {
-            Kind::NameOrFile(names) | Kind::Choice(names) => Some((p.name, names)),
-            _ => None,
-        });
-        Self { params: params().map(|p| p.name).collect(), names: names.collect() }
+        let mut names: BTreeMap<&'static str, Vec<&'static str>> = BTreeMap::new();
+        for p in params() {
+            if let Kind::NameOrFile(values) | Kind::Choice(values) = p.kind {
+                names.entry(p.name).or_default().extend(values);
+            }
+        }
+        Self { params: params().map(|p| p.name).collect(), names }
     }
 
     /// The parameters of both.
     pub(crate) fn and(mut self, other: Self) -> Self {
         self.params.extend(other.params);
-        self.names.extend(other.names);
+        for (name, values) in other.names {
+            self.names.entry(name).or_default().extend(values);
+        }
         self
     }
 

@@ -2,15 +2,10 @@
 //!
 //! The arithmetic is the same on all of them, to the last bit: products and sums are never fused.
 
+use super::lane::{Lane, WIDTH};
 use super::tensor::Tensor;
 use glam::{DMat4, DVec3};
 use pulp::{Arch, Simd, WithSimd};
-
-/// Points in a batch: two AVX registers of four, or four SSE2 registers of two.
-pub(crate) const WIDTH: usize = 8;
-
-/// One number for each point of a batch.
-pub(crate) type Lane = [f64; WIDTH];
 
 /// Work on points that the compiler turns into vector instructions.
 pub(crate) trait Kernel {

@@ -7,8 +7,10 @@
 mod batch;
 mod chain;
 mod collineation;
+mod collineation_map;
 mod crease;
 mod jet;
+mod lane;
 mod newton;
 mod tensor;
 mod traits;

@@ -3,7 +3,7 @@
 //! Centred powers keep the conversion from Bernstein form accurate: at degree 10 the largest coefficient of a basis function is
 //! below 3, where powers from 0 to 1 would reach 10⁴.
 
-use super::batch::{Lane, WIDTH};
+use super::lane::{Lane, WIDTH};
 use glam::DVec3;
 
 /// C polynomials of the same degrees: Σ c[i,j,k]·xⁱyʲzᵏ.

@@ -1,6 +1,8 @@
 //! The trait that every map of space implements.
 
-use super::{Collineation, Creases3, Jet3};
+use super::collineation::Collineation;
+use super::crease::Creases3;
+use super::jet::Jet3;
 use glam::DVec3;
 use std::sync::Arc;
 
