@@ -10,6 +10,8 @@ use flate2::{Compression, Crc};
 use std::io::{self, Write};
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
+/// Level of compression. The default, 6, takes 1.7 to 4.5 times as long; its files are 3 % smaller, those with sharp edges 12 %.
+const LEVEL: u32 = 3;
 /// The filter that replaces bytes by their differences from the row above, which vary least in smooth pictures.
 const UP: u8 = 2;
 
@@ -52,7 +54,7 @@ fn compressed(pixels: &[u8], stride: usize) -> io::Result<Vec<u8>> {
         filtered.extend(row.iter().zip(&above).map(|(here, above)| here.wrapping_sub(*above)));
         above.copy_from_slice(row);
     }
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
     encoder.write_all(&filtered)?;
     encoder.finish()
 }

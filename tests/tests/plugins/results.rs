@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 
 /// The example programs that ripple: in Python by lines of text, and in Rust by numbers.
 fn ripples() -> Vec<PathBuf> {
-    let mut all = vec![program("pathwarp-ripple-program", "pathwarp-ripple-program")];
+    let mut all = vec![program("pathwarp-ripple-program")];
     if python() {
         all.push(root().join("examples/plug-ins/pathwarp-ripple.py"));
     }
@@ -19,7 +19,7 @@ fn ripples() -> Vec<PathBuf> {
 
 /// The same deformation compiled in.
 fn compiled_in() -> PathBuf {
-    program("pathwarp-ripple", "pathwarp-ripple")
+    program("pathwarp-ripple")
 }
 
 /// The path data of a drawing, in document order.

@@ -65,6 +65,7 @@ pub use shared::SharedEdges;
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Gathered, Map};
 use crate::outline::Outline;
+use merge::MergeMemory;
 use piece::PathWriter;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`.
@@ -99,8 +100,9 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
         let mut creases = Creases::default();
         map.creases(&mut creases);
         let announced = path::announce_short(outline, map, &creases, options);
+        let mut memory = MergeMemory::default();
         for sub in &outline.subpaths {
-            path::subpath(sub, map, &creases, (options, announced), &mut out)?;
+            path::subpath(sub, map, &creases, (options, announced), &mut memory, &mut out)?;
         }
     }
     out.report.segments_in = outline.segs().count();

@@ -2,7 +2,7 @@
 
 use super::gather;
 use super::limits::CHUNK;
-use super::merge::{self, Merger, may_be_smooth};
+use super::merge::{self, MergeMemory, Merger, may_be_smooth};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::piece::{FittedPiece, PathWriter, reverse};
@@ -61,6 +61,7 @@ pub(super) fn subpath(
     map: &dyn Map,
     creases: &Creases,
     (options, announced): (&Options, bool),
+    memory: &mut MergeMemory,
     out: &mut PathWriter,
 ) -> Result<(), GeometryError> {
     sub.segs.first().map_or(Ok(()), finite)?;
@@ -76,19 +77,22 @@ pub(super) fn subpath(
         .spend_cut(Limit::Evaluations, (work * sub.segs.len() as f64) as u64)
         .map_err(GeometryError::Limit)?;
     let fitter = SegmentFitter { map, projective, degree: map.rational_degree(), creases, work, options };
-    let refitted = |i: usize, segs: &[Seg]| {
+    let refitted = |i: usize, segs: &[Seg], memory: &mut MergeMemory| {
         if !announced {
             announce(&[segs], map, creases, options);
         }
         let nodes = if i == 0 { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
-        if options.merge { merged(&fitter, segs, nodes) } else { unmerged(&fitter, segs, nodes) }
+        if options.merge { merged(&fitter, segs, nodes, memory) } else { unmerged(&fitter, segs, nodes) }
     };
     let mut pieces = Vec::new();
-    for (more, report) in in_parallel(&sub.segs, CHUNK, refitted)? {
+    if sub.segs.len() <= CHUNK {
+        let (all, report) = refitted(0, &sub.segs, memory)?;
         out.report.add(report);
-        if pieces.is_empty() {
-            pieces = more;
-        } else {
+        pieces = all;
+    } else {
+        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::default());
+        for (more, report) in in_parallel(&sub.segs, CHUNK, alone)? {
+            out.report.add(report);
             pieces.extend(more);
         }
     }
@@ -134,7 +138,7 @@ fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> R
 }
 
 /// Refits segments, with fewer pieces across smooth joints.
-fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
+fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>, memory: &mut MergeMemory) -> Refitted {
     // Across other creases than the domain's edge the image has corners.
     if fitter.creases.items().iter().any(|c| c.kind != CreaseKind::Edge) {
         return unmerged(fitter, segs, nodes);
@@ -147,7 +151,7 @@ fn merged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Ref
         smooth.push(i > 0 && may_be_smooth(&segs[i - 1], seg, &ends[0]));
         jets.push(ends);
     }
-    Merger::new(fitter, segs, &jets).merged(&smooth).map_err(infinity)
+    Merger::new(fitter, segs, &jets, memory).merged(&smooth).map_err(infinity)
 }
 
 /// The jets at the ends of one segment after the other.

@@ -55,18 +55,16 @@ impl Distances {
             out.extend((from..to).filter(far).map(|k| (i, [k, k + 1])));
             let errors = &self.errors[from - first..=to - first];
             let end = errors.len() - 1;
-            for k in 0..=end {
-                let (before, after) = (k.max(1) - 1, (k + 1).min(end));
-                let peak = if k == 0 {
-                    predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR)
-                } else if k == end {
-                    predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], PEAK_FACTOR)
-                } else {
-                    predicted_peak([errors[before], errors[k], errors[after]], PEAK_FACTOR)
-                };
-                if peak > enough {
-                    out.push((i, [from + before, from + after]));
+            if predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR) > enough {
+                out.push((i, [from, from + 1]));
+            }
+            for (k, w) in errors.windows(3).enumerate() {
+                if predicted_peak([w[0], w[1], w[2]], PEAK_FACTOR) > enough {
+                    out.push((i, [from + k, from + k + 2]));
                 }
+            }
+            if predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], PEAK_FACTOR) > enough {
+                out.push((i, [to - 1, to]));
             }
         }
         out

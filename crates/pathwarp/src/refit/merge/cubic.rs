@@ -1,12 +1,12 @@
 //! One cubic for a stretch of a run, fitted to sixteen of the run's samples. Takes no further ones.
 
-use super::limits::COARSE;
+use super::limits::{COARSE, RUN_MINIMAX_WITHIN};
 use super::run::SegmentRun;
 use crate::refit::fit::{Fit, THOROUGH, fit_with, lawson};
 use crate::refit::frame::ChordFrame;
 use crate::refit::judge::settled;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
-use crate::refit::limits::{GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN};
+use crate::refit::limits::{GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, RESTART_GAIN};
 use crate::refit::piece::FittedPiece;
 use crate::refit::residuals::FitState;
 use crate::refit::samples::{ALL, Evenly, UNIT, interleaved};
@@ -207,7 +207,7 @@ impl Stretch {
 
     /// Minimax on all sixteen samples, where that may bring the error below the tolerance.
     fn minimax(&self, best: &mut BestFit) {
-        if best.error > self.tolerance && best.error <= MINIMAX_WITHIN * self.tolerance {
+        if best.error > self.tolerance && best.error <= RUN_MINIMAX_WITHIN * self.tolerance {
             self.lawson(best, self.tolerance);
         }
     }

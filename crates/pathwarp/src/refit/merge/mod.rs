@@ -12,6 +12,7 @@ mod limits;
 mod own;
 mod proven;
 mod reach;
+mod repeats;
 mod run;
 mod search;
 
@@ -27,9 +28,17 @@ use crate::outline::Seg;
 use kurbo::{Point, Vec2};
 use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
 use own::OwnPieces;
-use reach::Reaches;
+use reach::{ReachMemory, Reaches};
+use repeats::{Repeats, Way};
 use run::{RunSegment, SegmentRun};
 use search::{Leg, fewest_legs};
+
+/// What outlasts a subpath.
+#[derive(Default)]
+pub(super) struct MergeMemory {
+    repeats: Repeats,
+    reach: ReachMemory,
+}
 
 /// Merges the pieces of consecutive segments.
 pub(super) struct Merger<'a> {
@@ -39,8 +48,7 @@ pub(super) struct Merger<'a> {
     jets: &'a [[Jet; 2]],
     pieces: Vec<FittedPiece>,
     report: PathReport,
-    /// Places that the last merged piece reached.
-    last_reach: usize,
+    memory: &'a mut MergeMemory,
 }
 
 /// Returns `false` if the images of two consecutive segments certainly form a corner, given the map's jet where they meet.
@@ -74,15 +82,14 @@ pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
 }
 
 impl<'a> Merger<'a> {
-    pub(super) fn new(fitter: &'a SegmentFitter<'a>, segs: &'a [Seg], jets: &'a [[Jet; 2]]) -> Self {
-        Self {
-            fitter,
-            segs,
-            jets,
-            pieces: Vec::with_capacity(segs.len()),
-            report: PathReport::default(),
-            last_reach: 0,
-        }
+    pub(super) fn new(
+        fitter: &'a SegmentFitter<'a>,
+        segs: &'a [Seg],
+        jets: &'a [[Jet; 2]],
+        memory: &'a mut MergeMemory,
+    ) -> Self {
+        memory.reach.last_reach = 0;
+        Self { fitter, segs, jets, pieces: Vec::with_capacity(segs.len()), report: PathReport::default(), memory }
     }
 
     /// The pieces of all segments, merged where that saves some. `smooth[i]` is `false` if the image has a corner where segment i
@@ -137,14 +144,24 @@ impl<'a> Merger<'a> {
 
     /// Appends the fewest pieces for a run that begins with segment `start`.
     fn merge(&mut self, run: &SegmentRun<'a>, start: usize) -> Result<(), Point> {
-        let segments = start..start + run.segments.len();
-        let own = OwnPieces::new(self.fitter, &self.segs[segments.clone()], &self.jets[segments.clone()]);
-        let options = self.fitter.options;
+        let range = start..start + run.segments.len();
+        let (segs, options) = (&self.segs[range.clone()], self.fitter.options);
+        let own = OwnPieces::new(self.fitter, segs, &self.jets[range]);
         let proof = options.certify.then_some(options.tolerance);
-        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, self.last_reach);
+        let MergeMemory { repeats, reach } = &mut *self.memory;
+        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, reach);
         let assurance = if options.certify { Assurance::Certified } else { Assurance::Checked };
-        let legs = passed(&mut reaches)?;
-        self.last_reach = reaches.last_reach;
+        let shape = repeats.shape(segs, options.tolerance);
+        let legs = match repeated(repeats.ways(shape), &mut reaches)? {
+            Some(legs) => legs,
+            None => {
+                let legs = passed(&mut reaches)?;
+                let pieces = count(&mut reaches, legs.as_deref())?;
+                let found = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| *leg).collect());
+                repeats.add(shape, Way { legs: found, pieces });
+                legs
+            }
+        };
         match legs {
             Some(legs) => {
                 for (leg, piece) in legs {
@@ -158,7 +175,7 @@ impl<'a> Merger<'a> {
                 }
             }
             None => {
-                for i in 0..segments.len() {
+                for i in 0..segs.len() {
                     reaches.own.append(i, &mut self.pieces, &mut self.report)?;
                 }
             }
@@ -170,19 +187,47 @@ impl<'a> Merger<'a> {
 /// A leg with its piece and that one's error, if it is merged.
 type PassedLeg = (Leg, Option<(FittedPiece, f64)>);
 
+/// The first of the ways for other runs of the same shape that takes no more pieces here. The inner `None` stands for the segments' own.
+fn repeated(ways: &[Way], reaches: &mut Reaches<'_, '_>) -> Result<Option<Option<Vec<PassedLeg>>>, Point> {
+    for way in ways {
+        let legs = match &way.legs {
+            None => None,
+            Some(legs) => match pieces_of(reaches, legs)? {
+                None => continue,
+                found => found,
+            },
+        };
+        if count(reaches, legs.as_deref())? <= way.pieces {
+            return Ok(Some(legs));
+        }
+    }
+    Ok(None)
+}
+
+/// Number of pieces that a way takes; without one, of the segments' own.
+fn count(reaches: &mut Reaches<'_, '_>, legs: Option<&[PassedLeg]>) -> Result<usize, Point> {
+    let Some(legs) = legs else { return reaches.own.total() };
+    legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { reaches.own.count(leg.from / MERGE_GRID) }).sum()
+}
+
+/// The legs with their pieces. `None` if one of them does not pass its check.
+fn pieces_of(reaches: &mut Reaches<'_, '_>, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>, Point> {
+    let mut out = Vec::with_capacity(legs.len());
+    for leg in legs {
+        let piece = if leg.merged { reaches.piece(leg.from, leg.to)? } else { None };
+        if piece.is_some() || !leg.merged {
+            out.push((*leg, piece));
+        }
+    }
+    Ok((out.len() == legs.len()).then_some(out))
+}
+
 /// The way with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
 fn passed(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<PassedLeg>>, Point> {
     for _ in 0..MERGE_SEARCHES {
         let Some(legs) = fewest_legs(reaches)? else { return Ok(None) };
-        let mut out = Vec::with_capacity(legs.len());
-        for leg in &legs {
-            let piece = if leg.merged { reaches.piece(leg.from, leg.to)? } else { None };
-            // A piece that fails is left out of the next search.
-            if piece.is_some() || !leg.merged {
-                out.push((*leg, piece));
-            }
-        }
-        if out.len() == legs.len() {
+        // A piece that fails is left out of the next search.
+        if let Some(out) = pieces_of(reaches, &legs)? {
             return Ok(Some(out));
         }
     }

@@ -18,7 +18,8 @@ struct Tried {
     to: usize,
     /// Error ÷ tolerance at the samples. At most 1 if the cubic fits.
     error: f64,
-    cubic: Option<RunCubic>,
+    /// Index of the cubic, if it fits.
+    cubic: Option<usize>,
     /// The piece with its error, once it has passed its check.
     piece: Option<(FittedPiece, f64)>,
     /// The next entry with the same start.
@@ -28,13 +29,9 @@ struct Tried {
 /// No entry.
 const NONE: usize = usize::MAX;
 
-/// Everything known about single cubics between the grid places of a run.
-pub(super) struct Reaches<'r, 'a> {
-    run: &'r SegmentRun<'a>,
-    pub(super) own: OwnPieces<'r>,
-    tolerance: f64,
-    /// The tolerance of proofs, if they are wanted.
-    proof: Option<f64>,
+/// Lists of [`Reaches`], which keep their memory from run to run.
+#[derive(Default)]
+pub(super) struct ReachMemory {
     /// Break points at the grid places, computed on first use.
     ends: Vec<Option<BreakPoint>>,
     /// For each joint, how far on either side of it a cubic may extend: the shorter side of a cubic that crosses it is at most
@@ -43,9 +40,21 @@ pub(super) struct Reaches<'r, 'a> {
     tried: Vec<Tried>,
     /// The last entry of `tried` from each place.
     latest: Vec<usize>,
+    /// The cubics that fit.
+    cubics: Vec<RunCubic>,
     distances: Distances,
     /// Places reached from the start before: drawings change little along a curve.
     pub(super) last_reach: usize,
+}
+
+/// Everything known about single cubics between the grid places of a run.
+pub(super) struct Reaches<'r, 'a> {
+    run: &'r SegmentRun<'a>,
+    pub(super) own: OwnPieces<'r>,
+    tolerance: f64,
+    /// The tolerance of proofs, if they are wanted.
+    proof: Option<f64>,
+    memory: &'r mut ReachMemory,
 }
 
 impl<'r, 'a> Reaches<'r, 'a> {
@@ -54,21 +63,19 @@ impl<'r, 'a> Reaches<'r, 'a> {
         own: OwnPieces<'r>,
         tolerance: f64,
         proof: Option<f64>,
-        last_reach: usize,
+        memory: &'r mut ReachMemory,
     ) -> Self {
+        let places = run.grid() + 1;
+        memory.ends.clear();
+        memory.ends.resize(places, None);
+        memory.latest.clear();
+        memory.latest.resize(places, NONE);
+        memory.tried.clear();
+        memory.cubics.clear();
         let crossing = (0..=run.segments.len()).map(|j| (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt());
-        Self {
-            run,
-            own,
-            tolerance,
-            proof,
-            ends: vec![None; run.grid() + 1],
-            crossing: crossing.collect(),
-            tried: Vec::with_capacity(2 * run.segments.len()),
-            latest: vec![NONE; run.grid() + 1],
-            distances: Distances::default(),
-            last_reach,
-        }
+        memory.crossing.clear();
+        memory.crossing.extend(crossing);
+        Self { run, own, tolerance, proof, memory }
     }
 
     /// The last grid place.
@@ -78,11 +85,11 @@ impl<'r, 'a> Reaches<'r, 'a> {
 
     /// The break point at place `k`. `Err`: the source point, if the map is not finite there.
     fn end(&mut self, k: usize) -> Result<BreakPoint, Point> {
-        if let Some(end) = self.ends[k] {
+        if let Some(end) = self.memory.ends[k] {
             return Ok(end);
         }
         let end = self.run.end_at(k)?;
-        self.ends[k] = Some(end);
+        self.memory.ends[k] = Some(end);
         Ok(end)
     }
 
@@ -94,25 +101,26 @@ impl<'r, 'a> Reaches<'r, 'a> {
     /// The piece from place `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
     pub(super) fn piece(&mut self, k: usize, m: usize) -> Result<Option<(FittedPiece, f64)>, Point> {
         let i = self.entry(k, m)?;
-        if let (Some(cubic), None) = (self.tried[i].cubic, self.tried[i].piece) {
-            let piece = self.checked(&cubic, k, m)?;
-            let tried = &mut self.tried[i];
+        if let (Some(cubic), None) = (self.memory.tried[i].cubic, self.memory.tried[i].piece) {
+            let piece = self.checked(cubic, k, m)?;
+            let tried = &mut self.memory.tried[i];
             tried.piece = piece;
             if piece.is_none() {
                 (tried.error, tried.cubic) = (REFUSED_ERROR, None);
             }
         }
-        Ok(self.tried[i].piece)
+        Ok(self.memory.tried[i].piece)
     }
 
-    /// Checks a cubic and, if it is just outside the tolerance, one fitted more closely.
-    fn checked(&mut self, cubic: &RunCubic, k: usize, m: usize) -> Result<Option<(FittedPiece, f64)>, Point> {
-        let found = self.within(cubic)?;
+    /// Checks a cubic, by its index, and, if it is just outside the tolerance, one fitted more closely.
+    fn checked(&mut self, cubic: usize, k: usize, m: usize) -> Result<Option<(FittedPiece, f64)>, Point> {
+        let cubic = self.memory.cubics[cubic];
+        let found = self.within(&cubic)?;
         if found.is_some() {
             return Ok(found);
         }
         let stretch = self.stretch(k, m)?;
-        match stretch.fitted_closely(cubic).cubic {
+        match stretch.fitted_closely(&cubic).cubic {
             Some(closer) => self.within(&closer),
             None => Ok(None),
         }
@@ -121,10 +129,10 @@ impl<'r, 'a> Reaches<'r, 'a> {
     /// The error of a cubic by the samples of all segments, or proven segment by segment. `None` if it is not within the tolerance.
     fn within(&mut self, cubic: &RunCubic) -> Result<Option<(FittedPiece, f64)>, Point> {
         let enough = self.tolerance;
-        let checked = self.distances.measure(self.run, cubic, enough)?;
+        let checked = self.memory.distances.measure(self.run, cubic, enough)?;
         let Some(mut error) = checked.filter(|e| *e <= enough) else { return Ok(None) };
         if let Some(tolerance) = self.proof {
-            error = proven(self.run, cubic, &self.distances.feet, tolerance)?;
+            error = proven(self.run, cubic, &self.memory.distances.feet, tolerance)?;
             if error > tolerance {
                 return Ok(None);
             }
@@ -139,25 +147,30 @@ impl<'r, 'a> Reaches<'r, 'a> {
 
     /// The entry of the cubic from `k` to `m`, which is fitted on first use.
     fn entry(&mut self, k: usize, m: usize) -> Result<usize, Point> {
-        let mut i = self.latest[k];
+        let mut i = self.memory.latest[k];
         while i != NONE {
-            if self.tried[i].to == m {
+            if self.memory.tried[i].to == m {
                 return Ok(i);
             }
-            i = self.tried[i].next;
+            i = self.memory.tried[i].next;
         }
         let stretch = self.stretch(k, m)?;
         let Trial { error, cubic } = stretch.fitted();
         let relative = error / stretch.tolerance;
         let error = if cubic.is_some() { relative.min(1.0) } else { relative.max(1.0 + f64::EPSILON) };
-        self.tried.push(Tried { to: m, error, cubic, piece: None, next: self.latest[k] });
-        self.latest[k] = self.tried.len() - 1;
-        Ok(self.latest[k])
+        let memory = &mut *self.memory;
+        let cubic = cubic.map(|cubic| {
+            memory.cubics.push(cubic);
+            memory.cubics.len() - 1
+        });
+        memory.tried.push(Tried { to: m, error, cubic, piece: None, next: memory.latest[k] });
+        memory.latest[k] = memory.tried.len() - 1;
+        Ok(memory.latest[k])
     }
 
     fn error(&mut self, k: usize, m: usize) -> Result<f64, Point> {
         let i = self.entry(k, m)?;
-        Ok(self.tried[i].error)
+        Ok(self.memory.tried[i].error)
     }
 
     /// The furthest place that jumps of curvature let a cubic from `k` reach.
@@ -168,7 +181,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
             if j * MERGE_GRID >= limit {
                 break;
             }
-            let (joint, most) = (self.run.place(j * MERGE_GRID), self.crossing[j]);
+            let (joint, most) = (self.run.place(j * MERGE_GRID), self.memory.crossing[j]);
             if joint - start <= most {
                 continue;
             }
@@ -196,7 +209,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
         loop {
             let m = self.seek(k, joint, limit)?;
             if m > k {
-                self.last_reach = m - k;
+                self.memory.last_reach = m - k;
             }
             if m == k || self.piece(k, m)?.is_some() {
                 return Ok(m);
@@ -215,7 +228,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
         let (mut low, mut high) = (k, limit + 1);
         // Errors at `low` and `high`, as far as they are known.
         let (mut below, mut above) = (None, None);
-        let mut probe = (joint + LEAST_PAST_JOINT).max(k + self.last_reach).min(limit);
+        let mut probe = (joint + LEAST_PAST_JOINT).max(k + self.memory.last_reach).min(limit);
         for step in 0.. {
             let error = self.error(k, probe)?.max(SMALLEST_REACH_ERROR);
             if error <= 1.0 {
