@@ -104,9 +104,9 @@ fn main() -> io::Result<()> {
             Err(problem) => (REFUSED, problem.into_bytes()),
         };
         let mut answer = Vec::with_capacity(body.len() + 5);
-        answer.extend((body.len() as u32 + 1).to_le_bytes());
+        answer.extend_from_slice(&(body.len() as u32 + 1).to_le_bytes());
         answer.push(kind);
-        answer.extend(body);
+        answer.extend_from_slice(&body);
         output.write_all(&answer)?;
     }
     Ok(())
@@ -133,7 +133,7 @@ fn each<const N: usize>(body: &[u8], f: impl Fn([f64; 2]) -> [f64; N]) -> Vec<u8
     for point in body.chunks_exact(16) {
         let number = |i: usize| f64::from_le_bytes(std::array::from_fn(|k| point[i + k]));
         for value in f([number(0), number(8)]) {
-            out.extend(value.to_le_bytes());
+            out.extend_from_slice(&value.to_le_bytes());
         }
     }
     out

@@ -75,6 +75,7 @@ fn recall<T: Copy + Default>(memory: &Mutex<Memory<T>>, ps: &[Point], out: &mut 
     if known.len() > MOST_REMEMBERED {
         known.clear();
     }
+    known.reserve(missing.len());
     let mut fresh = answers.iter();
     let mut asked = missing.iter().peekable();
     for (p, o) in ps.iter().zip(out) {
