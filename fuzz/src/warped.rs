@@ -81,10 +81,10 @@ fn measure(path: &Outline, map: &dyn Map, warped: &RefittedPath, tolerance: f64)
         for i in 0..=SAMPLES {
             let at = seg.eval(i as f64 / SAMPLES as f64);
             let image = map.point(at);
-            if !image.is_finite() {
+            let size = image.to_vec2().hypot() + derivative_size(map, at) * at.to_vec2().hypot();
+            if !image.is_finite() || !size.is_finite() {
                 continue;
             }
-            let size = image.to_vec2().hypot() + derivative_size(map, at) * at.to_vec2().hypot();
             let estimated = if warped.report.assurance == Assurance::Checked { ESTIMATED } else { 1.0 };
             let allowed = tolerance * (estimated + ACCURACY) + ROUNDING * size;
             let found = distance(&pieces, image, ACCURACY * tolerance, allowed);

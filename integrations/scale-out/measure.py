@@ -66,6 +66,12 @@ class Watch(threading.Thread):
             alive.append(p)
         return alive
 
+    def works(self, p: psutil.Process) -> bool:
+        try:
+            return p.status() != psutil.STATUS_ZOMBIE and self.is_worker(p)
+        except psutil.Error:
+            return False
+
     def run(self) -> None:
         random.seed(1)
         next_kill = time.monotonic() + 2
@@ -73,7 +79,7 @@ class Watch(threading.Thread):
             self.own = time.thread_time()
             alive = self.look()
             if self.killed < self.kills and time.monotonic() > next_kill:
-                workers = [p for p in alive if self.is_worker(p)]
+                workers = [p for p in alive if self.works(p)]
                 if workers:
                     random.choice(workers).kill()
                     self.killed += 1
@@ -144,8 +150,8 @@ def by_spark(args: Any, source: pathlib.Path, folder: pathlib.Path, deformation:
 
     def is_worker(p: psutil.Process) -> bool:
         # The daemon forks the workers; they have its command line.
-        command = " ".join(p.cmdline())
-        return "pyspark.daemon" in command and "pyspark.daemon" in " ".join(p.parent().cmdline() if p.parent() else [])
+        parent = p.parent()
+        return all("pyspark.daemon" in " ".join(q.cmdline()) for q in (p, parent)) if parent else False
 
     return Watch(is_worker, args.kill), lambda: run(source, folder)
 

@@ -2,7 +2,8 @@
 
     python ray_warp.py icons/ warped/ arc bend=40%
 
-On a cluster, the folders are ones that every node sees; `ray.init(address="auto")` joins it.
+On a cluster, `ray.init(address="auto", runtime_env={"working_dir": "."})` joins it and ships files.py; the folders are ones that every
+node sees.
 """
 
 from __future__ import annotations

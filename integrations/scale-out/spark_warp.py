@@ -2,13 +2,14 @@
 
     python spark_warp.py icons/ warped/ arc bend=40%
 
-On a cluster, use its master and folders that every node sees, and ship files.py with `--py-files`.
+On a cluster, use its master, and folders that every node sees.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import sys
 from typing import Any, Dict, Iterator
 
 import pandas as pd
@@ -41,6 +42,8 @@ def session(workers: int) -> Any:
     from pyspark.sql import SparkSession
 
     os.environ["SPARK_LOCAL_IP"] = "127.0.0.1"
+    # The workers need the packages that this process has.
+    os.environ.setdefault("PYSPARK_PYTHON", sys.executable)
     settings = {
         "spark.driver.host": "127.0.0.1",
         "spark.driver.bindAddress": "127.0.0.1",
@@ -56,6 +59,7 @@ def session(workers: int) -> Any:
         builder = builder.config(name, value)
     made = builder.getOrCreate()
     made.sparkContext.setLogLevel("ERROR")
+    made.sparkContext.addPyFile(files.__file__)
     return made
 
 

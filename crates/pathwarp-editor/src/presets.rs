@@ -58,7 +58,7 @@ pub(crate) fn all() -> Result<Vec<Preset>, String> {
 
 fn write(host: &dyn Host, mut presets: Vec<Preset>) -> Result<(), String> {
     let file = file().ok_or("there is no folder for settings (HOME is not set)")?;
-    presets.sort_by(|a, b| a.name.to_lowercase().cmp(&b.name.to_lowercase()));
+    presets.sort_by_key(|p| p.name.to_lowercase());
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     }

@@ -58,7 +58,7 @@ impl Remembered {
     /// The entry of a program, or its fault, if its file has not changed.
     pub(crate) fn get(&self, path: &Path) -> Option<Result<&str, &Fault>> {
         let known = self.data.programs.get(path.to_str()?)?;
-        (Stamp::of(path)? == known.stamp).then(|| known.entry.as_deref())
+        (Stamp::of(path)? == known.stamp).then_some(known.entry.as_deref())
     }
 
     /// Remembers an entry or a fault.

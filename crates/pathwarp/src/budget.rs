@@ -100,10 +100,9 @@ impl Limit {
     fn base(self) -> f64 {
         match self {
             Self::Bytes => 16e6,
-            Self::Elements => 30e3,
+            Self::Elements | Self::Letters => 30e3,
             Self::Comparisons => 15e6,
             Self::Segments => 2e6,
-            Self::Letters => 30e3,
             Self::Pixels => 80e6,
             Self::Painting => 400e6,
             Self::ImageBytes => 64e6,

@@ -51,7 +51,8 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
     allowed("pathwarp-editor", &["pathwarp", "pathwarp-svg"]);
-    allowed("pathwarp-pdf", &["pathwarp-raster"]);
+    // The core for its limits: pictures in a PDF are counted.
+    allowed("pathwarp-pdf", &["pathwarp", "pathwarp-raster"]);
     let below_cli = [
         "pathwarp",
         "pathwarp-dxf",

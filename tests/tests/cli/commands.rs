@@ -128,7 +128,7 @@ fn artwork_on_a_mug_is_written_as_a_mesh() {
 
 #[test]
 fn a_crate_of_one_file_adds_its_deformation() {
-    let program = support::program("pathwarp-ripple", "pathwarp-ripple");
+    let program = support::program("pathwarp-ripple");
     let dir = tempfile::tempdir().unwrap();
     let run = |args: &[&str]| std::process::Command::new(&program).args(args).current_dir(root()).output().unwrap();
     assert!(text(&run(&["list"]).stdout).contains("rings on water"));

@@ -52,7 +52,7 @@ fn install(profile: &Path) {
     let home = folder.join("pathwarp");
     let edit = read(&home.join("pathwarp-edit-again.inx"));
     let (before, after) = edit.split_once("name=\"inkscape-changes\"").unwrap();
-    let typed = after.replacen("></param>", ">bend=20%</param>", 1).replacen("\"></param>", "\">bend=20%</param>", 1);
+    let typed = after.replacen("></param>", ">bend=20%</param>", 1);
     let text =
         format!("{before}name=\"inkscape-changes\"{typed}").replace("org.pathwarp.edit-again", "org.pathwarp.edited");
     fs::write(home.join("edited.inx"), text).unwrap();

@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 
 /// The example programs that ripple: in Python by lines of text, and in Rust by numbers.
 fn ripples() -> Vec<PathBuf> {
-    let mut all = vec![program("pathwarp-ripple-program", "pathwarp-ripple-program")];
+    let mut all = vec![program("pathwarp-ripple-program")];
     if python() {
         all.push(root().join("examples/plug-ins/pathwarp-ripple.py"));
     }
@@ -19,11 +19,12 @@ fn ripples() -> Vec<PathBuf> {
 
 /// The same deformation compiled in.
 fn compiled_in() -> PathBuf {
-    program("pathwarp-ripple", "pathwarp-ripple")
+    program("pathwarp-ripple")
 }
 
 /// The path data of a drawing, in document order.
 fn paths(svg: &str) -> Vec<Outline> {
+    let svg = svg.replace('\'', "\"");
     svg.split(" d=\"").skip(1).map(|rest| Outline::from_svg(rest.split('"').next().unwrap()).unwrap()).collect()
 }
 
@@ -79,7 +80,7 @@ fn the_examples_and_built_in_deformations_pass_the_check() {
 fn the_check_names_the_law_that_fails_and_where() {
     let scratch = Scratch::new();
     let laws = r#""laws": [{"identity": {}}, {"area": [{}, 1]}], "cases": [{"at": [1, 2], "to": [1, 2], "tolerance": 0.1}], "title""#;
-    let moves = script("bad", r#"set -- $line; echo "$1$2 $2" | tr -d '.' | sed 's/^/1/'"#);
+    let moves = script("bad", "echo 7 7");
     scratch.install("pathwarp-bad", &moves.replace("\"title\"", laws));
     let (report, _) = scratch.expect(1, &["check", "bad"]);
     for word in [
@@ -104,11 +105,22 @@ fn the_check_names_the_law_that_fails_and_where() {
 fn shift(scratch: &Scratch) -> String {
     let params =
         r#""parameters": [{"name": "x", "kind": "length", "axis": "x", "default": "10%", "help": "Shift."}], "title""#;
-    let starts = format!("echo started >> {}\necho '", scratch.file("starts").display());
-    let awk = r#"exec awk '/^build/ { n = $2; b = 1; next } /^points/ { n = $2; b = 0; next }
-        b { v[$1] = $2; if (--n == 0) { print "ok"; fflush() } next }
-        { printf "%.17g %.17g\n", $1 + v["x"], $2; if (--n == 0) fflush() }'"#;
-    format!("#!/bin/sh\n{starts}{}'\n{awk}\n", entry("shift").replace("\"title\"", params))
+    let entry = entry("shift").replace("\"title\"", params);
+    let starts = scratch.file("starts");
+    format!(
+        r#"#!/bin/sh
+echo started >> {starts}
+echo '{entry}'
+lines() {{ i=0; while [ $i -lt $1 ]; do read -r line; echo "$line"; i=$((i+1)); done; }}
+while read -r command count; do
+    case $command in
+        build) x=$(lines $count | awk '$1 == "x" {{ print $2 }}'); echo ok;;
+        points) lines $count | awk -v x="$x" '{{ printf "%.17g %.17g\n", $1 + x, $2 }}';;
+    esac
+done
+"#,
+        starts = starts.display()
+    )
 }
 
 #[test]

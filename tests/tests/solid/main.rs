@@ -288,7 +288,7 @@ fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("plate.svg"), PLATE).unwrap();
     let area = 50.0 * 20.0 - std::f64::consts::PI * 25.0;
-    let flat = report(dir.path(), &["ffd", "plate.svg", "-o", "flat.stl"]);
+    let flat = report(dir.path(), &["bend", "plate.svg", "--preset", "twist", "--angle", "0", "-o", "flat.stl"]);
     assert!((flat["after"]["area"].as_f64().unwrap() - area).abs() < 0.5, "{flat}");
     assert!(!flat["after"]["closed"].as_bool().unwrap());
     let args = ["wrap", "plate.svg", "--extrude", "3mm", "--radius", "41mm", "--refine", "0.01mm", "-o", "mug.stl"];

@@ -30,23 +30,24 @@ pub fn artwork() -> Vec<String> {
     all
 }
 
-/// Builds the program `name` of a package and returns its path. Test binaries are in `target/PROFILE/deps`.
-pub fn program(package: &str, name: &str) -> PathBuf {
+/// Builds the program `name` and returns its path. Test binaries are in `target/PROFILE/deps`. With the features of the whole
+/// workspace, nothing that `cargo test --workspace` has built is built again.
+pub fn program(name: &str) -> PathBuf {
     let profile = std::env::current_exe().unwrap().parent().unwrap().parent().unwrap().to_owned();
     let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--package", package]).current_dir(root());
+    build.args(["build", "--quiet", "--workspace", "--bin", name]).current_dir(root());
     build.arg("--target-dir").arg(profile.parent().unwrap());
     if profile.ends_with("release") {
         build.arg("--release");
     }
-    assert!(build.status().unwrap().success(), "{package} does not build");
+    assert!(build.status().unwrap().success(), "{name} does not build");
     profile.join(name).with_extension(std::env::consts::EXE_EXTENSION)
 }
 
 /// The program.
 pub fn pathwarp_program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM.get_or_init(|| program("pathwarp-cli", "pathwarp"))
+    PROGRAM.get_or_init(|| program("pathwarp"))
 }
 
 /// Runs `pathwarp` from the project's root.

@@ -1,6 +1,7 @@
 //! `pathwarp convert art.xcf -o art.svg`: copies the paths of a file into another format, or a drawing into a PDF or DXF.
 
 use super::file_args;
+use crate::advice;
 use crate::export::{self, Exported};
 use crate::failure::Failure;
 use crate::format::{Choice, Format};
@@ -104,12 +105,13 @@ fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOpt
     let doc = input::document(file, &options.reading)?;
     let Exported { bytes, warnings } =
         export::drawing(doc.text().to_owned(), format, &input::read_options(file, &options.reading), options, None)?;
-    let warnings: Vec<String> = doc.missing().into_iter().chain(warnings).collect();
+    let unread = doc.unread_images();
+    let warnings: Vec<String> = doc.missing().into_iter().chain(advice::unread(&unread)).chain(warnings).collect();
     for warning in warnings.iter().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {warning}", input::display(file)));
     }
     output::write(target, &bytes)?;
-    Ok(Status::Complete)
+    Ok(Status::partial_if(!unread.is_empty()))
 }
 
 /// The formats that this command writes.

@@ -6,12 +6,12 @@ use crate::steps::INVERSE;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::Kind;
 
+/// A parameter with the value that a preset's name gives it.
+type Setting = (&'static str, &'static str);
+
 /// The deformation that a name means, with the parameter and value if the name is that of a preset: `arc` is `warp` with the
 /// style `arc`. Deformations come first, then the presets in the order of the registry.
-pub(super) fn meaning<'a>(
-    registry: &'a Registry,
-    name: &str,
-) -> Result<(&'a Info, Option<(&'static str, &'static str)>), String> {
+pub(super) fn meaning<'a>(registry: &'a Registry, name: &str) -> Result<(&'a Info, Option<Setting>), String> {
     let lower = name.to_ascii_lowercase();
     if let Some(e) = registry.get(&lower) {
         return Ok((e.info(), None));

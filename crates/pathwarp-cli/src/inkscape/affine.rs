@@ -76,7 +76,23 @@ fn found(from: &[Point], to: &[Point]) -> Move {
     let allowed = LARGEST * size(to).max(size(from)).max(f64::MIN_POSITIVE);
     let fits = |a: Affine| from.iter().zip(to).all(|(p, q)| (a * *p).distance(*q) <= allowed);
     let candidates = [Some(Affine::IDENTITY), Some(Affine::translate(q0 - p0)), by_three(from, to)];
-    candidates.into_iter().flatten().find(|a| fits(*a)).map_or(Move::Otherwise, Move::By)
+    let unit = size(to).log10().floor();
+    let near = candidates.into_iter().flatten().map(|a| rounded(a, unit));
+    near.into_iter().find(|a| fits(*a)).map_or(Move::Otherwise, Move::By)
+}
+
+/// A map with as many digits as coordinates are written with, for points of a size of ten to the power of `unit`.
+fn rounded(a: Affine, unit: f64) -> Affine {
+    /// Digits after those that Inkscape writes are noise.
+    const DIGITS: f64 = 9.0;
+    let round = |v: f64, digits: f64| {
+        let k = 10_f64.powf(digits.clamp(0.0, 2.0 * DIGITS));
+        (v * k).round() / k
+    };
+    let [a, b, c, d, e, f] = a.as_coeffs();
+    let [a, b, c, d] = [a, b, c, d].map(|v| round(v, DIGITS));
+    let [e, f] = [e, f].map(|v| round(v, DIGITS - unit));
+    Affine::new([a, b, c, d, e, f])
 }
 
 /// The affine map that takes three points far apart to their images.

@@ -60,7 +60,7 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
         return Err(missing(p, call));
     }
     let ids: HashSet<&str> = guides.iter().map(|(_, id)| id.as_str()).collect();
-    let artwork = without(objects, artwork.iter().map(|o| o.id.as_str()), &ids);
+    let artwork = without(objects, &artwork.iter().map(|o| o.id.as_str()).collect::<Vec<_>>(), &ids);
     if artwork.is_empty() {
         return Err(Failure::usage("there is no artwork beside the guides; select that, too"));
     }
@@ -95,16 +95,16 @@ fn missing(p: &Param, call: &Call) -> Failure {
 }
 
 /// Objects without those that are guides; an object around a guide is replaced by what it holds beside it.
-fn without<'a>(objects: &'a [Object], ids: impl Iterator<Item = &'a str>, guides: &HashSet<&str>) -> Vec<String> {
+fn without(objects: &[Object], ids: &[&str], guides: &HashSet<&str>) -> Vec<String> {
     let mut out = Vec::new();
-    for id in ids {
+    for &id in ids {
         if guides.contains(id) {
             continue;
         }
         let holds = |g: &str| objects.iter().any(|o| o.id == g && o.inside.iter().any(|i| i == id));
         if guides.iter().any(|g| holds(g)) {
             let children = objects.iter().filter(|o| o.inside.first().is_some_and(|p| p == id));
-            out.extend(without(objects, children.map(|o| o.id.as_str()), guides));
+            out.extend(without(objects, &children.map(|o| o.id.as_str()).collect::<Vec<_>>(), guides));
         } else {
             out.push(id.to_owned());
         }

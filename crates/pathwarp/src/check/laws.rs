@@ -7,6 +7,7 @@ use crate::deform::{Deformation, Law, Pairs};
 use crate::map::Map;
 use crate::param::Args;
 use kurbo::{Point, Rect, Vec2};
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// The laws.
@@ -61,7 +62,18 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) {
         }
         built.ok()
     };
-    let worst = |map: &dyn Map, f: &dyn Fn(Point) -> f64| samples(map).into_iter().map(f).fold(0.0, f64::max);
+    // The place of the largest value of the last call of `worst`.
+    let place = Cell::new(None);
+    let worst = |map: &dyn Map, f: &dyn Fn(Point) -> f64| {
+        place.set(None);
+        samples(map).into_iter().fold(0.0_f64, |most, p| {
+            let off = f(p);
+            if off > most {
+                place.set(Some(p));
+            }
+            most.max(off)
+        })
+    };
     let fault = match *law {
         Law::Identity(pairs) => with(pairs).and_then(|m| {
             let off = worst(&*m, &|p| m.point(p).distance(p));
@@ -81,8 +93,8 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) {
         }),
         Law::FixedOutside(pairs, [x0, y0, x1, y1]) => with(pairs).and_then(|m| {
             let inside = Rect::new(x0, y0, x1, y1);
-            let off = worst(&*m, &|p| if inside.contains(p) { 0.0 } else { m.point(p).distance(p) });
             let moves = worst(&*m, &|p| m.point(p).distance(p)) > 0.0;
+            let off = worst(&*m, &|p| if inside.contains(p) { 0.0 } else { m.point(p).distance(p) });
             let inert = format!("{pairs:?} moves nothing at all");
             (off > 0.0 || !moves).then(|| {
                 if moves {
@@ -111,6 +123,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, faults: &mut Check) {
         }),
     };
     if let Some(f) = fault {
-        faults.fault(f);
+        let place = place.get().map(|p: Point| format!(", worst at {},{}", p.x, p.y)).unwrap_or_default();
+        faults.fault(f + &place);
     }
 }

@@ -1,6 +1,6 @@
 //! Tests of the checks: built-in deformations pass them, and a deformation with every fault fails each.
 
-use super::{entry, frame};
+use super::entry;
 use crate::deform::{Built, Case, Deformation, Example, Info, Law, Registry};
 use crate::map::{Creases, Formula, Jet, Map, RationalBezier, Real};
 use crate::param::{Args, Frame, Param, Settings};

@@ -45,7 +45,7 @@ impl Tree {
         Ok(tree)
     }
 
-    /// The icon, and the entry that opens a drawing in the editor, if the program has one.
+    /// The icon, and the entry that opens a drawing in the editor.
     fn desktop(&self) -> Result<(), ChoreError> {
         const ICONS: &str = "usr/share/icons/hicolor";
         let icon = self.root.join("packaging/pathwarp.svg");
@@ -55,30 +55,17 @@ impl Tree {
             let (icon, picture) = (icon.display().to_string(), picture.display().to_string());
             self.run(&["render", &icon, "--width", &size.to_string(), "-o", &picture])?;
         }
-        if self.run(&["help", "edit"]).is_ok() {
-            self.copy(&self.root.join("packaging/pathwarp.desktop"), "usr/share/applications/pathwarp.desktop")?;
-        }
-        Ok(())
+        self.copy(&self.root.join("packaging/pathwarp.desktop"), "usr/share/applications/pathwarp.desktop")
     }
 
     /// The plug-ins for other programs, where these look for what is installed for all users. They find the program on the PATH.
     fn plug_ins(&self) -> Result<(), ChoreError> {
-        let libraries = format!("usr/lib/{}-linux-gnu", std::env::consts::ARCH);
-        let places = [("gimp", libraries + "/gimp/3.0/plug-ins"), ("inkscape", "usr/share/inkscape/extensions".into())];
-        for (host, place) in places {
-            let folder = self.at(&place)?;
-            if !String::from_utf8_lossy(&self.run(&["help", "install"])?).contains(host) {
-                continue;
-            }
-            self.run(&["install", host, "--dir", &folder.display().to_string()])?;
-            // The copy of the program that is beside a plug-in for one user.
-            for copy in files::below(&folder, |f| f.file_name().is_some_and(|n| n == "pathwarp"))? {
-                fs::remove_file(&copy).map_err(at(&copy))?;
-                // Its folder, unless there is more in it.
-                let _ = fs::remove_dir(copy.parent().unwrap_or(&folder));
-            }
-        }
-        Ok(())
+        let gimp = self.at(&format!("usr/lib/{}-linux-gnu/gimp/3.0/plug-ins", std::env::consts::ARCH))?;
+        self.run(&["install", "gimp", "--dir", &gimp.display().to_string()])?;
+        let copy = gimp.join("pathwarp-gimp/bin");
+        fs::remove_dir_all(&copy).map_err(at(&copy))?;
+        let inkscape = self.at("usr/share/inkscape/extensions")?;
+        self.run(&["install", "inkscape", "--dir", &inkscape.display().to_string(), "--program", "pathwarp"]).map(drop)
     }
 
     fn documentation(&self) -> Result<(), ChoreError> {

@@ -1,7 +1,7 @@
 //! `pathwarp solid DEFORMATION MODEL …`: deforms a model by one deformation or a chain.
 
 use super::args::{self, Own};
-use super::model::Model;
+use super::model::{Model, ModelFormat};
 use super::preview::Preview;
 use super::report::Run;
 use crate::advice::{self, Flags};
@@ -22,7 +22,7 @@ use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::mesh::{Deformed, MeshError, MeshFault, Undefined3, deform, refine};
 use pathwarp_solid::{Box3, Frame3, recipe};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 pub(super) fn command(info: &Info) -> Command {
@@ -98,10 +98,12 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    fn run(&self, input: &PathBuf) -> Result<Status, Failure> {
+    fn run(&self, input: &Path) -> Result<Status, Failure> {
         let started = Instant::now();
         let options = self.options;
         let flags = Flags::of(self.registry as &dyn Catalogue);
+        // A wrong extension must not cost a long run.
+        ModelFormat::of_output(options.out.as_deref(), ModelFormat::Obj)?;
         let mut model = Model::read(input, &options.reading, self.own.depth)?;
         let source = (options.report.is_some() || options.preview.is_some()).then(|| model.mesh.clone());
         let bounds = model.mesh.bounds().unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
