@@ -208,7 +208,7 @@ fn decompression_bombs_end_soon() {
         gz.write_all(&points.repeat(20_000)).unwrap();
     }
     let e = error_within(&gz.finish().unwrap(), 5.0);
-    assert!(e.limit.is_some(), "{e}");
+    assert!(e.problem.contains("are left"), "{e}");
     // A string of a gigabyte, all of it present in compressed form.
     let mut head = common::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 1 << 30] {
@@ -220,7 +220,7 @@ fn decompression_bombs_end_soon() {
         gz.write_all(&vec![b'a'; 1 << 20]).unwrap();
     }
     let e = error_within(&gz.finish().unwrap(), 5.0);
-    assert!(e.problem.contains("longer than any name"), "{e}");
+    assert!(e.problem.contains("are left"), "{e}");
 }
 
 #[track_caller]
