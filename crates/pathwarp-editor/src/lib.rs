@@ -1,6 +1,6 @@
 //! Bends artwork by hand: a page in the browser, and a server on this computer that computes every picture.
 //!
-//! The page ([`assets`]) draws and drags; it computes nothing. The server listens on the loopback interface only, and answers only
+//! The page (`assets/`) draws and drags; it computes nothing. The server listens on the loopback interface only, and answers only
 //! a browser that knows the token in its address. A program supplies what it knows about files and formats as a [`Host`] and
 //! calls [`serve`]:
 //!
