@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the pipelines for Ray and Spark over a few hundred drawings, kills a worker of each on the way, and compares the results with the
+# Runs the pipelines for Ray and Spark over two thousand drawings, kills a worker of each on the way, and compares the results with the
 # plain batch, byte for byte. Uses the wheel that python-tests.sh built. Skipped where Ray cannot be installed; Spark also needs Java.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -26,6 +26,6 @@ fi
 "$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheel"
 cargo build --quiet --locked -p pathwarp-cli
 # shellcheck disable=SC2086
-"$env/bin/python" -B integrations/scale-out/measure.py --program target/debug/pathwarp --source samples --count 600 --kill 1 --workers 2 $systems 2>&1 |
+"$env/bin/python" -B integrations/scale-out/measure.py --program target/debug/pathwarp --source samples --count 2000 --kill 1 --workers 2 $systems 2>&1 |
     grep -v "INFO\|WARNING"
 exit "${PIPESTATUS[0]}"
