@@ -10,7 +10,7 @@ use std::io;
 /// Bytes of the token: too many to guess.
 const TOKEN_BYTES: usize = 24;
 
-/// What a request must have to be answered.
+/// Conditions for answering a request.
 #[derive(Debug, Clone)]
 pub(crate) struct Guard {
     token: String,

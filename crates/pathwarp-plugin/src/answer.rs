@@ -1,4 +1,4 @@
-//! What both forms of the protocol have in common: questions, answers, and what a program says when it builds a map.
+//! Requests, answers and descriptions of built maps: the same in the binary and the text form of the protocol.
 
 use crate::fault::Fault;
 use pathwarp::kurbo::{Point, Rect, Vec2};
@@ -38,7 +38,7 @@ pub(crate) fn jet(n: &[f64]) -> Option<Jet> {
     Some(Jet { p: Point::new(x, y), dx: Vec2::new(xx, xy), dy: Vec2::new(yx, yy) })
 }
 
-/// What a program says about the map that it has built.
+/// A program's description of the map that it has built.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct BuildAnswer {
     pub(crate) notes: Vec<String>,

@@ -59,14 +59,14 @@ struct Written {
     cases: Vec<WrittenCase>,
 }
 
-/// Where the map is defined.
+/// The domain of the map.
 #[derive(Deserialize, Default, PartialEq)]
 #[serde(rename_all = "lowercase")]
 enum Domain {
     /// Everywhere, but for the edges that it declares.
     #[default]
     Plane,
-    /// Where it does not answer NaN.
+    /// All points but those for which it answers NaN.
     Partial,
 }
 

@@ -87,7 +87,7 @@ pub enum Fault {
     Count {
         /// The expected answer.
         expected: String,
-        /// What it has instead: the end of a sentence.
+        /// The values found instead, as the end of a sentence.
         found: String,
     },
     /// A value is not a number.

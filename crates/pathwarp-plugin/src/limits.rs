@@ -1,4 +1,4 @@
-//! What a program may take: seconds and bytes.
+//! Limits on a program: seconds and bytes.
 
 use std::time::Duration;
 

@@ -140,7 +140,7 @@ struct Beside {
 }
 
 impl Beside {
-    /// How far a point is moved, as a share of the way: far beyond rounding, and far below what is seen.
+    /// Share of the way by which a point is moved: well above rounding and invisibly small.
     const AWAY: f64 = 1e-9;
 
     /// Points nearer to a crease than this share of the frame may be on either side of it by rounding.

@@ -23,7 +23,7 @@ pub(crate) struct Pipes {
     input: ChildStdin,
     output: ChildStdout,
     errors: Option<ChildStderr>,
-    /// What has arrived and was not taken.
+    /// Bytes received and not yet taken.
     incoming: Vec<u8>,
     said: Vec<u8>,
     said_in_all: usize,
@@ -84,7 +84,7 @@ impl Pipes {
         }
     }
 
-    /// What has arrived beyond the last answer.
+    /// Bytes received after the last answer.
     pub(crate) fn left_over(&self) -> &[u8] {
         &self.incoming
     }

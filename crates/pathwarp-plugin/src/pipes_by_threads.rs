@@ -96,7 +96,7 @@ impl Pipes {
         }
     }
 
-    /// What has arrived beyond the last answer.
+    /// Bytes received after the last answer.
     pub(crate) fn left_over(&self) -> &[u8] {
         &self.incoming
     }

@@ -78,7 +78,7 @@ fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
     }
     let mut seen = HashSet::new();
     out.retain(|id| seen.insert(id.clone()));
-    // What is inside another comes back with it.
+    // Objects inside another one come back with it.
     let chosen = out.clone();
     out.retain(|id| !all.iter().any(|o| o.id == *id && o.inside.iter().any(|i| chosen.contains(i))));
     if out.is_empty() {

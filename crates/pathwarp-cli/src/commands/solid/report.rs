@@ -62,7 +62,7 @@ impl Measures {
     }
 }
 
-/// What a report is made of.
+/// A finished run, to be reported.
 pub(super) struct Run<'a> {
     pub(super) recipe: &'a Recipe,
     pub(super) file: &'a str,

@@ -84,7 +84,7 @@ fn guides(guides: Guides) -> String {
     choice(GUIDES, "Guides in the selection", &help, std::iter::once(auto).chain(options), AUTOMATIC)
 }
 
-/// What to do with objects that are warped already, and with messages.
+/// Options for objects that are warped already, and for messages.
 fn again() -> String {
     let options = [
         (AUTOMATIC, "change a warp of this kind, warp other results"),
