@@ -77,20 +77,12 @@ fn axis_word(axis: Axis) -> &'static str {
     }
 }
 
+/// The kind as the page knows it: a file that is saved is chosen like one that is read.
 fn kind(kind: Kind) -> &'static str {
     match kind {
-        Kind::Flag => "flag",
-        Kind::Number => "number",
-        Kind::Numbers(_) => "numbers",
-        Kind::Length(_) => "length",
-        Kind::Angle => "angle",
-        Kind::Count => "count",
-        Kind::Point => "point",
-        Kind::Path => "path",
-        Kind::Choice(_) => "choice",
-        Kind::Text(_) => "text",
         Kind::NameOrFile(_) => "name",
-        Kind::File | Kind::Save => "file",
+        Kind::Save => Kind::File.name(),
+        other => other.name(),
     }
 }
 

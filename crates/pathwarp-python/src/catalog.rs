@@ -42,23 +42,14 @@ fn deformation(registry: &Registry, info: &Info) -> Value {
 }
 
 fn param(p: &Param) -> Value {
-    let (kind, choices): (&str, &[&str]) = match p.kind {
-        Kind::Flag => ("flag", &[]),
-        Kind::Number => ("number", &[]),
-        Kind::Numbers(_) => ("numbers", &[]),
-        Kind::Length(_) => ("length", &[]),
-        Kind::Angle => ("angle", &[]),
-        Kind::Count => ("count", &[]),
-        Kind::Point => ("point", &[]),
-        Kind::Path => ("path", &[]),
-        Kind::Choice(words) => ("choice", words),
-        Kind::Text(_) => ("text", &[]),
-        Kind::NameOrFile(words) => ("name-or-file", words),
-        Kind::File | Kind::Save => ("file", &[]),
+    let kind = if p.kind == Kind::Save { Kind::File } else { p.kind };
+    let choices: &[&str] = match kind {
+        Kind::Choice(words) | Kind::NameOrFile(words) => words,
+        _ => &[],
     };
     let limit = |v: f64| v.is_finite().then_some(v);
     json!({
-        "name": p.name, "kind": kind, "notation": p.value_name(), "choices": choices, "default": p.default,
+        "name": p.name, "kind": kind.name(), "notation": p.value_name(), "choices": choices, "default": p.default,
         "needed": p.needed, "repeat": p.repeat, "help": p.help,
         "range": [limit(p.range.0), limit(p.range.1)], "slider": [p.ui.0, p.ui.1],
     })

@@ -11,6 +11,11 @@ use std::ffi::OsString;
 use std::fmt::Write as _;
 
 pub(super) fn command(info: &Info) -> Command {
+    described(info).args(options::args())
+}
+
+/// The subcommand of a deformation, of the plane or of space, with its help and its own parameters.
+pub(super) fn described(info: &Info) -> Command {
     let mut examples = String::from("Examples:");
     for e in info.examples {
         let _ = write!(examples, "\n  {}:\n    pathwarp {}", e.what, e.command);
@@ -21,7 +26,6 @@ pub(super) fn command(info: &Info) -> Command {
         .long_about(format!("{} — {}\n\n{}", info.name, info.title, info.about))
         .after_help(examples)
         .args(steps::args(info))
-        .args(options::args())
 }
 
 /// Runs the deformation `name`, chained with those in `later`.

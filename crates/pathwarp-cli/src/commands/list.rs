@@ -19,29 +19,11 @@ pub(super) fn command() -> Command {
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON, with every parameter"))
 }
 
-/// The kind of a parameter, in the words of a plug-in's entry.
-fn kind(p: &Param) -> &'static str {
-    match p.kind {
-        Kind::Flag => "flag",
-        Kind::Number => "number",
-        Kind::Numbers(_) => "numbers",
-        Kind::Length(_) => "length",
-        Kind::Angle => "angle",
-        Kind::Count => "count",
-        Kind::Point => "point",
-        Kind::Path => "path",
-        Kind::Choice(_) => "choice",
-        Kind::Text(_) => "text",
-        Kind::NameOrFile(_) => "name-or-file",
-        Kind::File => "file",
-        Kind::Save => "save",
-    }
-}
-
 /// The deformations with their parameters, and the plug-ins that are broken.
 fn json(registry: &Registry, plugins: &Plugins) -> Value {
     let param = |p: &Param| {
-        let mut v = json!({ "name": p.name, "kind": kind(p), "help": p.help, "needed": p.needed, "repeat": p.repeat });
+        let mut v =
+            json!({ "name": p.name, "kind": p.kind.name(), "help": p.help, "needed": p.needed, "repeat": p.repeat });
         if let Kind::Length(axis) = p.kind {
             v["axis"] = match axis {
                 Axis::X => json!("x"),

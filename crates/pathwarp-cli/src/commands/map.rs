@@ -1,5 +1,6 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
+use super::points;
 use crate::failure::Failure;
 use crate::options::{Given, reading_args, rect};
 use crate::status::Status;
@@ -69,8 +70,9 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     references::resolve_names(registry, &mut recipe, |name| Err(input::no_document(name)))?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;
-    let points = parse(&String::from_utf8_lossy(&bytes))
+    let points = points::parse(&String::from_utf8_lossy(&bytes), "two numbers x y")
         .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
+    let points: Vec<Point> = points.into_iter().map(|[x, y]| Point::new(x, y)).collect();
     let cloud = Outline::from_points(&points, false);
     let frame = match m.get_one::<String>("frame") {
         Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
@@ -101,28 +103,4 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     }
     output::to_stdout(out.as_bytes())?;
     Ok(status)
-}
-
-/// Parses points, one `x y` per line. The error starts with the line's number.
-fn parse(text: &str) -> Result<Vec<Point>, String> {
-    let mut out = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let numbers: Result<Vec<f64>, _> =
-            line.split([' ', ',', '\t']).filter(|w| !w.is_empty()).map(str::parse::<f64>).collect();
-        match numbers.as_deref() {
-            Ok(&[x, y]) if x.is_finite() && y.is_finite() => out.push(Point::new(x, y)),
-            _ => {
-                return Err(format!(
-                    "{}: `{}` is not two numbers x y",
-                    i + 1,
-                    line.chars().take(60).collect::<String>()
-                ));
-            }
-        }
-    }
-    Ok(out)
 }

@@ -15,6 +15,7 @@ mod man;
 mod map;
 mod new_plugin;
 mod paths;
+mod points;
 mod render;
 mod run;
 mod schema;

@@ -43,6 +43,28 @@ pub enum Kind {
     Save,
 }
 
+impl Kind {
+    /// Returns the kind's name in lists of parameters and in the entries of plug-ins, such as `name-or-file`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flag => "flag",
+            Self::Number => "number",
+            Self::Numbers(_) => "numbers",
+            Self::Length(_) => "length",
+            Self::Angle => "angle",
+            Self::Count => "count",
+            Self::Point => "point",
+            Self::Path => "path",
+            Self::Choice(_) => "choice",
+            Self::Text(_) => "text",
+            Self::NameOrFile(_) => "name-or-file",
+            Self::File => "file",
+            Self::Save => "save",
+        }
+    }
+}
+
 /// One parameter of a deformation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Param {

@@ -1,6 +1,7 @@
 //! `pathwarp solid map DEFORMATION … --points FILE`: maps plain points of space.
 
 use super::args;
+use crate::commands::points;
 use crate::failure::Failure;
 use crate::options::{Given, reading_args};
 use crate::status::Status;
@@ -56,8 +57,9 @@ pub(super) fn run(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -
     references::resolve_files(registry, &mut steps, &reading)?;
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;
-    let points = parse(&String::from_utf8_lossy(&bytes))
+    let points = points::parse(&String::from_utf8_lossy(&bytes), "three numbers x y z")
         .map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?;
+    let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
     let around = Box3::around(points.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
     let frame = Frame3::new(args::frame(m)?.unwrap_or(around));
     let map = recipe::build(&steps, registry, frame, &points).map_err(Failure::of_recipe)?.map;
@@ -83,25 +85,4 @@ pub(super) fn run(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -
     }
     output::to_stdout(out.as_bytes())?;
     Ok(status)
-}
-
-/// Parses points, one `x y z` per line. The error starts with the line's number.
-fn parse(text: &str) -> Result<Vec<DVec3>, String> {
-    let mut out = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let numbers: Result<Vec<f64>, _> =
-            line.split([' ', ',', '\t']).filter(|w| !w.is_empty()).map(str::parse::<f64>).collect();
-        match numbers.as_deref() {
-            Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => out.push(DVec3::new(x, y, z)),
-            _ => {
-                let shown: String = line.chars().take(60).collect();
-                return Err(format!("{}: `{shown}` is not three numbers x y z", i + 1));
-            }
-        }
-    }
-    Ok(out)
 }

@@ -6,12 +6,13 @@ use super::preview::Preview;
 use super::report::Run;
 use crate::advice::{self, Flags};
 use crate::catalogue::Catalogue;
+use crate::commands::deformation;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
 use crate::sources::Files;
 use crate::status::Status;
-use crate::{recipe_file, references, steps, terminal, watch};
+use crate::{recipe_file, references, terminal, watch};
 use clap::Command;
 use pathwarp::budget::Budget;
 use pathwarp::deform::Info;
@@ -21,22 +22,11 @@ use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::mesh::{Deformed, MeshError, MeshFault, Undefined3, deform, refine};
 use pathwarp_solid::{Box3, Frame3, recipe};
-use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
 pub(super) fn command(info: &Info) -> Command {
-    let mut examples = String::from("Examples:");
-    for e in info.examples {
-        let _ = write!(examples, "\n  {}:\n    pathwarp {}", e.what, e.command);
-    }
-    let _ = write!(examples, "\n\nSource: {}", info.source);
-    Command::new(info.name)
-        .about(info.title)
-        .long_about(format!("{} — {}\n\n{}", info.name, info.title, info.about))
-        .after_help(examples)
-        .args(steps::args(info))
-        .args(args::all())
+    deformation::described(info).args(args::all())
 }
 
 /// Deforms a model by a recipe, which was read from the file `from` if there is one.
