@@ -8,11 +8,11 @@ node sees.
 
 from __future__ import annotations
 
-import argparse
 from typing import Any, Dict
 
 import numpy as np
 
+import commandline
 import files
 import pathwarp
 
@@ -54,23 +54,13 @@ def run(source: str, folder: str, deformation: pathwarp.Deformation, options: Di
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("source")
-    parser.add_argument("folder")
-    parser.add_argument("deformation")
-    parser.add_argument("parameters", nargs="*", metavar="NAME=VALUE")
-    parser.add_argument("--workers", type=int, default=2)
-    given = parser.parse_args()
+    given = commandline.read(__doc__)
     import ray
 
     # Nothing listens beyond this machine.
     ray.init(num_cpus=given.workers, _node_ip_address="127.0.0.2", include_dashboard=False)
-    deformation = pathwarp.Deformation(given.deformation, **dict(p.split("=", 1) for p in given.parameters))
-    done = run(given.source, given.folder, deformation, {}, given.workers).to_pandas()
-    failed = done[done.error != ""]
-    print(f"{len(done) - len(failed)} files written, {len(failed)} failed")
-    for _, row in failed.iterrows():
-        print(f"{row.path}: {row.error}")
+    done = run(given.source, given.folder, given.deformation, {}, given.workers).to_pandas()
+    commandline.summarize(done)
 
 
 if __name__ == "__main__":

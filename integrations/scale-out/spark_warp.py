@@ -7,13 +7,13 @@ On a cluster, use its master, and folders that every node sees.
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 from typing import Any, Dict, Iterator
 
 import pandas as pd
 
+import commandline
 import files
 import pathwarp
 
@@ -73,20 +73,10 @@ def run(spark: Any, source: str, folder: str, deformation: pathwarp.Deformation,
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("source")
-    parser.add_argument("folder")
-    parser.add_argument("deformation")
-    parser.add_argument("parameters", nargs="*", metavar="NAME=VALUE")
-    parser.add_argument("--workers", type=int, default=2)
-    given = parser.parse_args()
-    deformation = pathwarp.Deformation(given.deformation, **dict(p.split("=", 1) for p in given.parameters))
+    given = commandline.read(__doc__)
     source, folder = os.path.abspath(given.source), os.path.abspath(given.folder)
-    done = run(session(given.workers), source, folder, deformation, {}, folder + ".results").toPandas()
-    failed = done[done.error != ""]
-    print(f"{len(done) - len(failed)} files written, {len(failed)} failed")
-    for _, row in failed.iterrows():
-        print(f"{row.path}: {row.error}")
+    done = run(session(given.workers), source, folder, given.deformation, {}, folder + ".results").toPandas()
+    commandline.summarize(done)
 
 
 if __name__ == "__main__":
