@@ -23,9 +23,10 @@ pub(crate) fn remove_from(folder: &Path) {
     if clean.contains(folder) {
         return;
     }
+    let Ok(entries) = folder.read_dir() else { return };
     clean.insert(folder.to_owned());
     drop(clean);
-    for entry in folder.read_dir().into_iter().flatten().flatten() {
+    for entry in entries.flatten() {
         // A file that cannot be removed does no harm.
         if is_leftover(&entry.file_name()) && entry.file_type().is_ok_and(|t| t.is_file()) {
             let _ = std::fs::remove_file(entry.path());

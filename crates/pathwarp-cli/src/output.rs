@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::temporaries::{self, Temporary};
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -23,13 +23,11 @@ enum Content {
 impl PendingFile {
     /// Writes `bytes` to a temporary file beside `to`; `-` is standard output.
     pub(crate) fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
-        if is_stdout(to) {
-            return Ok(Self::stdout(bytes.to_vec()));
+        match Place::of(to) {
+            Place::Stdout => Ok(Self::stdout(bytes.to_vec())),
+            Place::Device => Ok(Self { content: Content::Device(bytes.to_vec()), to: to.to_owned() }),
+            place => Self::in_place(place, to, |file| file.write_all(bytes).map_err(|e| cannot_be_written(&e))),
         }
-        if is_device(to) {
-            return Ok(Self { content: Content::Device(bytes.to_vec()), to: to.to_owned() });
-        }
-        Self::with_writer(to, |file| file.write_all(bytes).map_err(|e| cannot_be_written(&e)))
     }
 
     /// The bytes for standard output.
@@ -39,10 +37,15 @@ impl PendingFile {
 
     /// Calls `write` with a temporary file beside `to`.
     pub(crate) fn with_writer(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
-        if is_device(to) {
-            return Err(Failure::output(to, "is a device, not a file; name a file"));
-        }
-        let (to, temporary, mut file) = temporary_for(to)?;
+        Self::in_place(Place::of(to), to, write)
+    }
+
+    fn in_place(
+        place: Place,
+        to: &Path,
+        write: impl FnOnce(&mut File) -> Result<(), String>,
+    ) -> Result<Self, Failure> {
+        let (to, temporary, mut file) = place.temporary(to)?;
         write(&mut file).map_err(|e| Failure::output(&to, e))?;
         Ok(Self { content: Content::File(temporary), to })
     }
@@ -109,11 +112,13 @@ enum Sink {
 impl Draft {
     /// Creates a temporary file beside `to`; `-` is standard output.
     pub(crate) fn new(to: &Path) -> Result<Self, Failure> {
-        if is_stdout(to) || is_device(to) {
-            return Ok(Self { sink: Sink::Bytes(Vec::new()), to: to.to_owned() });
+        match Place::of(to) {
+            Place::Stdout | Place::Device => Ok(Self { sink: Sink::Bytes(Vec::new()), to: to.to_owned() }),
+            place => {
+                let (to, temporary, file) = place.temporary(to)?;
+                Ok(Self { sink: Sink::File(temporary, BufWriter::new(file)), to })
+            }
         }
-        let (to, temporary, file) = temporary_for(to)?;
-        Ok(Self { sink: Sink::File(temporary, BufWriter::new(file)), to })
     }
 
     pub(crate) fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
@@ -136,19 +141,49 @@ impl Draft {
     }
 }
 
-/// A temporary file beside `to`, and the file that `to` stands for: a symbolic link is kept, and what it points to is replaced.
-fn temporary_for(to: &Path) -> Result<(PathBuf, Temporary, File), Failure> {
-    let to = to.canonicalize().unwrap_or_else(|_| to.to_owned());
-    let folder = folder(&to);
-    if to.is_dir() {
-        return Err(Failure::output(&to, "is a folder; name a file, or use --out-dir"));
+/// The kinds of places that an output's name may stand for.
+enum Place {
+    Stdout,
+    Device,
+    Folder,
+    /// A file, which may not exist yet. Of a symbolic link, what it points to: the link is kept.
+    File(PathBuf),
+}
+
+impl Place {
+    /// Asks the system once, unless `to` is a symbolic link.
+    fn of(to: &Path) -> Self {
+        if is_stdout(to) {
+            return Self::Stdout;
+        }
+        let found = to.symlink_metadata();
+        let is_link = found.as_ref().is_ok_and(Metadata::is_symlink);
+        match if is_link { to.metadata() } else { found } {
+            Ok(m) if m.is_dir() => Self::Folder,
+            Ok(m) if !m.is_file() => Self::Device,
+            Ok(_) if is_link => Self::File(to.canonicalize().unwrap_or_else(|_| to.to_owned())),
+            _ => Self::File(to.to_owned()),
+        }
     }
-    if !folder.is_dir() {
-        return Err(Failure::output(folder, "does not exist; create the folder first"));
+
+    /// A temporary file beside the file, and the file.
+    fn temporary(self, to: &Path) -> Result<(PathBuf, Temporary, File), Failure> {
+        let file = match self {
+            Self::File(file) => file,
+            Self::Folder => return Err(Failure::output(to, "is a folder; name a file, or use --out-dir")),
+            Self::Device | Self::Stdout => {
+                return Err(Failure::output(to, "is a device, not a file; name a file"));
+            }
+        };
+        let folder = folder(&file);
+        match Temporary::create_in(folder) {
+            Ok((temporary, content)) => Ok((file, temporary, content)),
+            Err(_) if !folder.is_dir() => {
+                Err(Failure::output(folder, "does not exist; create the folder first"))
+            }
+            Err(e) => Err(Failure::output(&file, cannot_be_written(&e))),
+        }
     }
-    let made = Temporary::create_in(folder);
-    let (temporary, file) = made.map_err(|e| Failure::output(&to, cannot_be_written(&e)))?;
-    Ok((to, temporary, file))
 }
 
 /// A file in place.

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Files {
     read: HashMap<PathBuf, Source>,
     written: HashMap<PathBuf, String>,
+    folders: Folders,
 }
 
 /// A file that is read.
@@ -35,8 +36,10 @@ impl Files {
 
     fn add(&mut self, input: &Path, replaceable: bool) {
         if !is_stdout(input) {
-            let file = if input.exists() { input.to_owned() } else { split_reference(&input.to_string_lossy()).0 };
-            self.read.insert(identity(&file), Source { name: display(input), replaceable });
+            let text = input.to_string_lossy();
+            let is_reference = text.contains('#') && !input.exists();
+            let file = if is_reference { split_reference(&text).0 } else { input.to_owned() };
+            self.read.insert(self.folders.identity(&file), Source { name: display(input), replaceable });
         }
     }
 
@@ -58,7 +61,7 @@ impl Files {
             ("", false) => to.display().to_string(),
             (option, _) => format!("--{option} {}", to.display()),
         };
-        let id = if is_stdout(to) { to.to_owned() } else { identity(to) };
+        let id = if is_stdout(to) { to.to_owned() } else { self.folders.identity(to) };
         if let Some(source) = self.read.get(&id) {
             let same =
                 if Path::new(&source.name) == to { String::new() } else { format!(" is {}, which", source.name) };
@@ -80,8 +83,34 @@ impl Files {
     }
 }
 
-/// A path that is the same for every way of naming a file: links followed, and case ignored where the system ignores it.
-fn identity(file: &Path) -> PathBuf {
+/// Folders whose real places are known, as most files of a batch share one.
+#[derive(Default)]
+struct Folders(HashMap<PathBuf, PathBuf>);
+
+impl Folders {
+    /// A path that is the same for every way of naming a file: links followed, and case ignored where the system ignores it.
+    fn identity(&mut self, file: &Path) -> PathBuf {
+        let whole = self.real(file).unwrap_or_else(|| real(file));
+        if cfg!(any(windows, target_os = "macos")) { whole.to_string_lossy().to_lowercase().into() } else { whole }
+    }
+
+    /// The real path of a file that is no link, by that of its folder. Elsewhere than on Unix, a file may have two names.
+    fn real(&mut self, file: &Path) -> Option<PathBuf> {
+        if !cfg!(unix) || file.symlink_metadata().is_ok_and(|m| m.is_symlink()) {
+            return None;
+        }
+        let (folder, name) = (file.parent()?, file.file_name()?);
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        if let Some(known) = self.0.get(folder) {
+            return Some(known.join(name));
+        }
+        let known = self.0.entry(folder.to_owned()).or_insert_with(|| real(folder));
+        Some(known.join(name))
+    }
+}
+
+/// The absolute path with all links followed.
+fn real(file: &Path) -> PathBuf {
     let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
     // Of a file that does not exist yet, the folders that do exist are looked up.
     let existing = absolute.ancestors().find_map(|folder| {
@@ -89,6 +118,5 @@ fn identity(file: &Path) -> PathBuf {
         let folder = folder.canonicalize().ok()?;
         Some(if rest.as_os_str().is_empty() { folder } else { folder.join(rest) })
     });
-    let whole = existing.unwrap_or(absolute);
-    if cfg!(any(windows, target_os = "macos")) { whole.to_string_lossy().to_lowercase().into() } else { whole }
+    existing.unwrap_or(absolute)
 }

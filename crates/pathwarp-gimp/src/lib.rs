@@ -32,7 +32,7 @@ mod xcf;
 
 pub use error::{Error, ErrorKind};
 pub use file::{FileKind, PathFile, Salvaged};
-pub use open::{open, salvage, salvage_within, sniff};
+pub use open::{HEAD, may_begin, open, salvage, salvage_within, sniff};
 pub use path::{GimpPath, Stroke};
 pub use point_list::to_json;
 pub use svg::to_svg;

@@ -69,7 +69,7 @@ fn head(file: &mut dyn ReadSeek) -> Result<Vec<u8>, Error> {
 }
 
 /// Number of bytes that identify a file, including the declarations of an SVG.
-const HEAD: usize = 512;
+pub const HEAD: usize = 512;
 
 /// Reads a file by its format.
 fn dispatch(file: &mut dyn ReadSeek, limits: &Limits) -> Result<Salvaged, Error> {
@@ -111,6 +111,18 @@ const XZ_MEMORY_KIB: u32 = 96 << 10;
 fn first_byte(head: &[u8]) -> Option<u8> {
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
     head.iter().copied().find(|b| !b.is_ascii_whitespace())
+}
+
+/// Returns `false` if no file for which [`sniff`] is `true` begins with these bytes, which are the first [`HEAD`], or all there are.
+#[must_use]
+pub fn may_begin(head: &[u8]) -> bool {
+    packing(head) != Packing::None
+        || head.starts_with(xcf::MAGIC)
+        || head.starts_with(text::FIRST)
+        || match first_byte(head) {
+            Some(b'<') => svg::may_be_export(head),
+            first => first == Some(b'{'),
+        }
 }
 
 /// Returns `true` if a file contains paths of GIMP: an XCF, GIMP 1 text, a valid point list, or an SVG as GIMP exports it.

@@ -12,6 +12,10 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// Level of compression. The default, 6, takes 1.7 to 4.5 times as long; its files are 3 % smaller, those with sharp edges 12 %.
 const LEVEL: u32 = 3;
+/// The level of large pictures, which have sharp edges: it takes a third of the time, and most of a smooth picture is smooth.
+const LEVEL_OF_LARGE: u32 = 1;
+/// Bytes of pixels of a large picture.
+const LARGE: usize = 1 << 18;
 /// The filter that replaces bytes by their differences from the row above, which vary least in smooth pictures.
 const UP: u8 = 2;
 
@@ -54,7 +58,8 @@ fn compressed(pixels: &[u8], stride: usize) -> io::Result<Vec<u8>> {
         filtered.extend(row.iter().zip(&above).map(|(here, above)| here.wrapping_sub(*above)));
         above.copy_from_slice(row);
     }
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+    let level = if filtered.len() < LARGE { LEVEL } else { LEVEL_OF_LARGE };
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(level));
     encoder.write_all(&filtered)?;
     encoder.finish()
 }

@@ -114,7 +114,7 @@ impl GimpFile {
 }
 
 /// Returns `true` if `path` is named like an XCF, packed or not.
-fn is_named_xcf(path: &Path) -> bool {
+pub(super) fn is_named_xcf(path: &Path) -> bool {
     let name = path.to_string_lossy().to_ascii_lowercase();
     [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz"].iter().any(|e| name.ends_with(e))
 }

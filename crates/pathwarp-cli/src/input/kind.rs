@@ -4,7 +4,7 @@ use super::artwork::Artwork;
 use super::gimp::GimpArtwork;
 use super::gimp_file::GimpFile;
 use super::picture::PictureArtwork;
-use super::read::{bytes, display};
+use super::read::{bytes, display, ordinary_bytes};
 use super::svg::SvgArtwork;
 use crate::failure::Failure;
 use crate::options::CommonOptions;
@@ -21,6 +21,9 @@ pub(crate) enum Input {
 impl Input {
     /// Opens an input and checks that the options and the target suit its kind.
     pub(crate) fn open(input: &Path, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
+        if let (None, Some(bytes)) = (&options.into, ordinary_bytes(input)?) {
+            return Self::of_bytes(&bytes, input, options, target);
+        }
         if let Some(file) = GimpFile::open(input, options.salvage, &options.reading.limits)? {
             return Ok(Self::Gimp(GimpArtwork::new(file, options, target)?));
         }

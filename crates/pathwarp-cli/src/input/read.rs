@@ -1,9 +1,11 @@
 //! Reads input files, and standard input for `-`.
 
+use super::gimp_file::is_named_xcf;
 use crate::failure::Failure;
 use crate::options::Reading;
 use crate::watch;
 use pathwarp_svg::{Document, ReadOptions};
+use std::fs::{File, Metadata};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -38,6 +40,31 @@ pub(crate) fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
         return Err(Failure::Input("standard input: reading an XCF requires seeking; name the file instead".into()));
     }
     Ok(bytes)
+}
+
+/// The bytes of a file that begins unlike any of GIMP's, as nearly all drawings and pictures do; opened and read once. `None`: of
+/// a file that needs a closer look, of standard input, and of a name that is no file.
+pub(crate) fn ordinary_bytes(input: &Path) -> Result<Option<Vec<u8>>, Failure> {
+    /// Room to find the end without another allocation.
+    const ROOM: usize = 64;
+    if is_stdin(input) || is_named_xcf(input) {
+        return Ok(None);
+    }
+    let Ok(mut file) = File::open(input) else { return Ok(None) };
+    let size = file.metadata().ok().filter(Metadata::is_file).map(|m| m.len());
+    let mut bytes = Vec::with_capacity(size.and_then(|n| usize::try_from(n).ok()).unwrap_or_default() + ROOM);
+    // A pipe is not probed: it can be read only once.
+    if size.is_some() {
+        let head = file.by_ref().take(pathwarp_gimp::HEAD as u64).read_to_end(&mut bytes);
+        if head.is_err() || pathwarp_gimp::may_begin(&bytes) {
+            return Ok(None);
+        }
+    }
+    // Without a limit, the size would be asked for again.
+    let rest = file.take(u64::MAX).read_to_end(&mut bytes);
+    rest.map_err(|e| Failure::file(input, format!("cannot be read: {e}")))?;
+    watch::count_input(bytes.len());
+    Ok(Some(bytes))
 }
 
 /// Reads an SVG document. Linked images are looked up relative to its folder.

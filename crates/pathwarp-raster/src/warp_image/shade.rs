@@ -90,7 +90,10 @@ impl ShadePainter<'_> {
             return;
         }
         match area.trace(&self.basis, self.shade.shown, self.shade.inverse, self.to_pixels) {
-            Some(trace) => self.paint(band, area, |i, j| trace.pixel(i, j).p),
+            Some(trace) => self.paint(band, area, |j| {
+                let row = trace.pixels(j);
+                move |i| row.point(i)
+            }),
             None if area.width.max(area.height) > SMALLEST => {
                 area.quarters().for_each(|quarter| self.tile(band, quarter));
             }
@@ -102,21 +105,26 @@ impl ShadePainter<'_> {
                     .collect();
                 let mut found = vec![Point::ORIGIN; pixels.len()];
                 self.shade.inverse.points(&pixels, &mut found);
-                self.paint(band, area, |i, j| self.to_pixels * found[j * area.width + i]);
+                let found = &found;
+                self.paint(band, area, |j| move |i| self.to_pixels * found[j * area.width + i]);
             }
         }
     }
 
-    fn paint(&self, band: &mut ShadeBand<'_>, area: PixelArea, from: impl Fn(usize, usize) -> Point) {
+    /// Paints an area. `row` gives the places of a row's pixels in the paint, measured in pixels.
+    fn paint<Row: Fn(usize) -> Point>(&self, band: &mut ShadeBand<'_>, area: PixelArea, row: impl Fn(usize) -> Row) {
         let to_paint = self.to_pixels.inverse();
         for j in 0..area.height {
             let start = (area.top - band.top + j) * band.columns + area.left;
-            for i in 0..area.width {
-                let place = to_paint * from(i, j);
+            let pixels = &mut band.pixels[start..start + area.width];
+            let known = &mut band.known[start..start + area.width];
+            let from = row(j);
+            for (i, (pixel, known)) in pixels.iter_mut().zip(known).enumerate() {
+                let place = to_paint * from(i);
                 if place.is_finite() {
                     let [r, g, b, a] = (self.shade.color)(place).map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
-                    band.pixels[start + i] = ColorU8::from_rgba(r, g, b, a).premultiply();
-                    band.known[start + i] = true;
+                    *pixel = ColorU8::from_rgba(r, g, b, a).premultiply();
+                    *known = true;
                 }
             }
         }

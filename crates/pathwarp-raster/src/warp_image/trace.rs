@@ -116,6 +116,13 @@ pub(super) struct TraceRow {
 }
 
 impl TraceRow {
+    /// The place of a column.
+    pub(super) fn point(&self, column: usize) -> Point {
+        let (u, [a, b, c, d]) = (column as f64 * self.per_column, &self.place);
+        let value = |k: usize| ((d[k] * u + c[k]) * u + b[k]) * u + a[k];
+        Point::new(value(0), value(1))
+    }
+
     fn jet(&self, u: f64) -> Jet {
         let value = |c: &[[f64; 2]; NODES], k: usize| ((c[3][k] * u + c[2][k]) * u + c[1][k]) * u + c[0][k];
         let slope = |k: usize| {

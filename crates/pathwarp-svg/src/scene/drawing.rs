@@ -59,7 +59,8 @@ impl Drawing {
                 }
                 Ok((tree, letters, missed, scene))
             };
-            Ok((if shallow { resolve()? } else { with_stack(name, resolve)? }, shallow))
+            let read = source.reading_ahead(|| if shallow { resolve() } else { with_stack(name, resolve) });
+            Ok((read?, shallow))
         })?;
         let ((tree, letters, missed, scene), shallow) = read;
         Ok(Self {

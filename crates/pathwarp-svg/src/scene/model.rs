@@ -104,7 +104,11 @@ pub(crate) struct LazyOutline(LazyLock<Arc<Outline>, Box<dyn FnOnce() -> Arc<Out
 
 impl LazyOutline {
     pub(crate) fn new(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
-        Self(LazyLock::new(Box::new(|| Arc::new(f()))))
+        Self::shared(|| Arc::new(f()))
+    }
+
+    pub(crate) fn shared(f: impl FnOnce() -> Arc<Outline> + Send + 'static) -> Self {
+        Self(LazyLock::new(Box::new(f)))
     }
 }
 

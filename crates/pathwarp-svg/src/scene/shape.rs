@@ -2,6 +2,7 @@
 
 use super::geometry::GeometryReader;
 use super::model::{Part, PartRole, Scene};
+use crate::source::ahead::WORTH_THREADS;
 use crate::source::parallel::map_parallel;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
@@ -51,8 +52,6 @@ pub struct NamedPath {
 
 /// Reads the outlines of a large drawing on several threads.
 pub(super) fn read_outlines(scene: &Scene, source: &SourceText) {
-    /// Bytes of source text below which starting threads takes longer than reading the outlines.
-    const WORTH_THREADS: usize = 200_000;
     if source.text.len() >= WORTH_THREADS {
         map_parallel(scene.parts.len(), |i| scene.parts[i].local.segs().next().is_some());
     }

@@ -1,5 +1,6 @@
 //! The source text: its elements and their positions, edits to it, style sheets, fonts, and usvg's tree of it.
 
+pub(crate) mod ahead;
 pub(crate) mod cascade;
 mod check;
 pub(crate) mod edit;

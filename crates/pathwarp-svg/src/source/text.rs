@@ -1,7 +1,9 @@
 //! The source text with its table of elements: names and attributes are looked up here, and patches refer to it.
 
+use super::ahead::{self, Ahead};
 use super::element::{Attr, Element};
 use super::marks::{self, Marks};
+use super::parallel::both;
 use super::prefixes;
 use super::style;
 use super::table::Table;
@@ -33,6 +35,8 @@ pub(crate) struct SourceText {
     /// Namespace prefixes that the file did not declare; the text does.
     pub(crate) undeclared: Vec<String>,
     marks: Marks,
+    /// Outlines of `path` elements. A large drawing has them.
+    pub(crate) ahead: Ahead,
     // The rest is computed on first use.
     by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     by_tree_id: OnceLock<HashMap<String, Vec<ElementId>>>,
@@ -108,11 +112,25 @@ impl SourceText {
             unpatchable,
             undeclared: Vec::new(),
             marks,
+            ahead: Ahead::default(),
             by_id: OnceLock::new(),
             by_tree_id: OnceLock::new(),
             css_words: OnceLock::new(),
             line_starts: OnceLock::new(),
         }
+    }
+
+    /// Calls `f`, and on another thread reads the outlines of a large drawing.
+    pub(crate) fn reading_ahead<T: Send>(&self, f: impl FnOnce() -> T + Send) -> T {
+        if self.text.len() < ahead::WORTH_THREADS {
+            return f();
+        }
+        let read = || {
+            // Not inside of `get_or_init`: a thread that waits for others may run a task that needs the outlines, too.
+            let outlines = ahead::read(&self.text, &self.elements);
+            let _ = self.ahead.set(outlines);
+        };
+        both(f, read).0
     }
 
     /// Elements by id, in document order.

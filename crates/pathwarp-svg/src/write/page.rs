@@ -13,7 +13,7 @@ use crate::scene::seen::{clip_box, is_seen, overlap};
 use crate::source::number::short;
 use crate::source::select::Selection;
 use pathwarp::Outline;
-use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
+use pathwarp::kurbo::{Affine, BezPath, ParamCurve as _, PathSeg, Point, Rect, Shape as _};
 use std::borrow::Cow;
 use std::str::FromStr;
 use svgtypes::{Length, LengthUnit};
@@ -127,14 +127,17 @@ fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
     group_box(input, &input.scene.root, Measure { counts: &counts, room, page: input.drawing.specified_area() })
 }
 
-/// Bounds the image of what the page showed of a part; unbounded if it showed all. `None` if it showed nothing.
+/// Bounds the image of what the page showed of a part; unbounded if it showed all that can be seen. `None` if it showed nothing.
 fn from_page(input: &WriteInput<'_>, p: &Part, page: Rect) -> Option<Rect> {
+    /// Less than this fraction of the page beyond its edge, as icons have it for rounding, makes no visible difference.
+    const SLIVER: f64 = 0.1 * VISIBLE;
     let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
     let Some(all) = p.outline().bounding_box() else { return Some(everything) };
     let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()) * stretch(p.frame));
     let shown = overlap(all.inflate(reach, reach), page)?;
     // Letters placed one by one do not go through the whole map.
-    if page.union(all) == page || !input.options.letters.places.is_empty() {
+    let nearly = page.inflate(SLIVER * page.width(), SLIVER * page.height());
+    if nearly.union(all) == nearly || !input.options.letters.places.is_empty() {
         return Some(everything);
     }
     image_box(input, shown)
@@ -144,15 +147,21 @@ fn from_page(input: &WriteInput<'_>, p: &Part, page: Rect) -> Option<Rect> {
 fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
     /// Samples along a side. Between them, the image bulges by less than is noticed.
     const N: u32 = 64;
+    /// Steps between samples inside, which can be extreme only where the map folds.
+    const INSIDE: u32 = 4;
     let at = |k: u32| f64::from(k) / f64::from(N);
-    let point =
-        |k: u32| Point::new(area.x0 + at(k % (N + 1)) * area.width(), area.y0 + at(k / (N + 1)) * area.height());
+    let point = |(i, j): (u32, u32)| Point::new(area.x0 + at(i) * area.width(), area.y0 + at(j) * area.height());
+    let is_sampled = |(i, j): &(u32, u32)| {
+        let is_edge = |k: u32| k == 0 || k == N;
+        is_edge(*i) || is_edge(*j) || i % INSIDE == 0 && j % INSIDE == 0
+    };
     let copies = |q: Point| {
         let all = &input.options.copies;
         let first = all.is_empty().then_some(Affine::IDENTITY);
         all.iter().copied().chain(first).map(move |c| c * q)
     };
-    let places: Vec<Point> = (0..(N + 1) * (N + 1)).flat_map(|k| copies(point(k))).collect();
+    let grid = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j))).filter(is_sampled);
+    let places: Vec<Point> = grid.flat_map(|k| copies(point(k))).collect();
     let mut images = places.clone();
     input.map.points(&places, &mut images);
     images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
@@ -232,9 +241,24 @@ fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezPath> {
     Cow::Owned(p.local.to_bez_path((size * FINE).max(1e-12)))
 }
 
+/// Bounding box of a path; empty if it draws nothing.
+fn extent(path: &BezPath) -> Rect {
+    let ends = path.segments().flat_map(|s| [s.start(), s.end()]).map(|p| Rect::from_points(p, p));
+    let Some(ends) = ends.reduce(|a, b| a.union(b)) else { return Rect::ZERO };
+    // The extremes of most curves lie inside the box of all ends.
+    path.segments().fold(ends, |all, s| {
+        let controls = match s {
+            PathSeg::Line(_) => return all,
+            PathSeg::Quad(q) => Rect::from_points(q.p1, q.p1),
+            PathSeg::Cubic(c) => Rect::from_points(c.p1, c.p2),
+        };
+        if all.union(controls) == all { all } else { all.union(s.bounding_box()) }
+    })
+}
+
 /// Bounding box of a path's image under `frame`.
 fn box_under(frame: Affine, path: &BezPath) -> Rect {
-    if frame == Affine::IDENTITY { path.bounding_box() } else { (frame * path).bounding_box() }
+    if frame == Affine::IDENTITY { extent(path) } else { extent(&(frame * path)) }
 }
 
 /// A cheap bounding box of everything a part paints; it may be too large.

@@ -182,7 +182,7 @@ impl Deformation for Entry {
 }
 
 /// Defines the built-in names.
-fn builtin(p: &mut Program, r: Rect) -> Option<Names> {
+fn builtin<'a>(p: &mut Program, r: Rect) -> Option<Names<'a>> {
     let mut names = Names::new();
     let (x, y) = (p.x()?, p.y()?);
     names.set("x", x);

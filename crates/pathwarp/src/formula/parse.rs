@@ -9,19 +9,19 @@ const MAX_BYTES: usize = 10_000;
 const MAX_DEPTH: usize = 100;
 
 /// The names that a formula may use, each with the index of its value in the program.
-pub(crate) struct Names(Vec<(String, u32)>);
+pub(crate) struct Names<'a>(Vec<(&'a str, u32)>);
 
-impl Names {
+impl<'a> Names<'a> {
     pub(crate) fn new() -> Self {
-        Self(Vec::new())
+        Self(Vec::with_capacity(16))
     }
 
-    pub(crate) fn set(&mut self, name: &str, value: u32) {
-        self.0.push((name.to_owned(), value));
+    pub(crate) fn set(&mut self, name: &'a str, value: u32) {
+        self.0.push((name, value));
     }
 
     pub(crate) fn get(&self, name: &str) -> Option<u32> {
-        self.0.iter().find(|(n, _)| n == name).map(|(_, v)| *v)
+        self.0.iter().find(|(n, _)| *n == name).map(|(_, v)| *v)
     }
 }
 
@@ -66,7 +66,7 @@ fn function(name: &str) -> Option<Function> {
 }
 
 /// Appends the formula `text` to `program` and returns the index of its value.
-pub(crate) fn parse(text: &str, names: &Names, program: &mut Program) -> Result<u32, SyntaxError> {
+pub(crate) fn parse(text: &str, names: &Names<'_>, program: &mut Program) -> Result<u32, SyntaxError> {
     if text.len() > MAX_BYTES {
         return Err(SyntaxError::new(0, Problem::TooLong(MAX_BYTES)));
     }
@@ -85,7 +85,7 @@ pub(crate) fn parse(text: &str, names: &Names, program: &mut Program) -> Result<
 struct Parser<'a> {
     text: &'a str,
     at: usize,
-    names: &'a Names,
+    names: &'a Names<'a>,
     program: &'a mut Program,
     depth: usize,
 }
@@ -216,13 +216,15 @@ impl Parser<'_> {
     fn word(&mut self) -> Result<u32, SyntaxError> {
         let at = self.at;
         let len = self.rest().chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').count();
-        let word = self.rest()[..len].to_owned();
-        self.at += len;
-        if let Some(v) = self.names.get(&word) {
+        let word = &self.rest()[..len];
+        if let Some(v) = self.names.get(word) {
+            self.at += len;
             return Ok(v);
         }
+        let word = word.to_owned();
+        self.at += len;
         let Some(f) = function(&word) else {
-            let known: Vec<&str> = self.names.0.iter().map(|(n, _)| n.as_str()).collect();
+            let known: Vec<&str> = self.names.0.iter().map(|(n, _)| *n).collect();
             let problem = Problem::Unknown { word, names: known.join(" "), functions: FUNCTIONS };
             return Err(SyntaxError::new(at, problem));
         };

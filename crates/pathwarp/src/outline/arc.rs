@@ -143,6 +143,11 @@ impl EllipticArc {
         }
     }
 
+    /// Half the width and height of the whole ellipse.
+    pub(super) fn reach(&self) -> Vec2 {
+        Vec2::new(self.a.x.hypot(self.b.x), self.a.y.hypot(self.b.y))
+    }
+
     /// The bounding box.
     #[must_use]
     pub fn bounding_box(&self) -> Rect {

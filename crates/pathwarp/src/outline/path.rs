@@ -99,15 +99,10 @@ impl Outline {
     /// The bounding box; `None` for an empty path.
     #[must_use]
     pub fn bounding_box(&self) -> Option<Rect> {
-        let mut all: Option<Rect> = None;
-        for s in &self.subpaths {
-            let mut b = Rect::from_points(s.start, s.start);
-            for g in &s.segs {
-                b = b.union(g.bounding_box());
-            }
-            all = Some(all.map_or(b, |a| a.union(b)));
-        }
-        all
+        let ends = self.subpaths.iter().flat_map(|s| s.segs.iter().map(Seg::end).chain([s.start]));
+        let ends = ends.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))?;
+        // The extremes of most segments lie inside the box of all ends.
+        Some(self.segs().fold(ends, |b, g| g.extend(b)))
     }
 
     /// Converts to a [`BezPath`], each arc to cubics within `tolerance` of it.

@@ -109,6 +109,21 @@ impl Seg {
         }
     }
 
+    /// Extends a box that holds the ends to hold the segment. Extremes are computed only if control points lie outside.
+    pub(super) fn extend(&self, b: Rect) -> Rect {
+        let holds = |p: Point| b.x0 <= p.x && p.x <= b.x1 && b.y0 <= p.y && p.y <= b.y1;
+        let inside = match self {
+            Self::Line(_) => true,
+            Self::Quad(s) => holds(s.p1),
+            Self::Cubic(s) => holds(s.p1) && holds(s.p2),
+            Self::Arc(s) => {
+                let reach = s.reach();
+                holds(s.center - reach) && holds(s.center + reach)
+            }
+        };
+        if inside { b } else { b.union(self.bounding_box()) }
+    }
+
     /// The segment as one cubic: exact for lines, quadratics and cubics. For an arc of sweep Δ, the cubic with its end tangents
     /// and handles of length (4/3)·tan(Δ/4) times the conjugate radius (radial error 2.7e-4 of the radius for a quarter circle).
     #[must_use]

@@ -7,6 +7,7 @@ use crate::source::tags::{ElementId, is_shape};
 use pathwarp::Outline;
 use pathwarp::kurbo::Point;
 use std::collections::HashMap;
+use std::sync::Arc;
 use usvg::tiny_skia_path as ts;
 
 /// Origin of a path.
@@ -50,10 +51,11 @@ pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
 /// The outline of a `path` element that usvg has resolved to `path`; computed on first use.
 fn path_outline(b: &SceneBuilder<'_>, e: ElementId, path: &ts::Path) -> Option<LazyOutline> {
     let d = b.reader.source.attr(e, "d")?.into_owned();
-    let path = path.clone();
-    Some(LazyOutline::new(move || {
-        let exact = Outline::from_svg_lossy(&d);
-        if same_path(&exact, &path) { exact } else { from_usvg(&path) }
+    let (path, ahead) = (path.clone(), Arc::clone(&b.reader.source.ahead));
+    Some(LazyOutline::shared(move || {
+        let known = ahead.get().and_then(|known| known.get(&e).cloned());
+        let exact = known.unwrap_or_else(|| Arc::new(Outline::from_svg_lossy(&d)));
+        if same_path(&exact, &path) { exact } else { Arc::new(from_usvg(&path)) }
     }))
 }
 

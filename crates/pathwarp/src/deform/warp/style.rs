@@ -83,6 +83,13 @@ struct Rule {
     y: Option<String>,
 }
 
+impl Rule {
+    /// Returns `false` if the formulas are certain to have one value everywhere.
+    fn asks_for_the_place(&self) -> bool {
+        self.x.iter().chain(&self.y).any(|f| f.contains(['u', 'v']))
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Shift {
@@ -246,11 +253,14 @@ impl Style {
         }
         for (rules, absolute) in [(&self.points, true), (&self.moves, false)] {
             for rule in rules {
+                let mut known = None;
                 for (j, c) in selected(&rule.at)? {
                     names.set("u", third(c));
                     names.set("v", third(j));
                     let of = |f: &Option<String>| f.as_ref().map(|f| names.value(f)).transpose();
-                    let (x, y) = (of(&rule.x)?, of(&rule.y)?);
+                    let value = || Ok::<_, FormulaError>((of(&rule.x)?, of(&rule.y)?));
+                    let (x, y) = known.map_or_else(value, Ok)?;
+                    known = (!rule.asks_for_the_place()).then_some((x, y));
                     let p = &mut net[j][c];
                     *p = if absolute {
                         Point::new(x.unwrap_or(p.x), y.unwrap_or(p.y))
