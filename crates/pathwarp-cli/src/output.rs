@@ -40,11 +40,7 @@ impl PendingFile {
         Self::in_place(Place::of(to), to, write)
     }
 
-    fn in_place(
-        place: Place,
-        to: &Path,
-        write: impl FnOnce(&mut File) -> Result<(), String>,
-    ) -> Result<Self, Failure> {
+    fn in_place(place: Place, to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
         let (to, temporary, mut file) = place.temporary(to)?;
         write(&mut file).map_err(|e| Failure::output(&to, e))?;
         Ok(Self { content: Content::File(temporary), to })
@@ -178,9 +174,7 @@ impl Place {
         let folder = folder(&file);
         match Temporary::create_in(folder) {
             Ok((temporary, content)) => Ok((file, temporary, content)),
-            Err(_) if !folder.is_dir() => {
-                Err(Failure::output(folder, "does not exist; create the folder first"))
-            }
+            Err(_) if !folder.is_dir() => Err(Failure::output(folder, "does not exist; create the folder first")),
             Err(e) => Err(Failure::output(&file, cannot_be_written(&e))),
         }
     }

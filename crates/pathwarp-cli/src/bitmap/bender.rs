@@ -123,6 +123,7 @@ impl GradientPainter for Bender {
             map: r.map,
             after: r.after,
             target: r.target,
+            shape: Some(r.shape),
             seen: if r.sharp { &[] } else { &seen },
             tolerance: if r.strict { ShadeTolerance::INVISIBLE } else { ShadeTolerance::UNNOTICED },
             finest,

@@ -21,6 +21,7 @@
 mod area;
 mod block;
 mod color;
+mod cover;
 mod extent;
 mod grid_inverse;
 mod image_warp;

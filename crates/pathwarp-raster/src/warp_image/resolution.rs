@@ -7,7 +7,7 @@ use super::grid_inverse::GridInverse;
 use super::image_warp::shown;
 use super::shade::{Shade, shade};
 use crate::error::Error;
-use kurbo::{Affine, Point, Rect, Vec2};
+use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use pathwarp::map::Map;
 use tiny_skia::Pixmap;
 
@@ -69,6 +69,8 @@ pub struct SmoothShade<'a> {
     pub after: Affine,
     /// The part of the result's plane to be painted.
     pub target: Rect,
+    /// The shape that alone is seen; `None` if all of the target is.
+    pub shape: Option<&'a BezPath>,
     /// Colours to compare with. Without any, the resolution is `finest`.
     pub seen: &'a [SeenColor],
     /// Accepted differences from `seen`.
@@ -110,7 +112,8 @@ impl SmoothShade<'_> {
         let reach = (READ / inner.x.min(inner.y)).min(FARTHEST) * self.source.width().max(self.source.height());
         let side = (inner.x * inner.y).sqrt();
         let inverse = GridInverse::new(self.map, self.source, reach, self.placed, self.after, side);
-        let pixmap = shade(&Shade { color: self.color, inverse: &inverse, shown: shown(area, size), size })?;
+        let (color, shape) = (self.color, self.shape);
+        let pixmap = shade(&Shade { color, inverse: &inverse, shown: shown(area, size), size, shape })?;
         Ok((pixmap, area))
     }
 }
@@ -200,7 +203,9 @@ mod tests {
         let target = Rect::new(0.0, -8.0, 100.0, 68.0);
         let (placed, after) = (Affine::IDENTITY, Affine::IDENTITY);
         let (source, finest) = (SOURCE, 8.0);
-        SmoothShade { color, source, placed, map, after, target, seen: &seen, tolerance, finest }.paint().unwrap()
+        SmoothShade { color, source, placed, map, after, target, shape: None, seen: &seen, tolerance, finest }
+            .paint()
+            .unwrap()
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! Warps a paint: every pixel of the result asks the inverse map for its place in the paint, and the paint for its colour.
 
 use super::area::{PixelArea, SMALLEST, TILE};
+use super::cover::Cover;
 use super::grid_inverse::GridInverse;
 use super::trace::{ChebyshevBasis, MAX_ERROR};
 use crate::error::Error;
 use crate::parallel::for_each_chunk_pair;
 use crate::pixmap::new_pixmap;
-use kurbo::{Affine, Point, Vec2};
+use kurbo::{Affine, BezPath, Point, Vec2};
 use pathwarp::budget::Limits;
 use pathwarp::map::Map;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
@@ -27,9 +28,11 @@ pub struct Shade<'a> {
     pub shown: Affine,
     /// Width and height of the result in pixels.
     pub size: (u32, u32),
+    /// The shape in the plane that alone is seen, with two pixels around it; `None` if everything is.
+    pub shape: Option<&'a BezPath>,
 }
 
-/// Warps a paint. Pixels without an inverse have the colour of the nearest in their row, or else of the nearest row: a clip along
+/// Warps a paint. Pixels without an inverse, and those far from the shape, have the colour of the nearest in their row, or else of the nearest row: a clip along
 /// the edge of the image shows no gap, and the file stays small.
 ///
 /// # Errors
@@ -45,11 +48,12 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
         ShadePainter { shade, basis: ChebyshevBasis::new(), to_pixels: Affine::scale(MAX_ERROR / (MAX_OFF * unit)) };
     let columns = width as usize;
     let mut known = vec![false; columns * height as usize];
+    let cover = shade.shape.map(|shape| Cover::of(shape, shade.shown, shade.size));
     let paint = |band: usize, pixels: &mut [PremultipliedColorU8], known: &mut [bool]| {
         let mut band = ShadeBand { top: band * TILE, columns, pixels, known };
         let height = band.pixels.len() / columns;
         let top = band.top;
-        for left in (0..columns).step_by(TILE) {
+        for left in (0..columns).step_by(TILE).filter(|left| cover.as_ref().is_none_or(|c| c.holds(*left, top))) {
             painter.tile(&mut band, PixelArea { left, top, width: TILE.min(columns - left), height });
         }
     };
@@ -131,7 +135,7 @@ impl ShadePainter<'_> {
     }
 }
 
-/// Gives pixels without an inverse the colour of the nearest in their row, or else of the nearest row.
+/// Gives pixels that were not painted the colour of the nearest in their row, or else of the nearest row.
 fn extend(out: &mut Pixmap, known: &[bool]) {
     let width = out.width() as usize;
     let pixels = out.pixels_mut();
@@ -189,7 +193,7 @@ mod tests {
         };
         let inverse = GridInverse::new(&Shears, area, 1.0, placed, Affine::IDENTITY, 100.0);
         let shown = Affine::new([0.2, 0.0, 0.0, 0.25, 1.0, -3.0]);
-        let picture = shade(&Shade { color: &color, inverse: &inverse, shown, size: (150, 90) }).unwrap();
+        let picture = shade(&Shade { color: &color, inverse: &inverse, shown, size: (150, 90), shape: None }).unwrap();
         let (mut outside, mut inside) = (0, 0);
         for (at, found) in picture.pixels().iter().enumerate() {
             let from = placed.inverse() * back(shown * Point::new((at % 150) as f64 + 0.5, (at / 150) as f64 + 0.5));
@@ -224,14 +228,20 @@ mod tests {
         let area = Rect::new(0.0, 0.0, 20.0, 20.0);
         let inverse = GridInverse::new(&Half, area, 1.0, Affine::IDENTITY, Affine::IDENTITY, 20.0);
         let picture =
-            shade(&Shade { color: &color, inverse: &inverse, shown: Affine::IDENTITY, size: (20, 20) }).unwrap();
+            shade(&Shade { color: &color, inverse: &inverse, shown: Affine::IDENTITY, size: (20, 20), shape: None })
+                .unwrap();
         for y in 0..20 {
             let first = picture.pixel(3, y).unwrap();
             assert_eq!((picture.pixel(0, y), picture.pixel(2, y)), (Some(first), Some(first)));
             assert!(first.green().abs_diff((255.0 * (f64::from(y) + 0.5) / 20.0) as u8) <= 1, "{y}");
         }
-        let nowhere =
-            Shade { color: &color, inverse: &inverse, shown: Affine::translate((500.0, 0.0)), size: (20, 20) };
+        let nowhere = Shade {
+            color: &color,
+            inverse: &inverse,
+            shown: Affine::translate((500.0, 0.0)),
+            size: (20, 20),
+            shape: None,
+        };
         assert_eq!(shade(&nowhere), Err(Error::NoInverse));
     }
 }

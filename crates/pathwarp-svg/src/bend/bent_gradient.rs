@@ -85,6 +85,7 @@ impl BentGradient {
             map: t.context.map,
             after: t.back,
             target: target.bounding_box(),
+            shape: target,
             to_px: t.context.to_px,
             among: t.context.gradients,
             seen: &self.seen,

@@ -1,7 +1,7 @@
 //! Bent gradients as the library's users see them. A [`GradientPainter`] does the work on pixels.
 
 use super::picture::{BentImage, PictureError};
-use pathwarp::kurbo::{Affine, Point, Rect};
+use pathwarp::kurbo::{Affine, BezPath, Point, Rect};
 use pathwarp::map::Map;
 
 /// Paints bent gradients.
@@ -28,6 +28,8 @@ pub struct GradientRequest<'a> {
     pub after: Affine,
     /// Bounding box of the bent shape in the user space of the result.
     pub target: Rect,
+    /// The bent shape in the user space of the result. Only what it covers is seen.
+    pub shape: &'a BezPath,
     /// Root user space to px, to choose a resolution.
     pub to_px: Affine,
     /// Upper bound on the number of gradients in the drawing, which share a budget of pixels.

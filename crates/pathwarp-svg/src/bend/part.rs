@@ -55,7 +55,8 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
         report,
         rounding: t.rounding,
     };
-    out.fill_image = fill_gradient.and_then(|g| g.painted(t, &out.path, &mut out.unpainted));
+    let filled = out.fill.as_ref().filter(|f| !f.is_empty()).unwrap_or(&out.path);
+    out.fill_image = fill_gradient.and_then(|g| g.painted(t, filled, &mut out.unpainted));
     if let (Some(g), StrokeOutcome::Outlined(outline)) = (stroke_gradient, &out.stroke) {
         out.stroke_image = g.painted(t, outline, &mut out.unpainted);
     }
