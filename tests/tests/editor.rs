@@ -1,10 +1,8 @@
 //! `pathwarp edit` in a headless Chromium: the tests of the page (`crates/pathwarp-editor/web/tests`) with the real program.
 
-mod support;
-
+use crate::support::{pathwarp_program, root};
 use std::path::Path;
 use std::process::Command;
-use support::{pathwarp_program, root};
 
 /// What the tests need besides the program.
 fn missing(web: &Path) -> Option<&'static str> {
@@ -37,12 +35,12 @@ fn the_page_works_in_a_browser() {
 
 #[test]
 fn what_cannot_be_edited_is_said() {
-    let out = support::pathwarp(&["edit", "-"]);
+    let out = crate::support::pathwarp(&["edit", "-"]);
     assert_eq!(out.status.code(), Some(2));
     let folder = tempfile::tempdir().unwrap();
     let bad = folder.path().join("bad.svg");
     std::fs::write(&bad, "<svg").unwrap();
-    let out = support::pathwarp(&["edit", "--no-open", bad.to_str().unwrap()]);
+    let out = crate::support::pathwarp(&["edit", "--no-open", bad.to_str().unwrap()]);
     assert_eq!(out.status.code(), Some(3));
     assert!(String::from_utf8_lossy(&out.stderr).contains("bad.svg"), "{out:?}");
     assert!(out.stdout.is_empty(), "the address is printed before the drawing is read");
