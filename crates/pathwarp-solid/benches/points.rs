@@ -35,7 +35,7 @@ fn show(name: &str, seconds: f64) {
 }
 
 /// Name, deformation and parameters.
-const CASES: [(&str, &str, Pairs); 6] = [
+const CASES: [(&str, &str, Pairs); 9] = [
     (
         "collineation",
         "anamorph",
@@ -43,8 +43,11 @@ const CASES: [(&str, &str, Pairs); 6] = [
     ),
     ("anamorphosis 2x2x2", "anamorph", &[("eye", "50,50,400"), ("push", "1,1,1:1.5")]),
     ("lattice 2x2x2", "ffd", &[("degree", "1"), ("move", "1,1,1:5,5,5")]),
+    ("lattice 3x3x3", "ffd", &[("degree", "2"), ("move", "1,1,1:5,5,5")]),
     ("lattice 4x4x4", "ffd", &[("degree", "3"), ("move", "1,2,1:5,5,5")]),
     ("rational lattice 4x4x4", "ffd", &[("degree", "3"), ("move", "1,2,1:5,5,5"), ("weight", "1,2,1:2")]),
+    ("bend of degree 1", "bend", &[("skeleton", "0,50,50 100,70,40")]),
+    ("bend of degree 2", "bend", &[("skeleton", "0,50,50 50,50,50 100,70,40")]),
     ("bend of degree 3", "bend", &[("skeleton", "0,50,50 33,50,50 66,55,45 100,70,40")]),
 ];
 

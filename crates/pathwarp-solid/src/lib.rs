@@ -4,6 +4,7 @@
 //! - [`deform`]: free-form deformation and its relatives, typed and by name from text ([`Registry3`](deform::Registry3)).
 //! - [`recipe`]: steps one after another as one map.
 //! - [`mesh`]: polygon meshes with groups, materials and texture coordinates, and their files.
+//! - [`patch`]: Bézier patches and NURBS surfaces, whose images are exact where the map allows it.
 //!
 //! Space is x right, y up, z towards the viewer. The crate is pure: no I/O, no globals, no printing.
 
@@ -13,6 +14,7 @@ pub mod deform;
 mod lattice;
 pub mod map;
 pub mod mesh;
+pub mod patch;
 pub mod picture;
 pub mod recipe;
 mod settings;

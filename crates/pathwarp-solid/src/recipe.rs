@@ -2,7 +2,7 @@
 
 use crate::box3::Box3;
 use crate::deform::{Built3, Registry3};
-use crate::map::{Chain3, Map3, NewtonInverse3};
+use crate::map::{Chain3, Creases3, Map3, NewtonInverse3};
 use crate::settings::Frame3;
 use glam::DVec3;
 use pathwarp::Error;
@@ -22,6 +22,19 @@ pub struct BuiltRecipe3 {
 const REACH: f64 = 0.25;
 /// Smooth pieces of a map along an axis that Newton's method is prepared for.
 const PIECES: [usize; 3] = [4; 3];
+
+/// A place of a box where a map turns space inside out, if it does not everywhere.
+fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
+    const GRID: usize = 12;
+    let mut creases = Creases3::default();
+    map.creases(&mut creases);
+    let at = |i: usize| i as f64 / (GRID - 1) as f64;
+    let place = |k: usize| DVec3::new(at(k % GRID), at(k / GRID % GRID), at(k / (GRID * GRID)));
+    let all = (0..GRID.pow(3)).map(|k| bounds.min + place(k) * bounds.size()).filter(|p| creases.defined_at(*p));
+    let signs: Vec<(DVec3, f64)> = all.map(|p| (p, map.jet(p).det())).collect();
+    let first = signs.iter().find(|(_, det)| *det < 0.0)?;
+    signs.iter().any(|(_, det)| *det > 0.0).then_some(first.0)
+}
 
 /// Builds every step of a recipe. Percentages refer to `frame` in the first step, and in later ones to the bounding box of
 /// `points` as they are by then.
@@ -44,6 +57,13 @@ pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVe
         }
         let mut built = entry.build_from(&step.args, &frame)?;
         if step.inverse {
+            if let Some(at) = fold(&*built.map, &frame.bounds) {
+                let DVec3 { x, y, z } = at;
+                built.warn(format!(
+                    "the map that is inverted folds space over itself, first at {x:.6},{y:.6},{z:.6}: places there have several \
+                     sources, and one of them is taken"
+                ));
+            }
             let newton = || -> Arc<dyn Map3> {
                 let reach = REACH * frame.bounds.diagonal();
                 Arc::new(NewtonInverse3::new(Arc::clone(&built.map), frame.bounds, reach, PIECES))

@@ -340,3 +340,19 @@ fn barr() {
         [-10.0 + r * theta.sin(), 25.0 + radius - r * theta.cos(), p[2]]
     });
 }
+
+/// A cone of radius 90 at the bottom and 110 at the top, whose side is 40 long: distance and height of a point of the side, and a step
+/// away from it.
+#[test]
+fn cones_and_cylinders() {
+    for (pairs, [bottom, top]) in [(&[("radius", "100")][..], [100.0, 100.0]), (&[("radius", "90"), ("top", "110")], [90.0, 110.0])] {
+        compare(&build("wrap", pairs), |p| {
+            let sine: f64 = (top - bottom) / 40.0;
+            let cosine = (1.0 - sine * sine).sqrt();
+            let (along, out) = (p[1] - 25.0, p[2] - 20.0);
+            let theta = (p[0] - 20.0) / 100.0;
+            let rho = 100.0 + along * sine + out * cosine;
+            [20.0 + rho * theta.sin(), 25.0 + along * cosine - out * sine, 20.0 - 100.0 + rho * theta.cos()]
+        });
+    }
+}

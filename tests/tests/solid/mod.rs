@@ -1,5 +1,6 @@
 //! `pathwarp solid`: models and points through the program.
 
+mod files;
 mod model;
 mod picture;
 
@@ -323,7 +324,7 @@ fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     assert_eq!(back["after"]["closed"], true);
     close(&back["after"]["bounds"][0][0], 5.0, 1e-4);
     close(&back["after"]["bounds"][1][2], 3.0, 1e-4);
-    assert!(fails(dir.path(), &["ffd", "plate.svg", "-o", "x.ply"], "", 2).contains("OBJ or STL"));
+    assert!(fails(dir.path(), &["ffd", "plate.svg", "-o", "x.fbx"], "", 2).contains("not as .fbx"));
     assert!(fails(dir.path(), &["ffd", "back.stl", "--extrude", "3"], "", 2).contains("model already"));
     fs::write(dir.path().join("cut.stl"), &fs::read(dir.path().join("back.stl")).unwrap()[..500]).unwrap();
     assert!(fails(dir.path(), &["ffd", "cut.stl", "-o", "x.stl"], "", 3).contains("wrong length"));

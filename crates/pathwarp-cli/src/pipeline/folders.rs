@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Folders that were created for the outputs. Those that stay empty are removed when this is dropped.
-pub(super) struct Folders {
+pub(crate) struct Folders {
     /// A folder stands before those in it.
     made: Vec<PathBuf>,
 }
@@ -20,7 +20,12 @@ impl Folders {
         let own_target = options.out_dir.is_some() || pattern(&options.out);
         let targets = jobs.iter().filter(|_| own_target).flat_map(|j| &j.target);
         let previews = jobs.iter().filter(|_| pattern(&options.preview)).flat_map(|j| &j.preview);
-        let folders: HashSet<&Path> = targets.chain(previews).filter_map(|file| file.parent()).collect();
+        Self::of(targets.chain(previews).map(PathBuf::as_path))
+    }
+
+    /// Creates the folders of files that are missing.
+    pub(crate) fn of<'a>(files: impl Iterator<Item = &'a Path>) -> Result<Self, Failure> {
+        let folders: HashSet<&Path> = files.filter_map(Path::parent).collect();
         let mut made = Self { made: Vec::new() };
         for folder in folders {
             made.create_one(folder)?;

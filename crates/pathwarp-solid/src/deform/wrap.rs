@@ -1,14 +1,17 @@
-//! Wrapping round a cylinder: a mug, a bottle, a ring.
+//! Wrapping round a cylinder or a cone: a mug, a bottle, a ring, a cup.
 //!
 //! θ = (x − x₀)/R and ρ = R + (z − z₀) are the angle and the distance from the axis: (x₀ + ρ·sin θ, y, z₀ − R + ρ·cos θ). Lengths on
 //! the surface z = z₀ are kept, volumes grow by ρ/R. The inverse is in closed form.
+//!
+//! For a cone the model is first turned by the slope β of its side, sin β = (R₁ − R₀)/H, about the middle of its back; R is the mean
+//! of both radii. Lengths along the side are kept, and lengths round it in the middle of the height; level lines stay level.
 
 use super::built::Built3;
 use super::entry::{About3, Case3, Deformation3, Law3};
 use crate::box3::Box3;
-use crate::map::{Creases3, Jet3, Map3};
+use crate::map::{Chain3, Collineation, Creases3, Jet3, Map3};
 use crate::settings::{Extent, Settings3};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use pathwarp::Error;
 use pathwarp::deform::{Example, Info};
 use pathwarp::param::{Kind, Param};
@@ -33,13 +36,14 @@ pub struct Wrap3 {
     radius: f64,
     level: bool,
     surface: Option<f64>,
+    far: Option<f64>,
 }
 
 impl Wrap3 {
     /// Wraps a model in this box round an upright cylinder of this radius, which its back touches in the middle.
     #[must_use]
     pub fn new(bounds: Box3, radius: f64) -> Self {
-        Self { bounds, radius, level: false, surface: None }
+        Self { bounds, radius, level: false, surface: None, far: None }
     }
 
     /// Lays the cylinder's axis along x instead of y.
@@ -54,32 +58,65 @@ impl Wrap3 {
         Self { surface: Some(z), ..self }
     }
 
+    /// Wraps round a cone: `radius` is that at the bottom (at the left, if the axis is level), this one that at the top.
+    #[must_use]
+    pub fn cone(self, radius: f64) -> Self {
+        Self { far: Some(radius), ..self }
+    }
+
     /// Builds the map. A model that is longer than the circumference gives a warning.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a radius that is not positive.
+    /// [`Error::Usage`] for a radius that is not positive, or radii that differ by more than the model is high.
     pub fn build(&self) -> Result<Built3, Error> {
-        if !(self.radius > 0.0 && self.radius.is_finite()) {
-            return Err(Error::usage("radius", self.radius.to_string(), "is not positive"));
+        for (name, r) in [("radius", Some(self.radius)), ("top", self.far)] {
+            if let Some(r) = r.filter(|r| !(*r > 0.0 && r.is_finite())) {
+                return Err(Error::usage(name, r.to_string(), "is not positive"));
+            }
         }
         let across = usize::from(self.level);
-        let map = Cylinder {
-            across,
-            middle: self.bounds.center()[across],
-            surface: self.surface.unwrap_or(self.bounds.min.z),
-            radius: self.radius,
+        let far = self.far.unwrap_or(self.radius);
+        let radius = 0.5 * (self.radius + far);
+        let surface = self.surface.unwrap_or(self.bounds.min.z);
+        let middle = self.bounds.center();
+        let cylinder = Cylinder { across, middle: middle[across], surface, radius };
+        let map: Arc<dyn Map3> = if far == self.radius {
+            Arc::new(cylinder)
+        } else {
+            let height = self.bounds.size()[1 - across];
+            let sine = (far - self.radius) / height;
+            if sine.is_nan() || sine.abs() >= 1.0 {
+                let problem = format!("differs from the other radius by more than the model's side is long, {height:.6}");
+                return Err(Error::usage("top", far.to_string(), problem));
+            }
+            let mut chain = Chain3::default();
+            chain.push(Arc::new(Collineation::new(turn(1 - across, middle[1 - across], surface, sine))));
+            chain.push(Arc::new(cylinder));
+            Arc::new(chain)
         };
-        let (length, around) = (self.bounds.size()[across], std::f64::consts::TAU * self.radius);
-        let mut built = Built3::new(Arc::new(map));
+        let (length, around) = (self.bounds.size()[across], std::f64::consts::TAU * radius);
+        let mut built = Built3::new(map);
         built.note(format!(
             "wrapped through {:.4}°, on a circumference of {around:.6}",
-            (length / self.radius).to_degrees()
+            (length / radius).to_degrees()
         ));
         if length > around {
             built.warn(format!("the model is {length:.6} long and the circumference {around:.6}: its ends overlap; use a larger `radius`"));
         }
         Ok(built)
     }
+}
+
+/// The turn about the line through the middle of an axis of the model and its back that gives the axis the slope of a cone's side.
+fn turn(axis: usize, middle: f64, surface: f64, sine: f64) -> DMat4 {
+    let cosine = (1.0 - sine * sine).sqrt();
+    let (side, depth) = (DVec3::AXES[axis], DVec3::Z);
+    let mut columns = DVec3::AXES;
+    columns[axis] = side * cosine + depth * sine;
+    columns[2] = depth * cosine - side * sine;
+    let turn = DMat4::from_mat3(DMat3::from_cols(columns[0], columns[1], columns[2]));
+    let center = side * middle + depth * surface;
+    DMat4::from_translation(center) * turn * DMat4::from_translation(-center)
 }
 
 /// Round a cylinder.
@@ -146,13 +183,20 @@ impl Map3 for Unwrapped {
 pub(super) struct Entry;
 
 static ABOUT: About3 = About3 {
-    info: Info::new("wrap", "wrap a model round a mug, a bottle or a ring")
+    info: Info::new("wrap", "wrap a model round a mug, a bottle, a cup or a ring")
         .group("Along a curve")
         .about("Rolls the model round a cylinder of the given radius, which it touches with its back (--surface): lengths there are \
-kept, so that a word of 50 mm is 50 mm long on the mug. The middle stays where it is. Use --refine to give long faces enough corners.")
+kept, so that a word of 50 mm is 50 mm long on the mug. The middle stays where it is. With a second radius (--top) the model is rolled round a cone: lengths along its side are kept, and lengths round it in \
+the middle of its height. Use --refine to give long faces enough corners.")
         .source("(x, y, z) to cylinder coordinates: θ = x/R, ρ = R + z")
         .params(&[
             Param::new("radius", Kind::Text("LENGTH"), "Radius of the cylinder.").needed(),
+            Param::new(
+                "top",
+                Kind::Text("LENGTH"),
+                "Radius at the top of the model (at its right end if the axis is level), for a cup or another cone; the other is then \
+the radius at the bottom.",
+            ),
             Param::new("axis", Kind::Choice(&["y", "x"]), "The cylinder's axis: y for upright, x for level.").default("y"),
             Param::new("surface", Kind::Text("Z"), "The z that comes to lie on the cylinder. Default: the back of the model."),
         ])
@@ -163,7 +207,11 @@ kept, so that a word of 50 mm is 50 mm long on the mug. The middle stays where i
                 command: "solid wrap samples/lettering.svg --extrude 3mm --radius 41mm --refine 0.05mm -o out.obj",
             },
             Example {
-                what: "The same round a bottle that lies",
+                what: "The same for a cup that is wider at the top",
+                command: "solid wrap samples/lettering.svg --extrude 3mm --radius 32mm --top 40mm --refine 0.05mm -o out.obj",
+            },
+            Example {
+                what: "Round a bottle that lies",
                 command: "solid wrap samples/lettering.svg --extrude 2mm --radius 30mm --axis x --refine 0.05mm -o out.obj",
             },
         ]),
@@ -171,6 +219,8 @@ kept, so that a word of 50 mm is 50 mm long on the mug. The middle stays where i
         Law3::KeepsLinesAlong(&[("radius", "70")], [0.0, 1.0, 0.0]),
         Law3::KeepsLinesAlong(&[("radius", "70")], [0.0, 0.0, 1.0]),
         Law3::KeepsLinesAlong(&[("radius", "70"), ("axis", "x")], [1.0, 0.0, 0.0]),
+        Law3::KeepsLinesAlong(&[("radius", "70"), ("top", "50")], [0.0, 1.0, 0.0]),
+        Law3::Same(&[("radius", "70")], &[("radius", "70"), ("top", "70")]),
     ],
     cases: &[
         // A quarter turn: 50 is a quarter of the circumference of radius 100/π.
@@ -193,6 +243,9 @@ impl Deformation3 for Entry {
         let radius = s.last("radius").unwrap_or_default();
         let radius = s.length_in("radius", radius, Extent::X)?;
         let mut wrap = Wrap3::new(s.bounds(), radius).level(s.flat().choice("axis")? == "x");
+        if let Some(top) = s.last("top") {
+            wrap = wrap.cone(s.length_in("top", top, Extent::X)?);
+        }
         if let Some(z) = s.last("surface") {
             let from = if z.trim().ends_with('%') { s.bounds().min.z } else { 0.0 };
             wrap = wrap.surface(from + s.length_in("surface", z, Extent::Z)?);

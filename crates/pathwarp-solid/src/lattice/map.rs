@@ -2,7 +2,7 @@
 
 use super::grid::{Lattice3, Piece};
 use crate::box3::Box3;
-use crate::map::{Creases3, Displaced, Jet3, Local, Map3, NewtonInverse3, Quotient, for_all};
+use crate::map::{Chart, Creases3, Displaced, Fraction3, Jet3, Local, Map3, NewtonInverse3, Poly3, Quotient, for_all};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -120,6 +120,31 @@ impl Map3 for LatticeMap3 {
             Some((local, Piece::Quotient(tensor))) if single => for_all(&Quotient { local: *local, tensor }, ps),
             _ => ps.iter_mut().for_each(|p| *p = self.point(*p)),
         }
+    }
+
+    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
+        let (chart, region) = (Chart::on(on), self.inside);
+        let outside = on.max.cmplt(region.min).any() || on.min.cmpgt(region.max).any();
+        if outside && !self.extended {
+            return Some(Fraction3::identity(chart));
+        }
+        let known = self.extended || region.contains(on.min) && region.contains(on.max);
+        // One smooth piece for the whole box: between the same knots along every axis.
+        let cell = |p: DVec3| self.piece(p).map(std::ptr::from_ref);
+        let inner = on.inflate(-4.0 * (region.max - self.region.max));
+        if !known || cell(inner.min)? != cell(inner.max)? {
+            return None;
+        }
+        let (local, piece) = self.piece(on.center())?;
+        let t = chart.local(local);
+        let parts = match piece {
+            Piece::Displacement(tensor) => {
+                let ([x, y, z], [dx, dy, dz]) = (chart.place(), tensor.in_terms_of(&t));
+                [x.plus(1.0, &dx), y.plus(1.0, &dy), z.plus(1.0, &dz), Poly3::constant(1.0)]
+            }
+            Piece::Quotient(tensor) => tensor.in_terms_of(&t),
+        };
+        Some(Fraction3 { chart, parts })
     }
 
     fn creases(&self, out: &mut Creases3) {

@@ -145,3 +145,25 @@ impl Kernel for Radial<'_> {
         }
     }
 }
+
+/// Three curves at a coordinate, C(u) + v·S(u) + w·T(u), where u, v and w are the coordinates from `axis` on in cyclic order.
+pub(crate) struct Swept<'a> {
+    pub(crate) axis: usize,
+    pub(crate) local: Local,
+    /// C, S and T along x.
+    pub(crate) tensor: &'a Tensor<9>,
+}
+
+impl Kernel for Swept<'_> {
+    #[inline(always)]
+    fn lanes(&self, p: &mut [Lane; 3]) {
+        let t = self.local.lanes(p);
+        let curves = self.tensor.lanes(&[t[self.axis], [0.0; WIDTH], [0.0; WIDTH]]);
+        let (v, w) = (t[(self.axis + 1) % 3], t[(self.axis + 2) % 3]);
+        for (k, lane) in p.iter_mut().enumerate() {
+            for (i, o) in lane.iter_mut().enumerate() {
+                *o = curves[k][i] + v[i] * curves[k + 3][i] + w[i] * curves[k + 6][i];
+            }
+        }
+    }
+}

@@ -8,10 +8,13 @@ mod batch;
 mod chain;
 mod collineation;
 mod collineation_map;
+#[cfg(test)]
+pub(crate) mod counted;
 mod crease;
 mod jet;
 mod lane;
 mod newton;
+mod poly;
 mod tensor;
 mod traits;
 
@@ -20,7 +23,9 @@ pub use collineation::Collineation;
 pub use crease::{Crease3, Creases3, Level3};
 pub use jet::Jet3;
 pub use newton::NewtonInverse3;
+pub use poly::{Chart, Fraction3};
 pub use traits::Map3;
 
-pub(crate) use batch::{Displaced, Local, Quotient, Radial, for_all};
+pub(crate) use batch::{Displaced, Local, Quotient, Radial, Swept, for_all};
+pub(crate) use poly::Poly3;
 pub(crate) use tensor::Tensor;

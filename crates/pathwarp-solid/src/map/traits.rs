@@ -3,6 +3,8 @@
 use super::collineation::Collineation;
 use super::crease::Creases3;
 use super::jet::Jet3;
+use super::poly::Fraction3;
+use crate::box3::Box3;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -38,6 +40,11 @@ pub trait Map3: Send + Sync {
         None
     }
 
+    /// The map on a box as a quotient of polynomials, if it is one there: the images of rational surfaces are then exact.
+    fn fraction(&self, _on: &Box3) -> Option<Fraction3> {
+        None
+    }
+
     /// Adds the surfaces on which the map is not smooth, and the boundary of its domain.
     fn creases(&self, _out: &mut Creases3) {}
 
@@ -63,6 +70,9 @@ impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     }
     fn collineation(&self) -> Option<&Collineation> {
         (**self).collineation()
+    }
+    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
+        (**self).fraction(on)
     }
     fn creases(&self, out: &mut Creases3) {
         (**self).creases(out);

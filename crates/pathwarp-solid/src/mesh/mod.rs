@@ -3,11 +3,14 @@
 mod deform;
 mod error;
 mod extrude;
+pub mod gltf;
 mod model;
 pub mod obj;
+pub mod ply;
 mod refine;
 pub mod stl;
 mod topology;
+mod unify;
 
 pub use deform::{Deformed, Undefined3, deform};
 pub use error::{MeshError, MeshFault};

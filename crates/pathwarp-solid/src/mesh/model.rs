@@ -1,7 +1,9 @@
 //! The mesh as data.
 
+use super::gltf::Assets;
 use crate::box3::Box3;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// An index that is not there.
 pub const NONE: u32 = u32::MAX;
@@ -69,6 +71,8 @@ pub struct Mesh {
     pub polygons: Vec<Polygon>,
     /// Marks with the index of the first polygon that they hold for, in order.
     pub marks: Vec<(u32, Mark)>,
+    /// Materials of a glTF file, to which the marks refer by name.
+    pub assets: Option<Arc<Assets>>,
     /// What was in the file and is not in the mesh, each a phrase for a warning.
     pub left_out: Vec<String>,
 }

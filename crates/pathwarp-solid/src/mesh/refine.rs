@@ -110,6 +110,7 @@ impl Refining<'_> {
             normals: std::mem::take(&mut mesh.normals),
             uvs: std::mem::take(&mut mesh.uvs),
             left_out: std::mem::take(&mut mesh.left_out),
+            assets: mesh.assets.take(),
             ..Mesh::default()
         };
         let old = out.positions.len();

@@ -12,20 +12,23 @@ use std::path::PathBuf;
 
 /// The common options that make sense for solids.
 const SHARED: &[&str] =
-    &["out", "precision", "report", "write-recipe", "preview", "explain", "jobs", "limit", "allow-external", "quiet"];
+    &["out", "out-dir", "precision", "report", "write-recipe", "preview", "explain", "jobs", "limit", "allow-external", "quiet"];
 
 /// The common options.
 pub(super) fn options() -> Vec<Arg> {
     some_options(SHARED).map(|a| a.help_heading("Common options")).collect()
 }
 
-/// The model, the common options and the box.
+/// The models, the common options and the box.
 pub(super) fn all() -> Vec<Arg> {
     let model = Arg::new(INPUT)
-        .num_args(0..=1)
+        .num_args(0..)
         .value_name("MODEL")
         .value_parser(value_parser!(PathBuf))
-        .help("The model: an OBJ or STL file, or the filled shapes of an SVG file; - or none reads standard input");
+        .help(
+            "Models: OBJ, STL, PLY or glTF files, curved surfaces (.bpt, .json), or the filled shapes of SVG files; - or none reads \
+             standard input",
+        );
     let own = |name: &'static str, value: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name(value).help_heading("Common options").help(help)
     };
@@ -33,7 +36,8 @@ pub(super) fn all() -> Vec<Arg> {
         "refine",
         "D",
         "Subdivide faces until the deformed surface is within D of the exact one: units of the model, or a length such as 0.05mm; \
-         without it, vertices move and edges stay straight",
+         without it, vertices move and edges stay straight. For curved surfaces the largest distance where the image is not exact \
+         [default: a ten-thousandth of their size]",
     );
     let extrude = own(
         "extrude",

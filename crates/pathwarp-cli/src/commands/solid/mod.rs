@@ -2,12 +2,16 @@
 
 mod args;
 mod drawing;
+mod format;
 mod list;
 mod map;
 mod model;
+mod plan;
+mod polygons;
 mod preview;
 mod report;
 mod run;
+mod surfaces;
 mod warp;
 
 use crate::failure::Failure;
@@ -21,9 +25,9 @@ use std::ffi::OsString;
 
 pub(super) const NAME: &str = "solid";
 
-const ABOUT: &str = "Deform solids: meshes and points in space";
+const ABOUT: &str = "Deform solids: meshes, curved surfaces and points in space";
 
-const AFTER: &str = "Space is x right, y up, z towards the viewer. A unit of an OBJ, STL or PLY file counts as a millimetre, so 5mm is 5; \
+const AFTER: &str = "Space is x right, y up, z towards the viewer. A unit of a model counts as a millimetre, so 5mm is 5; \
 percentages refer to the model's box and count from its left, bottom and back.
 
 Chains: pathwarp solid ffd IN.obj --move … + anamorph --eye … -o OUT.obj

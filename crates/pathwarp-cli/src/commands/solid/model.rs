@@ -1,60 +1,31 @@
 //! Models: read from a file and written to one.
 
 use super::drawing;
+use super::format::ModelFormat;
+use crate::advice;
 use crate::failure::Failure;
 use crate::input;
 use crate::options::Reading;
 use crate::output::PendingFile;
-use pathwarp_solid::mesh::{Mesh, MeshError, obj, stl};
+use pathwarp::budget::Budget;
+use pathwarp_solid::mesh::{Mesh, MeshError, MeshFault, gltf, obj, ply, stl};
+use pathwarp_solid::patch::{Surface, bpt, json};
 use std::path::Path;
 
 /// A model that was read.
 pub(super) struct Model {
     /// The name in messages and reports.
     pub(super) name: String,
-    pub(super) mesh: Mesh,
-    /// Size of the file.
-    pub(super) bytes: usize,
-    format: ModelFormat,
+    pub(super) content: Content,
+    /// Counts the work that the file causes.
+    pub(super) budget: Budget,
+    pub(super) format: ModelFormat,
 }
 
-/// The format of a model's file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ModelFormat {
-    Obj,
-    Stl,
-}
-
-impl ModelFormat {
-    /// The format that an extension says.
-    fn of(file: &Path) -> Option<Self> {
-        let extension = file.extension()?;
-        let is = |known: &str| extension.eq_ignore_ascii_case(known);
-        if is("obj") {
-            Some(Self::Obj)
-        } else if is("stl") {
-            Some(Self::Stl)
-        } else {
-            None
-        }
-    }
-
-    /// The format of an output; of standard output that of the input.
-    ///
-    /// # Errors
-    /// The extension says another one.
-    pub(super) fn of_output(target: Option<&Path>, input: Self) -> Result<Self, Failure> {
-        let Some(target) = target else { return Ok(input) };
-        match (Self::of(target), target.extension()) {
-            (Some(format), _) => Ok(format),
-            (None, None) => Ok(input),
-            (None, Some(other)) => Err(Failure::usage(format!(
-                "{}: a model is written as OBJ or STL (.obj, .stl), not as .{}",
-                target.display(),
-                other.to_string_lossy()
-            ))),
-        }
-    }
+/// Polygons or curved surfaces.
+pub(super) enum Content {
+    Mesh(Mesh),
+    Surfaces(Vec<Surface>),
 }
 
 impl Model {
@@ -62,37 +33,58 @@ impl Model {
     pub(super) fn read(file: &Path, reading: &Reading, depth: Option<f64>) -> Result<Self, Failure> {
         let name = input::display(file);
         let bytes = input::bytes(file)?;
+        let budget = Budget::new(reading.limits.for_input(bytes.len()));
         if is_drawing(&bytes) {
             if file.as_os_str() == "-" {
                 return Err(Failure::Input(format!("{name}: a drawing must be a file; name it instead")));
             }
             let mesh = drawing::read(file, reading, depth.unwrap_or(0.0))?;
-            return Ok(Self { name, mesh, bytes: bytes.len(), format: ModelFormat::Obj });
+            return Ok(Self { name, content: Content::Mesh(mesh), budget, format: ModelFormat::Obj });
         }
         if depth.is_some() {
             return Err(Failure::usage(format!("--extrude is for drawings (SVG); {name} is a model already")));
         }
-        let about = |e: MeshError| Failure::Input(format!("{name}: {e}"));
-        let named = ModelFormat::of(file);
-        let (mesh, format) = if named == Some(ModelFormat::Stl) || named.is_none() && stl::sniff(&bytes) {
-            (stl::read(&bytes).map_err(about)?, ModelFormat::Stl)
-        } else if let Some(other) = other_format(&bytes) {
-            return Err(Failure::Input(format!("{name}: is {other}; convert it to OBJ or STL first")));
-        } else {
-            (obj::read(&bytes).map_err(about)?, ModelFormat::Obj)
+        let about = |e: MeshError| unread(&name, &e);
+        let format = ModelFormat::of(file).unwrap_or_else(|| ModelFormat::sniffed(&bytes));
+        let content = match format {
+            ModelFormat::Bpt => Content::Surfaces(bpt::read(&bytes).map_err(about)?),
+            ModelFormat::Surfaces => Content::Surfaces(json::read(&bytes).map_err(about)?),
+            ModelFormat::Obj => Content::Mesh(obj::read(&bytes).map_err(about)?),
+            ModelFormat::Stl => Content::Mesh(stl::read(&bytes).map_err(about)?),
+            ModelFormat::Ply => Content::Mesh(ply::read(&bytes).map_err(about)?),
+            ModelFormat::Glb | ModelFormat::Gltf => Content::Mesh(gltf::read(&bytes, &budget).map_err(about)?),
         };
-        Ok(Self { name, mesh, bytes: bytes.len(), format })
+        Ok(Self { name, content, budget, format })
     }
+}
 
-    /// The file, not yet in its place; without a target, standard output.
-    pub(super) fn write(&self, target: Option<&Path>, precision: Option<u8>) -> Result<PendingFile, Failure> {
-        let bytes = match ModelFormat::of_output(target, self.format)? {
-            ModelFormat::Obj => obj::write(&self.mesh, precision.unwrap_or_else(|| decimals(&self.mesh))),
-            ModelFormat::Stl => stl::write(&self.mesh).map_err(|e| Failure::Output(format!("{}: {e}", self.name)))?,
-        };
-        match target {
-            Some(target) => PendingFile::new(target, &bytes),
-            None => Ok(PendingFile::stdout(bytes)),
+/// The failure of reading or refining a model.
+pub(super) fn unread(name: &str, e: &MeshError) -> Failure {
+    Failure::Input(match &e.problem {
+        MeshFault::Limit(exceeded) => format!("{name}: {e}; {}", advice::raise(exceeded)),
+        _ => format!("{name}: {e}"),
+    })
+}
+
+/// A file, not yet in its place; without a target, standard output.
+pub(super) fn pending(target: Option<&Path>, bytes: Vec<u8>) -> Result<PendingFile, Failure> {
+    match target {
+        Some(target) => PendingFile::new(target, &bytes),
+        None => Ok(PendingFile::stdout(bytes)),
+    }
+}
+
+/// The file of a mesh.
+pub(super) fn mesh_file(mesh: &Mesh, format: ModelFormat, precision: Option<u8>) -> Result<Vec<u8>, Failure> {
+    let failed = |e: MeshError| Failure::Output(format!("the result {e}"));
+    match format {
+        ModelFormat::Obj => Ok(obj::write(mesh, precision.unwrap_or_else(|| decimals(mesh)))),
+        ModelFormat::Stl => stl::write(mesh).map_err(failed),
+        ModelFormat::Ply => ply::write(mesh).map_err(failed),
+        ModelFormat::Glb => gltf::write_binary(mesh).map_err(failed),
+        ModelFormat::Gltf => gltf::write_text(mesh).map_err(failed),
+        ModelFormat::Bpt | ModelFormat::Surfaces => {
+            Err(Failure::usage("polygons are not curved surfaces: write .obj, .stl, .ply, .glb or .gltf, not .bpt or .json"))
         }
     }
 }
@@ -104,19 +96,6 @@ fn is_drawing(bytes: &[u8]) -> bool {
     const GZIP: [u8; 2] = [0x1f, 0x8b];
     let start = &bytes[..bytes.len().min(PROLOGUE)];
     start.starts_with(&GZIP) || start.trim_ascii_start().starts_with(b"<") && start.windows(4).any(|w| w == b"<svg")
-}
-
-/// The name of a format that is not read.
-fn other_format(bytes: &[u8]) -> Option<&'static str> {
-    if bytes.starts_with(b"glTF") {
-        Some("a binary glTF file")
-    } else if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
-        Some("a PLY file")
-    } else if bytes.trim_ascii_start().starts_with(b"{") {
-        Some("JSON, perhaps glTF")
-    } else {
-        None
-    }
 }
 
 /// The decimals for a billionth of the model's size.

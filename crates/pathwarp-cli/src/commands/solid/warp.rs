@@ -1,35 +1,33 @@
-//! `pathwarp solid DEFORMATION MODEL …`: deforms a model by one deformation or a chain.
+//! `pathwarp solid DEFORMATION MODEL …`: deforms models by one deformation or a chain.
 
 use super::args::{self, Own};
-use super::model::{Model, ModelFormat};
-use super::preview::Preview;
-use super::report::Run;
-use crate::advice::{self, Flags};
+use super::format::ModelFormat;
+use super::model::{Content, Model};
+use super::plan::{self, Job};
+use super::{polygons, report, surfaces};
+use crate::advice::Flags;
 use crate::catalogue::Catalogue;
 use crate::commands::deformation;
 use crate::failure::Failure;
+use crate::input::display;
 use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
-use crate::sources::Files;
 use crate::status::Status;
 use crate::{recipe_file, references, terminal, watch};
 use clap::Command;
-use pathwarp::budget::Budget;
 use pathwarp::deform::Info;
-use pathwarp::param::Axis;
 use pathwarp::recipe::Recipe;
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
-use pathwarp_solid::mesh::{Deformed, MeshError, MeshFault, Undefined3, deform, refine};
-use pathwarp_solid::{Box3, Frame3, recipe};
+use pathwarp_solid::recipe::{self, BuiltRecipe3};
+use pathwarp_solid::{Box3, Frame3};
 use std::path::Path;
-use std::time::Instant;
 
 pub(super) fn command(info: &Info) -> Command {
     deformation::described(info).args(args::all())
 }
 
-/// Deforms a model by a recipe, which was read from the file `from` if there is one.
+/// Deforms models by a recipe, which was read from the file `from` if there is one.
 pub(super) fn run(
     registry: &Registry3,
     recipe: &Recipe,
@@ -39,150 +37,148 @@ pub(super) fn run(
 ) -> Result<Status, Failure> {
     let options = given.read()?;
     watch::begin(options.reading.limits);
-    let input = options.inputs.first().cloned().unwrap_or_else(|| "-".into());
-    check_outputs(registry, recipe, &options, &input, from)?;
+    let jobs = plan::plan(registry, recipe, &options, from)?;
+    for job in &jobs {
+        // A wrong extension must not cost a long run.
+        ModelFormat::of_output(job.target.as_deref(), ModelFormat::Obj)?;
+    }
     let mut resolved = recipe.clone();
     references::resolve_files(registry, &mut resolved, &options.reading)?;
-    let work = Work { registry, recipe: &resolved, given, options: &options, own };
+    let flags = Flags::of(registry as &dyn Catalogue);
+    let work = Work { registry, recipe: &resolved, options: &options, own, flags: &flags };
     match options.jobs {
         Some(n) => {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-            pool.map_err(|e| Failure::usage(format!("--jobs: {e}")))?.install(|| work.run(&input))
+            pool.map_err(|e| Failure::usage(format!("--jobs: {e}")))?.install(|| work.all(&jobs, given))
         }
-        None => work.run(&input),
+        None => work.all(&jobs, given),
     }
-}
-
-/// Checks that no source and no other output is overwritten.
-fn check_outputs(
-    registry: &Registry3,
-    recipe: &Recipe,
-    options: &CommonOptions,
-    input: &Path,
-    from: Option<&Path>,
-) -> Result<(), Failure> {
-    let mut files = Files::default();
-    references::files_read(registry, recipe).iter().for_each(|f| files.read(f));
-    from.iter().for_each(|f| files.read(f));
-    files.read(input);
-    files.write(options.out.as_deref().unwrap_or(Path::new("-")), "")?;
-    let others = [("report", &options.report), ("write-recipe", &options.write_recipe), ("preview", &options.preview)];
-    for (option, file) in others {
-        if let Some(file) = file {
-            files.write(file, option)?;
-        }
-    }
-    for (option, file) in references::files_written(registry, recipe) {
-        files.write(file, option)?;
-    }
-    Ok(())
 }
 
 /// A run with everything looked up.
-struct Work<'a> {
-    registry: &'a Registry3,
-    recipe: &'a Recipe,
-    given: &'a Given,
-    options: &'a CommonOptions,
-    own: &'a Own,
+pub(super) struct Work<'a> {
+    pub(super) registry: &'a Registry3,
+    pub(super) recipe: &'a Recipe,
+    pub(super) options: &'a CommonOptions,
+    pub(super) own: &'a Own,
+    pub(super) flags: &'a Flags,
+}
+
+/// A model that was deformed.
+pub(super) struct Done {
+    pub(super) files: Vec<PendingFile>,
+    pub(super) warnings: Vec<String>,
+    pub(super) notes: Vec<String>,
+    /// Omitted unless one is wanted.
+    pub(super) report: Option<String>,
+    /// Something was left out or missed the tolerance.
+    pub(super) partial: bool,
 }
 
 impl Work<'_> {
-    fn run(&self, input: &Path) -> Result<Status, Failure> {
-        let started = Instant::now();
+    /// Deforms the models one after another, each with all threads, and finishes each on its own.
+    fn all(&self, jobs: &[Job], given: &Given) -> Result<Status, Failure> {
         let options = self.options;
-        let flags = Flags::of(self.registry as &dyn Catalogue);
-        // A wrong extension must not cost a long run.
-        ModelFormat::of_output(options.out.as_deref(), ModelFormat::Obj)?;
-        let mut model = Model::read(input, &options.reading, self.own.depth)?;
-        let source = (options.report.is_some() || options.preview.is_some()).then(|| model.mesh.clone());
-        let bounds = model.mesh.bounds().unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
-        let frame = Frame3::new(self.own.frame.unwrap_or(bounds));
-        let built =
-            recipe::build(self.recipe, self.registry, frame, &model.mesh.positions).map_err(Failure::of_recipe)?;
-        if let Some(length) = self.own.refine {
-            let budget = Budget::new(options.reading.limits.for_input(model.bytes));
-            let within = length.in_units(Axis::X, &frame.front());
-            refine(&mut model.mesh, &built.map, within, &budget).map_err(|e| too_much(&model.name, &e))?;
+        let _folders = plan::folders(options, jobs)?;
+        let (mut failed, mut partial, mut reports) = (Vec::new(), false, Vec::new());
+        for job in jobs {
+            let _batch = (jobs.len() > 1).then(watch::InBatch::begin);
+            let done = match self.one(job) {
+                Err(e) if jobs.len() > 1 && !e.is_of_recipe() => {
+                    let message = e.message(self.flags);
+                    reports.push(report::failed(&display(&job.input), &message)?);
+                    failed.push(message);
+                    continue;
+                }
+                other => other?,
+            };
+            let mut files = done.files;
+            reports.extend(done.report);
+            if jobs.len() == 1 {
+                files.extend(self.common(given, &reports, false)?);
+            }
+            PendingFile::commit_all(files)?;
+            let name = display(&job.input);
+            if options.explain {
+                let prefix = if jobs.len() > 1 { format!("{name}: ") } else { String::new() };
+                done.notes.iter().for_each(|n| terminal::note(&format!("{prefix}{n}")));
+            }
+            if !options.quiet {
+                done.warnings.iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
+            }
+            partial |= done.partial;
         }
-        let deformed = deform(&mut model.mesh, &built.map).map_err(|e| undefined(&model.name, &e))?;
+        if jobs.len() > 1 {
+            PendingFile::commit_all(self.common(given, &reports, true)?)?;
+            failed.iter().for_each(|f| terminal::error(f));
+            if !failed.is_empty() {
+                terminal::error(&format!("{} of {} models failed; the others are written", failed.len(), jobs.len()));
+            }
+        }
+        Ok(Status::partial_if(partial || !failed.is_empty()))
+    }
 
-        let mut warnings: Vec<String> = model.mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
-        let partial = !warnings.is_empty();
-        warnings.extend(built.steps.iter().flat_map(|s| &s.warnings).map(|w| flags.in_text(w)));
-        warnings.extend(shape_warnings(&deformed).into_iter().map(|w| flags.in_text(&w)));
-        let mut files = vec![model.write(options.out.as_deref(), options.precision)?];
-        for file in built.steps.iter().flat_map(|s| &s.saves) {
-            files.push(PendingFile::new(Path::new(&file.name), file.text.as_bytes())?);
-        }
-        if let Some(file) = &options.write_recipe {
-            let text =
-                recipe_file::write(self.registry, self.recipe, self.given, file.parent().unwrap_or(Path::new("")))?;
+    /// The recipe and the report: an object for one model, a list for several.
+    fn common(&self, given: &Given, reports: &[String], several: bool) -> Result<Vec<PendingFile>, Failure> {
+        let mut files = Vec::new();
+        if let Some(file) = &self.options.write_recipe {
+            let folder = file.parent().unwrap_or(Path::new(""));
+            let text = recipe_file::write(self.registry, self.recipe, given, folder)?;
             files.push(PendingFile::new(file, text.as_bytes())?);
         }
-        if let (Some(file), Some(source)) = (&options.report, &source) {
-            let report = Run {
-                recipe: self.recipe,
-                file: &model.name,
-                output: options.out.as_ref().map(|t| t.display().to_string()),
-                before: source,
-                after: &model.mesh,
-                deformed,
-                warnings: &warnings,
-                seconds: started.elapsed().as_secs_f64(),
-            };
-            files.push(PendingFile::new(file, report.json()?.as_bytes())?);
+        if let Some(file) = &self.options.report {
+            let text = if several { format!("[\n{}\n]", reports.join(",\n")) } else { reports.concat() };
+            files.push(PendingFile::new(file, (text + "\n").as_bytes())?);
         }
-        if let (Some(file), Some(source)) = (&options.preview, &source) {
-            let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
-            let eye = built.steps.iter().find_map(|s| s.eye);
-            let preview = Preview { before: source, after: &model.mesh, guides: &guides, eye };
-            files.push(PendingFile::new(file, &preview.file(file, options.quality)?)?);
+        Ok(files)
+    }
+
+    fn one(&self, job: &Job) -> Result<Done, Failure> {
+        let Model { name, content, budget, format } = Model::read(&job.input, &self.options.reading, self.own.depth)?;
+        let format = ModelFormat::of_output(job.target.as_deref(), format)?;
+        match content {
+            Content::Mesh(mesh) => polygons::run(self, job, polygons::Source { name, mesh, format }, &budget),
+            Content::Surfaces(all) => surfaces::run(self, job, surfaces::Source { name, surfaces: all, format }, &budget),
         }
-        PendingFile::commit_all(files)?;
-        if options.explain {
-            let size = frame.bounds.size();
-            terminal::note(&format!("box: {:.6} × {:.6} × {:.6}", size.x, size.y, size.z));
-            built.steps.iter().flat_map(|s| &s.notes).for_each(|n| terminal::note(&flags.in_text(n)));
-        }
-        if !options.quiet {
-            warnings.iter().for_each(|w| terminal::warning(&format!("{}: {w}", model.name)));
-        }
-        Ok(Status::partial_if(partial))
+    }
+
+    /// Builds the recipe for a model with these points.
+    pub(super) fn build(&self, bounds: Option<Box3>, points: &[DVec3]) -> Result<(Frame3, BuiltRecipe3), Failure> {
+        let bounds = bounds.unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
+        let frame = Frame3::new(self.own.frame.unwrap_or(bounds));
+        let built = recipe::build(self.recipe, self.registry, frame, points).map_err(Failure::of_recipe)?;
+        Ok((frame, built))
+    }
+
+    /// Notes on the frame and the steps.
+    pub(super) fn notes(&self, frame: &Frame3, built: &BuiltRecipe3) -> Vec<String> {
+        let size = frame.bounds.size();
+        let first = format!("box: {:.6} × {:.6} × {:.6}", size.x, size.y, size.z);
+        let steps = built.steps.iter().flat_map(|s| &s.notes).map(|n| self.flags.in_text(n));
+        std::iter::once(first).chain(steps).collect()
+    }
+
+    /// Warnings of the steps.
+    pub(super) fn warnings(&self, built: &BuiltRecipe3) -> Vec<String> {
+        built.steps.iter().flat_map(|s| &s.warnings).map(|w| self.flags.in_text(w)).collect()
+    }
+
+    /// Files that parameters ask for, such as a saved lattice.
+    pub(super) fn saves(built: &BuiltRecipe3) -> Result<Vec<PendingFile>, Failure> {
+        let save = |f: &pathwarp::deform::SavedFile| PendingFile::new(Path::new(&f.name), f.text.as_bytes());
+        built.steps.iter().flat_map(|s| &s.saves).map(save).collect()
     }
 }
 
-/// The failure of a vertex without image.
-fn undefined(name: &str, e: &Undefined3) -> Failure {
-    let DVec3 { x, y, z } = e.at;
+/// The failure of a point without image.
+pub(super) fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
     Failure::Geometry(format!(
-        "{name}: vertex {} at {x:.6},{y:.6},{z:.6} has no image: the map is infinite or undefined there; move its control points \
-         less, or choose another eye or region",
-        e.vertex + 1
+        "{name}: {what} at {x:.6},{y:.6},{z:.6} has no image: the map is infinite or undefined there; move its control points \
+         less, or choose another eye or region"
     ))
 }
 
-/// The failure of a refinement.
-fn too_much(name: &str, e: &MeshError) -> Failure {
-    Failure::Input(match &e.problem {
-        MeshFault::Limit(exceeded) => format!("{name}: {e}; allow a larger --refine, or {}", advice::raise(exceeded)),
-        _ => format!("{name}: {e}"),
-    })
-}
-
-/// Warns of folds and tears.
-fn shape_warnings(deformed: &Deformed) -> Vec<String> {
-    let shown = |p: DVec3| format!("{:.6},{:.6},{:.6}", p.x, p.y, p.z);
-    let fold = deformed.folded_at.map(|at| {
-        let (count, at) = (deformed.folded, shown(at));
-        format!("the map turns space inside out at {count} vertices, first at {at}: faces there point inwards")
-    });
-    let tear = deformed.torn_at.map(|at| {
-        let (count, at) = (deformed.torn, shown(at));
-        format!(
-            "the model is torn apart along {count} edges, first near {at}, where the moved region ends: keep the control points of \
-             that face in place (`freeze` of ffd), or choose another region"
-        )
-    });
-    fold.into_iter().chain(tear).collect()
+/// A place in a message.
+pub(super) fn shown(p: DVec3) -> String {
+    format!("{:.6},{:.6},{:.6}", p.x, p.y, p.z)
 }

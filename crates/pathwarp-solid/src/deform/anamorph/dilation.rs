@@ -7,7 +7,7 @@
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), equations 6, 8 and 10.
 
 use super::reference::Reference3;
-use crate::map::{Creases3, Local, Tensor};
+use crate::map::{Chart, Creases3, Local, Poly3, Tensor};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 /// Highest degree.
@@ -39,6 +39,15 @@ impl Simplex {
         let factorial = |n: usize| (1..=n).fold(1.0, |f, k| f * k as f64);
         let coefficient = |node: &[usize; 4]| factorial(degree) / node.iter().map(|n| factorial(*n)).product::<f64>();
         Self { degree, terms: values.map(|(node, delta)| (node, delta * coefficient(&node))).collect() }
+    }
+
+    /// The polynomial with polynomials for the barycentric coordinates.
+    fn in_terms_of(&self, u: &[Poly3; 4]) -> Poly3 {
+        let powers = u.each_ref().map(|u| u.powers(self.degree));
+        let term = |node: &[usize; 4]| {
+            (0..4).map(|a| &powers[a][node[a]]).fold(Poly3::constant(1.0), |product, p| product.times(p))
+        };
+        self.terms.iter().fold(Poly3::default(), |sum, (node, c)| sum.plus(*c, &term(node)))
     }
 
     /// The value and its four partial derivatives.
@@ -128,6 +137,44 @@ impl Dilation3 {
                 let mut gradient = slope * t;
                 gradient[*axis] -= slope.dot(ray) * t / depth;
                 (value, gradient)
+            }
+        }
+    }
+
+    /// δ as a quotient of two polynomials.
+    pub(super) fn fraction(&self, chart: &Chart) -> (Poly3, Poly3) {
+        match self {
+            Self::Tetrahedron { forms, terms } => {
+                (terms.in_terms_of(&forms.map(|f| chart.linear(f))), Poly3::constant(1.0))
+            }
+            Self::Triangle { forms, terms } => {
+                let [u, v, w, sum] = forms.map(|f| chart.linear(f));
+                let below = sum.powers(terms.degree).swap_remove(terms.degree);
+                (terms.in_terms_of(&[u, v, w, Poly3::default()]), below)
+            }
+            Self::Cuboid { local, tensor } => {
+                let [delta] = tensor.in_terms_of(&chart.local(local));
+                (delta, Poly3::constant(1.0))
+            }
+            Self::Rectangle { eye, axis, at, local, tensor } => {
+                // A ray's coordinates on the plane are O + (p − O)·d/(p − O)ₐ: made homogeneous by the depth (p − O)ₐ.
+                let depth = chart.linear(DVec3::AXES[*axis].extend(-eye[*axis]));
+                let d = at - eye[*axis];
+                let coordinate = |a: usize| {
+                    let ray = chart.linear(DVec3::AXES[a].extend(-eye[a]));
+                    let start = (eye[a] - local.middle[a]) * local.scale[a];
+                    Poly3::default().plus(start, &depth).plus(d * local.scale[a], &ray)
+                };
+                let degrees = tensor.degrees();
+                let total: usize = degrees.iter().sum();
+                let below = depth.powers(total);
+                let powers = [0, 1, 2].map(|a| coordinate(a).powers(degrees[a]));
+                let mut delta = Poly3::default();
+                for ([i, j, k], [c]) in tensor.terms() {
+                    let product = powers[0][i].times(&powers[1][j]).times(&powers[2][k]);
+                    delta = delta.plus(*c, &product.times(&below[total - i - j - k]));
+                }
+                (delta, below[total].clone())
             }
         }
     }

@@ -1,7 +1,8 @@
 //! The map p̂ = O + (p − O)/δ(p), and its inverse along each ray.
 
 use super::dilation::Dilation3;
-use crate::map::{Creases3, Jet3, Map3, Radial, for_all};
+use crate::box3::Box3;
+use crate::map::{Chart, Creases3, Fraction3, Jet3, Map3, Radial, for_all};
 use glam::{DMat3, DVec3, DVec4};
 use std::sync::Arc;
 
@@ -53,6 +54,23 @@ impl Map3 for RadialMap {
             }
             _ => ps.iter_mut().for_each(|p| *p = self.point(*p)),
         }
+    }
+
+    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
+        let chart = Chart::on(on);
+        let corners = on.corners();
+        if let Some(forms) = &self.within {
+            // The moved region is convex: a box is inside if its corners are, and outside if one side has all of them behind it.
+            let behind = |f: &DVec4| corners.iter().all(|p| f.dot(p.extend(1.0)) <= 0.0);
+            if forms.iter().any(behind) {
+                return Some(Fraction3::identity(chart));
+            }
+            if !corners.iter().all(|p| self.moves(*p)) {
+                return None;
+            }
+        }
+        let (divisor, common) = self.dilation.fraction(&chart);
+        Some(Fraction3::radial(chart, self.eye, divisor, &common))
     }
 
     fn creases(&self, out: &mut Creases3) {

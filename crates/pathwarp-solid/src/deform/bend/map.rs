@@ -1,7 +1,8 @@
 //! The map: pieces one after another along an axis of the model.
 
 use super::strip::{Stand, Strip};
-use crate::map::{Creases3, Jet3, Map3};
+use crate::box3::Box3;
+use crate::map::{Chart, Creases3, Fraction3, Jet3, Local, Map3, Poly3, Swept, Tensor, for_all};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -14,9 +15,17 @@ pub(super) struct BendMap3 {
     pub(super) start: f64,
     pub(super) length: f64,
     pub(super) through: DVec3,
+    /// The curves of the only piece, if they are polynomials.
+    swept: Option<Tensor<9>>,
 }
 
 impl BendMap3 {
+    pub(super) fn new(pieces: Arc<[Strip]>, axis: usize, start: f64, length: f64, through: DVec3) -> Self {
+        let only = if let [only] = &*pieces { only.bernstein() } else { None };
+        let swept = only.map(|c| Tensor::bernstein([c.len(), 1, 1], c));
+        Self { pieces, axis, start, length, through, swept }
+    }
+
     /// The other two axes.
     fn sides(&self) -> [usize; 2] {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
@@ -44,9 +53,41 @@ impl Map3 for BendMap3 {
         Jet3 { p: at[0] + at[1] * v + at[2] * w, d: DMat3::from_cols(columns[0], columns[1], columns[2]) }
     }
 
+    fn points(&self, ps: &mut [DVec3]) {
+        let Some(tensor) = &self.swept else {
+            ps.iter_mut().for_each(|p| *p = self.point(*p));
+            return;
+        };
+        // −1 to 1 along the axis; the other coordinates are lengths.
+        let (mut middle, mut scale) = (self.through, DVec3::ONE);
+        middle[self.axis] = self.start + 0.5 * self.length;
+        scale[self.axis] = 2.0 / self.length;
+        for_all(&Swept { axis: self.axis, local: Local { middle, scale }, tensor }, ps);
+    }
+
     fn point(&self, p: DVec3) -> DVec3 {
         let (Stand { at, .. }, v, w, _) = self.stand(p);
         at[0] + at[1] * v + at[2] * w
+    }
+
+    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
+        let chart = Chart::on(on);
+        let last = self.pieces.len() - 1;
+        let rate = self.pieces.len() as f64 / self.length;
+        let place = |at: f64| (at - self.start) * rate;
+        // Rounding may put a joint on either side of the box's end.
+        let slack = 1e-9 * (1.0 + place(on.max[self.axis]).abs());
+        let from = ((place(on.min[self.axis]) + slack) as usize).min(last);
+        let to = ((place(on.max[self.axis]) - slack) as usize).min(last);
+        if from != to {
+            return None;
+        }
+        let axis = DVec3::AXES[self.axis];
+        let u = chart.linear((axis * rate).extend(-self.start * rate - from as f64));
+        let [v, w] = self.sides().map(|a| chart.linear(DVec3::AXES[a].extend(-self.through[a])));
+        let curves = self.pieces[from].polynomials(&u)?;
+        let part = |k: usize| curves[0][k].plus(1.0, &curves[1][k].times(&v)).plus(1.0, &curves[2][k].times(&w));
+        Some(Fraction3 { chart, parts: [part(0), part(1), part(2), Poly3::constant(1.0)] })
     }
 
     fn creases(&self, out: &mut Creases3) {

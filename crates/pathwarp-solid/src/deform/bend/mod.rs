@@ -117,7 +117,7 @@ impl Bend3 {
         }
         let count = pieces.len();
         let (axis, start) = (self.axis, self.bounds.min[self.axis]);
-        let mut built = Built3::new(Arc::new(BendMap3 { pieces: pieces.into(), axis, start, length: size, through }));
+        let mut built = Built3::new(Arc::new(BendMap3::new(pieces.into(), axis, start, size, through)));
         let length: f64 = skeleton.windows(2).map(|w| w[0].distance(w[1])).sum();
         built.note(format!("skeleton: {count} pieces, {length:.6} long; the model is {size:.6} long along it"));
         built.guides.push(skeleton);

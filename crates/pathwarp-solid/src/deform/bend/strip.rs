@@ -1,5 +1,6 @@
 //! A piece of a bend: F(u, v, w) = C(u) + v·S(u) + w·T(u).
 
+use crate::map::Poly3;
 use glam::DVec3;
 
 /// The curves C, S and T of a piece, u from 0 to 1.
@@ -30,6 +31,53 @@ pub(super) struct Stand {
 }
 
 impl Strip {
+    /// Bernstein coefficients of C, S and T, all of one degree; `None` if they are no polynomials.
+    pub(super) fn bernstein(&self) -> Option<Vec<[f64; 9]>> {
+        let curves: [Vec<Vec<DVec3>>; 3] = match self {
+            Self::Ribbon { points, levels } => {
+                let side = |k: usize| levels.iter().map(|l| l.iter().map(|h| h[k]).collect()).collect();
+                [vec![points.clone()], side(0), side(1)]
+            }
+            Self::Taper { from, along, sides: [s, t], factor } => {
+                let line = |p: DVec3, q: DVec3| vec![vec![p, q]];
+                [line(*from, *from + *along), line(*s, *s * *factor), line(*t, *t * *factor)]
+            }
+            Self::Twist { .. } | Self::Arc { .. } => return None,
+        };
+        let n = curves[0][0].len();
+        let mut out = vec![[0.0; 9]; n];
+        for (k, all) in curves.into_iter().enumerate() {
+            for curve in all.into_iter().map(|c| elevated(c, n)) {
+                for (o, p) in out.iter_mut().zip(curve) {
+                    (0..3).for_each(|a| o[3 * k + a] += p[a]);
+                }
+            }
+        }
+        Some(out)
+    }
+
+    /// C, S and T as polynomials, with a polynomial for u; `None` if they are none.
+    pub(super) fn polynomials(&self, u: &Poly3) -> Option<[[Poly3; 3]; 3]> {
+        match self {
+            Self::Ribbon { points, levels } => {
+                let side = |k: usize| {
+                    let mut sum = [(); 3].map(|()| Poly3::default());
+                    for handles in levels {
+                        let part = bezier_polynomial(&handles.iter().map(|h| h[k]).collect::<Vec<_>>(), u);
+                        sum = std::array::from_fn(|a| sum[a].plus(1.0, &part[a]));
+                    }
+                    sum
+                };
+                Some([bezier_polynomial(points, u), side(0), side(1)])
+            }
+            Self::Taper { from, along, sides: [s, t], factor } => {
+                let line = |p: DVec3, q: DVec3| bezier_polynomial(&[p, q], u);
+                Some([line(*from, *from + *along), line(*s, *s * *factor), line(*t, *t * *factor)])
+            }
+            Self::Twist { .. } | Self::Arc { .. } => None,
+        }
+    }
+
     /// The curves at `u`.
     pub(super) fn stand(&self, u: f64) -> Stand {
         match self {
@@ -68,6 +116,29 @@ impl Strip {
     }
 }
 
+/// The same curve with `n` control points.
+fn elevated(mut curve: Vec<DVec3>, n: usize) -> Vec<DVec3> {
+    while curve.len() < n {
+        let k = curve.len() as f64;
+        let inner = (1..curve.len()).map(|i| curve[i - 1].lerp(curve[i], (k - i as f64) / k));
+        curve = std::iter::once(curve[0]).chain(inner).chain(curve.last().copied()).collect();
+    }
+    curve
+}
+
+/// A Bézier curve as polynomials, by de Casteljau's algorithm.
+fn bezier_polynomial(points: &[DVec3], u: &Poly3) -> [Poly3; 3] {
+    [0, 1, 2].map(|a| {
+        let mut row: Vec<Poly3> = points.iter().map(|p| Poly3::constant(p[a])).collect();
+        for level in (1..row.len()).rev() {
+            for i in 0..level {
+                row[i] = row[i].plus(1.0, &row[i + 1].plus(-1.0, &row[i]).times(u));
+            }
+        }
+        row.swap_remove(0)
+    })
+}
+
 /// A Bézier curve of degree up to 3 and its derivative, by de Casteljau's algorithm.
 fn bezier(points: impl Iterator<Item = DVec3>, u: f64) -> (DVec3, DVec3) {
     let mut row = [DVec3::ZERO; 4];
@@ -89,6 +160,35 @@ fn bezier(points: impl Iterator<Item = DVec3>, u: f64) -> (DVec3, DVec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::Tensor;
+    use crate::map::counted::{Counted, operations};
+
+    /// The 9, 27 and 54 products and sums of the paper's table 1, with the legs q − p given as the paper takes them, and those of the
+    /// three curves of one degree that batches evaluate.
+    #[test]
+    fn operations_of_a_skeleton() {
+        for (n, published) in [(1usize, 9), (2, 27), (3, 54)] {
+            let counts = operations(|| {
+                let mut row = vec![[Counted(1.0); 3]; n + 1];
+                let [u, v, w] = [0.3, 0.4, 0.5].map(Counted);
+                for level in 1..=n {
+                    for i in 0..=n - level {
+                        let leg: [Counted; 3] = std::array::from_fn(|k| Counted(row[i + 1][k].0 - row[i][k].0));
+                        row[i] = std::array::from_fn(|k| row[i][k] + u * leg[k] + v * 0.5 + w * 0.25);
+                    }
+                }
+            });
+            assert_eq!(counts, [published; 2], "degree {n}");
+            let points = (0..=n).map(|i| DVec3::new(i as f64, 1.0, 0.0)).collect();
+            let ribbon = Strip::Ribbon { points, levels: vec![vec![[DVec3::Y, DVec3::Z]; n]] };
+            let tensor = Tensor::bernstein([n + 1, 1, 1], ribbon.bernstein().unwrap());
+            let ours = operations(|| {
+                let c = tensor.value([0.3, 0.0, 0.0].map(Counted));
+                let _: [Counted; 3] = std::array::from_fn(|k| c[k] + c[k + 3] * 0.4 + c[k + 6] * 0.5);
+            });
+            assert_eq!(ours, [9 * n + 6; 2], "degree {n}");
+        }
+    }
 
     #[test]
     fn bezier_curves_have_their_derivatives() {

@@ -1,0 +1,158 @@
+//! Polynomials in three variables as lists of terms: the form in which maps say that they are polynomial or rational.
+
+use super::batch::Local;
+use crate::box3::Box3;
+use glam::{DVec3, DVec4};
+use std::collections::BTreeMap;
+
+/// A polynomial in x, y and z.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Poly3(BTreeMap<[usize; 3], f64>);
+
+impl Poly3 {
+    /// A constant.
+    pub(crate) fn constant(v: f64) -> Self {
+        let mut out = Self::default();
+        out.add_term([0; 3], v);
+        out
+    }
+
+    /// Adds a term.
+    pub(crate) fn add_term(&mut self, powers: [usize; 3], c: f64) {
+        if c != 0.0 {
+            *self.0.entry(powers).or_default() += c;
+        }
+    }
+
+    /// The terms: powers and coefficients.
+    pub(crate) fn terms(&self) -> impl Iterator<Item = (&[usize; 3], f64)> {
+        self.0.iter().map(|(powers, c)| (powers, *c))
+    }
+
+    /// The largest sum of powers.
+    pub(crate) fn degree(&self) -> usize {
+        self.0.keys().map(|p| p.iter().sum()).max().unwrap_or(0)
+    }
+
+    /// Returns `true` if it is 1 everywhere.
+    pub(crate) fn is_one(&self) -> bool {
+        self.0.len() == 1 && self.0.get(&[0; 3]) == Some(&1.0)
+    }
+
+    /// The sum of this and `k` times another.
+    #[must_use]
+    pub(crate) fn plus(&self, k: f64, other: &Self) -> Self {
+        let mut out = self.clone();
+        other.terms().for_each(|(powers, c)| out.add_term(*powers, k * c));
+        out
+    }
+
+    /// The product.
+    #[must_use]
+    pub(crate) fn times(&self, other: &Self) -> Self {
+        let mut out = Self::default();
+        for (p, a) in self.terms() {
+            for (q, b) in other.terms() {
+                out.add_term(std::array::from_fn(|k| p[k] + q[k]), a * b);
+            }
+        }
+        out
+    }
+
+    /// The powers 0 to `n`.
+    pub(crate) fn powers(&self, n: usize) -> Vec<Self> {
+        let mut out = vec![Self::constant(1.0)];
+        for k in 0..n {
+            out.push(out[k].times(self));
+        }
+        out
+    }
+}
+
+/// Coordinates from −1 to 1 across a box, in which polynomials are well conditioned there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chart {
+    middle: DVec3,
+    half: DVec3,
+}
+
+impl Chart {
+    /// The coordinates of a box.
+    #[must_use]
+    pub fn on(b: &Box3) -> Self {
+        // A flat box has no size along an axis; any scale serves there.
+        let size = 0.5 * b.size();
+        let least = if size.max_element() > 0.0 { 1e-3 * size.max_element() } else { 1.0 };
+        Self { middle: b.center(), half: size.max(DVec3::splat(least)) }
+    }
+
+    /// The middle of the box.
+    pub(crate) fn middle(&self) -> DVec3 {
+        self.middle
+    }
+
+    /// Half the size of the box.
+    pub(crate) fn half(&self) -> DVec3 {
+        self.half
+    }
+
+    /// A linear form in (x, y, z, 1) as a polynomial in the coordinates.
+    pub(crate) fn linear(&self, form: DVec4) -> Poly3 {
+        let mut out = Poly3::constant(form.dot(self.middle.extend(1.0)));
+        for (a, v) in (form.truncate() * self.half).to_array().into_iter().enumerate() {
+            let mut powers = [0; 3];
+            powers[a] = 1;
+            out.add_term(powers, v);
+        }
+        out
+    }
+
+    /// x, y and z as polynomials.
+    pub(crate) fn place(&self) -> [Poly3; 3] {
+        [0, 1, 2].map(|a| self.linear(DVec3::AXES[a].extend(0.0)))
+    }
+
+    /// The coordinates of another box as polynomials.
+    pub(crate) fn local(&self, other: &Local) -> [Poly3; 3] {
+        [0, 1, 2].map(|a| {
+            let scale = other.scale[a];
+            self.linear((DVec3::AXES[a] * scale).extend(-other.middle[a] * scale))
+        })
+    }
+}
+
+/// A map as a quotient of polynomials in the coordinates of a [`Chart`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fraction3 {
+    pub(crate) chart: Chart,
+    /// Three numerators and the common denominator.
+    pub(crate) parts: [Poly3; 4],
+}
+
+impl Fraction3 {
+    /// The map that moves nothing.
+    #[must_use]
+    pub fn identity(chart: Chart) -> Self {
+        let [x, y, z] = chart.place();
+        Self { chart, parts: [x, y, z, Poly3::constant(1.0)] }
+    }
+
+    /// The map O + (p − O)·`common`/`divisor`.
+    pub(crate) fn radial(chart: Chart, eye: DVec3, divisor: Poly3, common: &Poly3) -> Self {
+        let [x, y, z] = chart.place();
+        let part = |p: Poly3, o: f64| p.plus(-o, &Poly3::constant(1.0)).times(common).plus(o, &divisor);
+        Self { chart, parts: [part(x, eye.x), part(y, eye.y), part(z, eye.z), divisor] }
+    }
+
+    /// Returns `true` if nothing moves.
+    #[must_use]
+    pub fn is_identity(&self) -> bool {
+        *self == Self::identity(self.chart)
+    }
+
+    /// The largest sum of powers.
+    #[must_use]
+    pub fn degree(&self) -> usize {
+        self.parts.iter().map(Poly3::degree).max().unwrap_or(0)
+    }
+}

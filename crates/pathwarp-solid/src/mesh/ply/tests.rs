@@ -1,0 +1,78 @@
+use super::{read, sniff, write};
+use crate::mesh::{Corner, NONE, PolygonKind, obj};
+use std::time::{Duration, Instant};
+
+const TEXT: &str = "ply\nformat ascii 1.0\ncomment a quad and a triangle\nelement vertex 5\nproperty float x\nproperty float y\nproperty double z\n\
+    property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty float s\n\
+    property float t\nproperty float quality\nelement face 2\nproperty list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\n\
+    property int vertex2\nend_header\n\
+    0 0 0.5 0 0 1 255 0 0 0 0 9\n1 0 0.5 0 0 1 0 255 0 1 0 9\n1 1 0.5 0 0 1 0 0 255 1 1 9\n0 1 0.5 0 0 1 51 0 0 0 1 9\n2 2 1 0 0 1 0 0 0 0 0 9\n\
+    4 0 1 2 3\n3 1 4 2\n0 4\n";
+
+#[test]
+fn quads_colours_normals_and_edges_come_back() {
+    assert!(sniff(TEXT.as_bytes()));
+    let mut mesh = read(TEXT.as_bytes()).unwrap();
+    assert_eq!(mesh.left_out, ["properties of elements `vertex`: quality"]);
+    mesh.left_out.clear();
+    let kinds: Vec<_> = mesh.polygons().map(|(k, c)| (k, c.len())).collect();
+    assert_eq!(kinds, [(PolygonKind::Face, 4), (PolygonKind::Face, 3), (PolygonKind::Line, 2)]);
+    assert!((mesh.colors[3], mesh.positions[4].z, mesh.uvs[2]) == ([0.2, 0.0, 0.0], 1.0, [1.0, 1.0, 0.0]));
+    let back = read(&write(&mesh).unwrap()).unwrap();
+    // The edge has no texture coordinates, and its vertices have.
+    assert_eq!((&back.positions, &back.colors, &back.polygons), (&mesh.positions, &mesh.colors, &mesh.polygons));
+    assert_eq!(back.corners[..7], mesh.corners[..7]);
+}
+
+#[test]
+fn corners_with_their_own_texture_become_vertices() {
+    let mesh = obj::read(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/1\n").unwrap();
+    let back = read(&write(&mesh).unwrap()).unwrap();
+    assert_eq!(back.positions.len(), 5);
+    let at = |c: &Corner| (back.positions[c.vertex as usize], back.uvs[c.uv as usize]);
+    let was = |c: &Corner| (mesh.positions[c.vertex as usize], mesh.uvs[c.uv as usize]);
+    assert!(back.corners.iter().zip(&mesh.corners).all(|(a, b)| at(a) == was(b) && a.normal == NONE));
+}
+
+#[test]
+fn damaged_files_are_refused_quickly() {
+    let good = write(&obj::read(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").unwrap()).unwrap();
+    let text = String::from_utf8_lossy(&good).into_owned();
+    let header = text.find("end_header\n").unwrap() + 11;
+    let announced = |what: &str, n: &str| {
+        let mut out = text[..header].replace(what, &format!("{what}{n}")).into_bytes();
+        out.extend_from_slice(&good[header..]);
+        out
+    };
+    let many = announced("element vertex 3", "000000000");
+    let faces = announced("element face 1", "000000000");
+    let mut nan = good.clone();
+    nan[header..header + 8].copy_from_slice(&f64::NAN.to_le_bytes());
+    let mut index = good.clone();
+    let end = index.len();
+    index[end - 4..].copy_from_slice(&7u32.to_le_bytes());
+    let mut long = good.clone();
+    long[end - 13] = 255;
+    let empty = b"ply\nformat binary_little_endian 1.0\nelement vertex 1000000000\nend_header\n";
+    let no_x = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float y\nend_header\n1\n";
+    let minus = TEXT.replace("3 1 4 2", "3 1 4 -2");
+    let begun = Instant::now();
+    for (file, part) in [
+        (&many[..], "announces 3000000000 elements `vertex`"),
+        (&faces[..], "announces 1000000000 elements `face`"),
+        (&nan[..], "vertex 1 is not finite"),
+        (&index[..], "an index of face 1 is out of range: there are 3 vertices"),
+        (&long[..], "damaged"),
+        (&good[..end - 2], "damaged"),
+        (&good[..header - 5], "damaged"),
+        (&empty[..], "without properties"),
+        (&no_x[..], "without x, y and z"),
+        (minus.as_bytes(), "an index of face 2 is out of range"),
+        (b"ply\nformat ascii 1.0\nend_header\n", "no vertices"),
+        (b"ply\n\xff\xff\n", "damaged"),
+    ] {
+        let e = read(file).unwrap_err().to_string();
+        assert!(e.contains(part), "{part}: {e}");
+    }
+    assert!(begun.elapsed() < Duration::from_secs(5));
+}

@@ -1,0 +1,18 @@
+//! Curved surfaces: Bézier patches and NURBS, rational or not, with trimming curves; their files, their exact images, and refitting
+//! where an exact image would be of too high a degree.
+
+mod bernstein;
+mod bezier;
+pub mod bpt;
+mod compose;
+mod deform;
+pub mod json;
+mod knots;
+mod refit;
+mod surface;
+mod tessellate;
+
+pub use bezier::BezierPatch;
+pub use deform::{DeformedPatches, PatchError, deform_patches};
+pub use surface::{MAX_DEGREE, Surface, TrimCurve};
+pub use tessellate::tessellate;

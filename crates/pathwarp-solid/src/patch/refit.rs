@@ -1,0 +1,115 @@
+//! Images that are not rational, or of too high a degree: bicubic patches within a tolerance.
+//!
+//! Every Bézier patch is cut into n × n cells, with the same n for all patches of a model, so that patches with a common edge
+//! keep it. A cell takes over position, both tangents and the twist of the exact image at its corners; neighbours therefore join
+//! smoothly, and the error falls with n⁴. The distance is measured at equal parameters on a grid within each cell.
+
+use super::bezier::BezierPatch;
+use super::knots;
+use super::surface::Surface;
+use crate::map::Map3;
+use glam::{DVec3, DVec4};
+use pathwarp::budget::{Budget, Exceeded, Limit};
+
+/// Cells along a side of a patch at most; more would mean a crease, at which they converge slowly.
+pub(super) const MOST_CELLS: usize = 64;
+/// Places along each side of a cell at which the distance is measured.
+const PLACES: usize = 4;
+
+/// The image of a patch as n × n bicubic cells.
+pub(super) struct Cells {
+    n: usize,
+    /// (3n + 1)² control points, u fastest.
+    points: Vec<DVec3>,
+    /// The largest distance measured.
+    pub(super) distance: f64,
+}
+
+/// The image of a point of the patch, its derivatives, and the mixed one.
+type Corner = [DVec3; 4];
+
+fn tangents(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64) -> [DVec3; 3] {
+    let [p, du, dv] = patch.jet(u, v);
+    let jet = map.jet(p);
+    [jet.p, jet.d * du, jet.d * dv]
+}
+
+fn corner(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64, n: usize) -> Corner {
+    // The twist by differences of tangents, to about this relative error: it moves one control point of a cell by a ninth.
+    let h = 1e-4 / n as f64;
+    let (before, after) = ((v - h).max(0.0), (v + h).min(1.0));
+    let [p, du, dv] = tangents(patch, map, u, v);
+    let twist = (tangents(patch, map, u, after)[1] - tangents(patch, map, u, before)[1]) / (after - before);
+    [p, du, dv, twist]
+}
+
+/// Fits n × n cells and measures their distance from the image.
+///
+/// # Errors
+/// More evaluations than the limit allows.
+pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, budget: &Budget) -> Result<Cells, Exceeded> {
+    let samples = (n * PLACES + 1) * (n * PLACES + 1);
+    budget.spend(Limit::Evaluations, (3 * (n + 1) * (n + 1) + samples) as u64)?;
+    let at = |i: usize| i as f64 / n as f64;
+    let corners: Vec<Corner> = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, at(i), at(j), n)).collect();
+    let width = 3 * n + 1;
+    let mut points = vec![DVec3::ZERO; width * width];
+    let step = 1.0 / (3.0 * n as f64);
+    for (k, [p, du, dv, twist]) in corners.into_iter().enumerate() {
+        let (i, j) = (3 * (k % (n + 1)), 3 * (k / (n + 1)));
+        for a in 0..3usize {
+            for b in 0..3usize {
+                // From one before to one after the corner, along u and v.
+                let (x, y) = ((i + a).wrapping_sub(1), (j + b).wrapping_sub(1));
+                if x < width && y < width {
+                    let (s, t) = ((a as f64 - 1.0) * step, (b as f64 - 1.0) * step);
+                    points[y * width + x] = p + du * s + dv * t + twist * (s * t);
+                }
+            }
+        }
+    }
+    let mut out = Cells { n, points, distance: 0.0 };
+    for j in 0..n * PLACES {
+        for i in 0..n * PLACES {
+            let (u, v) = ((i as f64 + 0.5) / (n * PLACES) as f64, (j as f64 + 0.5) / (n * PLACES) as f64);
+            let off = out.cell(i / PLACES, j / PLACES).point(u * n as f64 - (i / PLACES) as f64, v * n as f64 - (j / PLACES) as f64);
+            let off = off.distance(map.point(patch.point(u, v)));
+            out.distance = if off.is_nan() { f64::INFINITY } else { out.distance.max(off) };
+        }
+    }
+    Ok(out)
+}
+
+impl Cells {
+    fn cell(&self, i: usize, j: usize) -> BezierPatch {
+        let width = 3 * self.n + 1;
+        let points = (0..4).flat_map(|b| (0..4).map(move |a| (3 * j + b) * width + 3 * i + a));
+        BezierPatch { degree: [3, 3], points: points.map(|k| self.points[k].extend(1.0)).collect::<Vec<DVec4>>() }
+    }
+}
+
+/// Joins the images of a surface's patches, u fastest, all with the same number of cells.
+pub(super) fn joined(surface: &Surface, breaks: &[Vec<f64>; 2], pieces: &[Cells]) -> Surface {
+    let n = pieces.first().map_or(1, |c| c.n);
+    let spans = breaks.each_ref().map(|b| b.len() - 1);
+    let size = spans.map(|s| 3 * n * s + 1);
+    let mut points = vec![DVec3::ZERO; size[0] * size[1]];
+    for (k, piece) in pieces.iter().enumerate() {
+        let corner = [k % spans[0] * 3 * n, k / spans[0] * 3 * n];
+        for (m, p) in piece.points.iter().enumerate() {
+            points[(corner[1] + m / (3 * n + 1)) * size[0] + corner[0] + m % (3 * n + 1)] = *p;
+        }
+    }
+    let cut = |b: &Vec<f64>| -> Vec<f64> {
+        let inner = b.windows(2).flat_map(|w| (0..n).map(move |i| w[0] + (w[1] - w[0]) * (i as f64 / n as f64)));
+        inner.chain(b.last().copied()).collect()
+    };
+    Surface {
+        name: surface.name.clone(),
+        degree: [3, 3],
+        knots: breaks.each_ref().map(|b| knots::joined(3, &cut(b))),
+        weights: vec![1.0; points.len()],
+        points,
+        trims: surface.trims.clone(),
+    }
+}

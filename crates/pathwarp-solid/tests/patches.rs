@@ -1,0 +1,288 @@
+//! Images of rational surfaces against their definitions in exact arithmetic: every floating-point number is a fraction, so the
+//! source surface, the formula of the map (written again) and the resulting surface are evaluated without rounding.
+
+#![allow(clippy::unwrap_used)]
+
+mod exact;
+
+use exact::{Q, bernstein, q, rational_point, size_of};
+use num_traits::{One, Zero};
+use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp::param::Args;
+use pathwarp_solid::deform::Registry3;
+use pathwarp_solid::glam::{DMat4, DVec3, DVec4};
+use pathwarp_solid::map::{Chain3, Collineation, Map3};
+use pathwarp_solid::patch::{DeformedPatches, PatchError, Surface, TrimCurve, deform_patches, tessellate};
+use pathwarp_solid::{Box3, Frame3};
+use std::sync::Arc;
+
+fn budget() -> Budget {
+    Budget::new(Limits::default())
+}
+
+/// A map over the box 0..64 on all axes: powers of two keep the parameters exact.
+fn chain(name: &str, pairs: &[(&str, &str)]) -> Chain3 {
+    let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
+    let mut chain = Chain3::default();
+    chain.push(Registry3::builtin().get(name).unwrap().build_from(&Args::from_pairs(pairs), &frame).unwrap().map);
+    chain
+}
+
+/// A bicubic patch (or of another degree) inside the box, with weights if `rational`.
+fn patch(degree: [usize; 2], rational: bool) -> Surface {
+    let [m, n] = degree;
+    let points = (0..(m + 1) * (n + 1)).map(|k| {
+        let (i, j) = (k % (m + 1), k / (m + 1));
+        let wave = ((k * 29 + 11) % 13) as f64;
+        DVec3::new(8.0 + 40.0 * i as f64 / m as f64, 6.0 + 44.0 * j as f64 / n as f64, 20.0 + 2.0 * wave)
+    });
+    let mut s = Surface::bezier("s", degree, points.collect());
+    if rational {
+        s.weights.iter_mut().enumerate().for_each(|(k, w)| *w = 0.5 + ((k * 7) % 5) as f64 * 0.25);
+    }
+    s.trims = vec![vec![TrimCurve {
+        degree: 1,
+        knots: vec![0.0, 0.0, 1.0, 1.0],
+        points: vec![[0.25, 0.25], [0.75, 0.5]],
+        weights: vec![1.0, 1.0],
+    }]];
+    s
+}
+
+/// Compares the image with the formula at a grid of parameters, exactly up to `within` relative.
+fn compare(source: &Surface, map: &Chain3, degree: [usize; 2], within: f64, truth: impl Fn([Q; 3]) -> [Q; 3]) {
+    let mut images = [source.clone()];
+    let done = deform_patches(&mut images, map, 1e-3, &budget()).unwrap();
+    let image = &images[0];
+    assert_eq!((done.exact, done.refitted, image.degree), (1, 0, degree));
+    assert_eq!(image.trims, source.trims);
+    const PLACES: [u32; 5] = [0, 3, 7, 12, 16];
+    for i in PLACES {
+        for j in PLACES {
+            let [u, v] = [i, j].map(|k| q(f64::from(k) / 16.0));
+            let want = truth(rational_point(source, &u, &v));
+            let got = rational_point(image, &u, &v);
+            let off = size_of(&std::array::from_fn(|k| &got[k] - &want[k]));
+            assert!(off <= within * (1.0 + size_of(&want)), "{i} {j}: off by {off:e}");
+        }
+    }
+}
+
+#[test]
+fn collineations_keep_degree_knots_and_trims() {
+    // Every δ is a power of two at the control points of the first, so that not even rounding happens.
+    let matrix = DMat4::from_cols(
+        DVec4::new(1.0, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, 1.0, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, 1.0, 1.0 / 32.0),
+        DVec4::new(0.0, 0.0, 0.0, 1.0),
+    );
+    let mut map = Chain3::default();
+    map.push(Arc::new(Collineation::new(matrix)));
+    let truth = |[x, y, z]: [Q; 3]| {
+        let delta = Q::one() + &z / q(32.0);
+        [x / &delta, y / &delta, z / delta]
+    };
+    let points = (0..4).map(|k| DVec3::new(f64::from(k % 2), f64::from(k / 2), [0.0, 32.0, 96.0, 224.0][k as usize]));
+    let flat = Surface::bezier("flat", [1, 1], points.collect());
+    let mut image = [flat.clone()];
+    deform_patches(&mut image, &map, 1.0, &budget()).unwrap();
+    assert_eq!(image[0].weights, [1.0, 2.0, 4.0, 8.0]);
+    assert_eq!(image[0].points[3], DVec3::new(0.125, 0.125, 28.0));
+    compare(&flat, &map, [1, 1], 0.0, truth);
+    compare(&patch([3, 3], true), &map, [3, 3], 1e-15, truth);
+    // A NURBS surface keeps its knots.
+    let mut nurbs = patch([3, 4], true);
+    nurbs.degree = [2, 3];
+    nurbs.knots = [vec![0.0, 0.0, 0.0, 0.25, 1.0, 1.0, 1.0], vec![0.0, 0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0, 1.0]];
+    assert_eq!(nurbs.fault(), None);
+    compare(&nurbs, &map, [2, 3], 1e-15, truth);
+}
+
+/// A lattice of degree 1 in space, some of whose corners move, with weights.
+fn trilinear([x, y, z]: [Q; 3], moved: &[([usize; 3], [f64; 3], f64)]) -> [Q; 3] {
+    let t = [x, y, z].map(|v| v / q(64.0));
+    let (mut sum, mut weights) = ([Q::zero(), Q::zero(), Q::zero()], Q::zero());
+    for k in 0..8usize {
+        let node = [k & 1, k >> 1 & 1, k >> 2];
+        let change = moved.iter().find(|c| c.0 == node);
+        let w = q(change.map_or(1.0, |c| c.2));
+        let influence = (0..3).fold(w, |p, a| p * bernstein(1, node[a], &t[a]));
+        for a in 0..3 {
+            sum[a] += &influence * q(64.0 * node[a] as f64 + change.map_or(0.0, |c| c.1[a]));
+        }
+        weights += influence;
+    }
+    sum.map(|s| s / &weights)
+}
+
+#[test]
+fn lattices_raise_the_degree() {
+    let moved = [([1, 1, 1], [8.0, -4.0, 16.0], 1.0), ([0, 1, 0], [-2.0, 6.0, 1.0], 1.0)];
+    let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16 0,1,0:-2,6,1")]);
+    compare(&patch([3, 3], false), &map, [9, 9], 1e-13, |p| trilinear(p, &moved));
+    compare(&patch([2, 4], true), &map, [6, 12], 1e-13, |p| trilinear(p, &moved));
+    let weighted = [moved[0], ([0, 1, 0], [-2.0, 6.0, 1.0], 3.0)];
+    let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16 0,1,0:-2,6,1"), ("weight", "0,1,0:3")]);
+    compare(&patch([3, 3], true), &map, [9, 9], 1e-13, |p| trilinear(p, &weighted));
+    // Polynomials stay polynomials.
+    let mut image = [patch([3, 3], false)];
+    deform_patches(&mut image, &chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]), 1.0, &budget()).unwrap();
+    assert!(image[0].weights.iter().all(|w| *w == 1.0));
+}
+
+fn radial(p: [Q; 3], eye: [f64; 3], delta: &Q) -> [Q; 3] {
+    std::array::from_fn(|a| q(eye[a]) + (&p[a] - q(eye[a])) / delta)
+}
+
+#[test]
+fn anamorphoses_over_every_reference() {
+    let eye = [16.0, 24.0, 512.0];
+    let at = ("eye", "16,24,512");
+    // A tetrahedron on the axes, of degree 2: barycentric coordinates x/128, y/128, z/128 and the rest.
+    let tetrahedron = ("reference", "0,0,0 128,0,0 0,128,0 0,0,128");
+    let map = chain("anamorph", &[at, tetrahedron, ("degree", "2"), ("push", "0,1,0,1:1.6 2,0,0,0:0.8")]);
+    compare(&patch([3, 3], true), &map, [6, 6], 1e-13, |p| {
+        let [u, v, w] = p.clone().map(|c| c / q(128.0));
+        let rest = Q::one() - &u - &v - &w;
+        // The control points between the second and the fourth corner, and at the first.
+        let delta = Q::one()
+            + (Q::one() / q(1.6) - Q::one()) * q(2.0) * u * w
+            + (Q::one() / q(0.8) - Q::one()) * &rest * &rest;
+        radial(p, eye, &delta)
+    });
+    let cuboid = chain("anamorph", &[at, ("degree", "2x1x1"), ("push", "1,0,1:1.6")]);
+    compare(&patch([2, 3], true), &cuboid, [8, 12], 1e-12, |p| {
+        let t = p.clone().map(|c| c / q(64.0));
+        let b = bernstein(2, 1, &t[0]) * bernstein(1, 0, &t[1]) * bernstein(1, 1, &t[2]);
+        radial(p, eye, &(Q::one() + (Q::one() / q(1.6) - Q::one()) * b))
+    });
+    // Sheets in the plane z = 0, on which the ray through a point has the coordinates O + (p − O)·512/(512 − z).
+    let foot = |p: &[Q; 3], a: usize| q(eye[a]) + (&p[a] - q(eye[a])) * q(512.0) / (q(512.0) - &p[2]);
+    let rectangle = chain("anamorph", &[at, ("reference", "-64,-64,0 64,64,0"), ("degree", "1x1x1"), ("push", "1,1,0:1.6")]);
+    compare(&patch([2, 3], false), &rectangle, [6, 9], 1e-12, |p| {
+        let b = bernstein(1, 1, &((foot(&p, 0) + q(64.0)) / q(128.0))) * bernstein(1, 1, &((foot(&p, 1) + q(64.0)) / q(128.0)));
+        radial(p, eye, &(Q::one() + (Q::one() / q(1.6) - Q::one()) * b))
+    });
+    let triangle = chain("anamorph", &[at, ("reference", "0,0,0 128,0,0 0,128,0"), ("degree", "2"), ("push", "0,1,1:1.6")]);
+    compare(&patch([3, 3], false), &triangle, [9, 9], 1e-12, |p| {
+        let (u, v) = (foot(&p, 0) / q(128.0), foot(&p, 1) / q(128.0));
+        radial(p, eye, &(Q::one() + (Q::one() / q(1.6) - Q::one()) * q(2.0) * u * v))
+    });
+}
+
+#[test]
+fn skeletons_and_tapers() {
+    let skeleton = [[0.0, 32.0, 32.0], [20.0, 40.0, 32.0], [44.0, 30.0, 36.0], [70.0, 10.0, 50.0]];
+    let handles = [[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [[0.25, 1.0, 0.0], [0.0, 0.125, 1.0]], [[0.0, 0.75, 0.5], [0.25, 0.0, 1.0]]];
+    let map = chain(
+        "bend",
+        &[
+            ("skeleton", "0,32,32 20,40,32 44,30,36 70,10,50"),
+            ("side", "0:0,1,0 1:0.25,1,0 2:0,0.75,0.5"),
+            ("up", "0:0,0,1 1:0,0.125,1 2:0.25,0,1"),
+        ],
+    );
+    let curve = |points: Vec<[f64; 3]>, u: &Q| -> [Q; 3] {
+        let n = points.len() - 1;
+        std::array::from_fn(|a| points.iter().enumerate().map(|(i, p)| bernstein(n, i, u) * q(p[a])).sum())
+    };
+    compare(&patch([3, 3], true), &map, [9, 9], 1e-13, |[x, y, z]| {
+        let (u, v, w) = (x / q(64.0), y - q(32.0), z - q(32.0));
+        let [c, s, t] = [skeleton.to_vec(), handles.iter().map(|h| h[0]).collect(), handles.iter().map(|h| h[1]).collect()].map(|p| curve(p, &u));
+        std::array::from_fn(|a| &c[a] + &v * &s[a] + &w * &t[a])
+    });
+    let taper = chain("bend", &[("preset", "taper"), ("along", "z"), ("factor", "0.25")]);
+    compare(&patch([3, 3], false), &taper, [6, 6], 1e-13, |[x, y, z]| {
+        let r = Q::one() - q(0.75) * &z / q(64.0);
+        [q(32.0) + &r * (x - q(32.0)), q(32.0) + r * (y - q(32.0)), z]
+    });
+    // One after the other: degrees multiply.
+    let mut both = chain("bend", &[("preset", "taper"), ("along", "z"), ("factor", "0.25")]);
+    both.push(Arc::clone(&chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]).steps()[0]));
+    compare(&patch([2, 1], false), &both, [12, 6], 1e-12, |[x, y, z]| {
+        let r = Q::one() - q(0.75) * &z / q(64.0);
+        let tapered = [q(32.0) + &r * (x - q(32.0)), q(32.0) + r * (y - q(32.0)), z];
+        trilinear(tapered, &[([1, 1, 1], [8.0, -4.0, 16.0], 1.0)])
+    });
+}
+
+/// A joint of a spline lattice at a joint of the surface: composed piece by piece. A patch outside stays as it is.
+#[test]
+fn pieces_within_cells_are_exact_and_others_are_refitted() {
+    let map = chain("ffd", &[("degree", "1"), ("cells", "2x1x1"), ("move", "1,1,1:4,8,0")]);
+    let row = |y: f64| (0..5).map(move |i| DVec3::new(8.0 + 12.0 * f64::from(i), y, 30.0 + f64::from(i * i)));
+    let mut nurbs = Surface::bezier("n", [4, 1], row(10.0).chain(row(50.0)).collect());
+    nurbs.degree = [2, 1];
+    nurbs.knots[0] = vec![0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 1.0];
+    let tent = |[x, y, z]: [Q; 3]| {
+        // The middle of x is at 32, where both cells meet.
+        let s = if x < q(32.0) { &x / q(32.0) } else { q(2.0) - &x / q(32.0) };
+        let k = s * &y / q(64.0) * &z / q(64.0);
+        [x + q(4.0) * &k, y + q(8.0) * k, z]
+    };
+    compare(&nurbs, &map, [6, 3], 1e-13, tent);
+    let mut across = [patch([3, 3], false)];
+    let done = deform_patches(&mut across, &map, 0.5, &budget()).unwrap();
+    assert!(done.refitted == 1 && done.distance <= 0.5, "{done:?}");
+    let region = chain("ffd", &[("region", "0,0,80,64,64,64"), ("move", "1,1,1:4,8,0")]);
+    let mut outside = [patch([3, 3], true)];
+    deform_patches(&mut outside, &region, 0.5, &budget()).unwrap();
+    assert_eq!(outside[0], patch([3, 3], true));
+}
+
+/// A cubic lattice and a twist: within the tolerance by a finer grid than that of the fit, and neighbours stay joined.
+#[test]
+fn refitted_surfaces_are_within_the_tolerance_and_watertight() {
+    let turned = |s: &Surface| {
+        let mut t = s.clone();
+        // A patch beyond the edge u = 1, described from v = 1 to 0.
+        t.points = (0..16).map(|k| s.points[(3 - k / 4) * 4 + 3] + DVec3::new(5.0 * (k % 4) as f64, 0.0, (k % 4) as f64)).collect();
+        t.trims.clear();
+        t
+    };
+    for map in [
+        chain("ffd", &[("degree", "3"), ("move", "1,2,1:12,-9,14")]),
+        chain("bend", &[("preset", "twist"), ("along", "y"), ("angle", "100")]),
+    ] {
+        let mut before = 0;
+        for tolerance in [0.5, 0.01, 1e-4] {
+            let source = [patch([3, 3], false), turned(&patch([3, 3], false))];
+            let mut images = source.clone();
+            let done: DeformedPatches = deform_patches(&mut images, &map, tolerance, &budget()).unwrap();
+            assert!(done.refitted == 2 && done.distance <= tolerance && images[0].trims == source[0].trims);
+            assert!(images[0].points.len() >= before);
+            before = images[0].points.len();
+            for (from, to) in source.iter().zip(&images) {
+                for k in 0..9 * 9 {
+                    let [u, v] = [k % 9, k / 9].map(|i| q((f64::from(i) + 0.4) / 9.0));
+                    let f = |s: &Surface| DVec3::from_array(rational_point(s, &u, &v).map(|x| exact::float(&x)));
+                    let off = map.point(f(from)).distance(f(to));
+                    assert!(off <= 1.05 * tolerance, "{off} of {tolerance}");
+                }
+            }
+            for k in 0..=4 {
+                let v = f64::from(k) / 4.0;
+                let [a, b] = [(&images[0], 1.0, v), (&images[1], 0.0, 1.0 - v)]
+                    .map(|(s, u, v)| rational_point(s, &q(u), &q(v)).map(|x| exact::float(&x)));
+                assert!(DVec3::from_array(a).distance(DVec3::from_array(b)) < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn infinity_and_endless_work_are_refused() {
+    // The eye is inside the box, and points behind it have no image.
+    let map = chain("anamorph", &[("eye", "30,30,20"), ("reference", "0,0,0 64,0,0 0,64,0"), ("push", "1,0,0:2")]);
+    let e = deform_patches(&mut [patch([3, 3], false)], &map, 0.1, &budget()).unwrap_err();
+    assert!(matches!(e, PatchError::Undefined { surface: 0, .. }), "{e}");
+    let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e4));
+    let twist = chain("bend", &[("preset", "twist"), ("along", "y"), ("angle", "100")]);
+    let e = deform_patches(&mut [patch([3, 3], false)], &twist, 1e-12, &small).unwrap_err();
+    assert!(e.to_string().contains("evaluations"), "{e}");
+    let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e3));
+    assert!(tessellate(&[patch([3, 3], false)], Some(1e-9), &small).is_err());
+    let mesh = tessellate(&[patch([3, 3], false)], Some(0.01), &budget()).unwrap();
+    assert!(mesh.polygons.len() > 64 && mesh.name_of(0) == "s");
+}
