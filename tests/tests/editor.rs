@@ -2,29 +2,13 @@
 
 mod support;
 
-use std::path::Path;
 use std::process::Command;
-use support::{pathwarp_program, root};
-
-/// What the tests need besides the program.
-fn missing(web: &Path) -> Option<&'static str> {
-    let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success());
-    let browsers = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-    if !is_there("node") {
-        Some("node")
-    } else if !web.join("node_modules/playwright-core").is_dir() {
-        Some("playwright-core (npm ci in crates/pathwarp-editor/web)")
-    } else if !browsers.iter().any(|b| Path::new(b).exists()) {
-        Some("Chromium")
-    } else {
-        None
-    }
-}
+use support::{browser, pathwarp_program, root};
 
 #[test]
 fn the_page_works_in_a_browser() {
     let web = root().join("crates/pathwarp-editor/web");
-    if let Some(what) = missing(&web) {
+    if let Some(what) = browser::missing() {
         println!("skipped: the page is not tested without {what}");
         return;
     }

@@ -6,6 +6,7 @@ mod common;
 mod drawings;
 mod editor;
 mod extension;
+mod hand;
 #[path = "../support/mod.rs"]
 mod support;
 

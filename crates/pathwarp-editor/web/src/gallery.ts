@@ -11,6 +11,7 @@ interface Card {
   steps: Step[] | null;
   deformation: string;
   args: Record<string, string[]>;
+  variant: { label: string; param: string } | null;
   /** What the search looks at. */
   words: string;
 }
@@ -60,7 +61,7 @@ export class Gallery {
     const styles = all.filter((d) => d.gallery);
     this.box.replaceChildren(
       this.own,
-      this.section("Bend by hand", byHand.map((d) => this.whole(d))),
+      this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
       ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery!.title), this.presets(d))),
       this.section("Effects", effects.map((d) => this.whole(d))),
     );
@@ -98,12 +99,12 @@ export class Gallery {
     return h("section", {}, h("h3", {}, title), items);
   }
 
-  private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, ...text: Node[]): Card {
+  private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
-    const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), ...text);
-    const card: Card = { button, image, steps, deformation, args, words: button.textContent ?? "" };
+    const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
+    const card: Card = { button, image, steps, deformation, args, variant, words: button.textContent ?? "" };
     button.addEventListener("click", () => {
-      void this.app.choose(deformation, args, this.appends);
+      void this.app.choose(deformation, args, this.appends, variant?.label ?? null);
       this.appends = false;
       document.body.classList.remove("shapes-open");
     });
@@ -112,11 +113,11 @@ export class Gallery {
     return card;
   }
 
-  private whole(d: Deformation): Card {
-    const card = this.card(d.name, {}, null, h("span", { class: "name" }, called(d)));
+  private whole(d: Deformation, variant: Card["variant"] = null): Card {
+    const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
     card.button.title = capital(d.title);
     // What it does is looked for, too.
-    card.words = `${called(d)} ${d.name} ${d.title}`;
+    card.words = `${variant?.label ?? ""} ${called(d)} ${d.name} ${d.title}`;
     return card;
   }
 
@@ -135,7 +136,7 @@ export class Gallery {
     this.isDrawing = true;
     for (let card = this.queue.shift(); card; card = this.queue.shift()) {
       while (this.app.isDragging) await new Promise((done) => setTimeout(done, 100));
-      const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation };
+      const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation, variant: card.variant?.label ?? null };
       try {
         const { svg } = await this.app.connection.ask(request);
         card.image.src = URL.createObjectURL(new Blob([svg ?? ""], { type: "image/svg+xml" }));
@@ -150,8 +151,10 @@ export class Gallery {
   /** Marks the shape of the step being changed. */
   private mark(): void {
     const { step } = this.app;
-    for (const { button, deformation, args } of this.cards) {
-      const isChosen = step?.deformation === deformation && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
+    for (const { button, deformation, args, variant } of this.cards) {
+      const others = this.app.deformation(deformation)?.variants ?? [];
+      const isVariant = variant ? step?.args[variant.param] !== undefined : !others.some((o) => step?.args[o.param]);
+      const isChosen = step?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
       button.setAttribute("aria-pressed", String(isChosen));
     }
   }

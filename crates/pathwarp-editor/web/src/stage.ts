@@ -14,6 +14,8 @@ import type { Answer, XY } from "./types";
 const MARGIN = 56;
 /** The radius in which a finger finds a handle, in px. */
 const REACH = 18;
+/** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
+const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
 /** The pause after which keys count as one change, in ms. */
 const KEYS = 500;
 
@@ -25,6 +27,7 @@ export class Stage {
   private beforeArt = s("g", { class: "art", visibility: "hidden" });
   private heat = s("g", { class: "heat" });
   private nodes = s("path", { class: "nodes" });
+  private arms = s("path", { class: "arms" });
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
@@ -45,7 +48,7 @@ export class Stage {
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.nodes, this.guides, this.marks, this.knobs);
+    this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
     const stage = this;
     app.screen = { show: (answer) => this.show(answer), get pixel() { return stage.camera.pixel; } };
     app.listen((change) => {
@@ -93,13 +96,32 @@ export class Stage {
     if (!state) return;
     const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
     this.camera.toPx = state.toPx;
+    this.grow();
     if (isNew || !this.isFitted) this.fit();
   }
 
   private show(answer: Answer): void {
     if (answer.picture) this.drawing.show(answer.picture);
+    if (answer.summary) this.grow();
     if (this.showsNodes) this.drawNodes();
     this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
+  }
+
+  /** The page, as far as it holds the artwork: saving makes it larger where needed. */
+  private grow(): void {
+    const { state } = this.app;
+    if (!state) return;
+    const [x, y, w, h] = state.page;
+    const [[x0, y0], [x1, y1]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h])];
+    let box = [Math.min(x0, x1), Math.min(y0, y1), Math.max(x0, x1), Math.max(y0, y1)] as const;
+    const art = this.art.getBBox();
+    if (!state.program && art.width > 0) {
+      box = [Math.min(box[0], art.x), Math.min(box[1], art.y), Math.max(box[2], art.x + art.width), Math.max(box[3], art.y + art.height)];
+    }
+    this.sheet.setAttribute("x", String(box[0]));
+    this.sheet.setAttribute("y", String(box[1]));
+    this.sheet.setAttribute("width", String(box[2] - box[0]));
+    this.sheet.setAttribute("height", String(box[3] - box[1]));
   }
 
   private fold(at: XY): SVGGElement {
@@ -131,7 +153,9 @@ export class Stage {
   }
 
   drawNodes(): void {
-    this.nodes.setAttribute("d", this.showsNodes ? nodesOf(this.drawing.paths()) : "");
+    const { nodes, arms } = this.showsNodes ? nodesOf(this.drawing.paths()) : { nodes: "", arms: "" };
+    this.nodes.setAttribute("d", nodes);
+    this.arms.setAttribute("d", arms);
   }
 
   /** Shows the stretch of the visible steps, or hides it. */
@@ -139,9 +163,8 @@ export class Stage {
     const { app } = this;
     const answer = this.showsStretch
       ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
-    const [a, b, c, d, e, f] = this.camera.toPx;
-    const place = ([x, y]: XY): XY => [a * x + c * y + e, b * x + d * y + f];
-    this.heat.replaceChildren(...(answer?.stretch && this.showsStretch ? cells(answer.stretch, place) : []));
+    const stretch = this.showsStretch ? answer?.stretch : null;
+    this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
   }
 
   /** The next click on the drawing names a path. */
@@ -153,18 +176,8 @@ export class Stage {
   /** Puts everything in its place on the screen. */
   layout(): void {
     const { camera } = this;
-    const { state } = this.app;
-    for (const layer of [this.art, this.beforeArt]) layer.setAttribute("transform", camera.transform);
-    this.nodes.setAttribute("transform", camera.transform);
-    this.heat.setAttribute("transform", camera.transform);
-    if (state) {
-      const [x, y, w, h] = state.page;
-      const [a, b] = [camera.toScreen([x, y]), camera.toScreen([x + w, y + h])];
-      this.sheet.setAttribute("x", String(Math.min(a[0], b[0])));
-      this.sheet.setAttribute("y", String(Math.min(a[1], b[1])));
-      this.sheet.setAttribute("width", String(Math.abs(b[0] - a[0])));
-      this.sheet.setAttribute("height", String(Math.abs(b[1] - a[1])));
-    }
+    const layers = [this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+    for (const layer of layers) layer.setAttribute("transform", camera.transform);
     for (const mark of Array.from(this.marks.children) as SVGGElement[]) {
       const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at!) as XY);
       mark.setAttribute("transform", `translate(${x} ${y})`);
@@ -273,7 +286,8 @@ export class Stage {
       stop.abort();
       end();
     };
-    window.addEventListener("pointermove", (event) => {
+    window.addEventListener(MOVES, (e) => {
+      const event = e as PointerEvent;
       if (event.pointerId !== id) return;
       this.touches.set(id, this.point(event));
       move(this.point(event), event);
@@ -354,7 +368,7 @@ export class Stage {
 
   private doubleClick(e: MouseEvent): void {
     if ((e.target as Element).closest(".knob")) return;
-    const key = this.app.addPoint(this.camera.toUser(this.point(e)));
+    const key = this.app.addPoint(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
     if (key) this.focused = key;
   }
 
@@ -370,11 +384,17 @@ export class Stage {
       this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
     } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
       e.preventDefault();
-      handle.remove();
-      this.app.handles.write(handle.param);
-      this.focused = null;
-      void this.app.commit();
+      this.remove(handle);
     }
+  }
+
+  /** Takes a point away. */
+  remove(handle: Handle): void {
+    if (!handle.remove || !this.app.handles) return;
+    handle.remove();
+    this.app.handles.write(handle.param);
+    this.focus(null);
+    void this.app.commit();
   }
 
   /** Moves a handle by keys or by typed numbers. */
