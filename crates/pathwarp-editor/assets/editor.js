@@ -184,9 +184,9 @@
       const points = piece(sub, k);
       for (let i = 1; i < SAMPLES; i++) {
         const t = i / SAMPLES;
-        const [[x, y]] = scheme(points, t).pop();
-        const distance = Math.hypot(x - to[0], y - to[1]);
-        if (!best || distance < best.distance) best = { piece: k, t, distance };
+        const [at] = scheme(points, t).pop();
+        const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
+        if (!best || distance < best.distance) best = { piece: k, t, at, distance };
       }
     });
     return best;
@@ -224,6 +224,7 @@
   }
 
   // src/handles.ts
+  var MARGIN = 0.15;
   var FEWEST_CLOSED = 3;
   var Handles = class {
     constructor(deformation, step2, grips) {
@@ -431,18 +432,51 @@
         this.collect();
       };
     }
-    /** Adds a point to the path that passes near a place. Returns the key of its handle. */
-    divide(at, reach) {
+    /** The path that passes nearest to a place, among those of which something is true. */
+    near(at, reach, is) {
       let best = null;
-      for (const { name: name2, points } of this.deformation.params) {
-        this.grips[name2]?.paths?.forEach((path, i) => path.forEach((sub2, j) => {
-          const distance = points ? nearest(sub2, at)?.distance ?? Infinity : Infinity;
-          if (distance <= reach && (!best || distance < best.distance)) best = { name: name2, id: `${i}.${j}`, sub: sub2, distance };
+      for (const param of this.deformation.params.filter(is)) {
+        this.grips[param.name]?.paths?.forEach((path, i) => path.forEach((sub, j) => {
+          const spot = nearest(sub, at);
+          if (spot && spot.distance <= Math.min(reach, best?.spot.distance ?? reach)) best = { name: param.name, id: `${i}.${j}`, sub, spot };
         }));
       }
-      if (!best) return null;
-      const { name, id, sub } = best;
-      const spot = nearest(sub, at);
+      return best;
+    }
+    /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
+    pull(at, reach) {
+      const found = this.near(at, reach, () => true);
+      if (!found) return this.pullCircle(at, reach);
+      const { name, id, sub, spot } = found;
+      const handle = (n, side = "") => this.handles.find((h2) => h2.key === `${name}/${id}/${n}${side}`);
+      const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
+      const isCurve = sub.segments[spot.piece].length === 6;
+      const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
+      const [first, second] = ends;
+      if (!first || !second) return null;
+      const t = Math.min(Math.max(spot.t, MARGIN), 1 - MARGIN);
+      const whole = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
+      const shares = isCurve ? [(1 - t) / whole, t / whole] : [1, 1];
+      const from = [[...first.get()], [...second.get()]];
+      return {
+        param: name,
+        move: (to, smooth) => [first, second].forEach((h2, i) => {
+          const [x, y] = from[i];
+          h2.set([x + shares[i] * (to[0] - at[0]), y + shares[i] * (to[1] - at[1])], smooth);
+        })
+      };
+    }
+    pullCircle(at, reach) {
+      const radius = this.handles.find((h2) => h2.key === "radius");
+      const [grip, centre] = [this.grips.radius, this.grips.center?.point];
+      if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
+      return { param: "radius", move: (to, smooth) => radius.set(to, smooth) };
+    }
+    /** Adds a point to the path that passes near a place. Returns the key of its handle. */
+    divide(at, reach) {
+      const found = this.near(at, reach, (param) => param.points !== void 0);
+      if (!found) return null;
+      const { name, id, sub, spot } = found;
       if (this.points(name) === "any") {
         const node2 = split(sub, spot);
         this.collect();
@@ -1569,7 +1603,7 @@
   }
 
   // src/stage.ts
-  var MARGIN = 56;
+  var MARGIN2 = 56;
   var REACH = 18;
   var MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
   var KEYS = 500;
@@ -1609,6 +1643,8 @@
     drawing = new Drawing(this.art);
     elements = /* @__PURE__ */ new Map();
     lines = [];
+    /** Wide, invisible lines over those that can be pulled, by their index. */
+    reaches = [];
     focused = null;
     touches = /* @__PURE__ */ new Map();
     keysTimer = 0;
@@ -1622,6 +1658,9 @@
     onFocus = () => {
     };
     onZoom = () => {
+    };
+    /** The view was moved by somebody who took hold of the artwork. */
+    onPan = () => {
     };
     get size() {
       return [this.svg.clientWidth, this.svg.clientHeight];
@@ -1638,7 +1677,7 @@
       const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
       const height = Math.max(whole - covered, whole / 4);
       if (!state || width === 0 || height === 0) return;
-      this.camera.fit(state.page, [width, height], Math.min(MARGIN, width / 10));
+      this.camera.fit(state.page, [width, height], Math.min(MARGIN2, width / 10));
       this.isFitted = true;
       this.layout();
     }
@@ -1738,7 +1777,9 @@
         if (!element) return;
         const [first, ...rest] = line.points.map(at);
         const close = line.closed ? "Z" : "";
-        element.setAttribute("d", line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`);
+        const d = line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`;
+        element.setAttribute("d", d);
+        this.reaches[i]?.setAttribute("d", d);
       });
       for (const handle of handles.handles) {
         const [x, y] = this.camera.toScreen(handle.get());
@@ -1748,7 +1789,9 @@
     rebuild() {
       const { handles } = this.app;
       this.elements.clear();
-      this.lines = (handles?.lines() ?? []).map((line) => s("path", { class: `line ${line.kind}` }));
+      const lines = handles?.lines() ?? [];
+      this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
+      this.reaches = lines.map((line) => line.kind === "path" ? s("path", { class: "pull" }) : null);
       const knobs = (handles?.handles ?? []).map((handle) => {
         const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" }) : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
         const knob = s(
@@ -1761,7 +1804,7 @@
         this.elements.set(handle.key, knob);
         return knob;
       });
-      this.guides.replaceChildren(...this.lines);
+      this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
       const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
       this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
       this.placeHandles();
@@ -1799,8 +1842,29 @@
       this.touches.set(e.pointerId, this.point(e));
       if (this.touches.size === 2) return this.pinch();
       if (this.touches.size > 2) return;
+      const isPull = e.target.matches(".pull");
       if (knob && e.button === 0 && !this.isBefore) this.drag(e, knob);
-      else this.pan(e);
+      else if (!(isPull && e.button === 0 && !this.isBefore && this.pull(e))) this.pan(e);
+    }
+    /** Follows a line that is pulled. Returns `false` if there is none. */
+    pull(e) {
+      const { handles } = this.app;
+      const pull = handles?.pull(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
+      if (!handles || !pull) return false;
+      let hasMoved = false;
+      this.app.isDragging = true;
+      this.follow(e, (to, event) => {
+        if (this.touches.size > 1) return;
+        hasMoved = true;
+        pull.move(this.camera.toUser(to), this.modes.smooths);
+        handles.write(pull.param);
+        this.placeHandles();
+        this.app.draft(event.timeStamp);
+      }, () => {
+        this.app.isDragging = false;
+        if (hasMoved) void this.app.commit();
+      });
+      return true;
     }
     picked(e) {
       const named = e.target.closest(".art [id]");
@@ -1859,14 +1923,21 @@
       this.app.draft(since);
     }
     pan(e) {
-      let last = this.point(e);
+      const first = this.point(e);
+      let last = first;
+      const start = this.camera.toUser(first);
       this.svg.classList.add("panning");
       this.follow(e, (to) => {
         if (this.touches.size > 1) return;
         this.camera.shift = [this.camera.shift[0] + to[0] - last[0], this.camera.shift[1] + to[1] - last[1]];
         last = to;
         this.layout();
-      }, () => this.svg.classList.remove("panning"));
+      }, () => {
+        this.svg.classList.remove("panning");
+        const [x, y, w, h2] = this.app.handles?.frame ?? [0, 0, 0, 0];
+        const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
+        if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+      });
     }
     /** Two fingers move and magnify the view. */
     pinch() {
@@ -2033,6 +2104,9 @@
   }
   on("open-shapes", () => sheet("shapes-open"));
   on("open-settings", () => sheet("settings-open"));
+  stage.onPan = () => {
+    if (app.isProposal && app.handles?.handles.length) byId("note").textContent = "This moves the view. Pull a blue point or line to bend the artwork";
+  };
   stage.onZoom = () => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
@@ -2151,7 +2225,7 @@
       byId("mirror").hidden = !has;
       byId("snap").hidden = !has;
       const adds = grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add one, Delete removes it";
-      const note = !has ? "Change the settings" : grows || app.handles?.divides ? `Drag a point. ${adds}` : "Drag a point to bend the artwork";
+      const note = !has ? "Change the settings" : grows || app.handles?.divides ? `Pull a blue point or line. ${adds}` : "Pull a blue point or line to bend the artwork";
       byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
     }
     if (change === "link") {

@@ -57,7 +57,7 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl FnOnce(&str)
     announce(&address);
     let waits = options.purpose.program().is_some();
     if options.open && (waits || has_display()) {
-        let opened = open::that_detached(&address);
+        let opened = open_browser(&address);
         // Otherwise the address is printed, and a browser that cannot be started is no error.
         if let (Err(e), true) = (opened, waits) {
             return Err(format!("no browser can be started: {e}"));
@@ -67,6 +67,15 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl FnOnce(&str)
     let shared = Arc::new(Shared::new(session));
     accept(&listener, &guard, &shared, waits.then_some(FIRST_PAGE))?;
     Ok(shared.with_session(|s| s.result()))
+}
+
+/// Opens the browser that the user names in the usual variable, or else the system's.
+fn open_browser(address: &str) -> io::Result<()> {
+    match std::env::var("BROWSER") {
+        // Lists and patterns are for the desktop's own opener to read.
+        Ok(name) if !name.is_empty() && !name.contains([':', '%', ';']) => open::with_detached(address, name),
+        _ => open::that_detached(address),
+    }
 }
 
 /// Returns `false` where no browser could show itself.

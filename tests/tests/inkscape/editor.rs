@@ -98,10 +98,8 @@ pub fn convert(folder: &Path, args: &[&str]) {
 }
 
 fn finish(run: &mut Command, folder: &Path) {
-    // Programs in the folder stand in for those of a desktop.
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::env::join_paths(std::iter::once(folder.join("bin")).chain(std::env::split_paths(&path))).unwrap();
-    let run = run.env("INKSCAPE_PROFILE_DIR", folder.join("profile")).env("PATH", path);
+    // A program in the folder stands in for the browser.
+    let run = run.env("INKSCAPE_PROFILE_DIR", folder.join("profile")).env("BROWSER", folder.join("browser"));
     let run = run.current_dir(folder).stdin(Stdio::null());
     let out = run.output().unwrap();
     let said = [out.stdout, out.stderr].map(|t| String::from_utf8_lossy(&t).into_owned()).join("\n");

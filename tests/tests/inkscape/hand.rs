@@ -12,8 +12,7 @@ const BODY: &str = "<path id='a' d='M 20,20 H 60 V 60 H 20 Z'/><path id='b' d='M
 
 /// What the user does: keeps the result, or closes the page.
 fn user(folder: &Path, does: &str) {
-    let opener = folder.join("bin/xdg-open");
-    fs::create_dir_all(opener.parent().unwrap()).unwrap();
+    let opener = folder.join("browser");
     let web = root().join("crates/pathwarp-editor/web");
     fs::write(&opener, format!("#!/bin/sh\ncd '{}' && exec node tests/hand.mjs {does} \"$1\"\n", web.display()))
         .unwrap();

@@ -1,9 +1,9 @@
 // The handles of a step, from the geometry of its parameters.
 
-import type { Deformation, Grip, Net, Step, StepGrips, Subpath, XY } from "./types";
+import type { Deformation, Grip, Net, Param, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, valuesOf } from "./values";
 import { called, words } from "./dom";
-import { closed, drop, end, nearest, raised, split } from "./knots";
+import { closed, drop, end, nearest, raised, split, type Spot } from "./knots";
 
 export type Shape = "node" | "control" | "source";
 
@@ -29,6 +29,23 @@ export interface Line {
   cubic?: boolean;
   closed?: boolean;
 }
+
+/** A place on a path of a parameter. */
+interface Near {
+  name: string;
+  id: string;
+  sub: Subpath;
+  spot: Spot;
+}
+
+/** A line that is held. */
+export interface Pull {
+  param: string;
+  move: (to: XY, smooth: boolean) => void;
+}
+
+/** Near its ends, a curve would need control points far away to follow a pointer. */
+const MARGIN = 0.15;
 
 /** Fewest points of a closed path that artwork can be put into. */
 const FEWEST_CLOSED = 3;
@@ -203,18 +220,55 @@ export class Handles {
     };
   }
 
-  /** Adds a point to the path that passes near a place. Returns the key of its handle. */
-  private divide(at: XY, reach: number): string | null {
-    let best: { name: string; id: string; sub: Subpath; distance: number } | null = null;
-    for (const { name, points } of this.deformation.params) {
-      this.grips[name]?.paths?.forEach((path, i) => path.forEach((sub, j) => {
-        const distance = points ? nearest(sub, at)?.distance ?? Infinity : Infinity;
-        if (distance <= reach && (!best || distance < best.distance)) best = { name, id: `${i}.${j}`, sub, distance };
+  /** The path that passes nearest to a place, among those of which something is true. */
+  private near(at: XY, reach: number, is: (param: Param) => boolean): Near | null {
+    let best: Near | null = null;
+    for (const param of this.deformation.params.filter(is)) {
+      this.grips[param.name]?.paths?.forEach((path, i) => path.forEach((sub, j) => {
+        const spot = nearest(sub, at);
+        if (spot && spot.distance <= Math.min(reach, best?.spot.distance ?? reach)) best = { name: param.name, id: `${i}.${j}`, sub, spot };
       }));
     }
-    if (!best) return null;
-    const { name, id, sub } = best as { name: string; id: string; sub: Subpath };
-    const spot = nearest(sub, at)!;
+    return best;
+  }
+
+  /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
+  pull(at: XY, reach: number): Pull | null {
+    const found = this.near(at, reach, () => true);
+    if (!found) return this.pullCircle(at, reach);
+    const { name, id, sub, spot } = found;
+    const handle = (n: number, side = "") => this.handles.find((h) => h.key === `${name}/${id}/${n}${side}`);
+    const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
+    const isCurve = sub.segments[spot.piece]!.length === 6;
+    const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
+    const [first, second] = ends;
+    if (!first || !second) return null;
+    // The point of the curve follows the pointer, by the control point that is nearer more than by the other.
+    const t = Math.min(Math.max(spot.t, MARGIN), 1 - MARGIN);
+    const whole = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
+    const shares = isCurve ? [(1 - t) / whole, t / whole] : [1, 1];
+    const from = [[...first.get()], [...second.get()]] as [XY, XY];
+    return {
+      param: name,
+      move: (to, smooth) => [first, second].forEach((h, i) => {
+        const [x, y] = from[i]!;
+        h.set([x + shares[i]! * (to[0] - at[0]), y + shares[i]! * (to[1] - at[1])], smooth);
+      }),
+    };
+  }
+
+  private pullCircle(at: XY, reach: number): Pull | null {
+    const radius = this.handles.find((h) => h.key === "radius");
+    const [grip, centre] = [this.grips.radius, this.grips.center?.point];
+    if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
+    return { param: "radius", move: (to, smooth) => radius.set(to, smooth) };
+  }
+
+  /** Adds a point to the path that passes near a place. Returns the key of its handle. */
+  private divide(at: XY, reach: number): string | null {
+    const found = this.near(at, reach, (param) => param.points !== undefined);
+    if (!found) return null;
+    const { name, id, sub, spot } = found;
     if (this.points(name) === "any") {
       const node = split(sub, spot);
       this.collect();

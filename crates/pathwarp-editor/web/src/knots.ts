@@ -9,6 +9,7 @@ const SAMPLES = 32;
 export interface Spot {
   piece: number;
   t: number;
+  at: XY;
   distance: number;
 }
 
@@ -51,9 +52,9 @@ export function nearest(sub: Subpath, to: XY): Spot | null {
     const points = piece(sub, k);
     for (let i = 1; i < SAMPLES; i++) {
       const t = i / SAMPLES;
-      const [[x, y]] = scheme(points, t).pop()! as [XY];
-      const distance = Math.hypot(x - to[0], y - to[1]);
-      if (!best || distance < best.distance) best = { piece: k, t, distance };
+      const [at] = scheme(points, t).pop()! as [XY];
+      const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
+      if (!best || distance < best.distance) best = { piece: k, t, at, distance };
     }
   });
   return best;

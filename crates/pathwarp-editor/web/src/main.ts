@@ -45,6 +45,9 @@ function sheet(name: "shapes-open" | "settings-open" | null): void {
 on("open-shapes", () => sheet("shapes-open"));
 on("open-settings", () => sheet("settings-open"));
 
+stage.onPan = () => {
+  if (app.isProposal && app.handles?.handles.length) byId("note").textContent = "This moves the view. Pull a blue point or line to bend the artwork";
+};
 stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
 };
@@ -177,7 +180,7 @@ app.listen((change) => {
     byId("mirror").hidden = !has;
     byId("snap").hidden = !has;
     const adds = grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add one, Delete removes it";
-    const note = !has ? "Change the settings" : grows || app.handles?.divides ? `Drag a point. ${adds}` : "Drag a point to bend the artwork";
+    const note = !has ? "Change the settings" : grows || app.handles?.divides ? `Pull a blue point or line. ${adds}` : "Pull a blue point or line to bend the artwork";
     byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
   }
   if (change === "link") {

@@ -34,6 +34,8 @@ export class Stage {
   private drawing = new Drawing(this.art);
   private elements = new Map<string, SVGGElement>();
   private lines: SVGPathElement[] = [];
+  /** Wide, invisible lines over those that can be pulled, by their index. */
+  private reaches: (SVGPathElement | null)[] = [];
   private focused: string | null = null;
   private touches = new Map<number, XY>();
   private keysTimer = 0;
@@ -46,6 +48,8 @@ export class Stage {
   picks: ((id: string) => void) | null = null;
   onFocus: (handle: Handle | null) => void = () => {};
   onZoom: () => void = () => {};
+  /** The view was moved by somebody who took hold of the artwork. */
+  onPan: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
     this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
@@ -195,7 +199,9 @@ export class Stage {
       if (!element) return;
       const [first, ...rest] = line.points.map(at);
       const close = line.closed ? "Z" : "";
-      element.setAttribute("d", line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`);
+      const d = line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`;
+      element.setAttribute("d", d);
+      this.reaches[i]?.setAttribute("d", d);
     });
     for (const handle of handles.handles) {
       const [x, y] = this.camera.toScreen(handle.get());
@@ -206,7 +212,9 @@ export class Stage {
   private rebuild(): void {
     const { handles } = this.app;
     this.elements.clear();
-    this.lines = (handles?.lines() ?? []).map((line) => s("path", { class: `line ${line.kind}` }));
+    const lines = handles?.lines() ?? [];
+    this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
+    this.reaches = lines.map((line) => (line.kind === "path" ? s("path", { class: "pull" }) : null));
     const knobs = (handles?.handles ?? []).map((handle) => {
       const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" })
         : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
@@ -219,7 +227,7 @@ export class Stage {
       this.elements.set(handle.key, knob);
       return knob;
     });
-    this.guides.replaceChildren(...this.lines);
+    this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
     const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
     this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
     this.placeHandles();
@@ -263,8 +271,30 @@ export class Stage {
     this.touches.set(e.pointerId, this.point(e));
     if (this.touches.size === 2) return this.pinch();
     if (this.touches.size > 2) return;
+    const isPull = (e.target as Element).matches(".pull");
     if (knob && e.button === 0 && !this.isBefore) this.drag(e, knob);
-    else this.pan(e);
+    else if (!(isPull && e.button === 0 && !this.isBefore && this.pull(e))) this.pan(e);
+  }
+
+  /** Follows a line that is pulled. Returns `false` if there is none. */
+  private pull(e: PointerEvent): boolean {
+    const { handles } = this.app;
+    const pull = handles?.pull(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
+    if (!handles || !pull) return false;
+    let hasMoved = false;
+    this.app.isDragging = true;
+    this.follow(e, (to, event) => {
+      if (this.touches.size > 1) return;
+      hasMoved = true;
+      pull.move(this.camera.toUser(to), this.modes.smooths);
+      handles.write(pull.param);
+      this.placeHandles();
+      this.app.draft(event.timeStamp);
+    }, () => {
+      this.app.isDragging = false;
+      if (hasMoved) void this.app.commit();
+    });
+    return true;
   }
 
   private picked(e: PointerEvent): void {
@@ -329,14 +359,21 @@ export class Stage {
   }
 
   private pan(e: PointerEvent): void {
-    let last = this.point(e);
+    const first = this.point(e);
+    let last = first;
+    const start = this.camera.toUser(first);
     this.svg.classList.add("panning");
     this.follow(e, (to) => {
       if (this.touches.size > 1) return;
       this.camera.shift = [this.camera.shift[0] + to[0] - last[0], this.camera.shift[1] + to[1] - last[1]];
       last = to;
       this.layout();
-    }, () => this.svg.classList.remove("panning"));
+    }, () => {
+      this.svg.classList.remove("panning");
+      const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
+      const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
+      if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+    });
   }
 
   /** Two fingers move and magnify the view. */

@@ -8,14 +8,14 @@ import { check, choose, drag, open, paths, program, quiet } from "./harness.mjs"
 const DRAWING = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200">
 <path id="a" d="M20,20h160v60h-160z"/><path id="b" style="fill:#c03030" d="M220,20h160v60h-160z"/></svg>`;
 
-/** Calls the effect. A program in the place of the desktop's opener writes the address of the page to a file. */
+/** Calls the effect. A program in the place of the browser writes the address of the page to a file. */
 async function call(svg, ...ids) {
   const dir = mkdtempSync(join(tmpdir(), "pathwarp-inkscape-"));
   writeFileSync(`${dir}/ink_ext_1.svg`, svg);
-  writeFileSync(`${dir}/xdg-open`, `#!/bin/sh\necho "$1" > ${dir}/address.new && mv ${dir}/address.new ${dir}/address\n`);
-  chmodSync(`${dir}/xdg-open`, 0o755);
+  writeFileSync(`${dir}/browser`, `#!/bin/sh\necho "$1" > ${dir}/address.new && mv ${dir}/address.new ${dir}/address\n`);
+  chmodSync(`${dir}/browser`, 0o755);
   const args = [...ids.map((id) => `--id=${id}`), "--inkscape-action=hand", `${dir}/ink_ext_1.svg`];
-  const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, PATH: `${dir}:${process.env.PATH}`, DOCUMENT_PATH: "/home/me/poster.svg" } });
+  const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, BROWSER: `${dir}/browser`, DOCUMENT_PATH: "/home/me/poster.svg" } });
   process.once("exit", () => child.kill("SIGKILL"));
   let [out, said] = ["", ""];
   child.stdout.on("data", (text) => (out += text));

@@ -68,3 +68,26 @@ export const all_sixteen_points_of_a_cage = () => within("Cage, 16 points", asyn
   await drag(page, "net/0.1/0/out", 30, 30);
   check((await paths(page)) !== before, "an inner point does nothing");
 });
+
+/** The line itself is pulled: a curve passes under the pointer, its ends stay. */
+export const lines_are_pulled = () => within(null, async (page) => {
+  const [before, [ax, ay], [bx, by]] = [await paths(page), await middle(page, "shaper/0.0/3"), await middle(page, "shaper/0.0/2")];
+  const at = ax + 0.4 * (bx - ax);
+  await page.mouse.move(at, ay);
+  await page.mouse.down();
+  await page.mouse.move(at, ay - 50, { steps: 10 });
+  await page.mouse.up();
+  await quiet(page);
+  check((await paths(page)) !== before, "pulling the line does nothing");
+  const gap = await page.$eval("#stage .line.path", (line, [x, y]) => {
+    const box = line.ownerSVGElement.getBoundingClientRect();
+    const length = line.getTotalLength();
+    const away = (i) => { const p = line.getPointAtLength((i / 2000) * length); return Math.hypot(p.x + box.x - x, p.y + box.y - y); };
+    return Math.min(...Array.from({ length: 2001 }, (_, i) => away(i)));
+  }, [at, ay - 50]);
+  check(gap < 3, `the line passes ${gap} px from the pointer`);
+  const [ex, ey] = await middle(page, "shaper/0.0/3");
+  check(Math.hypot(ex - ax, ey - ay) < 1, "the end of the line has moved");
+  await page.click("#undo");
+  await becomes(page, before, "undo did not bring the picture back");
+});
