@@ -1,7 +1,6 @@
 //! `pathwarp.h` against the functions of `pathwarp-c`: the same names, parameters and types, in the same order.
 
-mod support;
-
+use crate::support::root;
 use std::collections::BTreeMap;
 use syn::{FnArg, GenericParam, Item, Pat, ReturnType, Type};
 
@@ -56,7 +55,7 @@ fn c_type(t: &Type, returned: bool) -> String {
 }
 
 fn read(file: &str) -> String {
-    std::fs::read_to_string(support::root().join("crates/pathwarp-c").join(file)).unwrap()
+    std::fs::read_to_string(root().join("crates/pathwarp-c").join(file)).unwrap()
 }
 
 #[test]

@@ -1,9 +1,7 @@
 //! `pathwarp edit` in a headless Chromium: the tests of the page (`crates/pathwarp-editor/web/tests`) with the real program.
 
-mod support;
-
+use crate::support::{self, browser, pathwarp_program, root};
 use std::process::Command;
-use support::{browser, pathwarp_program, root};
 
 #[test]
 fn the_page_works_in_a_browser() {
@@ -21,12 +19,12 @@ fn the_page_works_in_a_browser() {
 
 #[test]
 fn what_cannot_be_edited_is_said() {
-    let out = support::pathwarp(&["edit", "-"]);
+    let out = crate::support::pathwarp(&["edit", "-"]);
     assert_eq!(out.status.code(), Some(2));
     let folder = tempfile::tempdir().unwrap();
     let bad = folder.path().join("bad.svg");
     std::fs::write(&bad, "<svg").unwrap();
-    let out = support::pathwarp(&["edit", "--no-open", bad.to_str().unwrap()]);
+    let out = crate::support::pathwarp(&["edit", "--no-open", bad.to_str().unwrap()]);
     assert_eq!(out.status.code(), Some(3));
     assert!(String::from_utf8_lossy(&out.stderr).contains("bad.svg"), "{out:?}");
     assert!(out.stdout.is_empty(), "the address is printed before the drawing is read");

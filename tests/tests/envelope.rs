@@ -1,11 +1,9 @@
 //! Envelopes through the program: straightness measured on the output SVG, and shapes of the drawing as envelopes.
 
-mod support;
-
+use crate::support::{expect_code, sample};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp_svg::{Document, ReadOptions};
 use std::fs;
-use support::{expect_code, sample};
 
 fn document(file: &std::path::Path) -> Document {
     Document::read(&fs::read(file).unwrap(), "out", &ReadOptions::default()).unwrap()

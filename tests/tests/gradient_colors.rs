@@ -1,15 +1,11 @@
 //! Colours of bent gradients, pixel by pixel: the program's result, rendered, against the gradient's definition evaluated at the
 //! exact inverse of each pixel. The map is a pair of shears, whose inverse has a closed form.
 
-#[path = "../../crates/pathwarp-svg/tests/common/mod.rs"]
-mod common;
-mod support;
-
-use common::{options, rendered};
+use crate::common::{options, rendered};
+use crate::support::pathwarp_in;
 use pathwarp::kurbo::{Affine, Point};
 use pathwarp_svg::usvg_tree::parse_tree;
 use std::fs;
-use support::pathwarp_in;
 
 /// Pixels per unit of the comparison: the drawing is enlarged, which shows the pixels of a picture.
 const SCALE: u32 = 8;

@@ -1,13 +1,9 @@
 //! `--gradients exact` through the program, compared with the rendering of the original sampled through the inverse map.
 
-#[path = "../../crates/pathwarp-svg/tests/common/mod.rs"]
-mod common;
-mod support;
-
-use common::{Gap, drawing, gap};
+use crate::common::{Gap, drawing, gap};
+use crate::support::pathwarp_in;
 use serde_json::Value;
 use std::fs;
-use support::pathwarp_in;
 
 /// Name, drawing, number of gradients that become pictures.
 const GRADIENTS: &[(&str, &str, u64)] = &[

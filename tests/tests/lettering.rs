@@ -1,13 +1,11 @@
 //! Lettering under deformations, through the program: baselines on curves, letters that keep their shape, stems that stay vertical.
 
-mod support;
-
+use crate::support::expect_code;
 use pathwarp::Outline;
 use pathwarp::kurbo::{ParamCurveNearest, Point, Rect, Vec2};
 use pathwarp_svg::{Document, ReadOptions};
 use std::fs;
 use std::path::Path;
-use support::expect_code;
 
 /// A word whose letters have straight feet and vertical stems, in the bundled font.
 const WORD: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 200'>\
@@ -206,10 +204,10 @@ fn letters_that_cannot_be_placed_cause_messages() {
     let fault = |input: &str, args: &[&str]| {
         let mut all = vec!["bend", input, "-o", "-"];
         all.extend(args);
-        let out = support::pathwarp(&all);
+        let out = crate::support::pathwarp(&all);
         (out.status.code().unwrap(), String::from_utf8_lossy(&out.stderr).into_owned())
     };
-    let grid = support::sample("grid.svg").display().to_string();
+    let grid = crate::support::sample("grid.svg").display().to_string();
     let (code, said) = fault(&grid, &["--along", "0,0 50,9", "--glyphs", "rotate"]);
     assert!(code == 2 && said.contains("pathwarp text"), "{code} {said}");
     let (code, said) = fault(&grid, &["--along", "0,0 50,9", "--frame", "baseline-ascent"]);
@@ -309,8 +307,8 @@ fn warnings_are_of_ink() {
 /// leaves their advances; here it is part of the advances, so the middles of kerned letters would differ by half of it.
 #[test]
 fn lettering_made_here_is_bent_like_text() {
-    let here = support::root();
-    let set = support::pathwarp_in(&here, &["text", "HINEH", "--size", "90"], b"");
+    let here = crate::support::root();
+    let set = crate::support::pathwarp_in(&here, &["text", "HINEH", "--size", "90"], b"");
     assert!(set.status.success(), "{}", String::from_utf8_lossy(&set.stderr));
     let made = String::from_utf8(set.stdout).unwrap();
     let baseline = made.split("data-baseline=\"").nth(1).and_then(|t| t.split('"').next()).unwrap();
@@ -336,7 +334,7 @@ fn lettering_made_here_is_bent_like_text() {
         all.extend(["--tolerance", "1e-4", "--precision", "9", "--merge", "off"]);
         let (_, wanted, _) = run(&text, &all);
         all.insert(1, "-");
-        let bent = support::pathwarp_in(&here, &all, made.as_bytes());
+        let bent = crate::support::pathwarp_in(&here, &all, made.as_bytes());
         assert!(bent.status.success(), "{args:?}: {}", String::from_utf8_lossy(&bent.stderr));
         let bent = drawn(&Document::read(&bent.stdout, "bent", &ReadOptions::default()).unwrap());
         assert!(bent.bounding_box().unwrap().width() > 250.0, "{args:?}");

@@ -3,8 +3,7 @@
 //! The oracle is independent: it evaluates circles, ellipses and arcs by their definition, samples the map densely, and finds
 //! nearest points by brute force and golden-section search. It shares no code with the refitting.
 
-mod support;
-
+use crate::support::{artwork, expect_code, sample};
 use pathwarp::Seg;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Vec2};
@@ -14,7 +13,6 @@ use pathwarp_svg::{Document, ReadOptions, Selection};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use support::{artwork, expect_code, sample};
 
 /// Samples per source segment.
 const TRUE_SAMPLES: usize = 400;

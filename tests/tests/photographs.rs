@@ -1,11 +1,9 @@
 //! PNG and JPEG files through the program: the same maps as for drawings.
 
-mod support;
-
+use crate::support::{pathwarp, pathwarp_in, sample};
 use pathwarp_raster::{Picture, PictureFormat, Pixmap, Size, compare, decode_png, render};
 use pathwarp_svg::usvg_tree;
 use std::fs;
-use support::{pathwarp, pathwarp_in, sample};
 
 /// Renders a drawing as a photograph.
 fn photograph(svg: &str, width: u32) -> Pixmap {

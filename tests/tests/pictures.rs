@@ -1,10 +1,9 @@
 //! Every sample under every deformation, rendered and compared with the reference pictures in `tests/reference/`.
 //!
-//! `PATHWARP_STORE=1 cargo test -p pathwarp-tests --test pictures` stores new ones: look at each before committing it.
+//! `PATHWARP_STORE=1 cargo test -p pathwarp-tests --test program pictures::` stores new ones: look at each before committing it.
 //! Only the bundled font is used, so that the pictures are the same on every machine.
 
-mod support;
-
+use crate::support::{artwork, root, sample};
 use pathwarp::Seg;
 use pathwarp::deform::{Pairs, Registry};
 use pathwarp::kurbo::Rect;
@@ -15,7 +14,6 @@ use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use std::f64::consts::FRAC_PI_2;
 use std::fs;
 use std::path::PathBuf;
-use support::{artwork, root, sample};
 
 /// Width of a reference picture.
 const WIDTH: u32 = 240;
@@ -108,7 +106,7 @@ fn every_style_matches_its_reference() {
     ] {
         let sheet = folder.path().join(label).with_extension("png");
         let out = sheet.display().to_string();
-        support::expect_code(0, &[&["gallery"], words, &["-o", &out]].concat());
+        crate::support::expect_code(0, &[&["gallery"], words, &["-o", &out]].concat());
         let file = root().join("tests/reference").join(format!("gallery-{label}.png"));
         if std::env::var_os("PATHWARP_STORE").is_some() {
             fs::copy(&sheet, &file).unwrap();

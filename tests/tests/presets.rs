@@ -3,10 +3,9 @@
 #[path = "../../crates/pathwarp-psd/tests/build/mod.rs"]
 #[allow(dead_code, reason = "only some of it is needed here")]
 mod build;
-mod support;
 
+use crate::support::expect_code;
 use std::fs;
-use support::expect_code;
 
 /// A style in a TOML file equals the built-in one, and errors name the file.
 #[test]

@@ -1,10 +1,8 @@
 //! Recipes, inverses, mapped points, and drawings with an embedded source.
 
-mod support;
-
+use crate::support::{artwork, expect_code, pathwarp_in, sample};
 use serde_json::Value;
 use std::fs;
-use support::{artwork, expect_code, pathwarp_in, sample};
 
 const CAGE: &str = "M 10,90 C 40,110 60,70 95,85 C 85,60 105,40 90,15 C 60,-5 40,35 5,10 C 15,40 0,60 10,90 Z";
 const ART: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='s' d='M0,0H100V100H0Z'/><circle id='c' cx='50' cy='40' r='20'/></svg>";

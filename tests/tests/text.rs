@@ -1,13 +1,11 @@
 //! `pathwarp text`: its output, alone and as the input of deformations.
 
-mod support;
-
+use crate::support::{expect_code, pathwarp_in, root, words};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp_svg::{Document, ReadOptions};
 use std::fs;
 use std::path::Path;
-use support::{expect_code, pathwarp_in, root, words};
 
 /// Runs a pipeline of commands from the project's root. Returns the output of the last one and all messages.
 #[track_caller]

@@ -1,13 +1,11 @@
 //! Text shapes and rings of lettering: how much letters are distorted, and the space between the ends.
 
-mod support;
-
+use crate::support::{pathwarp_in, root};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::param::{Args, Frame};
 use pathwarp_svg::{Document, ReadOptions, Selection};
-use support::{pathwarp_in, root};
 
 fn lettering(words: &str) -> Vec<u8> {
     let out = pathwarp_in(&root(), &["text", words, "--align", "center"], b"");

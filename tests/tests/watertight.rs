@@ -1,7 +1,6 @@
 //! Shapes that share an edge share it after the warp, to the last digit, even if pieces are merged.
 
-mod support;
-
+use crate::support::sample;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{CubicBez, Point, Rect};
 use pathwarp::map::Map;
@@ -11,7 +10,6 @@ use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions};
 use std::collections::HashMap;
 use std::fs;
 use std::sync::Arc;
-use support::sample;
 
 const CAGE: &str = "M 10,90 C 60,130 60,60 95,85 C 75,60 115,40 90,15 C 60,-25 40,45 5,10 C 25,40 -10,60 10,90 Z";
 

@@ -1,6 +1,6 @@
 //! Several inputs: one bad file does not stop the others, results appear one by one, folders and patterns, dry runs.
 
-use crate::common::{CAGE, SQUARE, files_below, text};
+use super::common::{CAGE, SQUARE, files_below, text};
 use crate::support::{pathwarp_in, sample, start_in};
 use serde_json::Value;
 use std::fs;

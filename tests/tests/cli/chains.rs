@@ -1,6 +1,6 @@
 //! Chains of deformations and guides in the document.
 
-use crate::common::{CAGE, SQUARE, text};
+use super::common::{CAGE, SQUARE, text};
 use crate::support::{expect_code, pathwarp_in, sample};
 use serde_json::Value;
 use std::fs;

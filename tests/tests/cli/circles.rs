@@ -1,6 +1,6 @@
 //! Circles and arcs as path references.
 
-use crate::common::text;
+use super::common::text;
 use crate::support::pathwarp_in;
 
 #[track_caller]
@@ -78,7 +78,7 @@ fn errors_name_the_wrong_value() {
         ("arc:r=2,from=0,to=500", "at most 360°"),
         ("arc:r=2,from=here,to=5", "wrong from: `here`"),
     ] {
-        let out = pathwarp_in(dir.path(), &["bend", "-", "--along", along], crate::common::SQUARE.as_bytes());
+        let out = pathwarp_in(dir.path(), &["bend", "-", "--along", along], super::common::SQUARE.as_bytes());
         let said = text(&out.stderr);
         assert!(out.status.code() == Some(2) && said.contains(part) && said.contains("--along"), "{along}: {said}");
     }

@@ -1,6 +1,6 @@
 //! Further subcommands, and programs with deformations of their own.
 
-use crate::common::{CAGE, SQUARE, text};
+use super::common::{CAGE, SQUARE, text};
 use crate::support::{self, expect_code, pathwarp_in, root, sample};
 use serde_json::Value;
 use std::fs;

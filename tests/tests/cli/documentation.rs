@@ -1,6 +1,6 @@
 //! Every command line in help and in the cookbook runs, and help knows every deformation.
 
-use crate::common::text;
+use super::common::text;
 use crate::support::{expect_code, pathwarp_in, root, words};
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Drawings in UTF-16 and in declared single-byte encodings are read, and written as UTF-8.
 
-use crate::common::text;
+use super::common::text;
 use crate::support::pathwarp_in;
 
 const DRAWING: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>\

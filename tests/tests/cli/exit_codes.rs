@@ -1,6 +1,6 @@
 //! Exit codes 1 to 4, and the messages that go with them.
 
-use crate::common::{CAGE, SQUARE, text};
+use super::common::{CAGE, SQUARE, text};
 use crate::support::{pathwarp_in, sample};
 use serde_json::Value;
 use std::fs;

@@ -1,6 +1,6 @@
 //! `--explain` names the frame: its box, its size on the page, and the reason for it.
 
-use crate::common::text;
+use super::common::text;
 use crate::support::pathwarp_in;
 
 const DRAWING: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' viewBox='0 0 100 50'>\

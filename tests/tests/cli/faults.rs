@@ -1,10 +1,10 @@
 //! Faults during a batch: a killed process, a full disk, a read-only folder, inputs that vanish. Every named output is whole or absent,
 //! and the next run removes what is left over.
 //!
-//! `PATHWARP_FAULTS=200 cargo test -p pathwarp-tests --test cli faults` tries more moments.
+//! `PATHWARP_FAULTS=200 cargo test -p pathwarp-tests --test program cli::faults` tries more moments.
 #![cfg(unix)]
 
-use crate::common::{files_below, text};
+use super::common::{files_below, text};
 use crate::support::{pathwarp_in, pathwarp_program, sample, start_in};
 use std::collections::BTreeMap;
 use std::fs;

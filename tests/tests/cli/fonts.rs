@@ -1,6 +1,6 @@
 //! Fonts that the command line gives, and styles that it synthesises.
 
-use crate::common::text;
+use super::common::text;
 use crate::support::{pathwarp_in, root};
 use pathwarp::kurbo::Rect;
 use pathwarp_svg::{Document, ReadOptions};

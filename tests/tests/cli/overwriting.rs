@@ -1,6 +1,6 @@
 //! Sources are not overwritten unasked, two outputs are not one file, and files that belong together appear together.
 
-use crate::common::{CAGE, SQUARE, files_below, text};
+use super::common::{CAGE, SQUARE, files_below, text};
 use crate::support::pathwarp_in;
 use std::fs;
 use std::path::Path;

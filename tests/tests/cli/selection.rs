@@ -1,6 +1,6 @@
 //! `--select` and `--exclude` without a match, and drawings with nothing to warp, are not silent.
 
-use crate::common::{SQUARE, text};
+use super::common::{SQUARE, text};
 use crate::support::{pathwarp_in, sample};
 
 const DRAWING: &str = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' \

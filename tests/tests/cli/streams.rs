@@ -1,6 +1,6 @@
 //! Input and output: standard streams, devices, folders, formats.
 
-use crate::common::{CAGE, SQUARE, text};
+use super::common::{CAGE, SQUARE, text};
 use crate::support::{artwork, expect_code, pathwarp_in, sample};
 use std::fs;
 use std::path::Path;

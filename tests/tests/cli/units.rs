@@ -1,6 +1,6 @@
 //! Lengths with units mean the same in px, mm and inch drawings, whatever their `viewBox` says.
 
-use crate::common::text;
+use super::common::text;
 use crate::support::pathwarp_in;
 use serde_json::Value;
 use std::fs;

@@ -1,6 +1,6 @@
 //! Messages for mistakes that new users make.
 
-use crate::common::{SQUARE, text};
+use super::common::{SQUARE, text};
 use crate::support::pathwarp_in;
 use serde_json::Value;
 use std::fs;

@@ -1,7 +1,7 @@
 //! DXF files, read back and compared with the SVG of the same command.
 
-use crate::dxf_reader::{Dxf, Entity};
-use crate::geometry::{documents, drawing, gap, outlines};
+use super::dxf_reader::{Dxf, Entity};
+use super::geometry::{documents, drawing, gap, outlines};
 use crate::support::{artwork, expect_code, pathwarp_in, sample};
 use std::collections::{BTreeMap, HashSet};
 use std::fs;

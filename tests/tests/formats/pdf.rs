@@ -1,6 +1,6 @@
 //! PDF files: their size in points, and how an independent renderer (Poppler, where it is installed) draws them.
 
-use crate::geometry::documents;
+use super::geometry::documents;
 use crate::support::{artwork, expect_code, pathwarp_in, sample};
 use pathwarp::kurbo::Point;
 use pathwarp_raster::{Size, decode_png, render};

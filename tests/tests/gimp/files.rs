@@ -1,6 +1,6 @@
 //! GIMP files listed, referred to, warped, written back and converted; damaged and hostile ones.
 
-use crate::paths::{Named, listed, paths, stroke, strokes};
+use super::paths::{Named, listed, paths, stroke, strokes};
 use crate::support::{expect_code, pathwarp, pathwarp_in, sample};
 use pathwarp_gimp::{GimpPath, Stroke, new_xcf, read, to_json};
 use std::fs;

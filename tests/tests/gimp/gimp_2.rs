@@ -1,7 +1,7 @@
 //! GIMP 2 agrees on the files written for it.
 
-use crate::installed::{DUMP, agree, dumped, gimp_2};
-use crate::paths::paths;
+use super::installed::{DUMP, agree, dumped, gimp_2};
+use super::paths::paths;
 use crate::support::expect_code;
 use pathwarp_gimp::{new_xcf, read};
 use std::fs;

@@ -1,7 +1,7 @@
 //! GIMP 3 agrees on the files written for it.
 
-use crate::installed::{IN_GIMP_3, agree, gimp_3};
-use crate::paths::paths;
+use super::installed::{IN_GIMP_3, agree, gimp_3};
+use super::paths::paths;
 use crate::support::expect_code;
 use pathwarp_gimp::{read, to_json};
 use std::fs;

@@ -1,7 +1,7 @@
 //! The plug-in: installed, removed, and at work in GIMP 3.
 
-use crate::installed::{IN_GIMP_3, gimp_3};
-use crate::paths::stroke;
+use super::installed::{IN_GIMP_3, gimp_3};
+use super::paths::stroke;
 use crate::support::{expect_code, root};
 use pathwarp_gimp::{GimpPath, Stroke, read, to_json};
 use serde_json::Value;

@@ -1,6 +1,6 @@
 //! Other formats: pictures and filters in a PDF, polylines in a DXF.
 
-use crate::bounded::{Folder, RECT, svg};
+use super::bounded::{Folder, RECT, svg};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 

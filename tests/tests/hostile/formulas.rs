@@ -1,6 +1,6 @@
 //! Maps that oscillate, tolerances that cannot be met, numbers of threads.
 
-use crate::bounded::{Folder, RECT, svg};
+use super::bounded::{Folder, RECT, svg};
 use crate::support::sample;
 use std::fs;
 

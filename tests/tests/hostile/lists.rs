@@ -1,6 +1,6 @@
 //! Long names, many equal names, embedded fonts, many segments: work that grows with the square of a file's size.
 
-use crate::bounded::{Folder, RECT, svg};
+use super::bounded::{Folder, RECT, svg};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;

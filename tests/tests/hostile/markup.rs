@@ -1,6 +1,6 @@
 //! Text that expands: entities, packed text, references, style sheets, attributes, letters.
 
-use crate::bounded::{Folder, RECT, expect, svg};
+use super::bounded::{Folder, RECT, expect, svg};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use std::io::Write as _;

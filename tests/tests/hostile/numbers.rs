@@ -1,6 +1,6 @@
 //! Numbers beyond what programs compute with.
 
-use crate::bounded::{Folder, RECT, expect, svg};
+use super::bounded::{Folder, RECT, expect, svg};
 
 #[test]
 fn shapes_out_of_range_stay_and_are_reported() {

@@ -1,6 +1,6 @@
 //! Packed GIMP files, and GIMP files whose parts overlap.
 
-use crate::bounded::Folder;
+use super::bounded::Folder;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use std::io::Write as _;

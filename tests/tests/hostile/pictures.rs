@@ -1,6 +1,6 @@
 //! Pictures, links, layers, masks and filters.
 
-use crate::bounded::{Folder, RECT, expect, svg};
+use super::bounded::{Folder, RECT, expect, svg};
 
 /// The checksum of a chunk (PNG specification, annex D).
 fn crc(chunk: &[u8]) -> u32 {

@@ -1,6 +1,6 @@
 //! Nothing is read or written that was not named.
 
-use crate::bounded::{Folder, RECT, svg};
+use super::bounded::{Folder, RECT, svg};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use std::fs;

@@ -1,6 +1,6 @@
 //! The program as Inkscape calls it, without Inkscape: `--id=…`, the dialog's parameters, the drawing's file last.
 
-use crate::drawings::document;
+use super::drawings::document;
 use crate::support::{pathwarp, pathwarp_program};
 use std::fs;
 use std::path::Path;

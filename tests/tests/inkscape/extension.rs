@@ -1,7 +1,7 @@
 //! The extension in an installed Inkscape: its effects run in a window that nobody sees, on documents as Inkscape saves them.
 
-use crate::drawings::document;
-use crate::editor;
+use super::drawings::document;
+use super::editor;
 use crate::support::pathwarp;
 use pathwarp_svg::objects::{Object, objects};
 use std::fs;

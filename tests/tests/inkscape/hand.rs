@@ -1,8 +1,8 @@
 //! *Bend by hand…* in an installed Inkscape, with a program in the place of the user and the browser.
 
-use crate::drawings::document;
-use crate::editor;
-use crate::extension::{assert_near, install, numbers, read, run};
+use super::drawings::document;
+use super::editor;
+use super::extension::{assert_near, install, numbers, read, run};
 use crate::support::{browser, root};
 use pathwarp_svg::objects::objects;
 use std::fs;

@@ -1,6 +1,6 @@
 //! Plug-ins that fail: each is ended within its limits and named, nothing is written, and no process is left.
 
-use crate::common::{Scratch, entry, is_running, script};
+use super::common::{Scratch, entry, is_running, script};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::time::{Duration, Instant};

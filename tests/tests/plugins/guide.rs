@@ -1,6 +1,6 @@
 //! `docs/writing-deformations.md`, followed word for word: its commands are run, and its changes and files made, in an empty folder.
 
-use crate::common::{Scratch, python, text};
+use super::common::{Scratch, python, text};
 use crate::support::{pathwarp_program, root, sample};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Formula, Map, Real};

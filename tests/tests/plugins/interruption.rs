@@ -1,6 +1,6 @@
 //! Programs end with the run, however it ends.
 
-use crate::common::{Scratch, entry, is_running, text};
+use super::common::{Scratch, entry, is_running, text};
 use rustix::process::{Pid, Signal, kill_process};
 use std::process::Stdio;
 use std::time::{Duration, Instant};

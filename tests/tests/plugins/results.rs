@@ -1,6 +1,6 @@
 //! Plug-ins that work: they give what a built-in deformation gives, wherever a deformation can be named.
 
-use crate::common::{Scratch, entry, python, script, text};
+use super::common::{Scratch, entry, python, script, text};
 use crate::support::{program, root, sample};
 use pathwarp::Outline;
 use pathwarp::distance::symmetric;

@@ -3,9 +3,8 @@
 
 mod features;
 mod graph;
-#[path = "../support/mod.rs"]
-mod support;
 
+use crate::support::root;
 use graph::{Arrows, Crate, circles};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -25,7 +24,7 @@ const SVG_ROOMS: [&str; 4] = ["source", "scene", "bend", "write"];
 fn dependencies_run_one_way() {
     let out = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--no-deps", "--offline"])
-        .current_dir(support::root())
+        .current_dir(root())
         .output()
         .unwrap();
     let metadata: Value = serde_json::from_slice(&out.stdout).unwrap();
@@ -78,7 +77,7 @@ fn dependencies_run_one_way() {
 
 /// Every crate's `src` folder.
 fn crates() -> Vec<(String, BTreeMap<String, String>)> {
-    let folder = support::root().join("crates");
+    let folder = root().join("crates");
     let mut names: Vec<String> =
         fs::read_dir(&folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
@@ -129,7 +128,7 @@ fn files_do_not_import_in_circles() {
 
 #[test]
 fn the_rooms_of_pathwarp_svg_follow_one_another() {
-    let files = rust_files(&support::root().join("crates/pathwarp-svg/src"));
+    let files = rust_files(&root().join("crates/pathwarp-svg/src"));
     let arrows = Crate::read(&files).arrows();
     assert_eq!(against_the_order(&arrows), [] as [String; 0]);
     for room in SVG_ROOMS {
@@ -197,7 +196,7 @@ fn files_and_functions_are_short() {
         ["table", "the_guides_ends_are_the_formulas", "the_two_curve_family_reproduces_its_guides"];
     let mut long = Vec::new();
     for folder in ["crates", "tests", "examples", "fuzz"] {
-        for (file, text) in rust_files(&support::root().join(folder)) {
+        for (file, text) in rust_files(&root().join(folder)) {
             let lines = text.lines().count();
             if lines > LONGEST_FILE {
                 long.push(format!("{folder}/{file}: {lines} lines"));
@@ -245,7 +244,7 @@ fn comments_are_direct() {
     const WORDS: [&str; 5] = ["What", "Where", "Whether", "How", "Who"];
     let (mut all, mut indirect) = (0, Vec::new());
     for folder in ["crates", "tests", "examples", "fuzz"] {
-        for (file, text) in rust_files(&support::root().join(folder)) {
+        for (file, text) in rust_files(&root().join(folder)) {
             for (i, line) in text.lines().enumerate() {
                 let Some(comment) = line.trim_start().strip_prefix("//") else { continue };
                 all += 1;

@@ -9,6 +9,4 @@ mod markup;
 mod numbers;
 mod packed;
 mod pictures;
-#[path = "../support/mod.rs"]
-mod support;
 mod trust;

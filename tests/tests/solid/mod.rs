@@ -2,16 +2,14 @@
 
 mod model;
 mod picture;
-#[path = "../support/mod.rs"]
-mod support;
 
+use crate::support::{pathwarp, pathwarp_in, root, sample, words};
 use model::Model;
 use pathwarp_solid::deform::Registry3;
 use picture::Camera;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use support::{pathwarp, pathwarp_in, root, sample, words};
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()

@@ -16,7 +16,5 @@ mod readme;
 mod report;
 mod selection;
 mod streams;
-#[path = "../support/mod.rs"]
-mod support;
 mod units;
 mod words;

@@ -1,8 +1,4 @@
 //! Plug-ins that are programs: the ways to write one, and everything that one can do wrong.
-#![cfg(unix)]
-
-#[path = "../support/mod.rs"]
-mod support;
 
 mod common;
 mod faults;

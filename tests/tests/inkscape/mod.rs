@@ -1,22 +1,18 @@
 //! Warped documents in an installed Inkscape: opened, edited and saved, they must look as pathwarp left them.
 
 mod calls;
-#[path = "../../../crates/pathwarp-svg/tests/common/mod.rs"]
-mod common;
 mod drawings;
 mod editor;
 mod extension;
 mod hand;
-#[path = "../support/mod.rs"]
-mod support;
 
-use common::rendered;
+use crate::common::rendered;
+use crate::support::{pathwarp, root};
 use drawings::{DRAWINGS, document};
 use pathwarp::kurbo::Affine;
 use pathwarp_svg::usvg_tree::parse_tree;
 use std::fs;
 use std::path::{Path, PathBuf};
-use support::{pathwarp, root};
 
 /// Drawings of which only a part is warped. In the others, the part that stays is live, and Inkscape may well compute it again.
 const IN_PART: [&str; 5] = ["3D box", "path effect of a group", "clip path and mask", "clones", "texts"];
@@ -30,7 +26,7 @@ const SIZE: u32 = 400;
 fn difference(a: &Path, b: &Path) -> f64 {
     let [a, b] = [a, b].map(|f| {
         let svg = fs::read(f).unwrap_or_else(|e| panic!("{}: {e}", f.display()));
-        let tree = parse_tree(&svg, "picture", &common::options()).unwrap();
+        let tree = parse_tree(&svg, "picture", &crate::common::options()).unwrap();
         let side = f64::from(tree.size().width().max(tree.size().height()));
         let mut paper = rendered(&tree, SIZE, Affine::scale(f64::from(SIZE) / side));
         // White below: transparent pixels have no colour.

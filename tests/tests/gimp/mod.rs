@@ -6,5 +6,3 @@ mod gimp_3;
 mod installed;
 mod paths;
 mod plug_in;
-#[path = "../support/mod.rs"]
-mod support;

@@ -7,5 +7,3 @@ mod dxf_reader;
 mod geometry;
 mod pdf;
 mod pictures;
-#[path = "../support/mod.rs"]
-mod support;
