@@ -1,6 +1,6 @@
 //! `pathwarp edit` in a headless Chromium: the tests of the page (`crates/pathwarp-editor/web/tests`) with the real program.
 
-use crate::support::{self, browser, pathwarp_program, root};
+use crate::support::{browser, pathwarp_program, root};
 use std::process::Command;
 
 #[test]

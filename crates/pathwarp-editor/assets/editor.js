@@ -191,6 +191,9 @@
     });
     return best;
   }
+  function middle(sub, k) {
+    return scheme(piece(sub, k), 0.5).pop()[0];
+  }
   function split(sub, { piece: k, t }) {
     const rows = scheme(piece(sub, k), t);
     const first = rows.slice(1).map((row) => row[0]);
@@ -281,15 +284,15 @@
     /** The amount by which a preset bends the artwork: pulled up or down from the middle, half a height being all of it. */
     addBend(param, grip) {
       const [x, y, w, h2] = this.frame;
-      const middle = [x + w / 2, y + h2 / 2];
+      const middle2 = [x + w / 2, y + h2 / 2];
       this.handles.push({
         key: param,
         param,
         shape: "node",
         label: words(param),
         group: param,
-        get: () => [middle[0], middle[1] - grip.value * h2 / 2],
-        set: (to) => void (grip.value = Math.max(-2, Math.min(2, 2 * (middle[1] - to[1]) / Math.max(h2, 1e-9))))
+        get: () => [middle2[0], middle2[1] - grip.value * h2 / 2],
+        set: (to) => void (grip.value = Math.max(-2, Math.min(2, 2 * (middle2[1] - to[1]) / Math.max(h2, 1e-9))))
       });
     }
     /** A radius about a centre: a handle on the circle. */
@@ -546,6 +549,14 @@
         if (this.step.args.move) this.step.args.move = without("move");
         this.step.args[name] = [...without(name), node(net.names[i], net.points[i], this.frame)];
       }
+    }
+    /** The middle of the piece of a line that follows a node. */
+    after(handle) {
+      const [param, id = "", n] = handle.key.split("/");
+      const [i, j] = id.split(".").map(Number);
+      const sub = this.grips[param]?.paths?.[i]?.[j];
+      if (!sub || this.points(handle.param) === void 0) return null;
+      return middle(sub, Math.min(Number(n), sub.segments.length - 1));
     }
     /** Adds a point where the step takes any number of them, to paths within `reach`. Returns the key of its handle. */
     add(at, reach) {
@@ -930,7 +941,9 @@
       this.own.replaceChildren(h("h3", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
     }
     section(title, cards) {
-      const items = h("div", { class: "grid" }, ...cards.map((c) => c.button));
+      const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
+      cards.forEach(({ button }, i) => button.tabIndex = i === 0 ? 0 : -1);
+      items.addEventListener("keydown", (e) => walk(e, items));
       return h("section", {}, h("h3", {}, title), items);
     }
     card(deformation, args, steps, text, variant = null) {
@@ -991,10 +1004,24 @@
       for (const { button, words: words2 } of this.cards) button.hidden = !words2.toLowerCase().includes(wanted);
       for (const section of Array.from(this.box.children)) {
         if (section === this.own) continue;
+        const shown = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
+        if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0].tabIndex = 0;
         section.hidden = !Array.from(section.querySelectorAll(".card")).some((c) => !c.hidden);
       }
     }
   };
+  function walk(e, items) {
+    const all = Array.from(items.children).filter((card) => !card.hidden);
+    const at = all.indexOf(document.activeElement);
+    const row = all.filter((card) => card.offsetTop === all[0]?.offsetTop).length;
+    const by = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: row, ArrowUp: -row }[e.key];
+    const to = e.key === "Home" ? 0 : e.key === "End" ? all.length - 1 : by === void 0 ? -1 : at + by;
+    if (at < 0 || !all[to]) return;
+    e.preventDefault();
+    all[at].tabIndex = -1;
+    all[to].tabIndex = 0;
+    all[to].focus();
+  }
   function isDragged(d) {
     return d.params.some((p) => p.kind === "path" && p.name !== "base" || DRAGGED.has(p.notation ?? ""));
   }
@@ -1944,15 +1971,15 @@
       const [one, two] = Array.from(this.touches.keys());
       const stop = new AbortController();
       const { signal } = stop;
-      const middle = () => {
+      const middle2 = () => {
         const [a, b] = [this.touches.get(one), this.touches.get(two)];
         return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
       };
-      let [at, apart] = middle();
+      let [at, apart] = middle2();
       window.addEventListener("pointermove", (e) => {
         if (!this.touches.has(e.pointerId)) return;
         this.touches.set(e.pointerId, this.point(e));
-        const [to, wide] = middle();
+        const [to, wide] = middle2();
         this.camera.shift = [this.camera.shift[0] + to[0] - at[0], this.camera.shift[1] + to[1] - at[1]];
         if (apart > 0) this.camera.zoom(wide / apart, to);
         [at, apart] = [to, wide];
@@ -1980,6 +2007,11 @@
         const far = e.shiftKey ? 10 : 1;
         const [x, y] = this.camera.toScreen(handle.get());
         this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+      } else if (e.key === "Insert") {
+        e.preventDefault();
+        const [x, y] = handle.get();
+        const at = this.app.handles.after(handle) ?? [x + 2 * REACH * this.camera.pixel, y];
+        this.focused = this.app.addPoint(at, REACH * this.camera.pixel) ?? this.focused;
       } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
         e.preventDefault();
         this.remove(handle);

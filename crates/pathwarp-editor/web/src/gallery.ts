@@ -95,7 +95,9 @@ export class Gallery {
   }
 
   private section(title: string, cards: Card[]): HTMLElement {
-    const items = h("div", { class: "grid" }, ...cards.map((c) => c.button));
+    const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
+    cards.forEach(({ button }, i) => (button.tabIndex = i === 0 ? 0 : -1));
+    items.addEventListener("keydown", (e) => walk(e, items));
     return h("section", {}, h("h3", {}, title), items);
   }
 
@@ -164,9 +166,26 @@ export class Gallery {
     for (const { button, words } of this.cards) button.hidden = !words.toLowerCase().includes(wanted);
     for (const section of Array.from(this.box.children) as HTMLElement[]) {
       if (section === this.own) continue;
+      // One card of those in view can be reached with Tab.
+      const shown = Array.from(section.querySelectorAll<HTMLElement>(".card")).filter((card) => !card.hidden);
+      if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0]!.tabIndex = 0;
       section.hidden = !Array.from(section.querySelectorAll<HTMLElement>(".card")).some((c) => !c.hidden);
     }
   }
+}
+
+/** Arrow keys go from card to card, so that Tab passes a section in one step. */
+function walk(e: KeyboardEvent, items: HTMLElement): void {
+  const all = (Array.from(items.children) as HTMLElement[]).filter((card) => !card.hidden);
+  const at = all.indexOf(document.activeElement as HTMLElement);
+  const row = all.filter((card) => card.offsetTop === all[0]?.offsetTop).length;
+  const by = ({ ArrowRight: 1, ArrowLeft: -1, ArrowDown: row, ArrowUp: -row } as Record<string, number>)[e.key];
+  const to = e.key === "Home" ? 0 : e.key === "End" ? all.length - 1 : by === undefined ? -1 : at + by;
+  if (at < 0 || !all[to]) return;
+  e.preventDefault();
+  all[at]!.tabIndex = -1;
+  all[to].tabIndex = 0;
+  all[to].focus();
 }
 
 function isDragged(d: Deformation): boolean {

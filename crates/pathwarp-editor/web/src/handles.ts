@@ -3,7 +3,7 @@
 import type { Deformation, Grip, Net, Param, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, valuesOf } from "./values";
 import { called, words } from "./dom";
-import { closed, drop, end, nearest, raised, split, type Spot } from "./knots";
+import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
 
 export type Shape = "node" | "control" | "source";
 
@@ -344,6 +344,15 @@ export class Handles {
       if (this.step.args.move) this.step.args.move = without("move");
       this.step.args[name] = [...without(name), node(net.names[i]!, net.points[i]!, this.frame)];
     }
+  }
+
+  /** The middle of the piece of a line that follows a node. */
+  after(handle: Handle): XY | null {
+    const [param, id = "", n] = handle.key.split("/");
+    const [i, j] = id.split(".").map(Number);
+    const sub = this.grips[param!]?.paths?.[i!]?.[j!];
+    if (!sub || this.points(handle.param) === undefined) return null;
+    return middle(sub, Math.min(Number(n), sub.segments.length - 1));
   }
 
   /** Adds a point where the step takes any number of them, to paths within `reach`. Returns the key of its handle. */

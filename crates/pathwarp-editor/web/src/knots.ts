@@ -60,6 +60,11 @@ export function nearest(sub: Subpath, to: XY): Spot | null {
   return best;
 }
 
+/** The middle of a piece. */
+export function middle(sub: Subpath, k: number): XY {
+  return scheme(piece(sub, k), 0.5).pop()![0]!;
+}
+
 /** Splits a piece in two. Returns the index of the new node. */
 export function split(sub: Subpath, { piece: k, t }: Spot): number {
   const rows = scheme(piece(sub, k), t);

@@ -419,6 +419,12 @@ export class Stage {
       const far = e.shiftKey ? 10 : 1;
       const [x, y] = this.camera.toScreen(handle.get());
       this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+    } else if (e.key === "Insert") {
+      e.preventDefault();
+      const [x, y] = handle.get();
+      // Beside the point, where there is no line to divide.
+      const at = this.app.handles.after(handle) ?? [x + 2 * REACH * this.camera.pixel, y] as XY;
+      this.focused = this.app.addPoint(at, REACH * this.camera.pixel) ?? this.focused;
     } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
       e.preventDefault();
       this.remove(handle);

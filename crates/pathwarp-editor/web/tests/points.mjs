@@ -91,3 +91,16 @@ export const lines_are_pulled = () => within(null, async (page) => {
   await page.click("#undo");
   await becomes(page, before, "undo did not bring the picture back");
 });
+
+/** The keys Insert and Delete do the same as the mouse. */
+export const points_by_keyboard = () => within("Bend", async (page) => {
+  const all = await keys(page);
+  await page.locator('.knob[data-key="along/0.0/0"]').focus();
+  await page.keyboard.press("Insert");
+  await quiet(page);
+  check((await keys(page)).length === all.length + 3, "no point was added");
+  check((await page.evaluate(() => document.activeElement.dataset.key)) === "along/0.0/1", "the new point is not selected");
+  await page.keyboard.press("Delete");
+  await quiet(page);
+  check((await keys(page)).length === all.length, "the point was not taken away");
+});
