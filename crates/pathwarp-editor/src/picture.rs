@@ -67,7 +67,10 @@ impl Picture {
             if let Some(line) = self.lines.get_mut(*line)
                 && let Some(range) = data_range(line)
             {
-                line.replace_range(range, data);
+                let rest = line.split_off(range.end);
+                line.truncate(range.start);
+                line.push_str(data);
+                line.push_str(&rest);
             }
         }
     }

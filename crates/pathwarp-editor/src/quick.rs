@@ -21,6 +21,8 @@ const ROUNDING: f64 = 0.05;
 #[derive(Debug)]
 pub(crate) struct Quick {
     text: String,
+    /// The places of path data in the text.
+    data: Vec<Range<usize>>,
     lines: Vec<usize>,
 }
 
@@ -34,29 +36,29 @@ impl Quick {
         let same = |(range, (_, shown)): (&Range<usize>, &(usize, &str))| is_same(&text[range.clone()], shown);
         (data.len() == paths.len() && data.iter().zip(&paths).all(same)).then(|| {
             let lines = paths.iter().map(|(line, _)| *line).collect();
-            Self { text, lines }
+            Self { text, data, lines }
         })
     }
 
     /// Goes on to the next text: the lines whose path data differ, with the new data. Returns `None` if anything else differs.
     pub(crate) fn next(&mut self, text: &str) -> Option<Vec<(usize, String)>> {
-        let (old, new) = (data(&self.text), data(text));
-        if old.len() != new.len() {
+        let new = data(text);
+        if self.data.len() != new.len() {
             return None;
         }
         let mut changes = Vec::new();
         let (mut old_end, mut new_end) = (0, 0);
-        for ((old, new), line) in old.into_iter().zip(new).zip(&self.lines) {
+        for ((old, new), line) in self.data.iter().zip(&new).zip(&self.lines) {
             if self.text[old_end..old.start] != text[new_end..new.start] {
                 return None;
             }
             (old_end, new_end) = (old.end, new.end);
-            let value = &text[new];
+            let value = &text[new.clone()];
             // A path without segments or with entities is usvg's to read.
             if value.is_empty() || value.contains(['&', '"', '<']) {
                 return None;
             }
-            if value != &self.text[old] {
+            if *value != self.text[old.clone()] {
                 changes.push((*line, value.to_owned()));
             }
         }
@@ -64,6 +66,7 @@ impl Quick {
             return None;
         }
         text.clone_into(&mut self.text);
+        self.data = new;
         Some(changes)
     }
 }

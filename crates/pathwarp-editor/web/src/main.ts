@@ -179,8 +179,9 @@ app.listen((change) => {
     byId("smooth").hidden = !isCurve;
     byId("mirror").hidden = !has;
     byId("snap").hidden = !has;
-    const adds = grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add one, Delete removes it";
-    const note = !has ? "Change the settings" : grows || app.handles?.divides ? `Pull a blue point or line. ${adds}` : "Pull a blue point or line to bend the artwork";
+    const pulls = app.handles?.lines().some((line) => line.kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
+    const adds = grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
+    const note = !has ? "Change the settings" : grows || app.handles?.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
     byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
   }
   if (change === "link") {
