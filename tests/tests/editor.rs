@@ -1,28 +1,12 @@
 //! `pathwarp edit` in a headless Chromium: the tests of the page (`crates/pathwarp-editor/web/tests`) with the real program.
 
-use crate::support::{pathwarp_program, root};
-use std::path::Path;
+use crate::support::{browser, pathwarp_program, root};
 use std::process::Command;
-
-/// What the tests need besides the program.
-fn missing(web: &Path) -> Option<&'static str> {
-    let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success());
-    let browsers = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-    if !is_there("node") {
-        Some("node")
-    } else if !web.join("node_modules/playwright-core").is_dir() {
-        Some("playwright-core (npm ci in crates/pathwarp-editor/web)")
-    } else if !browsers.iter().any(|b| Path::new(b).exists()) {
-        Some("Chromium")
-    } else {
-        None
-    }
-}
 
 #[test]
 fn the_page_works_in_a_browser() {
     let web = root().join("crates/pathwarp-editor/web");
-    if let Some(what) = missing(&web) {
+    if let Some(what) = browser::missing() {
         println!("skipped: the page is not tested without {what}");
         return;
     }

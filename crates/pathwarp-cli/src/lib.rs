@@ -18,6 +18,7 @@ mod bitmap;
 mod catalogue;
 mod commands;
 mod decimals;
+mod editing;
 pub mod embed;
 mod export;
 mod failure;

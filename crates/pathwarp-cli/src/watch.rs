@@ -28,6 +28,8 @@ struct Watched {
     more: usize,
     /// Processor time when the last input was finished.
     since: Duration,
+    /// Nothing is watched until the next beginning.
+    rests: bool,
 }
 
 static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
@@ -48,12 +50,22 @@ pub(crate) fn begin(limits: Limits) {
     let mut watched = lock();
     if let Some(watched) = watched.as_mut() {
         watched.limits = limits;
+        if std::mem::take(&mut watched.rests) {
+            watched.since = used();
+        }
         return;
     }
-    *watched = Some(Watched { limits, bytes: 0, more: 0, since: Duration::ZERO });
+    *watched = Some(Watched { limits, bytes: 0, more: 0, since: Duration::ZERO, rests: false });
     drop(watched);
     // Without a thread, work is still counted.
     let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
+}
+
+/// Stops watching until the next beginning: an editor may be open for hours, and counts the work of every picture.
+pub(crate) fn rest() {
+    if let Some(watched) = lock().as_mut() {
+        watched.rests = true;
+    }
 }
 
 /// Adds the size of a file that is read: larger ones may take longer.
@@ -111,6 +123,9 @@ fn watch() {
 impl Watched {
     /// The limit that is exceeded, if one is.
     fn exceeded(&self) -> Option<Exceeded> {
+        if self.rests {
+            return None;
+        }
         let inputs = self.more.max(1);
         let limits = self.limits.for_input(self.bytes / inputs);
         let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err().map(Exceeded::cut_short);

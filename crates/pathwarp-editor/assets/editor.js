@@ -19,20 +19,30 @@
     socket = null;
     waiting = /* @__PURE__ */ new Map();
     next = 1;
+    isStopped = false;
+    /** The length of the last message from the server. */
+    size = 0;
     connect() {
       const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
       socket.onopen = () => {
         this.socket = socket;
         this.onOpen();
       };
-      socket.onmessage = (message) => this.take(JSON.parse(message.data));
+      socket.onmessage = (message) => {
+        this.size = message.data.length;
+        this.take(JSON.parse(message.data));
+      };
       socket.onclose = () => {
         this.socket = null;
         for (const { reject } of this.waiting.values()) reject(new Gone("pathwarp has ended"));
         this.waiting.clear();
         this.onGone();
-        setTimeout(() => this.connect(), RETRY);
+        if (!this.isStopped) setTimeout(() => this.connect(), RETRY);
       };
+    }
+    /** Does not connect again. */
+    stop() {
+      this.isStopped = true;
     }
     take(answer) {
       if (answer.id === void 0) return this.onEvent(answer);
@@ -70,9 +80,9 @@
     return whole > 0 ? percent(100 * value / whole) : short(value);
   }
   function pathData(subpaths) {
-    return subpaths.map(({ start, segments, closed }) => {
+    return subpaths.map(({ start, segments, closed: closed2 }) => {
       const body = segments.map((seg) => (seg.length === 2 ? "L" : "C") + pairs(seg));
-      return `M${pairs(start)} ${body.join(" ")}${closed ? " Z" : ""}`;
+      return `M${pairs(start)} ${body.join(" ")}${closed2 ? " Z" : ""}`;
     }).join(" ");
   }
   function pairs(numbers) {
@@ -142,7 +152,83 @@
     return text.charAt(0).toUpperCase() + text.slice(1);
   }
 
+  // src/knots.ts
+  var SAMPLES = 32;
+  function piece(sub, k) {
+    const before2 = k === 0 ? sub.start : end(sub.segments[k - 1]);
+    const seg = sub.segments[k];
+    const out = [before2];
+    for (let i = 0; i + 1 < seg.length; i += 2) out.push([seg[i], seg[i + 1]]);
+    return out;
+  }
+  function end(seg) {
+    return [seg[seg.length - 2], seg[seg.length - 1]];
+  }
+  function mix([ax, ay], [bx, by], t) {
+    return [ax + (bx - ax) * t, ay + (by - ay) * t];
+  }
+  function scheme(points, t) {
+    const rows = [points];
+    for (let row = points; row.length > 1; rows.push(row)) row = row.slice(1).map((p, i) => mix(row[i], p, t));
+    return rows;
+  }
+  function closed(sub) {
+    const last = sub.segments[sub.segments.length - 1];
+    const isOpen = last && Math.hypot(end(last)[0] - sub.start[0], end(last)[1] - sub.start[1]) > 1e-9;
+    if (sub.closed && isOpen) sub.segments.push([...sub.start]);
+    return sub;
+  }
+  function nearest(sub, to) {
+    let best = null;
+    sub.segments.forEach((_, k) => {
+      const points = piece(sub, k);
+      for (let i = 1; i < SAMPLES; i++) {
+        const t = i / SAMPLES;
+        const [at] = scheme(points, t).pop();
+        const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
+        if (!best || distance < best.distance) best = { piece: k, t, at, distance };
+      }
+    });
+    return best;
+  }
+  function middle(sub, k) {
+    return scheme(piece(sub, k), 0.5).pop()[0];
+  }
+  function split(sub, { piece: k, t }) {
+    const rows = scheme(piece(sub, k), t);
+    const first = rows.slice(1).map((row) => row[0]);
+    const second = rows.slice(0, -1).map((row) => row[row.length - 1]).reverse();
+    sub.segments.splice(k, 1, first.flat(), second.flat());
+    return k + 1;
+  }
+  function drop(sub, node2) {
+    const { segments } = sub;
+    if (!sub.closed && node2 === 0) {
+      sub.start = end(segments.shift());
+      return;
+    }
+    if (!sub.closed && node2 === segments.length) {
+      segments.pop();
+      return;
+    }
+    const [a, b] = node2 === 0 ? [segments.length - 1, 0] : [node2 - 1, node2];
+    const [from, to] = [piece(sub, a), piece(sub, b)];
+    const [first, last] = [from[0], to[to.length - 1]];
+    const isLine = from.length === 2 && to.length === 2;
+    const arms = [from.length === 4 ? from[1] : mix(first, last, 1 / 3), to.length === 4 ? to[2] : mix(last, first, 1 / 3)];
+    segments[a] = isLine ? [...last] : [...arms.flat(), ...last];
+    segments.splice(b, 1);
+    if (node2 === 0) sub.start = [...last];
+  }
+  function raised(points) {
+    const n = points.length;
+    const inner = points.slice(1).map((p, i) => mix(p, points[i], (i + 1) / n));
+    return [points[0], ...inner, points[n - 1]];
+  }
+
   // src/handles.ts
+  var MARGIN = 0.15;
+  var FEWEST_CLOSED = 3;
   var Handles = class {
     constructor(deformation, step2, grips) {
       this.deformation = deformation;
@@ -169,8 +255,20 @@
         grip.net?.points.forEach((_, i) => this.addNode(name, grip.net, i));
         if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
-        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, sub, `${i}.${j}`)));
+        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isFree(name) ? closed(sub) : sub, `${i}.${j}`)));
       }
+    }
+    points(name) {
+      return this.deformation.params.find((p) => p.name === name)?.points;
+    }
+    /** The path may have any number of points. */
+    isFree(name) {
+      return this.points(name) === "any";
+    }
+    /** The rows of points, which have equally many. */
+    get rows() {
+      const all = this.deformation.params.filter((p) => p.points === "rows");
+      return all.flatMap(({ name }) => (this.grips[name]?.paths ?? []).flat().map((sub) => [name, sub]));
     }
     addPoint(param, grip) {
       this.handles.push({
@@ -186,15 +284,15 @@
     /** The amount by which a preset bends the artwork: pulled up or down from the middle, half a height being all of it. */
     addBend(param, grip) {
       const [x, y, w, h2] = this.frame;
-      const middle = [x + w / 2, y + h2 / 2];
+      const middle2 = [x + w / 2, y + h2 / 2];
       this.handles.push({
         key: param,
         param,
         shape: "node",
         label: words(param),
         group: param,
-        get: () => [middle[0], middle[1] - grip.value * h2 / 2],
-        set: (to) => void (grip.value = Math.max(-2, Math.min(2, 2 * (middle[1] - to[1]) / Math.max(h2, 1e-9))))
+        get: () => [middle2[0], middle2[1] - grip.value * h2 / 2],
+        set: (to) => void (grip.value = Math.max(-2, Math.min(2, 2 * (middle2[1] - to[1]) / Math.max(h2, 1e-9))))
       });
     }
     /** A radius about a centre: a handle on the circle. */
@@ -230,14 +328,14 @@
         pairs2.splice(i, 1);
         this.collect();
       };
-      const handle = (end, shape, label) => ({
-        key: `${param}/${i}/${end}`,
+      const handle = (end2, shape, label) => ({
+        key: `${param}/${i}/${end2}`,
         param,
         shape,
         label: `${words(param)} ${i + 1}, ${label}`,
-        group: `${param}/${end}`,
-        get: () => pairs2[i][end],
-        set: (to) => void (pairs2[i][end] = to),
+        group: `${param}/${end2}`,
+        get: () => pairs2[i][end2],
+        set: (to) => void (pairs2[i][end2] = to),
         remove
       });
       this.handles.push(handle(0, "source", "place in the artwork"), handle(1, "node", "where it goes"));
@@ -260,16 +358,12 @@
     /** The nodes and control points of a path. Nodes carry their control points along; the ends of a closed path are one node. */
     addSubpath(param, path, sub, id) {
       const { segments } = sub;
-      const end = (k) => {
-        const seg = segments[k];
-        return [seg[seg.length - 2], seg[seg.length - 1]];
-      };
       const last = segments.length - 1;
-      const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(last), sub.start);
+      const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(segments[last]), sub.start);
       const nodes = joined ? segments.length : segments.length + 1;
       const before2 = (n) => n > 0 ? segments[n - 1] : joined ? segments[last] : void 0;
       const after = (n) => segments[n];
-      const at = (n) => n === 0 ? sub.start : end(n - 1);
+      const at = (n) => n === 0 ? sub.start : end(segments[n - 1]);
       const name = param === this.deformation.name ? called(this.deformation) : words(param);
       for (let n = 0; n < nodes; n++) {
         const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
@@ -280,6 +374,7 @@
           shape: "node",
           label,
           group: `${param}/${id}`,
+          remove: this.removal(param, sub, n, nodes),
           get: () => at(n),
           set: (to) => {
             const from = at(n);
@@ -322,6 +417,82 @@
         arm("in");
         arm("out");
       }
+    }
+    /** Takes a node of a path away, if enough are left. */
+    removal(param, sub, n, nodes) {
+      if (this.points(param) === "rows" && nodes > 2 && n > 0 && n < nodes - 1) {
+        return () => {
+          for (const [name, row] of this.rows) {
+            drop(row, n);
+            if (name !== param) this.write(name);
+          }
+          this.collect();
+        };
+      }
+      if (!this.isFree(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return void 0;
+      return () => {
+        drop(sub, n);
+        this.collect();
+      };
+    }
+    /** The path that passes nearest to a place, among those of which something is true. */
+    near(at, reach, is) {
+      let best = null;
+      for (const param of this.deformation.params.filter(is)) {
+        this.grips[param.name]?.paths?.forEach((path, i) => path.forEach((sub, j) => {
+          const spot = nearest(sub, at);
+          if (spot && spot.distance <= Math.min(reach, best?.spot.distance ?? reach)) best = { name: param.name, id: `${i}.${j}`, sub, spot };
+        }));
+      }
+      return best;
+    }
+    /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
+    pull(at, reach) {
+      const found = this.near(at, reach, () => true);
+      if (!found) return this.pullCircle(at, reach);
+      const { name, id, sub, spot } = found;
+      const handle = (n, side = "") => this.handles.find((h2) => h2.key === `${name}/${id}/${n}${side}`);
+      const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
+      const isCurve = sub.segments[spot.piece].length === 6;
+      const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
+      const [first, second] = ends;
+      if (!first || !second) return null;
+      const t = Math.min(Math.max(spot.t, MARGIN), 1 - MARGIN);
+      const whole = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
+      const shares = isCurve ? [(1 - t) / whole, t / whole] : [1, 1];
+      const from = [[...first.get()], [...second.get()]];
+      return {
+        param: name,
+        move: (to, smooth) => [first, second].forEach((h2, i) => {
+          const [x, y] = from[i];
+          h2.set([x + shares[i] * (to[0] - at[0]), y + shares[i] * (to[1] - at[1])], smooth);
+        })
+      };
+    }
+    pullCircle(at, reach) {
+      const radius = this.handles.find((h2) => h2.key === "radius");
+      const [grip, centre] = [this.grips.radius, this.grips.center?.point];
+      if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
+      return { param: "radius", move: (to, smooth) => radius.set(to, smooth) };
+    }
+    /** Adds a point to the path that passes near a place. Returns the key of its handle. */
+    divide(at, reach) {
+      const found = this.near(at, reach, (param) => param.points !== void 0);
+      if (!found) return null;
+      const { name, id, sub, spot } = found;
+      if (this.points(name) === "any") {
+        const node2 = split(sub, spot);
+        this.collect();
+        this.write(name);
+        return `${name}/${id}/${node2 % (sub.closed ? sub.segments.length : Infinity)}`;
+      }
+      for (const [row, points] of this.rows) {
+        const [start, ...rest] = raised([points.start, ...points.segments.map(end)]);
+        [points.start, points.segments] = [start, rest.map((p) => [...p])];
+        this.write(row);
+      }
+      this.collect();
+      return `${name}/${id}/${spot.piece + 1}`;
     }
     /** The lines to draw under the handles. */
     lines() {
@@ -379,8 +550,18 @@
         this.step.args[name] = [...without(name), node(net.names[i], net.points[i], this.frame)];
       }
     }
-    /** Adds a point where the step takes any number of them. Returns the key of its handle. */
-    add(at) {
+    /** The middle of the piece of a line that follows a node. */
+    after(handle) {
+      const [param, id = "", n] = handle.key.split("/");
+      const [i, j] = id.split(".").map(Number);
+      const sub = this.grips[param]?.paths?.[i]?.[j];
+      if (!sub || this.points(handle.param) === void 0) return null;
+      return middle(sub, Math.min(Number(n), sub.segments.length - 1));
+    }
+    /** Adds a point where the step takes any number of them, to paths within `reach`. Returns the key of its handle. */
+    add(at, reach) {
+      const divided = this.divide(at, reach);
+      if (divided) return divided;
       if (!this.grows) return null;
       for (const { name, repeat, notation } of this.deformation.params) {
         const grip = this.grips[name];
@@ -405,14 +586,17 @@
       if (Object.values(this.grips).some((grip) => grip.net)) return false;
       return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
     }
+    /** Returns `true` if there are paths that points can be added to. */
+    get divides() {
+      return this.deformation.params.some(({ name, points }) => points && this.grips[name]?.paths);
+    }
     /** The handle on the other side of the frame's middle, if one is there. */
     partner(of) {
-      const [x, y, w, h2] = this.frame;
+      const [x, , w, h2] = this.frame;
       const [px, py] = of.get();
       const mirrored = [2 * x + w - px, py];
       const near = 1e-3 * Math.hypot(w, h2);
       const candidates = this.handles.filter((o) => o !== of && o.shape === of.shape && o.param === of.param);
-      void y;
       return candidates.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < near) ?? null;
     }
   };
@@ -468,6 +652,8 @@
     warnings = [];
     problem = null;
     isConnected = false;
+    /** The steps have been given to the program that waited for them. */
+    isDone = false;
     /** A handle is being dragged, so the handles stay as they are. */
     isDragging = false;
     screen = { show: () => {
@@ -510,6 +696,12 @@
       this.tell("link");
       await this.load(answer.state);
     }
+    /** Nothing is left to do here. */
+    finish() {
+      this.isDone = true;
+      this.connection.stop();
+      this.tell("link");
+    }
     /** Takes over a state of the server, with a proposal if nothing has been done yet. */
     async load(state) {
       this.state = state;
@@ -530,8 +722,8 @@
       await this.refresh();
     }
     /** The first values of a deformation after these steps. */
-    async opening(deformation, steps) {
-      return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, steps })).step ?? null);
+    async opening(deformation, steps, variant = null) {
+      return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, variant, steps })).step ?? null);
     }
     /** Shows the picture of the present steps, exactly. */
     async refresh() {
@@ -552,9 +744,13 @@
         this.isWanted = false;
         const start = this.since;
         await this.attempt(async () => {
+          const asked = performance.now();
           const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
+          const answered = performance.now();
           this.take(answer);
-          performance.measure("drag to picture", { start, end: performance.now() });
+          const detail = { waited: asked - start, answered: answered - asked, size: this.connection.size };
+          performance.measure("drag to picture", { start, end: performance.now(), detail });
+          performance.mark("pathwarp picture");
         });
       } while (this.isWanted);
       this.isBusy = false;
@@ -583,10 +779,10 @@
       });
     }
     /** Replaces the step being changed, or appends one. */
-    async choose(deformation, args, append) {
+    async choose(deformation, args, append, variant = null) {
       const at = append ? this.steps.length : this.selected;
       const before2 = this.steps.slice(0, at);
-      const step2 = await this.opening(deformation, before2);
+      const step2 = await this.opening(deformation, before2, variant);
       if (!step2) return;
       Object.assign(step2.args, args);
       this.steps = append ? [...this.steps, step2] : this.steps.map((s2, i) => i === at ? step2 : s2);
@@ -660,8 +856,8 @@
       this.tell("report");
     }
     /** Adds a point at a place, where the step takes any number. */
-    addPoint(at) {
-      const key = this.handles?.add(at) ?? null;
+    addPoint(at, reach) {
+      const key = this.handles?.add(at, reach) ?? null;
       if (key) {
         this.tell("handles");
         void this.commit();
@@ -714,7 +910,7 @@
       const styles = all.filter((d) => d.gallery);
       this.box.replaceChildren(
         this.own,
-        this.section("Bend by hand", byHand.map((d) => this.whole(d))),
+        this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
         ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery.title), this.presets(d))),
         this.section("Effects", effects.map((d) => this.whole(d)))
       );
@@ -745,15 +941,17 @@
       this.own.replaceChildren(h("h3", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
     }
     section(title, cards) {
-      const items = h("div", { class: "grid" }, ...cards.map((c) => c.button));
+      const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
+      cards.forEach(({ button }, i) => button.tabIndex = i === 0 ? 0 : -1);
+      items.addEventListener("keydown", (e) => walk(e, items));
       return h("section", {}, h("h3", {}, title), items);
     }
-    card(deformation, args, steps, ...text) {
+    card(deformation, args, steps, text, variant = null) {
       const image = h("img", { alt: "", draggable: "false" });
-      const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), ...text);
-      const card = { button, image, steps, deformation, args, words: button.textContent ?? "" };
+      const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
+      const card = { button, image, steps, deformation, args, variant, words: button.textContent ?? "" };
       button.addEventListener("click", () => {
-        void this.app.choose(deformation, args, this.appends);
+        void this.app.choose(deformation, args, this.appends, variant?.label ?? null);
         this.appends = false;
         document.body.classList.remove("shapes-open");
       });
@@ -761,10 +959,10 @@
       this.seen.observe(button);
       return card;
     }
-    whole(d) {
-      const card = this.card(d.name, {}, null, h("span", { class: "name" }, called(d)));
+    whole(d, variant = null) {
+      const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
       card.button.title = capital(d.title);
-      card.words = `${called(d)} ${d.name} ${d.title}`;
+      card.words = `${variant?.label ?? ""} ${called(d)} ${d.name} ${d.title}`;
       return card;
     }
     presets(d) {
@@ -781,7 +979,7 @@
       this.isDrawing = true;
       for (let card = this.queue.shift(); card; card = this.queue.shift()) {
         while (this.app.isDragging) await new Promise((done) => setTimeout(done, 100));
-        const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation };
+        const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation, variant: card.variant?.label ?? null };
         try {
           const { svg } = await this.app.connection.ask(request);
           card.image.src = URL.createObjectURL(new Blob([svg ?? ""], { type: "image/svg+xml" }));
@@ -794,8 +992,10 @@
     /** Marks the shape of the step being changed. */
     mark() {
       const { step: step2 } = this.app;
-      for (const { button, deformation, args } of this.cards) {
-        const isChosen = step2?.deformation === deformation && Object.entries(args).every(([k, v]) => step2.args[k]?.[0] === v[0]);
+      for (const { button, deformation, args, variant } of this.cards) {
+        const others = this.app.deformation(deformation)?.variants ?? [];
+        const isVariant = variant ? step2?.args[variant.param] !== void 0 : !others.some((o) => step2?.args[o.param]);
+        const isChosen = step2?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step2.args[k]?.[0] === v[0]);
         button.setAttribute("aria-pressed", String(isChosen));
       }
     }
@@ -804,10 +1004,24 @@
       for (const { button, words: words2 } of this.cards) button.hidden = !words2.toLowerCase().includes(wanted);
       for (const section of Array.from(this.box.children)) {
         if (section === this.own) continue;
+        const shown = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
+        if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0].tabIndex = 0;
         section.hidden = !Array.from(section.querySelectorAll(".card")).some((c) => !c.hidden);
       }
     }
   };
+  function walk(e, items) {
+    const all = Array.from(items.children).filter((card) => !card.hidden);
+    const at = all.indexOf(document.activeElement);
+    const row = all.filter((card) => card.offsetTop === all[0]?.offsetTop).length;
+    const by = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: row, ArrowUp: -row }[e.key];
+    const to = e.key === "Home" ? 0 : e.key === "End" ? all.length - 1 : by === void 0 ? -1 : at + by;
+    if (at < 0 || !all[to]) return;
+    e.preventDefault();
+    all[at].tabIndex = -1;
+    all[to].tabIndex = 0;
+    all[to].focus();
+  }
   function isDragged(d) {
     return d.params.some((p) => p.kind === "path" && p.name !== "base" || DRAGGED.has(p.notation ?? ""));
   }
@@ -846,7 +1060,7 @@
       const [x, y, w, h2] = handles.frame;
       const xs = [x, x + w / 2, x + w, ...this.marks.map((p) => p[0])];
       const ys = [y, y + h2 / 2, y + h2, ...this.marks.map((p) => p[1])];
-      const [nx, ny] = [nearest(to[0], xs, reach), nearest(to[1], ys, reach)];
+      const [nx, ny] = [nearest2(to[0], xs, reach), nearest2(to[1], ys, reach)];
       this.onSnap(nx, ny);
       return [nx ?? to[0], ny ?? to[1]];
     }
@@ -854,7 +1068,7 @@
       this.onSnap(null, null);
     }
   };
-  function nearest(value, among, reach) {
+  function nearest2(value, among, reach) {
     let best = null;
     for (const candidate of among) {
       const off = Math.abs(candidate - value);
@@ -871,8 +1085,8 @@
       vertical.setAttribute("visibility", x === null ? "hidden" : "visible");
       horizontal.setAttribute("visibility", y === null ? "hidden" : "visible");
       const [sx, sy] = toScreen([x ?? 0, y ?? 0]);
-      for (const end of ["x1", "x2"]) vertical.setAttribute(end, String(sx));
-      for (const end of ["y1", "y2"]) horizontal.setAttribute(end, String(sy));
+      for (const end2 of ["x1", "x2"]) vertical.setAttribute(end2, String(sx));
+      for (const end2 of ["y1", "y2"]) horizontal.setAttribute(end2, String(sy));
     };
   }
 
@@ -917,13 +1131,34 @@
       const { state } = this.app;
       if (!state) return;
       byId("file").textContent = state.file;
-      byId("saved").textContent = state.saved ? `Saved as ${state.savedTo}` : state.steps.length === 0 ? "" : "Not saved yet";
-      byId("save").disabled = state.steps.length === 0 || state.saved;
-      document.title = `${state.saved || state.steps.length === 0 ? "" : "• "}${state.file} — pathwarp`;
+      const isEmpty = state.steps.length === 0;
+      byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? `Saved as ${state.savedTo}` : isEmpty ? "" : "Not saved yet";
+      const save = byId("save");
+      save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
+      if (state.program) {
+        save.textContent = `Keep in ${state.program}`;
+        save.title = `Give the result to ${state.program} (Ctrl S)`;
+        for (const id of ["save-as", "open"]) byId(id).hidden = true;
+      }
+      document.title = `${this.isUnsaved ? "• " : ""}${state.file} — pathwarp`;
+    }
+    /** Something would be lost without saving. */
+    get isUnsaved() {
+      const { state } = this.app;
+      if (!state) return false;
+      return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved;
+    }
+    /** Gives the steps to the program that waits for them. */
+    async handOver() {
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
+      if (!answer?.done) return;
+      this.app.finish();
+      window.close();
     }
     /** Saves where it was saved last; the first time, under the usual name. */
     async quick() {
       const { state } = this.app;
+      if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
       if (!state || state.steps.length === 0) return;
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
       if (answer?.exists) return this.open();
@@ -931,7 +1166,7 @@
     }
     open() {
       const { state } = this.app;
-      if (!state || state.steps.length === 0) return;
+      if (!state || state.steps.length === 0 || state.program) return;
       this.name.value = state.target;
       this.choose("svg");
       byId("save-folder").textContent = state.folder;
@@ -1181,9 +1416,14 @@
     shift = [0, 0];
     /** From user units to px of the drawing. */
     toPx = [1, 0, 0, 1, 0, 0];
-    toScreen([x, y]) {
+    /** A point of the drawing, in px of it. */
+    inPx([x, y]) {
       const [a, b, c, d, e, f] = this.toPx;
-      return [this.scale * (a * x + c * y + e) + this.shift[0], this.scale * (b * x + d * y + f) + this.shift[1]];
+      return [a * x + c * y + e, b * x + d * y + f];
+    }
+    toScreen(p) {
+      const [x, y] = this.inPx(p);
+      return [this.scale * x + this.shift[0], this.scale * y + this.shift[1]];
     }
     toUser([x, y]) {
       const [a, b, c, d, e, f] = this.toPx;
@@ -1323,16 +1563,21 @@
   // src/nodes.ts
   var MOST = 4e6;
   function nodesOf(paths) {
-    const out = [];
+    const [nodes, arms] = [[], []];
     let length2 = 0;
     for (const path of paths) {
       const d = path.getAttribute("d") ?? "";
       length2 += d.length;
       if (length2 > MOST) break;
       const at = place(path);
-      for (const [x, y] of anchors(d).map(at)) out.push(`M${x.toFixed(2)},${y.toFixed(2)}h0`);
+      const text = (p) => at(p).map((v) => v.toFixed(2)).join(",");
+      for (const { from, to, control } of anchors(d)) {
+        nodes.push(`M${text(to)}h0`);
+        const [first, last] = [control[0], control[control.length - 1]];
+        if (first && last) arms.push(`M${text(from)}L${text(first)}M${text(to)}L${text(last)}`);
+      }
     }
-    return out.join("");
+    return { nodes: nodes.join(""), arms: arms.join("") };
   }
   function place(path) {
     let matrix = new DOMMatrix();
@@ -1342,28 +1587,58 @@
     }
     return ([x, y]) => [matrix.a * x + matrix.c * y + matrix.e, matrix.b * x + matrix.d * y + matrix.f];
   }
+  var COMMANDS = { M: 2, L: 2, H: 1, V: 1, C: 6, S: 4, Q: 4, T: 2, A: 7, Z: 0 };
+  var WORD = /[a-zA-Z]|[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/g;
   function anchors(d) {
     const out = [];
-    const words2 = d.split(" ");
-    const numbers = { M: 2, L: 2, Q: 4, C: 6, Z: 0 };
-    for (let i = 0; i < words2.length; i++) {
-      const count = numbers[words2[i]];
-      if (!count) continue;
-      out.push([Number(words2[i + count - 1]), Number(words2[i + count])]);
+    let mirrored = null;
+    const words2 = d.match(WORD) ?? [];
+    let command = "";
+    let [at, start] = [[0, 0], [0, 0]];
+    for (let i = 0; i < words2.length; ) {
+      if (/[a-zA-Z]/.test(words2[i])) command = words2[i++];
+      const kind = command.toUpperCase();
+      const count = COMMANDS[kind];
+      if (count === void 0 || i + count > words2.length) break;
+      const from = at;
+      if (kind === "Z") {
+        [at, mirrored] = [start, null];
+        continue;
+      }
+      const [x0, y0] = command === kind ? [0, 0] : at;
+      const last = Number(words2[i + count - 1]);
+      if (kind === "H") at = [x0 + last, at[1]];
+      else if (kind === "V") at = [at[0], y0 + last];
+      else at = [x0 + Number(words2[i + count - 2]), y0 + last];
+      const control = [];
+      if (kind !== "A") {
+        for (let k = i; k + 3 < i + count; k += 2) control.push([x0 + Number(words2[k]), y0 + Number(words2[k + 1])]);
+      }
+      if (kind === "S" || kind === "T") {
+        const [mx, my] = mirrored ?? from;
+        control.unshift([2 * from[0] - mx, 2 * from[1] - my]);
+      }
+      mirrored = control[control.length - 1] ?? null;
       i += count;
+      out.push({ from, to: at, control });
+      if (kind === "M") {
+        start = at;
+        command = command === "m" ? "l" : "L";
+      }
     }
     return out;
   }
 
   // src/stage.ts
-  var MARGIN = 56;
+  var MARGIN2 = 56;
   var REACH = 18;
+  var MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
   var KEYS = 500;
   var Stage = class {
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.nodes, this.guides, this.marks, this.knobs);
+      this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
       const stage2 = this;
       app2.screen = { show: (answer) => this.show(answer), get pixel() {
         return stage2.camera.pixel;
@@ -1388,12 +1663,15 @@
     beforeArt = s("g", { class: "art", visibility: "hidden" });
     heat = s("g", { class: "heat" });
     nodes = s("path", { class: "nodes" });
+    arms = s("path", { class: "arms" });
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
     drawing = new Drawing(this.art);
     elements = /* @__PURE__ */ new Map();
     lines = [];
+    /** Wide, invisible lines over those that can be pulled, by their index. */
+    reaches = [];
     focused = null;
     touches = /* @__PURE__ */ new Map();
     keysTimer = 0;
@@ -1407,6 +1685,9 @@
     onFocus = () => {
     };
     onZoom = () => {
+    };
+    /** The view was moved by somebody who took hold of the artwork. */
+    onPan = () => {
     };
     get size() {
       return [this.svg.clientWidth, this.svg.clientHeight];
@@ -1423,7 +1704,7 @@
       const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
       const height = Math.max(whole - covered, whole / 4);
       if (!state || width === 0 || height === 0) return;
-      this.camera.fit(state.page, [width, height], Math.min(MARGIN, width / 10));
+      this.camera.fit(state.page, [width, height], Math.min(MARGIN2, width / 10));
       this.isFitted = true;
       this.layout();
     }
@@ -1436,12 +1717,30 @@
       if (!state) return;
       const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
       this.camera.toPx = state.toPx;
+      this.grow();
       if (isNew || !this.isFitted) this.fit();
     }
     show(answer) {
       if (answer.picture) this.drawing.show(answer.picture);
+      if (answer.summary) this.grow();
       if (this.showsNodes) this.drawNodes();
       this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
+    }
+    /** The page, as far as it holds the artwork: saving makes it larger where needed. */
+    grow() {
+      const { state } = this.app;
+      if (!state) return;
+      const [x, y, w, h2] = state.page;
+      const [[x0, y0], [x1, y1]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h2])];
+      let box = [Math.min(x0, x1), Math.min(y0, y1), Math.max(x0, x1), Math.max(y0, y1)];
+      const art = this.art.getBBox();
+      if (!state.program && art.width > 0) {
+        box = [Math.min(box[0], art.x), Math.min(box[1], art.y), Math.max(box[2], art.x + art.width), Math.max(box[3], art.y + art.height)];
+      }
+      this.sheet.setAttribute("x", String(box[0]));
+      this.sheet.setAttribute("y", String(box[1]));
+      this.sheet.setAttribute("width", String(box[2] - box[0]));
+      this.sheet.setAttribute("height", String(box[3] - box[1]));
     }
     fold(at) {
       const [x, y] = this.camera.toScreen(at);
@@ -1468,15 +1767,16 @@
       this.isFitted = false;
     }
     drawNodes() {
-      this.nodes.setAttribute("d", this.showsNodes ? nodesOf(this.drawing.paths()) : "");
+      const { nodes, arms } = this.showsNodes ? nodesOf(this.drawing.paths()) : { nodes: "", arms: "" };
+      this.nodes.setAttribute("d", nodes);
+      this.arms.setAttribute("d", arms);
     }
     /** Shows the stretch of the visible steps, or hides it. */
     async drawStretch() {
       const { app: app2 } = this;
       const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
-      const [a, b, c, d, e, f] = this.camera.toPx;
-      const place3 = ([x, y]) => [a * x + c * y + e, b * x + d * y + f];
-      this.heat.replaceChildren(...answer?.stretch && this.showsStretch ? cells(answer.stretch, place3) : []);
+      const stretch = this.showsStretch ? answer?.stretch : null;
+      this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
     }
     /** The next click on the drawing names a path. */
     pick(take) {
@@ -1486,18 +1786,8 @@
     /** Puts everything in its place on the screen. */
     layout() {
       const { camera } = this;
-      const { state } = this.app;
-      for (const layer of [this.art, this.beforeArt]) layer.setAttribute("transform", camera.transform);
-      this.nodes.setAttribute("transform", camera.transform);
-      this.heat.setAttribute("transform", camera.transform);
-      if (state) {
-        const [x, y, w, h2] = state.page;
-        const [a, b] = [camera.toScreen([x, y]), camera.toScreen([x + w, y + h2])];
-        this.sheet.setAttribute("x", String(Math.min(a[0], b[0])));
-        this.sheet.setAttribute("y", String(Math.min(a[1], b[1])));
-        this.sheet.setAttribute("width", String(Math.abs(b[0] - a[0])));
-        this.sheet.setAttribute("height", String(Math.abs(b[1] - a[1])));
-      }
+      const layers = [this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+      for (const layer of layers) layer.setAttribute("transform", camera.transform);
       for (const mark of Array.from(this.marks.children)) {
         const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at));
         mark.setAttribute("transform", `translate(${x} ${y})`);
@@ -1514,7 +1804,9 @@
         if (!element) return;
         const [first, ...rest] = line.points.map(at);
         const close = line.closed ? "Z" : "";
-        element.setAttribute("d", line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`);
+        const d = line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`;
+        element.setAttribute("d", d);
+        this.reaches[i]?.setAttribute("d", d);
       });
       for (const handle of handles.handles) {
         const [x, y] = this.camera.toScreen(handle.get());
@@ -1524,7 +1816,9 @@
     rebuild() {
       const { handles } = this.app;
       this.elements.clear();
-      this.lines = (handles?.lines() ?? []).map((line) => s("path", { class: `line ${line.kind}` }));
+      const lines = handles?.lines() ?? [];
+      this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
+      this.reaches = lines.map((line) => line.kind === "path" ? s("path", { class: "pull" }) : null);
       const knobs = (handles?.handles ?? []).map((handle) => {
         const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" }) : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
         const knob = s(
@@ -1537,7 +1831,7 @@
         this.elements.set(handle.key, knob);
         return knob;
       });
-      this.guides.replaceChildren(...this.lines);
+      this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
       const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
       this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
       this.placeHandles();
@@ -1575,8 +1869,29 @@
       this.touches.set(e.pointerId, this.point(e));
       if (this.touches.size === 2) return this.pinch();
       if (this.touches.size > 2) return;
+      const isPull = e.target.matches(".pull");
       if (knob && e.button === 0 && !this.isBefore) this.drag(e, knob);
-      else this.pan(e);
+      else if (!(isPull && e.button === 0 && !this.isBefore && this.pull(e))) this.pan(e);
+    }
+    /** Follows a line that is pulled. Returns `false` if there is none. */
+    pull(e) {
+      const { handles } = this.app;
+      const pull = handles?.pull(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
+      if (!handles || !pull) return false;
+      let hasMoved = false;
+      this.app.isDragging = true;
+      this.follow(e, (to, event) => {
+        if (this.touches.size > 1) return;
+        hasMoved = true;
+        pull.move(this.camera.toUser(to), this.modes.smooths);
+        handles.write(pull.param);
+        this.placeHandles();
+        this.app.draft(event.timeStamp);
+      }, () => {
+        this.app.isDragging = false;
+        if (hasMoved) void this.app.commit();
+      });
+      return true;
     }
     picked(e) {
       const named = e.target.closest(".art [id]");
@@ -1585,7 +1900,7 @@
       if (named) take?.(named.id.replace(/^art-/, ""));
     }
     /** Follows a pointer until it is lifted. */
-    follow(e, move, end) {
+    follow(e, move, end2) {
       const id = e.pointerId;
       const stop = new AbortController();
       const { signal } = stop;
@@ -1593,9 +1908,10 @@
         if (event.pointerId !== id) return;
         this.touches.delete(id);
         stop.abort();
-        end();
+        end2();
       };
-      window.addEventListener("pointermove", (event) => {
+      window.addEventListener(MOVES, (e2) => {
+        const event = e2;
         if (event.pointerId !== id) return;
         this.touches.set(id, this.point(event));
         move(this.point(event), event);
@@ -1634,44 +1950,51 @@
       this.app.draft(since);
     }
     pan(e) {
-      let last = this.point(e);
+      const first = this.point(e);
+      let last = first;
+      const start = this.camera.toUser(first);
       this.svg.classList.add("panning");
       this.follow(e, (to) => {
         if (this.touches.size > 1) return;
         this.camera.shift = [this.camera.shift[0] + to[0] - last[0], this.camera.shift[1] + to[1] - last[1]];
         last = to;
         this.layout();
-      }, () => this.svg.classList.remove("panning"));
+      }, () => {
+        this.svg.classList.remove("panning");
+        const [x, y, w, h2] = this.app.handles?.frame ?? [0, 0, 0, 0];
+        const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
+        if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+      });
     }
     /** Two fingers move and magnify the view. */
     pinch() {
       const [one, two] = Array.from(this.touches.keys());
       const stop = new AbortController();
       const { signal } = stop;
-      const middle = () => {
+      const middle2 = () => {
         const [a, b] = [this.touches.get(one), this.touches.get(two)];
         return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
       };
-      let [at, apart] = middle();
+      let [at, apart] = middle2();
       window.addEventListener("pointermove", (e) => {
         if (!this.touches.has(e.pointerId)) return;
         this.touches.set(e.pointerId, this.point(e));
-        const [to, wide] = middle();
+        const [to, wide] = middle2();
         this.camera.shift = [this.camera.shift[0] + to[0] - at[0], this.camera.shift[1] + to[1] - at[1]];
         if (apart > 0) this.camera.zoom(wide / apart, to);
         [at, apart] = [to, wide];
         this.layout();
       }, { signal });
-      const end = (e) => {
+      const end2 = (e) => {
         this.touches.delete(e.pointerId);
         stop.abort();
       };
-      window.addEventListener("pointerup", end, { signal });
-      window.addEventListener("pointercancel", end, { signal });
+      window.addEventListener("pointerup", end2, { signal });
+      window.addEventListener("pointercancel", end2, { signal });
     }
     doubleClick(e) {
       if (e.target.closest(".knob")) return;
-      const key = this.app.addPoint(this.camera.toUser(this.point(e)));
+      const key = this.app.addPoint(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
       if (key) this.focused = key;
     }
     /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
@@ -1684,13 +2007,23 @@
         const far = e.shiftKey ? 10 : 1;
         const [x, y] = this.camera.toScreen(handle.get());
         this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+      } else if (e.key === "Insert") {
+        e.preventDefault();
+        const [x, y] = handle.get();
+        const at = this.app.handles.after(handle) ?? [x + 2 * REACH * this.camera.pixel, y];
+        this.focused = this.app.addPoint(at, REACH * this.camera.pixel) ?? this.focused;
       } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
         e.preventDefault();
-        handle.remove();
-        this.app.handles.write(handle.param);
-        this.focused = null;
-        void this.app.commit();
+        this.remove(handle);
       }
+    }
+    /** Takes a point away. */
+    remove(handle) {
+      if (!handle.remove || !this.app.handles) return;
+      handle.remove();
+      this.app.handles.write(handle.param);
+      this.focus(null);
+      void this.app.commit();
     }
     /** Moves a handle by keys or by typed numbers. */
     moveTo(handle, to) {
@@ -1742,7 +2075,8 @@
       const name = (step2) => {
         const deformation = app2.deformation(step2.deformation);
         const preset = deformation?.gallery ? step2.args[deformation.gallery.presets]?.[0] : void 0;
-        return preset ? words(preset) : deformation ? called(deformation) : words(step2.deformation);
+        const variant = deformation?.variants.find(({ param }) => step2.args[param]);
+        return preset ? words(preset) : variant?.label ?? (deformation ? called(deformation) : words(step2.deformation));
       };
       const button = (name2, label, action, disabled = false) => {
         const b = h("button", { type: "button", class: "small", "aria-label": label, title: label, disabled }, icon(name2));
@@ -1802,6 +2136,9 @@
   }
   on("open-shapes", () => sheet("shapes-open"));
   on("open-settings", () => sheet("settings-open"));
+  stage.onPan = () => {
+    if (app.isProposal && app.handles?.handles.length) byId("note").textContent = "This moves the view. Pull a blue point or line to bend the artwork";
+  };
   stage.onZoom = () => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
   };
@@ -1831,7 +2168,7 @@
   });
   var before = byId("before");
   before.addEventListener("pointerdown", () => void stage.before(true));
-  for (const end of ["pointerup", "pointerleave", "pointercancel", "blur"]) before.addEventListener(end, () => void stage.before(false));
+  for (const end2 of ["pointerup", "pointerleave", "pointercancel", "blur"]) before.addEventListener(end2, () => void stage.before(false));
   before.addEventListener("keydown", (e) => {
     if (e.key === " " || e.key === "Enter") void stage.before(true);
   });
@@ -1872,6 +2209,7 @@
     place2.classList.toggle("off", handle === null);
     if (!handle) return;
     byId("place-name").textContent = handle.label;
+    byId("remove-point").hidden = !handle.remove;
     const at = handle.get();
     fields.forEach((field, i) => {
       if (document.activeElement !== field) field.value = short(Number(at[i].toFixed(3)));
@@ -1883,12 +2221,16 @@
     const at = focused.get();
     stage.moveTo(focused, i === 0 ? [value, at[1]] : [at[0], value]);
   }));
+  on("remove-point", () => {
+    if (focused) stage.remove(focused);
+  });
   app.listen((change) => {
     const { state, summary } = app;
     if (change === "report" || change === "state") {
       const folds = summary?.folds.length ?? 0;
       byId("counts").textContent = summary ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
-      byId("error").textContent = summary && summary.error > 0 ? `off by at most ${Number(summary.error.toPrecision(2))}` : "";
+      byId("error").title = "The largest distance to the exact image, in units of the drawing";
+      byId("error").textContent = summary && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "";
       const fold = byId("folds");
       fold.hidden = folds === 0;
       fold.textContent = folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`;
@@ -1914,12 +2256,16 @@
       byId("smooth").hidden = !isCurve;
       byId("mirror").hidden = !has;
       byId("snap").hidden = !has;
-      const note = !has ? "Change the settings" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
+      const pulls = app.handles?.lines().some((line) => line.kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
+      const adds = grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
+      const note = !has ? "Change the settings" : grows || app.handles?.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
       byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
     }
     if (change === "link") {
-      byId("gone").hidden = app.isConnected;
-      byId("gone-kept").textContent = state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing.";
+      byId("gone").hidden = app.isConnected && !app.isDone;
+      byId("gone").classList.toggle("done", app.isDone);
+      byId("gone-title").textContent = app.isDone ? `${state?.program} has the result.` : "pathwarp has ended.";
+      byId("gone-kept").textContent = app.isDone ? "You can close this page." : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.` : `${state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing."} Run “pathwarp edit” again to go on.`;
     }
     if (change === "state" && state?.restored && !announced) {
       announced = true;
@@ -1955,7 +2301,10 @@
     e.preventDefault();
     document.body.classList.remove("dropping");
     const file = e.dataTransfer?.files[0];
-    if (file) void openFile(file);
+    if (file && !app.state?.program) void openFile(file);
+  });
+  window.addEventListener("beforeunload", (e) => {
+    if (app.state?.program && saving.isUnsaved && app.isConnected) e.preventDefault();
   });
   var chosen = byId("open-file");
   on("open", () => chosen.click());

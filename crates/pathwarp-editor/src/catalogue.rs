@@ -1,5 +1,6 @@
 //! The deformations with their parameters as a page needs them: everything follows from the registry's tables.
 
+use crate::openings::variants;
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Axis, Kind, Param};
 use serde_json::{Value, json};
@@ -23,6 +24,21 @@ const LABELS: [(&str, &str); 15] = [
     ("affine", "Transform"),
 ];
 
+/// Paths with a fixed number of points, by deformation and parameter; others, such as skeletons, may have any number.
+const FIXED: [(&str, &str); 9] = [
+    ("shaper", "shaper"),
+    ("shaper", "net"),
+    ("shaper", "base"),
+    ("shaper", "target"),
+    ("mesh", "net"),
+    ("bilinear", "target"),
+    ("projective", "target"),
+    ("projective", "base"),
+    ("similitude", "target"),
+];
+/// The deformation whose rows have equally many points, which are control points of one curve each.
+const ROWS: &str = "birational";
+
 /// Describes all deformations, in menu order.
 pub(crate) fn catalogue(registry: &Registry) -> Value {
     registry.entries().iter().map(|e| deformation(e.info())).collect()
@@ -37,12 +53,13 @@ fn deformation(info: &Info) -> Value {
         "title": info.title,
         "group": info.group,
         "about": info.about,
-        "params": params.map(param).collect::<Value>(),
+        "params": params.map(|p| param(info, p)).collect::<Value>(),
+        "variants": variants(info.name).map(|v| json!({ "label": v.label, "param": v.param })).collect::<Value>(),
         "gallery": info.gallery.map(|g| json!({ "title": g.title, "presets": g.presets, "bend": g.bend, "axis": g.axis })),
     })
 }
 
-fn param(p: &Param) -> Value {
+fn param(info: &Info, p: &Param) -> Value {
     let mut out = json!({
         "name": p.name,
         "kind": kind(p.kind),
@@ -56,6 +73,8 @@ fn param(p: &Param) -> Value {
         Kind::Text(notation) => out["notation"] = json!(notation),
         Kind::Numbers(n) => out["count"] = json!(n),
         Kind::Length(axis) => out["axis"] = json!(axis_word(axis)),
+        Kind::Path if info.name == ROWS => out["points"] = json!("rows"),
+        Kind::Path if !FIXED.contains(&(info.name, p.name)) => out["points"] = json!("any"),
         _ => {}
     }
     if let Some(default) = p.default {
@@ -102,6 +121,11 @@ mod tests {
             let expected: Vec<_> = info.params.iter().filter(|p| p.kind != Kind::Save).map(|p| p.name).collect();
             assert_eq!(names, expected);
         }
+        for (name, param) in FIXED {
+            let params = registry.get(name).map(|e| e.info().params).unwrap_or_default();
+            assert!(params.iter().any(|p| p.name == param && p.kind == Kind::Path), "{name} {param}");
+        }
+        assert!(registry.get(ROWS).is_some());
         for (name, _) in LABELS {
             assert!(registry.get(name).is_some(), "{name}");
         }

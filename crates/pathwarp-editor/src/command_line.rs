@@ -6,8 +6,14 @@ use pathwarp::recipe::Recipe;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Writes the command line that bends `source` by the recipe into `out`, for a POSIX shell.
-pub(crate) fn command_line(registry: &Registry, recipe: &Recipe, source: &Path, out: &Path) -> String {
+/// Writes the command line that bends `source` by the recipe into `out`, with these common options, for a POSIX shell.
+pub(crate) fn command_line(
+    registry: &Registry,
+    recipe: &Recipe,
+    options: &[(String, String)],
+    source: &Path,
+    out: &Path,
+) -> String {
     let mut line = "pathwarp".to_owned();
     for (i, step) in recipe.steps.iter().enumerate() {
         let first = i == 0;
@@ -30,6 +36,9 @@ pub(crate) fn command_line(registry: &Registry, recipe: &Recipe, source: &Path, 
             line.push_str(" --inverse");
         }
         if first {
+            for (name, value) in options {
+                let _ = write!(line, " --{name} {}", quoted(value));
+            }
             let _ = write!(line, " -o {}", quoted(&out.display().to_string()));
         }
     }
@@ -60,8 +69,9 @@ mod tests {
                 Step { inverse: true, ..step("shaper", &[("reverse-shaper", "true"), ("shaper", "M0,0 H9")]) },
             ],
         };
-        let line = command_line(&Registry::builtin(), &recipe, Path::new("it's.svg"), Path::new("out.svg"));
-        let expected = r"pathwarp warp 'it'\''s.svg' --bend -40% --style flag -o out.svg + shaper --reverse-shaper --shaper 'M0,0 H9' --inverse";
+        let options = [("fit".to_owned(), "grow".to_owned())];
+        let line = command_line(&Registry::builtin(), &recipe, &options, Path::new("it's.svg"), Path::new("out.svg"));
+        let expected = r"pathwarp warp 'it'\''s.svg' --bend -40% --style flag --fit grow -o out.svg + shaper --reverse-shaper --shaper 'M0,0 H9' --inverse";
         assert_eq!(line, expected);
     }
 }

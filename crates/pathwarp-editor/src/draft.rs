@@ -28,32 +28,36 @@ impl Kept {
 }
 
 /// The draft of a drawing.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Draft {
-    path: PathBuf,
+    /// `None`: nothing is kept.
+    path: Option<PathBuf>,
 }
 
 impl Draft {
     /// The draft of the drawing `file`.
     pub(crate) fn of(file: &Path) -> Self {
         let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        Self { path: file.with_file_name(format!(".{name}.{EXTENSION}")) }
+        Self { path: Some(file.with_file_name(format!(".{name}.{EXTENSION}"))) }
     }
 
     /// What was kept; `None` if there is no draft, or one of another version.
     pub(crate) fn read(&self) -> Option<Kept> {
-        let text = std::fs::read_to_string(&self.path).ok()?;
+        let text = std::fs::read_to_string(self.path.as_ref()?).ok()?;
         serde_json::from_str::<Kept>(&text).ok().filter(|k| k.pathwarp == VERSION)
     }
 
     /// Keeps the steps.
     pub(crate) fn keep(&self, host: &dyn Host, kept: &Kept) -> Result<(), String> {
+        let Some(path) = &self.path else { return Ok(()) };
         let text = serde_json::to_string(kept).map_err(|e| e.to_string())?;
-        host.write(&self.path, text.as_bytes())
+        host.write(path, text.as_bytes())
     }
 
     /// Removes the file, after the steps have been saved.
     pub(crate) fn remove(&self) {
-        let _ = std::fs::remove_file(&self.path);
+        if let Some(path) = &self.path {
+            let _ = std::fs::remove_file(path);
+        }
     }
 }

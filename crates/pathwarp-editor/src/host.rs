@@ -65,6 +65,9 @@ pub trait Artwork: Send {
     /// A step cannot be built.
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String>;
 
+    /// The options that the command line would need for the same result, by name, without those of the steps.
+    fn options(&self) -> Vec<(String, String)>;
+
     /// The text of a recipe file with these steps.
     ///
     /// # Errors
@@ -77,10 +80,13 @@ pub trait Artwork: Send {
 pub enum Fineness {
     /// While something is dragged: curves within this distance in user units, gradients by affine fits, no report.
     Draft(f64),
-    /// As the program writes it.
+    /// As the program writes it, but on the page of the source.
     Exact,
-    /// As the program writes it, with the recipe and the source embedded.
-    Saved,
+    /// As the program writes it.
+    Finished {
+        /// With the recipe and the source in it.
+        embedded: bool,
+    },
 }
 
 /// A drawing under a recipe.

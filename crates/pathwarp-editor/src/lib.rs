@@ -7,7 +7,7 @@
 //! * `http`, `guard`: the few requests of a page, and who may make them;
 //! * `socket`: one connection of a page, with messages in JSON (`protocol`);
 //! * `session`: the document, its steps, undo, and the draft on disk;
-//! * `picture`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
+//! * `picture`, `quick`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
 //! * `catalogue`, `openings`, `grips`: the deformations, their first values, and the geometry that handles show.
 
 mod assets;
@@ -22,6 +22,8 @@ mod openings;
 mod picture;
 mod presets;
 mod protocol;
+mod purpose;
+mod quick;
 mod saving;
 mod server;
 mod session;
@@ -30,4 +32,5 @@ mod socket;
 mod stretch;
 
 pub use host::{Artwork, Bent, Fineness, Host, Opened, Summary};
+pub use purpose::Purpose;
 pub use server::{Options, serve};

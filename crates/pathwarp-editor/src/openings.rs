@@ -39,6 +39,50 @@ const NEUTRAL: [(&str, &str, &[&str]); 13] = [
     ("ffd", "degree", &["3x3"]),
 ];
 
+/// Another way to begin with a deformation.
+pub(crate) struct Variant {
+    deformation: &'static str,
+    /// Its name for people.
+    pub(crate) label: &'static str,
+    /// The parameter that takes the place of the usual ones.
+    pub(crate) param: &'static str,
+    /// A value that changes nothing, in the box 0,0,100,100.
+    neutral: &'static str,
+    /// A value that shows what it does.
+    showing: &'static str,
+}
+
+const VARIANTS: [Variant; 2] = [
+    Variant {
+        deformation: "shaper",
+        label: "Cage, 16 points",
+        param: "net",
+        neutral: "M0,100 C33.3333,100 66.6667,100 100,100 M0,66.6667 C33.3333,66.6667 66.6667,66.6667 100,66.6667 \
+                  M0,33.3333 C33.3333,33.3333 66.6667,33.3333 100,33.3333 M0,0 C33.3333,0 66.6667,0 100,0",
+        showing: "M0,100 C33,110 67,90 100,100 M0,67 C10,40 50,110 100,67 M0,33 C50,-10 90,60 100,33 M0,0 C33,10 67,-10 100,0",
+    },
+    Variant {
+        deformation: "envelope",
+        label: "Closed shape",
+        param: "envelope",
+        neutral: "M0,100 L50,100 L100,100 L100,50 L100,0 L50,0 L0,0 L0,50 Z",
+        showing: "M10,95 L50,120 L90,95 L100,50 L90,5 L50,-20 L10,5 L0,50 Z",
+    },
+];
+
+/// The other ways to begin with a deformation.
+pub(crate) fn variants(deformation: &str) -> impl Iterator<Item = &'static Variant> {
+    VARIANTS.iter().filter(move |v| v.deformation == deformation)
+}
+
+impl Variant {
+    /// The first values for artwork in `frame`: those that change nothing, or those that show something.
+    pub(crate) fn values(&self, frame: Rect, shows: bool) -> BTreeMap<String, Vec<String>> {
+        let data = if shows { self.showing } else { self.neutral };
+        BTreeMap::from([(self.param.to_owned(), vec![laid_out(data, frame)])])
+    }
+}
+
 /// Values that show something, where the registry's example suits its own drawing only.
 const SHOWING: [(&str, &str, &[&str]); 2] =
     [("anamorph", "distance", &["300%"]), ("anamorph", "onto", &["cylinder:radius=80%"])];
@@ -130,8 +174,12 @@ mod tests {
     const FRAME: Rect = Rect::new(20.0, 30.0, 684.0, 230.0);
 
     fn build(info: &Info) -> pathwarp::recipe::BuiltRecipe {
+        build_with(info, opening(info, FRAME))
+    }
+
+    fn build_with(info: &Info, values: BTreeMap<String, Vec<String>>) -> pathwarp::recipe::BuiltRecipe {
         let mut args = Args::new();
-        for (name, values) in opening(info, FRAME) {
+        for (name, values) in values {
             args.set(&name, values);
         }
         let art = Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
@@ -150,12 +198,19 @@ mod tests {
     #[test]
     fn neutral_values_move_nothing() {
         let registry = Registry::builtin();
-        for (name, ..) in NEUTRAL {
-            let built = build(registry.get(name).unwrap().info());
+        let info = |name: &str| registry.get(name).unwrap().info();
+        let usual = NEUTRAL.iter().map(|(name, ..)| (*name, build(info(name))));
+        let others = VARIANTS.iter().map(|v| (v.label, build_with(info(v.deformation), v.values(FRAME, false))));
+        for (name, built) in usual.chain(others) {
             for p in [Point::new(20.0, 30.0), Point::new(333.0, 111.0), Point::new(600.0, 200.0)] {
                 let off = built.map.point(p).distance(p);
                 assert!(off < 1e-2, "{name} moves {p} by {off}");
             }
+        }
+        for v in &VARIANTS {
+            let p = FRAME.center() + pathwarp::kurbo::Vec2::new(60.0, 30.0);
+            let built = build_with(info(v.deformation), v.values(FRAME, true));
+            assert!(built.map.point(p).distance(p) > 5.0, "{} shows nothing", v.label);
         }
     }
 }

@@ -6,6 +6,7 @@
 use pathwarp_svg::ReadOptions;
 use pathwarp_svg::usvg_tree::parse_tree;
 use serde_json::{Value, json};
+use std::ops::Range;
 use usvg::{Indent, WriteOptions};
 
 /// Put before every id of the drawing, so that it cannot be one of the page's.
@@ -54,6 +55,26 @@ impl Picture {
         self.lines.join("\n")
     }
 
+    /// The lines that are paths, with their path data.
+    pub(crate) fn paths(&self) -> Vec<(usize, &str)> {
+        let lines = self.lines.iter().enumerate();
+        lines.filter_map(|(i, line)| Some((i, &line[data_range(line)?]))).collect()
+    }
+
+    /// Gives lines new path data.
+    pub(crate) fn redraw(&mut self, changes: &[(usize, String)]) {
+        for (line, data) in changes {
+            if let Some(line) = self.lines.get_mut(*line)
+                && let Some(range) = data_range(line)
+            {
+                let rest = line.split_off(range.end);
+                line.truncate(range.start);
+                line.push_str(data);
+                line.push_str(&rest);
+            }
+        }
+    }
+
     /// The message that turns `old` into this picture: the attributes that differ, if only attributes do, else everything.
     pub(crate) fn message(&self, old: Option<&Self>) -> Value {
         let changes = old.and_then(|old| self.changes(old));
@@ -83,6 +104,13 @@ impl Picture {
         }
         Some(out)
     }
+}
+
+/// The place of the path data in a line.
+fn data_range(line: &str) -> Option<Range<usize>> {
+    const NAME: &str = " d=\"";
+    let start = line.starts_with("<path ").then(|| line.find(NAME)).flatten()? + NAME.len();
+    Some(start..start + line[start..].find('"')?)
 }
 
 /// An opening tag as usvg writes it.

@@ -56,12 +56,14 @@ pub(crate) enum Request {
     /// The first values of a deformation that is put after these steps.
     Opening {
         deformation: String,
+        variant: Option<String>,
         steps: Vec<PageStep>,
     },
-    /// A small picture of the drawing under these steps, or under a deformation as its examples show it.
+    /// A small picture of the drawing under these steps, or under a deformation, or a variant of it, as its examples show it.
     Thumbnail {
         steps: Option<Vec<PageStep>>,
         example: Option<String>,
+        variant: Option<String>,
     },
     /// Opens a file that was dropped on the page, as base64.
     Open {
@@ -73,6 +75,8 @@ pub(crate) enum Request {
         name: Option<String>,
         replace: bool,
     },
+    /// Keeps the steps for the program that waits for them.
+    HandOver,
     /// The names of the sets of steps that were kept.
     Presets,
     /// Keeps the present steps under a name.

@@ -3,9 +3,11 @@
 use crate::draft::Draft;
 use crate::guard::Guard;
 use crate::host::Host;
+use crate::purpose::Purpose;
 use crate::session::Session;
 use crate::shared::{OpenPage, Shared};
 use crate::{http, socket};
+use pathwarp::recipe::Recipe;
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::PathBuf;
@@ -17,6 +19,10 @@ use std::time::{Duration, Instant};
 const GRACE: Duration = Duration::from_secs(4);
 /// The time between two looks for new connections and for the end.
 const TICK: Duration = Duration::from_millis(20);
+/// Longest time until the first page, where a program waits for it.
+const FIRST_PAGE: Duration = Duration::from_secs(120);
+/// The last answer reaches its page within this time.
+const FAREWELL: Duration = Duration::from_millis(300);
 /// Most connections at a time; a page has one socket, and asks for three files.
 const MOST_CONNECTIONS: usize = 64;
 
@@ -25,38 +31,51 @@ const MOST_CONNECTIONS: usize = 64;
 pub struct Options {
     /// The drawing.
     pub file: PathBuf,
-    /// The file that *Save* writes; `None`: a name beside the drawing.
-    pub out: Option<PathBuf>,
+    /// What becomes of the steps.
+    pub purpose: Purpose,
     /// The port; `None`: a free one.
     pub port: Option<u16>,
     /// Open the page in a browser.
     pub open: bool,
 }
 
-/// Opens the drawing, calls `announce` with the address of the page, and answers it until it is closed.
+/// Opens the drawing, calls `announce` with the address of the page, and answers it until it is closed. Returns the steps that the
+/// user has kept, if a program waits for them.
 ///
 /// # Errors
-/// The drawing cannot be opened, or the port is taken. Errors are sentences for the user.
-pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl FnOnce(&str)) -> Result<(), String> {
+/// The drawing cannot be opened, the port is taken, or a program waits and no page opens. Errors are sentences for the user.
+pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl FnOnce(&str)) -> Result<Option<Recipe>, String> {
     let bytes = std::fs::read(&options.file).map_err(|e| format!("{}: cannot be read: {e}", options.file.display()))?;
-    let draft = Draft::of(&options.file);
-    let session = Session::open(host, &options.file, &bytes, options.out.clone(), draft)?;
+    // Without a result, the program that waits has its drawing as it was.
+    let draft = if options.purpose.program().is_some() { Draft::default() } else { Draft::of(&options.file) };
+    let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), draft)?;
     let port = options.port.unwrap_or(0);
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|e| format!("port {port}: {e}"))?;
-    let run = || -> io::Result<()> {
-        let guard = Guard::new(listener.local_addr()?.port())?;
-        let address = guard.address();
-        announce(&address);
-        if options.open && has_display() {
-            // The address is printed; a browser that cannot be started is no error.
-            let _ = open::that_detached(&address);
+    let failed = |e: io::Error| format!("the server cannot run: {e}");
+    let guard = Guard::new(listener.local_addr().map_err(failed)?.port()).map_err(failed)?;
+    let address = guard.address();
+    announce(&address);
+    let waits = options.purpose.program().is_some();
+    if options.open && (waits || has_display()) {
+        let opened = open_browser(&address);
+        // Otherwise the address is printed, and a browser that cannot be started is no error.
+        if let (Err(e), true) = (opened, waits) {
+            return Err(format!("no browser can be started: {e}"));
         }
-        listener.set_nonblocking(true)?;
-        let shared = Arc::new(Shared::new(session));
-        accept(&listener, &guard, &shared);
-        Ok(())
-    };
-    run().map_err(|e| format!("the server cannot run: {e}"))
+    }
+    listener.set_nonblocking(true).map_err(failed)?;
+    let shared = Arc::new(Shared::new(session));
+    accept(&listener, &guard, &shared, waits.then_some(FIRST_PAGE))?;
+    Ok(shared.with_session(|s| s.result()))
+}
+
+/// Opens the browser that the user names in the usual variable, or else the system's.
+fn open_browser(address: &str) -> io::Result<()> {
+    match std::env::var("BROWSER") {
+        // Lists and patterns are for the desktop's own opener to read.
+        Ok(name) if !name.is_empty() && !name.contains([':', '%', ';']) => open::with_detached(address, name),
+        _ => open::that_detached(address),
+    }
 }
 
 /// Returns `false` where no browser could show itself.
@@ -65,16 +84,30 @@ fn has_display() -> bool {
     cfg!(any(windows, target_os = "macos")) || set("DISPLAY") || set("WAYLAND_DISPLAY")
 }
 
-/// Answers connections until all pages have been closed for a while.
-fn accept(listener: &TcpListener, guard: &Guard, shared: &Arc<Shared>) {
+/// Answers connections until all pages have been closed for a while, or the steps are kept for the program that waits for them. The
+/// first page must open within a time if one is given.
+fn accept(
+    listener: &TcpListener,
+    guard: &Guard,
+    shared: &Arc<Shared>,
+    first_page: Option<Duration>,
+) -> Result<(), String> {
     let busy = Arc::new(AtomicUsize::new(0));
-    let mut last_open = Instant::now();
+    let start = Instant::now();
+    let mut last_open = start;
     loop {
+        if shared.pages.is_done() {
+            std::thread::sleep(FAREWELL);
+            return Ok(());
+        }
         if shared.pages.is_awaited() {
             last_open = Instant::now();
         }
         if last_open.elapsed() > GRACE {
-            return;
+            return Ok(());
+        }
+        if first_page.is_some_and(|most| start.elapsed() > most && !shared.pages.was_open()) {
+            return Err("no browser has opened the page".into());
         }
         let Ok((stream, _)) = listener.accept() else {
             std::thread::sleep(TICK);

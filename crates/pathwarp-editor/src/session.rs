@@ -4,17 +4,18 @@ use crate::command_line::command_line;
 use crate::draft::{Draft, Kept};
 use crate::grips::grips;
 use crate::host::{Bent, Fineness, Host, Opened};
-use crate::openings::{example, opening};
+use crate::openings::{Variant, example, opening, variants};
 use crate::picture::Picture;
 use crate::presets;
 use crate::protocol::{PageStep, recipe, steps};
+use crate::purpose::Purpose;
 use crate::saving;
 use crate::stretch::stretch;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::Map as _;
-use pathwarp::recipe::BuiltRecipe;
+use pathwarp::recipe::{BuiltRecipe, Recipe};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,8 +33,9 @@ pub(crate) struct Session {
     host: Arc<dyn Host>,
     /// The file that the editor was started with; results go beside it.
     file: PathBuf,
-    /// The file that the user asked for.
-    out: Option<PathBuf>,
+    purpose: Purpose,
+    /// The steps are the result of the session.
+    handed_over: bool,
     opened: Opened,
     kept: Kept,
     draft: Draft,
@@ -45,10 +47,19 @@ pub(crate) struct Session {
     problem: Option<String>,
 }
 
-/// A picture with everything that a page shows about it.
+/// A bent drawing with everything that a page shows about it.
 pub(crate) struct Shown {
-    pub(crate) picture: Picture,
+    pub(crate) svg: String,
+    /// A look at it while something is dragged.
+    pub(crate) is_draft: bool,
     pub(crate) about: Value,
+}
+
+impl Shown {
+    /// The picture of the drawing.
+    pub(crate) fn picture(&self) -> Result<Picture, String> {
+        Picture::of(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS })
+    }
 }
 
 impl Session {
@@ -57,7 +68,7 @@ impl Session {
         host: Arc<dyn Host>,
         file: &Path,
         bytes: &[u8],
-        out: Option<PathBuf>,
+        purpose: Purpose,
         draft: Draft,
     ) -> Result<Self, String> {
         let mut kept = draft.read();
@@ -71,18 +82,22 @@ impl Session {
         let as_opened = steps(&opened.recipe);
         let saved = opened.is_result.then(|| (file.to_owned(), as_opened.clone()));
         let kept = kept.take().unwrap_or_else(|| Kept::new(as_opened));
-        Ok(Self { host, file: file.to_owned(), out, opened, kept, draft, saved, restored, problem: None })
+        let file = file.to_owned();
+        let handed_over = false;
+        Ok(Self { host, file, purpose, handed_over, opened, kept, draft, saved, restored, problem: None })
     }
 
     /// Opens a drawing that was dropped on the page instead of the present one.
     pub(crate) fn replace(&mut self, name: &str, bytes: &str) -> Result<(), String> {
+        self.refuse_for_program("another drawing cannot be opened")?;
         let file = saving::named(name, &self.file)?;
         let content = STANDARD.decode(bytes).map_err(|e| format!("{name}: {e}"))?;
         self.opened = self.host.open(&file, &content)?;
         self.kept = Kept::new(steps(&self.opened.recipe));
         self.kept.dropped = Some((name.to_owned(), bytes.to_owned()));
         self.file = file;
-        (self.out, self.saved, self.restored) = (None, None, false);
+        self.purpose = Purpose::Files { out: None };
+        (self.saved, self.restored) = (None, false);
         self.keep();
         Ok(())
     }
@@ -94,7 +109,8 @@ impl Session {
         let name = |p: &Path| p.file_name().map(|n| n.to_string_lossy().into_owned());
         let folder = self.file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         json!({
-            "file": name(&self.file),
+            "file": if let Purpose::Program { drawing, .. } = &self.purpose { Some(drawing.clone()) } else { name(&self.file) },
+            "program": self.purpose.program(),
             "folder": folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).display().to_string(),
             "steps": self.kept.steps,
             "undo": !self.kept.undo.is_empty(),
@@ -118,8 +134,8 @@ impl Session {
     pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
         let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
-        let picture = Picture::of(&bent.svg, if draft.is_some() { DRAFT_DECIMALS } else { DECIMALS })?;
-        Ok(Shown { picture, about: self.about(&bent) })
+        let about = self.about(&bent);
+        Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about })
     }
 
     /// The drawing as it is without steps.
@@ -206,10 +222,19 @@ impl Session {
     }
 
     /// The first values of a deformation after these steps.
-    pub(crate) fn opening(&mut self, deformation: &str, given: &[PageStep]) -> Result<PageStep, String> {
+    pub(crate) fn opening(
+        &mut self,
+        deformation: &str,
+        variant: Option<&str>,
+        given: &[PageStep],
+    ) -> Result<PageStep, String> {
         let host = Arc::clone(&self.host);
         let entry = host.registry().get(deformation).ok_or_else(|| format!("there is no deformation {deformation}"))?;
-        let args = opening(entry.info(), self.frame_after(given)?);
+        let frame = self.frame_after(given)?;
+        let args = match variant_of(deformation, variant)? {
+            Some(variant) => variant.values(frame, false),
+            None => opening(entry.info(), frame),
+        };
         Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args })
     }
 
@@ -259,27 +284,55 @@ impl Session {
     }
 
     /// A deformation with the values of its examples.
-    pub(crate) fn example(&self, deformation: &str) -> Result<PageStep, String> {
+    pub(crate) fn example(&self, deformation: &str, variant: Option<&str>) -> Result<PageStep, String> {
         let entry = self.host.registry().get(deformation);
         let entry = entry.ok_or_else(|| format!("there is no deformation {deformation}"))?;
-        let args = example(entry.info(), self.opened.artwork.frame());
+        let frame = self.opened.artwork.frame();
+        let args = match variant_of(deformation, variant)? {
+            Some(variant) => variant.values(frame, true),
+            None => example(entry.info(), frame),
+        };
         Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args })
     }
 
     /// The file that *Save* writes unless another is named.
     fn target(&self) -> PathBuf {
         let saved = self.saved.as_ref().map(|(p, _)| p.clone());
-        saved.or_else(|| self.out.clone()).unwrap_or_else(|| saving::usual(&self.file))
+        saved.or_else(|| self.out().cloned()).unwrap_or_else(|| saving::usual(&self.file))
+    }
+
+    /// The file that the user asked for.
+    fn out(&self) -> Option<&PathBuf> {
+        if let Purpose::Files { out } = &self.purpose { out.as_ref() } else { None }
+    }
+
+    fn refuse_for_program(&self, what: &str) -> Result<(), String> {
+        self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this one")))
+    }
+
+    /// Makes the present steps the result, for the program that waits for it.
+    pub(crate) fn hand_over(&mut self) -> Result<(), String> {
+        if self.purpose.program().is_none() {
+            return Err("no program waits for the steps".into());
+        }
+        self.handed_over = true;
+        Ok(())
+    }
+
+    /// The result, if the user has kept it.
+    pub(crate) fn result(&self) -> Option<Recipe> {
+        self.handed_over.then(|| recipe(&self.kept.steps))
     }
 
     /// Writes the result. Answers with the name, or says that the file exists.
     pub(crate) fn save(&mut self, name: Option<&str>, replace: bool) -> Result<Value, String> {
+        self.refuse_for_program("nothing can be saved")?;
         let to = name.map_or_else(|| Ok(self.target()), |name| saving::named(name, &self.file))?;
         let own = self.saved.as_ref().is_some_and(|(p, _)| saving::same_file(p, &to));
         if !own && !self.opened.is_result && saving::same_file(&to, &self.file) {
             return Err(format!("{} is the drawing itself; choose another name", to.display()));
         }
-        let asked = self.out.as_ref().is_some_and(|out| saving::same_file(out, &to));
+        let asked = self.out().is_some_and(|out| saving::same_file(out, &to));
         if to.exists() && !own && !asked && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
@@ -289,8 +342,7 @@ impl Session {
         let (bytes, lost) = if extension == "toml" {
             (self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new())
         } else {
-            let fineness = if is_svg { Fineness::Saved } else { Fineness::Exact };
-            let svg = self.opened.artwork.bend(&given, fineness)?.svg;
+            let svg = self.opened.artwork.bend(&given, Fineness::Finished { embedded: is_svg })?.svg;
             self.host.export(svg, &to)?
         };
         self.host.write(&to, &bytes)?;
@@ -304,8 +356,15 @@ impl Session {
 
     pub(crate) fn command_line(&self) -> String {
         let given = recipe(&self.kept.steps);
-        command_line(self.host.registry(), &given, &self.file, &self.target())
+        command_line(self.host.registry(), &given, &self.opened.artwork.options(), &self.file, &self.target())
     }
+}
+
+/// The variant of a deformation with this label.
+fn variant_of(deformation: &str, label: Option<&str>) -> Result<Option<&'static Variant>, String> {
+    let Some(label) = label else { return Ok(None) };
+    let found = variants(deformation).find(|v| v.label == label);
+    found.map(Some).ok_or_else(|| format!("{deformation} has no variant {label}"))
 }
 
 /// The steps that a page shows.

@@ -1,7 +1,7 @@
 //! What the connections share: the session, and which pages are open.
 
 use crate::session::Session;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What the connections share.
@@ -17,12 +17,24 @@ pub(crate) struct Pages {
     ever: AtomicUsize,
     /// Counts the changes of the session, so that every page notices those of the others.
     pub(crate) changes: AtomicUsize,
+    /// The steps are kept for the program that waits for them.
+    pub(crate) done: AtomicBool,
 }
 
 impl Pages {
     /// Returns `true` while a page is open, and before the first one is.
     pub(crate) fn is_awaited(&self) -> bool {
-        self.open.load(Ordering::SeqCst) > 0 || self.ever.load(Ordering::SeqCst) == 0
+        self.open.load(Ordering::SeqCst) > 0 || !self.was_open()
+    }
+
+    /// Returns `true` once a page has been open.
+    pub(crate) fn was_open(&self) -> bool {
+        self.ever.load(Ordering::SeqCst) > 0
+    }
+
+    /// Returns `true` if nothing is left to do.
+    pub(crate) fn is_done(&self) -> bool {
+        self.done.load(Ordering::SeqCst)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::picture::Picture;
 use crate::protocol::{Message, Request};
+use crate::quick::Quick;
 use crate::session::{Session, Shown};
 use crate::shared::Shared;
 use serde_json::{Value, json};
@@ -27,6 +28,7 @@ pub(crate) fn run(stream: TcpStream, shared: &Arc<Shared>) -> Result<(), Error> 
         socket: WebSocket::from_raw_socket(stream, Role::Server, Some(config)),
         shared: Arc::clone(shared),
         picture: None,
+        quick: None,
         seen: shared.pages.changes.load(Ordering::SeqCst),
     };
     loop {
@@ -47,6 +49,8 @@ struct Page {
     shared: Arc<Shared>,
     /// The last picture sent.
     picture: Option<Picture>,
+    /// The quick way from there to the next.
+    quick: Option<Quick>,
     /// The number of changes that the page knows of.
     seen: usize,
 }
@@ -84,30 +88,32 @@ impl Page {
     fn respond(&mut self, session: &mut Session, request: Request) -> Result<Value, String> {
         match request {
             Request::Hello => {
-                self.picture = None;
+                (self.picture, self.quick) = (None, None);
                 Ok(json!({ "catalogue": session.catalogue(), "state": session.state() }))
             }
             Request::Bend { steps, draft } => {
                 let shown = session.bend(&steps, draft)?;
-                Ok(self.show(shown))
+                self.show(shown)
             }
             Request::Commit { steps, shown } => {
                 let shown = session.commit(steps, shown)?;
-                Ok(self.changed(session, shown))
+                self.changed(session, shown)
             }
             Request::Undo { shown } => {
                 let shown = session.undo(shown)?;
-                Ok(self.changed(session, shown))
+                self.changed(session, shown)
             }
             Request::Redo { shown } => {
                 let shown = session.redo(shown)?;
-                Ok(self.changed(session, shown))
+                self.changed(session, shown)
             }
             Request::Before => Ok(json!({ "svg": session.before()?.text() })),
             Request::Stretch { steps } => Ok(json!({ "stretch": session.stretch(&steps)? })),
-            Request::Opening { deformation, steps } => Ok(json!({ "step": session.opening(&deformation, &steps)? })),
-            Request::Thumbnail { steps, example } => {
-                let example = example.map(|name| session.example(&name)).transpose()?;
+            Request::Opening { deformation, variant, steps } => {
+                Ok(json!({ "step": session.opening(&deformation, variant.as_deref(), &steps)? }))
+            }
+            Request::Thumbnail { steps, example, variant } => {
+                let example = example.map(|name| session.example(&name, variant.as_deref())).transpose()?;
                 let steps = steps.or_else(|| example.map(|step| vec![step])).unwrap_or_default();
                 Ok(json!({ "svg": session.thumbnail(&steps)? }))
             }
@@ -121,6 +127,11 @@ impl Page {
                 self.count_change();
                 answer["state"] = session.state();
                 Ok(answer)
+            }
+            Request::HandOver => {
+                session.hand_over()?;
+                self.shared.pages.done.store(true, Ordering::SeqCst);
+                Ok(json!({ "done": true }))
             }
             Request::Presets => Ok(json!({ "presets": session.presets()? })),
             Request::KeepPreset { name } => {
@@ -137,23 +148,40 @@ impl Page {
     }
 
     /// The message with a picture.
-    fn show(&mut self, shown: Shown) -> Value {
+    fn show(&mut self, shown: Shown) -> Result<Value, String> {
+        let is_draft = shown.is_draft;
+        if let (true, Some(quick), Some(picture)) = (is_draft, &mut self.quick, &mut self.picture)
+            && let Some(changes) = quick.next(&shown.svg)
+        {
+            picture.redraw(&changes);
+            let mut answer = shown.about;
+            answer["picture"] = changed_paths(changes);
+            return Ok(answer);
+        }
+        let picture = shown.picture()?;
+        self.quick = is_draft.then(|| Quick::from(shown.svg, &picture)).flatten();
         let mut answer = shown.about;
-        answer["picture"] = shown.picture.message(self.picture.as_ref());
-        self.picture = Some(shown.picture);
-        answer
+        answer["picture"] = picture.message(self.picture.as_ref());
+        self.picture = Some(picture);
+        Ok(answer)
     }
 
     /// The message after a change of the steps.
-    fn changed(&mut self, session: &Session, shown: Shown) -> Value {
+    fn changed(&mut self, session: &Session, shown: Shown) -> Result<Value, String> {
         self.count_change();
-        let mut answer = self.show(shown);
+        let mut answer = self.show(shown)?;
         answer["state"] = session.state();
-        answer
+        Ok(answer)
     }
 
     /// Counts a change that this page knows of.
     fn count_change(&mut self) {
         self.seen = self.shared.pages.changes.fetch_add(1, Ordering::SeqCst) + 1;
     }
+}
+
+/// The message that gives lines of the picture new path data.
+fn changed_paths(changes: Vec<(usize, String)>) -> Value {
+    let change = |(line, data)| Value::Array(vec![json!(line), json!("d"), Value::String(data)]);
+    json!({ "changes": changes.into_iter().map(change).collect::<Vec<_>>() })
 }

@@ -98,7 +98,9 @@ pub fn convert(folder: &Path, args: &[&str]) {
 }
 
 fn finish(run: &mut Command, folder: &Path) {
-    let run = run.env("INKSCAPE_PROFILE_DIR", folder.join("profile")).current_dir(folder).stdin(Stdio::null());
+    // A program in the folder stands in for the browser.
+    let run = run.env("INKSCAPE_PROFILE_DIR", folder.join("profile")).env("BROWSER", folder.join("browser"));
+    let run = run.current_dir(folder).stdin(Stdio::null());
     let out = run.output().unwrap();
     let said = [out.stdout, out.stderr].map(|t| String::from_utf8_lossy(&t).into_owned()).join("\n");
     assert!(out.status.success(), "{run:?}: {said}");

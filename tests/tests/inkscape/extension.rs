@@ -20,7 +20,7 @@ const BODY: &str = "<g id='layer' inkscape:groupmode='layer' inkscape:label='Lay
 const SELECTED: [&[&str]; 6] = [&["a"], &["b", "c"], &["g"], &["u"], &["t"], &["upper"]];
 
 /// Numbers of all path data in a drawing, by the id around them.
-fn numbers(svg: &str, id: &str) -> Vec<f64> {
+pub fn numbers(svg: &str, id: &str) -> Vec<f64> {
     let doc = pathwarp_svg::Document::read(svg.as_bytes(), "drawing", &pathwarp_svg::ReadOptions::default()).unwrap();
     let select = vec![format!("[id={id}]")];
     let selection = pathwarp_svg::Selection { select, ..pathwarp_svg::Selection::default() };
@@ -29,7 +29,7 @@ fn numbers(svg: &str, id: &str) -> Vec<f64> {
     anchors.flat_map(|p| [p.x, p.y]).collect()
 }
 
-fn assert_near(got: &[f64], wanted: &[f64], what: &str) {
+pub fn assert_near(got: &[f64], wanted: &[f64], what: &str) {
     assert!(
         !wanted.is_empty() && got.len() == wanted.len(),
         "{what}: {} nodes, not {}",
@@ -40,12 +40,12 @@ fn assert_near(got: &[f64], wanted: &[f64], what: &str) {
     assert!(far < 1e-3, "{what}: {far}");
 }
 
-fn read(file: &Path) -> String {
+pub fn read(file: &Path) -> String {
     fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
 }
 
 /// Installs the extension into a profile. `Edit warp again` also comes with a change typed in, as actions cannot type.
-fn install(profile: &Path) {
+pub fn install(profile: &Path) {
     let folder = profile.join("extensions");
     let done = pathwarp(&["install", "inkscape", "--folder", folder.to_str().unwrap()]);
     assert!(done.status.success());
@@ -135,7 +135,7 @@ fn by_command_line(folder: &Path, source: &str) -> String {
     read(&from)
 }
 
-fn run(file: &Path, line: &[&str]) {
+pub fn run(file: &Path, line: &[&str]) {
     let done = pathwarp(&[&[line[0], file.to_str().unwrap()][..], &line[1..]].concat());
     assert!(matches!(done.status.code(), Some(0 | 1)), "{line:?}: {}", String::from_utf8_lossy(&done.stderr));
 }

@@ -4,6 +4,7 @@ mod calls;
 mod drawings;
 mod editor;
 mod extension;
+mod hand;
 
 use crate::common::rendered;
 use crate::support::{pathwarp, root};

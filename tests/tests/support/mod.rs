@@ -1,6 +1,8 @@
 //! Runs the program, and finds the project's files.
 #![allow(dead_code, reason = "every test file uses another part of this")]
 
+pub mod browser;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;

@@ -95,7 +95,7 @@ fn settings(all: &[Object], ids: &[String]) -> String {
         let line = quoting::split(o.recipe.as_deref().unwrap_or_default());
         let (name, rest) = line.split_first().map_or(("", &[][..]), |(n, r)| (n.as_str(), r));
         let values = rest.iter().map(|w| {
-            let w = w.trim_start_matches("--");
+            let Some(w) = w.strip_prefix("--") else { return format!("\n{w}") };
             if w.contains('=') { format!("\n{w}") } else { format!("\n{w}=true") }
         });
         format!("{} ({name}):{}\n", o.label.as_ref().unwrap_or(&o.id), values.collect::<String>())

@@ -21,6 +21,8 @@ pub(super) enum Job {
     Deformation(String),
     Edit,
     Release,
+    /// Opens the editor's page.
+    Hand,
     /// Converts the file to this format, or opens it if that is `svg`.
     Convert(String),
 }
@@ -66,6 +68,7 @@ fn action(value: &str) -> Result<Job, Failure> {
     match value {
         "edit" => Ok(Job::Edit),
         "release" => Ok(Job::Release),
+        "hand" => Ok(Job::Hand),
         _ => match value.strip_prefix("to-") {
             Some(format) => Ok(Job::Convert(format.to_owned())),
             None => Err(Failure::usage(format!("there is no effect `{value}` for Inkscape"))),

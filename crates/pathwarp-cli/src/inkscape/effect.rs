@@ -1,7 +1,7 @@
 //! A deformation, applied from its dialog.
 
 use super::guides::sorted;
-use super::line::{by_id, referred, settled};
+use super::line::{CHAIN, by_id, exclusions, referred, settled};
 use super::names::{ADD, AGAIN, DISCARD, REPLACE};
 use super::restoring::{Restoration, as_by_hand, remembering, restored};
 use super::stage::{Scope, Stage};
@@ -22,7 +22,10 @@ pub(super) fn run(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
 
     let mode = call.value(AGAIN).unwrap_or_default();
     let starts_again = |o: &&Object| {
-        let is_same = |r: &String| quoting::split(r).first().is_some_and(|w| w == name);
+        let is_same = |r: &String| {
+            let line = quoting::split(r);
+            line.first().is_some_and(|w| w == name) && !line.iter().any(|w| w == CHAIN)
+        };
         sorted.artwork.contains(&o.id)
             && o.recipe.as_ref().is_some_and(|r| mode == REPLACE || mode != ADD && is_same(r))
     };
@@ -34,10 +37,9 @@ pub(super) fn run(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     line.extend(words::of_options(call));
     // Of the whole page, what is locked stays.
     let whole = call.ids.is_empty();
-    let locked = all
-        .iter()
-        .filter(|o| whole && o.is_locked && !all.iter().any(|p| p.is_locked && o.inside.first() == Some(&p.id)));
-    line.extend(locked.map(|o| format!("--exclude=[id={}]", o.id)));
+    if whole {
+        line.extend(exclusions(&all));
+    }
     let outcome = stage.warp(&svg, &line, &Scope { ids: if whole { &[] } else { &sorted.artwork } })?;
     stage.check(&svg, &outcome)?;
 

@@ -8,7 +8,47 @@ use crate::options::OPTIONS;
 use crate::steps::INVERSE;
 use crate::temporaries::Temporary;
 use pathwarp::param::{Kind, Param, is_inline};
+use pathwarp::recipe::Recipe;
 use pathwarp_svg::objects::Object;
+
+/// The word between two steps.
+pub(super) const CHAIN: &str = "+";
+
+/// The words of a recipe's steps.
+pub(super) fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
+    let mut line = Vec::new();
+    for step in &recipe.steps {
+        if !line.is_empty() {
+            line.push(CHAIN.to_owned());
+        }
+        line.push(step.deformation.clone());
+        let params = stage.registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
+        for (name, values) in step.args.iter() {
+            let is_flag = params.iter().any(|p| p.name == name && p.kind == Kind::Flag);
+            let values = values.iter().filter(|v| !is_flag || *v == "true");
+            line.extend(values.map(|v| if is_flag { format!("--{name}") } else { format!("--{name}={v}") }));
+        }
+        if step.inverse {
+            line.push(format!("--{INVERSE}"));
+        }
+    }
+    line
+}
+
+/// The common options among the words of a recipe.
+pub(super) fn options_of(line: &[String]) -> Vec<String> {
+    let is_option = |word: &&String| {
+        let own = word.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(name, _)| name));
+        own.is_some_and(|name| OPTIONS.iter().any(|o| o.name == name))
+    };
+    line.iter().filter(is_option).cloned().collect()
+}
+
+/// Words that leave out what is locked.
+pub(super) fn exclusions(all: &[Object]) -> impl Iterator<Item = String> {
+    let outer = |o: &&Object| o.is_locked && !all.iter().any(|p| p.is_locked && o.inside.first() == Some(&p.id));
+    all.iter().filter(outer).map(|o| format!("--exclude=[id={}]", o.id))
+}
 
 /// The recipe with the frame as it came out, so that it means the same for each object alone.
 pub(super) fn settled(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcome) -> Vec<String> {
@@ -18,16 +58,21 @@ pub(super) fn settled(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcom
     let info = line.first().and_then(|name| stage.registry.get(name)).map(|e| e.info());
     if let (Some(param), Some(at)) = (info.and_then(|i| i.baseline), outcome.baseline) {
         let own = format!("--{param}=");
-        if !line.iter().any(|word| word.starts_with(&own)) {
-            line.push(format!("{own}{}", y + h - at));
+        let first = line.iter().position(|word| word == CHAIN).unwrap_or(line.len());
+        if !line.iter().take(first).any(|word| word.starts_with(&own)) {
+            line.insert(first, format!("{own}{}", y + h - at));
         }
     }
     line
 }
 
-/// Checks a recipe, which may come from a drawing that somebody sent: it names a deformation, sets parameters and options that shape the
+/// Checks a recipe, which may come from a drawing that somebody sent: it names deformations, sets parameters and options that shape the
 /// result, and neither writes files nor reads other than regular ones.
 pub(super) fn allowed(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
+    line.split(|word| word == CHAIN).try_for_each(|step| step_allowed(stage, step))
+}
+
+fn step_allowed(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
     let name = line.first().map_or("", String::as_str);
     let known = stage.registry.entries().iter().map(|e| e.info().name);
     let entry = stage.registry.get(name).ok_or_else(|| Failure::usage(advice::unknown("deformation", name, known)))?;

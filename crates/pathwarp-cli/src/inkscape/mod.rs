@@ -9,6 +9,7 @@ mod again;
 mod call;
 mod effect;
 mod guides;
+mod hand;
 pub(crate) mod inx;
 mod line;
 mod names;
@@ -38,7 +39,7 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) ->
     let word = match &call.job {
         Job::Deformation(name) => name,
         // Any may be in a recipe.
-        Job::Edit => "list",
+        Job::Edit | Job::Hand => "list",
         Job::Release | Job::Convert(_) => "convert",
     };
     let (_, plugins) = plugins::load(registry, &["pathwarp".into(), word.into()], &[])?;
@@ -47,6 +48,7 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], dispatch: Dispatch) ->
         Job::Deformation(name) => effect::run(&stage, name),
         Job::Edit => again::edit(&stage),
         Job::Release => again::release(&stage),
+        Job::Hand => hand::run(&stage),
         Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
     let svg = done.map_err(|f| in_a_window(&stage, &f))?;

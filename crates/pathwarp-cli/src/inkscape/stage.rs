@@ -154,7 +154,7 @@ fn text(file: &Path) -> Result<String, Failure> {
 }
 
 /// The folder of the drawing on the screen, which linked pictures are relative to.
-fn folder() -> Option<PathBuf> {
+pub(super) fn folder() -> Option<PathBuf> {
     let path = PathBuf::from(std::env::var_os("DOCUMENT_PATH").filter(|p| !p.is_empty())?);
     path.parent().filter(|p| p.is_dir()).map(Path::to_path_buf)
 }

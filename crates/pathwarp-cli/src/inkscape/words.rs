@@ -1,6 +1,7 @@
 //! Parameters of a dialog as the words of a command line. Values that are the defaults are left out, so that recipes stay short.
 
 use super::call::Call;
+use super::line::CHAIN;
 use super::names::{FILE, NONE, PERCENT, UNIT, UNITS};
 use crate::options::OPTIONS;
 use pathwarp::deform::Info;
@@ -79,7 +80,8 @@ fn lines(text: &str) -> Vec<String> {
     text.lines().map(str::trim).filter(|l| !l.is_empty()).map(ToOwned::to_owned).collect()
 }
 
-/// Changes a recipe: `bend=30%` sets a value, `bend=` removes it. Returns the names set.
+/// Changes a recipe: `bend=30%` sets a value, `bend=` removes it. Of several steps, the first that has the setting is changed, or else
+/// the first.
 ///
 /// # Errors
 /// A line that is not of this form.
@@ -91,11 +93,16 @@ pub(super) fn changed(words: &mut Vec<String>, changes: &str) -> Result<(), Stri
             let own = w.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(n, _)| n));
             own == Some(name.as_str())
         };
-        let at = words.iter().position(is_it).unwrap_or(words.len().min(1));
-        words.retain(|w| !is_it(w));
-        if !(value.is_empty() || value == "false") {
-            words.insert(at.min(words.len()), word(&name, value));
+        let mut steps: Vec<Vec<String>> = words.split(|w| w == CHAIN).map(<[String]>::to_vec).collect();
+        let found = steps.iter().position(|step| step.iter().any(is_it)).unwrap_or(0);
+        if let Some(step) = steps.get_mut(found) {
+            let at = step.iter().position(is_it).unwrap_or(step.len().min(1));
+            step.retain(|w| !is_it(w));
+            if !(value.is_empty() || value == "false") {
+                step.insert(at.min(step.len()), word(&name, value));
+            }
         }
+        *words = steps.join(&CHAIN.to_owned());
     }
     Ok(())
 }
@@ -140,6 +147,10 @@ mod tests {
         let mut words: Vec<String> = ["warp", "--style=flag", "--bend=40%"].map(ToOwned::to_owned).into();
         changed(&mut words, "bend = 30%\nstyle=\nhorizontal=5%").unwrap();
         assert_eq!(words, ["warp", "--horizontal=5%", "--bend=30%"]);
+        let mut chain: Vec<String> =
+            ["wave", "+", "warp", "--bend=40%", "--frame=0,0,9,9"].map(ToOwned::to_owned).into();
+        changed(&mut chain, "bend=30%\nheight=2").unwrap();
+        assert_eq!(chain, ["wave", "--height=2", "+", "warp", "--bend=30%", "--frame=0,0,9,9"]);
         assert!(changed(&mut words, "bend 30").is_err());
     }
 }

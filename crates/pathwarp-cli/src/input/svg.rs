@@ -74,7 +74,7 @@ impl SvgArtwork {
     /// and bitmaps in the coarse.
     pub(crate) fn draft(&self, request: &WarpRequest<'_>) -> Result<String, Failure> {
         let WarpRequest { built, .. } = request;
-        let mut options = self.warp_options(request).with_gradients(Gradients::Fit);
+        let mut options = self.warp_options(request).with_gradients(Gradients::Fit).with_overhang(false);
         options.refit = options.refit.with_merge(false);
         if let Images::Warp(_) = options.images {
             let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));

@@ -29,6 +29,8 @@ export class App {
   warnings: string[] = [];
   problem: string | null = null;
   isConnected = false;
+  /** The steps have been given to the program that waited for them. */
+  isDone = false;
   /** A handle is being dragged, so the handles stay as they are. */
   isDragging = false;
   screen: Screen = { show: () => {}, pixel: 1 };
@@ -79,6 +81,13 @@ export class App {
     await this.load(answer.state!);
   }
 
+  /** Nothing is left to do here. */
+  finish(): void {
+    this.isDone = true;
+    this.connection.stop();
+    this.tell("link");
+  }
+
   /** Takes over a state of the server, with a proposal if nothing has been done yet. */
   async load(state: State): Promise<void> {
     this.state = state;
@@ -100,8 +109,8 @@ export class App {
   }
 
   /** The first values of a deformation after these steps. */
-  async opening(deformation: string, steps: Step[]): Promise<Step | null> {
-    return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, steps })).step ?? null);
+  async opening(deformation: string, steps: Step[], variant: string | null = null): Promise<Step | null> {
+    return this.attempt(async () => (await this.connection.ask({ do: "opening", deformation, variant, steps })).step ?? null);
   }
 
   /** Shows the picture of the present steps, exactly. */
@@ -125,9 +134,13 @@ export class App {
       this.isWanted = false;
       const start = this.since;
       await this.attempt(async () => {
+        const asked = performance.now();
         const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
+        const answered = performance.now();
         this.take(answer);
-        performance.measure("drag to picture", { start, end: performance.now() });
+        const detail = { waited: asked - start, answered: answered - asked, size: this.connection.size };
+        performance.measure("drag to picture", { start, end: performance.now(), detail });
+        performance.mark("pathwarp picture");
       });
     } while (this.isWanted);
     this.isBusy = false;
@@ -161,10 +174,10 @@ export class App {
   }
 
   /** Replaces the step being changed, or appends one. */
-  async choose(deformation: string, args: Record<string, string[]>, append: boolean): Promise<void> {
+  async choose(deformation: string, args: Record<string, string[]>, append: boolean, variant: string | null = null): Promise<void> {
     const at = append ? this.steps.length : this.selected;
     const before = this.steps.slice(0, at);
-    const step = await this.opening(deformation, before);
+    const step = await this.opening(deformation, before, variant);
     if (!step) return;
     Object.assign(step.args, args);
     this.steps = append ? [...this.steps, step] : this.steps.map((s, i) => (i === at ? step : s));
@@ -248,8 +261,8 @@ export class App {
   }
 
   /** Adds a point at a place, where the step takes any number. */
-  addPoint(at: XY): string | null {
-    const key = this.handles?.add(at) ?? null;
+  addPoint(at: XY, reach: number): string | null {
+    const key = this.handles?.add(at, reach) ?? null;
     if (key) {
       this.tell("handles");
       void this.commit();

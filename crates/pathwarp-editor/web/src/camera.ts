@@ -14,9 +14,15 @@ export class Camera {
   /** From user units to px of the drawing. */
   toPx: Affine = [1, 0, 0, 1, 0, 0];
 
-  toScreen([x, y]: XY): XY {
+  /** A point of the drawing, in px of it. */
+  inPx([x, y]: XY): XY {
     const [a, b, c, d, e, f] = this.toPx;
-    return [this.scale * (a * x + c * y + e) + this.shift[0], this.scale * (b * x + d * y + f) + this.shift[1]];
+    return [a * x + c * y + e, b * x + d * y + f];
+  }
+
+  toScreen(p: XY): XY {
+    const [x, y] = this.inPx(p);
+    return [this.scale * x + this.shift[0], this.scale * y + this.shift[1]];
   }
 
   toUser([x, y]: XY): XY {

@@ -16,6 +16,9 @@ export class Connection {
   private socket: WebSocket | null = null;
   private waiting = new Map<number, Waiting>();
   private next = 1;
+  private isStopped = false;
+  /** The length of the last message from the server. */
+  size = 0;
 
   constructor(
     private onOpen: () => void,
@@ -31,14 +34,22 @@ export class Connection {
       this.socket = socket;
       this.onOpen();
     };
-    socket.onmessage = (message) => this.take(JSON.parse(message.data as string) as Answer);
+    socket.onmessage = (message) => {
+      this.size = (message.data as string).length;
+      this.take(JSON.parse(message.data as string) as Answer);
+    };
     socket.onclose = () => {
       this.socket = null;
       for (const { reject } of this.waiting.values()) reject(new Gone("pathwarp has ended"));
       this.waiting.clear();
       this.onGone();
-      setTimeout(() => this.connect(), RETRY);
+      if (!this.isStopped) setTimeout(() => this.connect(), RETRY);
     };
+  }
+
+  /** Does not connect again. */
+  stop(): void {
+    this.isStopped = true;
   }
 
   private take(answer: Answer): void {

@@ -11,6 +11,7 @@ interface Card {
   steps: Step[] | null;
   deformation: string;
   args: Record<string, string[]>;
+  variant: { label: string; param: string } | null;
   /** What the search looks at. */
   words: string;
 }
@@ -60,7 +61,7 @@ export class Gallery {
     const styles = all.filter((d) => d.gallery);
     this.box.replaceChildren(
       this.own,
-      this.section("Bend by hand", byHand.map((d) => this.whole(d))),
+      this.section("Bend by hand", byHand.flatMap((d) => [this.whole(d), ...d.variants.map((v) => this.whole(d, v))])),
       ...styles.map((d, i) => this.section(i === 0 ? "Styles" : capital(d.gallery!.title), this.presets(d))),
       this.section("Effects", effects.map((d) => this.whole(d))),
     );
@@ -94,16 +95,18 @@ export class Gallery {
   }
 
   private section(title: string, cards: Card[]): HTMLElement {
-    const items = h("div", { class: "grid" }, ...cards.map((c) => c.button));
+    const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
+    cards.forEach(({ button }, i) => (button.tabIndex = i === 0 ? 0 : -1));
+    items.addEventListener("keydown", (e) => walk(e, items));
     return h("section", {}, h("h3", {}, title), items);
   }
 
-  private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, ...text: Node[]): Card {
+  private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
-    const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), ...text);
-    const card: Card = { button, image, steps, deformation, args, words: button.textContent ?? "" };
+    const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
+    const card: Card = { button, image, steps, deformation, args, variant, words: button.textContent ?? "" };
     button.addEventListener("click", () => {
-      void this.app.choose(deformation, args, this.appends);
+      void this.app.choose(deformation, args, this.appends, variant?.label ?? null);
       this.appends = false;
       document.body.classList.remove("shapes-open");
     });
@@ -112,11 +115,11 @@ export class Gallery {
     return card;
   }
 
-  private whole(d: Deformation): Card {
-    const card = this.card(d.name, {}, null, h("span", { class: "name" }, called(d)));
+  private whole(d: Deformation, variant: Card["variant"] = null): Card {
+    const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
     card.button.title = capital(d.title);
     // What it does is looked for, too.
-    card.words = `${called(d)} ${d.name} ${d.title}`;
+    card.words = `${variant?.label ?? ""} ${called(d)} ${d.name} ${d.title}`;
     return card;
   }
 
@@ -135,7 +138,7 @@ export class Gallery {
     this.isDrawing = true;
     for (let card = this.queue.shift(); card; card = this.queue.shift()) {
       while (this.app.isDragging) await new Promise((done) => setTimeout(done, 100));
-      const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation };
+      const request = { do: "thumbnail", steps: card.steps, example: card.steps ? null : card.deformation, variant: card.variant?.label ?? null };
       try {
         const { svg } = await this.app.connection.ask(request);
         card.image.src = URL.createObjectURL(new Blob([svg ?? ""], { type: "image/svg+xml" }));
@@ -150,8 +153,10 @@ export class Gallery {
   /** Marks the shape of the step being changed. */
   private mark(): void {
     const { step } = this.app;
-    for (const { button, deformation, args } of this.cards) {
-      const isChosen = step?.deformation === deformation && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
+    for (const { button, deformation, args, variant } of this.cards) {
+      const others = this.app.deformation(deformation)?.variants ?? [];
+      const isVariant = variant ? step?.args[variant.param] !== undefined : !others.some((o) => step?.args[o.param]);
+      const isChosen = step?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
       button.setAttribute("aria-pressed", String(isChosen));
     }
   }
@@ -161,9 +166,26 @@ export class Gallery {
     for (const { button, words } of this.cards) button.hidden = !words.toLowerCase().includes(wanted);
     for (const section of Array.from(this.box.children) as HTMLElement[]) {
       if (section === this.own) continue;
+      // One card of those in view can be reached with Tab.
+      const shown = Array.from(section.querySelectorAll<HTMLElement>(".card")).filter((card) => !card.hidden);
+      if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0]!.tabIndex = 0;
       section.hidden = !Array.from(section.querySelectorAll<HTMLElement>(".card")).some((c) => !c.hidden);
     }
   }
+}
+
+/** Arrow keys go from card to card, so that Tab passes a section in one step. */
+function walk(e: KeyboardEvent, items: HTMLElement): void {
+  const all = (Array.from(items.children) as HTMLElement[]).filter((card) => !card.hidden);
+  const at = all.indexOf(document.activeElement as HTMLElement);
+  const row = all.filter((card) => card.offsetTop === all[0]?.offsetTop).length;
+  const by = ({ ArrowRight: 1, ArrowLeft: -1, ArrowDown: row, ArrowUp: -row } as Record<string, number>)[e.key];
+  const to = e.key === "Home" ? 0 : e.key === "End" ? all.length - 1 : by === undefined ? -1 : at + by;
+  if (at < 0 || !all[to]) return;
+  e.preventDefault();
+  all[at]!.tabIndex = -1;
+  all[to].tabIndex = 0;
+  all[to].focus();
 }
 
 function isDragged(d: Deformation): boolean {

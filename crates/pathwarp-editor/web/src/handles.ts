@@ -1,8 +1,9 @@
 // The handles of a step, from the geometry of its parameters.
 
-import type { Deformation, Grip, Net, Step, StepGrips, Subpath, XY } from "./types";
+import type { Deformation, Grip, Net, Param, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, valuesOf } from "./values";
 import { called, words } from "./dom";
+import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
 
 export type Shape = "node" | "control" | "source";
 
@@ -28,6 +29,26 @@ export interface Line {
   cubic?: boolean;
   closed?: boolean;
 }
+
+/** A place on a path of a parameter. */
+interface Near {
+  name: string;
+  id: string;
+  sub: Subpath;
+  spot: Spot;
+}
+
+/** A line that is held. */
+export interface Pull {
+  param: string;
+  move: (to: XY, smooth: boolean) => void;
+}
+
+/** Near its ends, a curve would need control points far away to follow a pointer. */
+const MARGIN = 0.15;
+
+/** Fewest points of a closed path that artwork can be put into. */
+const FEWEST_CLOSED = 3;
 
 /** The handles of a step while they are moved. */
 export class Handles {
@@ -55,8 +76,23 @@ export class Handles {
       grip.net?.points.forEach((_, i) => this.addNode(name, grip.net!, i));
       if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
-      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, sub, `${i}.${j}`)));
+      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isFree(name) ? closed(sub) : sub, `${i}.${j}`)));
     }
+  }
+
+  private points(name: string): "any" | "rows" | undefined {
+    return this.deformation.params.find((p) => p.name === name)?.points;
+  }
+
+  /** The path may have any number of points. */
+  private isFree(name: string): boolean {
+    return this.points(name) === "any";
+  }
+
+  /** The rows of points, which have equally many. */
+  private get rows(): [string, Subpath][] {
+    const all = this.deformation.params.filter((p) => p.points === "rows");
+    return all.flatMap(({ name }) => (this.grips[name]?.paths ?? []).flat().map((sub): [string, Subpath] => [name, sub]));
   }
 
   private addPoint(param: string, grip: Grip): void {
@@ -119,22 +155,18 @@ export class Handles {
   /** The nodes and control points of a path. Nodes carry their control points along; the ends of a closed path are one node. */
   private addSubpath(param: string, path: Subpath[], sub: Subpath, id: string): void {
     const { segments } = sub;
-    const end = (k: number): XY => {
-      const seg = segments[k]!;
-      return [seg[seg.length - 2]!, seg[seg.length - 1]!];
-    };
     const last = segments.length - 1;
-    const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(last), sub.start);
+    const joined = last >= 0 && (sub.closed || path.length === 1) && same(end(segments[last]!), sub.start);
     const nodes = joined ? segments.length : segments.length + 1;
     const before = (n: number) => (n > 0 ? segments[n - 1] : joined ? segments[last] : undefined);
     const after = (n: number) => segments[n];
-    const at = (n: number): XY => (n === 0 ? sub.start : end(n - 1));
+    const at = (n: number): XY => (n === 0 ? sub.start : end(segments[n - 1]!));
     const name = param === this.deformation.name ? called(this.deformation) : words(param);
     for (let n = 0; n < nodes; n++) {
       const label = path.length > 1 ? `${name}, line ${path.indexOf(sub) + 1}, point ${n + 1}` : `${name}, point ${n + 1}`;
       const key = `${param}/${id}/${n}`;
       this.handles.push({
-        key, param, shape: "node", label, group: `${param}/${id}`,
+        key, param, shape: "node", label, group: `${param}/${id}`, remove: this.removal(param, sub, n, nodes),
         get: () => at(n),
         set: (to) => {
           const from = at(n);
@@ -168,6 +200,88 @@ export class Handles {
       arm("in");
       arm("out");
     }
+  }
+
+  /** Takes a node of a path away, if enough are left. */
+  private removal(param: string, sub: Subpath, n: number, nodes: number): (() => void) | undefined {
+    if (this.points(param) === "rows" && nodes > 2 && n > 0 && n < nodes - 1) {
+      return () => {
+        for (const [name, row] of this.rows) {
+          drop(row, n);
+          if (name !== param) this.write(name);
+        }
+        this.collect();
+      };
+    }
+    if (!this.isFree(param) || nodes <= (sub.closed ? FEWEST_CLOSED : 2)) return undefined;
+    return () => {
+      drop(sub, n);
+      this.collect();
+    };
+  }
+
+  /** The path that passes nearest to a place, among those of which something is true. */
+  private near(at: XY, reach: number, is: (param: Param) => boolean): Near | null {
+    let best: Near | null = null;
+    for (const param of this.deformation.params.filter(is)) {
+      this.grips[param.name]?.paths?.forEach((path, i) => path.forEach((sub, j) => {
+        const spot = nearest(sub, at);
+        if (spot && spot.distance <= Math.min(reach, best?.spot.distance ?? reach)) best = { name: param.name, id: `${i}.${j}`, sub, spot };
+      }));
+    }
+    return best;
+  }
+
+  /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
+  pull(at: XY, reach: number): Pull | null {
+    const found = this.near(at, reach, () => true);
+    if (!found) return this.pullCircle(at, reach);
+    const { name, id, sub, spot } = found;
+    const handle = (n: number, side = "") => this.handles.find((h) => h.key === `${name}/${id}/${n}${side}`);
+    const next = handle(spot.piece + 1) ? spot.piece + 1 : 0;
+    const isCurve = sub.segments[spot.piece]!.length === 6;
+    const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
+    const [first, second] = ends;
+    if (!first || !second) return null;
+    // The point of the curve follows the pointer, by the control point that is nearer more than by the other.
+    const t = Math.min(Math.max(spot.t, MARGIN), 1 - MARGIN);
+    const whole = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
+    const shares = isCurve ? [(1 - t) / whole, t / whole] : [1, 1];
+    const from = [[...first.get()], [...second.get()]] as [XY, XY];
+    return {
+      param: name,
+      move: (to, smooth) => [first, second].forEach((h, i) => {
+        const [x, y] = from[i]!;
+        h.set([x + shares[i]! * (to[0] - at[0]), y + shares[i]! * (to[1] - at[1])], smooth);
+      }),
+    };
+  }
+
+  private pullCircle(at: XY, reach: number): Pull | null {
+    const radius = this.handles.find((h) => h.key === "radius");
+    const [grip, centre] = [this.grips.radius, this.grips.center?.point];
+    if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
+    return { param: "radius", move: (to, smooth) => radius.set(to, smooth) };
+  }
+
+  /** Adds a point to the path that passes near a place. Returns the key of its handle. */
+  private divide(at: XY, reach: number): string | null {
+    const found = this.near(at, reach, (param) => param.points !== undefined);
+    if (!found) return null;
+    const { name, id, sub, spot } = found;
+    if (this.points(name) === "any") {
+      const node = split(sub, spot);
+      this.collect();
+      this.write(name);
+      return `${name}/${id}/${node % (sub.closed ? sub.segments.length : Infinity)}`;
+    }
+    for (const [row, points] of this.rows) {
+      const [start, ...rest] = raised([points.start, ...points.segments.map(end)]) as [XY, ...XY[]];
+      [points.start, points.segments] = [start, rest.map((p) => [...p])];
+      this.write(row);
+    }
+    this.collect();
+    return `${name}/${id}/${spot.piece + 1}`;
   }
 
   /** The lines to draw under the handles. */
@@ -232,8 +346,19 @@ export class Handles {
     }
   }
 
-  /** Adds a point where the step takes any number of them. Returns the key of its handle. */
-  add(at: XY): string | null {
+  /** The middle of the piece of a line that follows a node. */
+  after(handle: Handle): XY | null {
+    const [param, id = "", n] = handle.key.split("/");
+    const [i, j] = id.split(".").map(Number);
+    const sub = this.grips[param!]?.paths?.[i!]?.[j!];
+    if (!sub || this.points(handle.param) === undefined) return null;
+    return middle(sub, Math.min(Number(n), sub.segments.length - 1));
+  }
+
+  /** Adds a point where the step takes any number of them, to paths within `reach`. Returns the key of its handle. */
+  add(at: XY, reach: number): string | null {
+    const divided = this.divide(at, reach);
+    if (divided) return divided;
     if (!this.grows) return null;
     for (const { name, repeat, notation } of this.deformation.params) {
       const grip = this.grips[name];
@@ -261,14 +386,18 @@ export class Handles {
     return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
   }
 
+  /** Returns `true` if there are paths that points can be added to. */
+  get divides(): boolean {
+    return this.deformation.params.some(({ name, points }) => points && this.grips[name]?.paths);
+  }
+
   /** The handle on the other side of the frame's middle, if one is there. */
   partner(of: Handle): Handle | null {
-    const [x, y, w, h] = this.frame;
+    const [x, , w, h] = this.frame;
     const [px, py] = of.get();
     const mirrored: XY = [2 * x + w - px, py];
     const near = 1e-3 * Math.hypot(w, h);
     const candidates = this.handles.filter((o) => o !== of && o.shape === of.shape && o.param === of.param);
-    void y;
     return candidates.find((o) => Math.hypot(o.get()[0] - mirrored[0], o.get()[1] - mirrored[1]) < near) ?? null;
   }
 }

@@ -45,6 +45,9 @@ function sheet(name: "shapes-open" | "settings-open" | null): void {
 on("open-shapes", () => sheet("shapes-open"));
 on("open-settings", () => sheet("settings-open"));
 
+stage.onPan = () => {
+  if (app.isProposal && app.handles?.handles.length) byId("note").textContent = "This moves the view. Pull a blue point or line to bend the artwork";
+};
 stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
 };
@@ -126,6 +129,7 @@ stage.onFocus = (handle) => {
   place.classList.toggle("off", handle === null);
   if (!handle) return;
   byId("place-name").textContent = handle.label;
+  byId("remove-point").hidden = !handle.remove;
   const at = handle.get();
   fields.forEach((field, i) => {
     if (document.activeElement !== field) field.value = short(Number(at[i]!.toFixed(3)));
@@ -138,13 +142,18 @@ fields.forEach((field, i) => field.addEventListener("change", () => {
   stage.moveTo(focused, i === 0 ? [value, at[1]] : [at[0], value]);
 }));
 
+on("remove-point", () => {
+  if (focused) stage.remove(focused);
+});
+
 // What was done, and what went wrong.
 app.listen((change) => {
   const { state, summary } = app;
   if (change === "report" || change === "state") {
     const folds = summary?.folds.length ?? 0;
     byId("counts").textContent = summary ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
-    byId("error").textContent = summary && summary.error > 0 ? `off by at most ${Number(summary.error.toPrecision(2))}` : "";
+    byId("error").title = "The largest distance to the exact image, in units of the drawing";
+    byId("error").textContent = summary && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "";
     const fold = byId("folds");
     fold.hidden = folds === 0;
     fold.textContent = folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`;
@@ -170,12 +179,18 @@ app.listen((change) => {
     byId("smooth").hidden = !isCurve;
     byId("mirror").hidden = !has;
     byId("snap").hidden = !has;
-    const note = !has ? "Change the settings" : grows ? "Drag a point. Double-click adds one, Delete removes it" : "Drag a point to bend the artwork";
+    const pulls = app.handles?.lines().some((line) => line.kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
+    const adds = grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
+    const note = !has ? "Change the settings" : grows || app.handles?.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
     byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
   }
   if (change === "link") {
-    byId("gone").hidden = app.isConnected;
-    byId("gone-kept").textContent = state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing.";
+    byId("gone").hidden = app.isConnected && !app.isDone;
+    byId("gone").classList.toggle("done", app.isDone);
+    byId("gone-title").textContent = app.isDone ? `${state?.program} has the result.` : "pathwarp has ended.";
+    byId("gone-kept").textContent = app.isDone ? "You can close this page."
+      : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.`
+      : `${state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing."} Run “pathwarp edit” again to go on.`;
   }
   if (change === "state" && state?.restored && !announced) {
     announced = true;
@@ -216,7 +231,12 @@ window.addEventListener("drop", (e) => {
   e.preventDefault();
   document.body.classList.remove("dropping");
   const file = e.dataTransfer?.files[0];
-  if (file) void openFile(file);
+  if (file && !app.state?.program) void openFile(file);
+});
+
+// Beside a drawing, everything is kept; a program that waits gets nothing from a page that is closed.
+window.addEventListener("beforeunload", (e) => {
+  if (app.state?.program && saving.isUnsaved && app.isConnected) e.preventDefault();
 });
 
 const chosen = byId<HTMLInputElement>("open-file");

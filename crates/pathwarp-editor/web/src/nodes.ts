@@ -5,18 +5,23 @@ const MOST = 4_000_000;
 
 type Point = [number, number];
 
-/** Path data that marks every node by a point, in px of the drawing. */
-export function nodesOf(paths: SVGPathElement[]): string {
-  const out: string[] = [];
+/** Path data that marks every node by a point, and joins it with its control points by lines, in px of the drawing. */
+export function nodesOf(paths: SVGPathElement[]): { nodes: string; arms: string } {
+  const [nodes, arms]: [string[], string[]] = [[], []];
   let length = 0;
   for (const path of paths) {
     const d = path.getAttribute("d") ?? "";
     length += d.length;
     if (length > MOST) break;
     const at = place(path);
-    for (const [x, y] of anchors(d).map(at)) out.push(`M${x.toFixed(2)},${y.toFixed(2)}h0`);
+    const text = (p: Point) => at(p).map((v) => v.toFixed(2)).join(",");
+    for (const { from, to, control } of anchors(d)) {
+      nodes.push(`M${text(to)}h0`);
+      const [first, last] = [control[0], control[control.length - 1]];
+      if (first && last) arms.push(`M${text(from)}L${text(first)}M${text(to)}L${text(last)}`);
+    }
   }
-  return out.join("");
+  return { nodes: nodes.join(""), arms: arms.join("") };
 }
 
 /** From a path's coordinates to px of the drawing: the transforms of the groups around it. */
@@ -29,16 +34,55 @@ function place(path: SVGPathElement): (p: Point) => Point {
   return ([x, y]) => [matrix.a * x + matrix.c * y + matrix.e, matrix.b * x + matrix.d * y + matrix.f];
 }
 
-/** The nodes of path data as usvg writes it: absolute M, L, Q, C and Z, separated by spaces. */
-export function anchors(d: string): Point[] {
-  const out: Point[] = [];
-  const words = d.split(" ");
-  const numbers: Record<string, number> = { M: 2, L: 2, Q: 4, C: 6, Z: 0 };
-  for (let i = 0; i < words.length; i++) {
-    const count = numbers[words[i]!];
-    if (!count) continue;
-    out.push([Number(words[i + count - 1]), Number(words[i + count])]);
+/** The number of coordinates of each command; the last ones are the node's. */
+const COMMANDS: Record<string, number> = { M: 2, L: 2, H: 1, V: 1, C: 6, S: 4, Q: 4, T: 2, A: 7, Z: 0 };
+const WORD = /[a-zA-Z]|[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/g;
+
+/** A node with the one before it and the control points in between. */
+interface Anchor {
+  from: Point;
+  to: Point;
+  control: Point[];
+}
+
+/** The nodes of path data, with the flags of arcs apart from other numbers. */
+export function anchors(d: string): Anchor[] {
+  const out: Anchor[] = [];
+  // The last control point, which smooth commands mirror.
+  let mirrored: Point | null = null;
+  const words = d.match(WORD) ?? [];
+  let command = "";
+  let [at, start]: Point[] = [[0, 0], [0, 0]];
+  for (let i = 0; i < words.length; ) {
+    if (/[a-zA-Z]/.test(words[i]!)) command = words[i++]!;
+    const kind = command.toUpperCase();
+    const count = COMMANDS[kind];
+    if (count === undefined || i + count > words.length) break;
+    const from = at!;
+    if (kind === "Z") {
+      [at, mirrored] = [start!, null];
+      continue;
+    }
+    const [x0, y0]: Point = command === kind ? [0, 0] : at!;
+    const last = Number(words[i + count - 1]);
+    if (kind === "H") at = [x0 + last, at![1]];
+    else if (kind === "V") at = [at![0], y0 + last];
+    else at = [x0 + Number(words[i + count - 2]), y0 + last];
+    const control: Point[] = [];
+    if (kind !== "A") {
+      for (let k = i; k + 3 < i + count; k += 2) control.push([x0 + Number(words[k]), y0 + Number(words[k + 1])]);
+    }
+    if (kind === "S" || kind === "T") {
+      const [mx, my]: Point = mirrored ?? from;
+      control.unshift([2 * from[0] - mx, 2 * from[1] - my]);
+    }
+    mirrored = control[control.length - 1] ?? null;
     i += count;
+    out.push({ from, to: at, control });
+    if (kind === "M") {
+      start = at;
+      command = command === "m" ? "l" : "L";
+    }
   }
   return out;
 }

@@ -44,14 +44,39 @@ export class Saving {
     const { state } = this.app;
     if (!state) return;
     byId("file").textContent = state.file;
-    byId("saved").textContent = state.saved ? `Saved as ${state.savedTo}` : state.steps.length === 0 ? "" : "Not saved yet";
-    byId<HTMLButtonElement>("save").disabled = state.steps.length === 0 || state.saved;
-    document.title = `${state.saved || state.steps.length === 0 ? "" : "• "}${state.file} — pathwarp`;
+    const isEmpty = state.steps.length === 0;
+    byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? `Saved as ${state.savedTo}` : isEmpty ? "" : "Not saved yet";
+    const save = byId<HTMLButtonElement>("save");
+    // For a program, having removed all steps is a result, too.
+    save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
+    if (state.program) {
+      save.textContent = `Keep in ${state.program}`;
+      save.title = `Give the result to ${state.program} (Ctrl S)`;
+      for (const id of ["save-as", "open"]) byId(id).hidden = true;
+    }
+    document.title = `${this.isUnsaved ? "• " : ""}${state.file} — pathwarp`;
+  }
+
+  /** Something would be lost without saving. */
+  get isUnsaved(): boolean {
+    const { state } = this.app;
+    if (!state) return false;
+    return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved;
+  }
+
+  /** Gives the steps to the program that waits for them. */
+  private async handOver(): Promise<void> {
+    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
+    if (!answer?.done) return;
+    this.app.finish();
+    // Browsers close only pages that a script has opened.
+    window.close();
   }
 
   /** Saves where it was saved last; the first time, under the usual name. */
   async quick(): Promise<void> {
     const { state } = this.app;
+    if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
     if (!state || state.steps.length === 0) return;
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
     if (answer?.exists) return this.open();
@@ -60,7 +85,7 @@ export class Saving {
 
   open(): void {
     const { state } = this.app;
-    if (!state || state.steps.length === 0) return;
+    if (!state || state.steps.length === 0 || state.program) return;
     this.name.value = state.target;
     this.choose("svg");
     byId("save-folder").textContent = state.folder;

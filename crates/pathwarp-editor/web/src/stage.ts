@@ -14,6 +14,8 @@ import type { Answer, XY } from "./types";
 const MARGIN = 56;
 /** The radius in which a finger finds a handle, in px. */
 const REACH = 18;
+/** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
+const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
 /** The pause after which keys count as one change, in ms. */
 const KEYS = 500;
 
@@ -25,12 +27,15 @@ export class Stage {
   private beforeArt = s("g", { class: "art", visibility: "hidden" });
   private heat = s("g", { class: "heat" });
   private nodes = s("path", { class: "nodes" });
+  private arms = s("path", { class: "arms" });
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
   private drawing = new Drawing(this.art);
   private elements = new Map<string, SVGGElement>();
   private lines: SVGPathElement[] = [];
+  /** Wide, invisible lines over those that can be pulled, by their index. */
+  private reaches: (SVGPathElement | null)[] = [];
   private focused: string | null = null;
   private touches = new Map<number, XY>();
   private keysTimer = 0;
@@ -43,9 +48,11 @@ export class Stage {
   picks: ((id: string) => void) | null = null;
   onFocus: (handle: Handle | null) => void = () => {};
   onZoom: () => void = () => {};
+  /** The view was moved by somebody who took hold of the artwork. */
+  onPan: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.nodes, this.guides, this.marks, this.knobs);
+    this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
     const stage = this;
     app.screen = { show: (answer) => this.show(answer), get pixel() { return stage.camera.pixel; } };
     app.listen((change) => {
@@ -93,13 +100,32 @@ export class Stage {
     if (!state) return;
     const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
     this.camera.toPx = state.toPx;
+    this.grow();
     if (isNew || !this.isFitted) this.fit();
   }
 
   private show(answer: Answer): void {
     if (answer.picture) this.drawing.show(answer.picture);
+    if (answer.summary) this.grow();
     if (this.showsNodes) this.drawNodes();
     this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
+  }
+
+  /** The page, as far as it holds the artwork: saving makes it larger where needed. */
+  private grow(): void {
+    const { state } = this.app;
+    if (!state) return;
+    const [x, y, w, h] = state.page;
+    const [[x0, y0], [x1, y1]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h])];
+    let box = [Math.min(x0, x1), Math.min(y0, y1), Math.max(x0, x1), Math.max(y0, y1)] as const;
+    const art = this.art.getBBox();
+    if (!state.program && art.width > 0) {
+      box = [Math.min(box[0], art.x), Math.min(box[1], art.y), Math.max(box[2], art.x + art.width), Math.max(box[3], art.y + art.height)];
+    }
+    this.sheet.setAttribute("x", String(box[0]));
+    this.sheet.setAttribute("y", String(box[1]));
+    this.sheet.setAttribute("width", String(box[2] - box[0]));
+    this.sheet.setAttribute("height", String(box[3] - box[1]));
   }
 
   private fold(at: XY): SVGGElement {
@@ -131,7 +157,9 @@ export class Stage {
   }
 
   drawNodes(): void {
-    this.nodes.setAttribute("d", this.showsNodes ? nodesOf(this.drawing.paths()) : "");
+    const { nodes, arms } = this.showsNodes ? nodesOf(this.drawing.paths()) : { nodes: "", arms: "" };
+    this.nodes.setAttribute("d", nodes);
+    this.arms.setAttribute("d", arms);
   }
 
   /** Shows the stretch of the visible steps, or hides it. */
@@ -139,9 +167,8 @@ export class Stage {
     const { app } = this;
     const answer = this.showsStretch
       ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
-    const [a, b, c, d, e, f] = this.camera.toPx;
-    const place = ([x, y]: XY): XY => [a * x + c * y + e, b * x + d * y + f];
-    this.heat.replaceChildren(...(answer?.stretch && this.showsStretch ? cells(answer.stretch, place) : []));
+    const stretch = this.showsStretch ? answer?.stretch : null;
+    this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
   }
 
   /** The next click on the drawing names a path. */
@@ -153,18 +180,8 @@ export class Stage {
   /** Puts everything in its place on the screen. */
   layout(): void {
     const { camera } = this;
-    const { state } = this.app;
-    for (const layer of [this.art, this.beforeArt]) layer.setAttribute("transform", camera.transform);
-    this.nodes.setAttribute("transform", camera.transform);
-    this.heat.setAttribute("transform", camera.transform);
-    if (state) {
-      const [x, y, w, h] = state.page;
-      const [a, b] = [camera.toScreen([x, y]), camera.toScreen([x + w, y + h])];
-      this.sheet.setAttribute("x", String(Math.min(a[0], b[0])));
-      this.sheet.setAttribute("y", String(Math.min(a[1], b[1])));
-      this.sheet.setAttribute("width", String(Math.abs(b[0] - a[0])));
-      this.sheet.setAttribute("height", String(Math.abs(b[1] - a[1])));
-    }
+    const layers = [this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+    for (const layer of layers) layer.setAttribute("transform", camera.transform);
     for (const mark of Array.from(this.marks.children) as SVGGElement[]) {
       const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at!) as XY);
       mark.setAttribute("transform", `translate(${x} ${y})`);
@@ -182,7 +199,9 @@ export class Stage {
       if (!element) return;
       const [first, ...rest] = line.points.map(at);
       const close = line.closed ? "Z" : "";
-      element.setAttribute("d", line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`);
+      const d = line.cubic ? `M${first}C${rest.join(" ")}${close}` : `M${first}L${rest.join(" ")}${close}`;
+      element.setAttribute("d", d);
+      this.reaches[i]?.setAttribute("d", d);
     });
     for (const handle of handles.handles) {
       const [x, y] = this.camera.toScreen(handle.get());
@@ -193,7 +212,9 @@ export class Stage {
   private rebuild(): void {
     const { handles } = this.app;
     this.elements.clear();
-    this.lines = (handles?.lines() ?? []).map((line) => s("path", { class: `line ${line.kind}` }));
+    const lines = handles?.lines() ?? [];
+    this.lines = lines.map((line) => s("path", { class: `line ${line.kind}` }));
+    this.reaches = lines.map((line) => (line.kind === "path" ? s("path", { class: "pull" }) : null));
     const knobs = (handles?.handles ?? []).map((handle) => {
       const body = handle.shape === "control" ? s("rect", { x: -4, y: -4, width: 8, height: 8, rx: 1.5, class: "body" })
         : s("circle", { r: handle.shape === "source" ? 5 : 6.5, class: "body" });
@@ -206,7 +227,7 @@ export class Stage {
       this.elements.set(handle.key, knob);
       return knob;
     });
-    this.guides.replaceChildren(...this.lines);
+    this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
     const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
     this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
     this.placeHandles();
@@ -250,8 +271,30 @@ export class Stage {
     this.touches.set(e.pointerId, this.point(e));
     if (this.touches.size === 2) return this.pinch();
     if (this.touches.size > 2) return;
+    const isPull = (e.target as Element).matches(".pull");
     if (knob && e.button === 0 && !this.isBefore) this.drag(e, knob);
-    else this.pan(e);
+    else if (!(isPull && e.button === 0 && !this.isBefore && this.pull(e))) this.pan(e);
+  }
+
+  /** Follows a line that is pulled. Returns `false` if there is none. */
+  private pull(e: PointerEvent): boolean {
+    const { handles } = this.app;
+    const pull = handles?.pull(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
+    if (!handles || !pull) return false;
+    let hasMoved = false;
+    this.app.isDragging = true;
+    this.follow(e, (to, event) => {
+      if (this.touches.size > 1) return;
+      hasMoved = true;
+      pull.move(this.camera.toUser(to), this.modes.smooths);
+      handles.write(pull.param);
+      this.placeHandles();
+      this.app.draft(event.timeStamp);
+    }, () => {
+      this.app.isDragging = false;
+      if (hasMoved) void this.app.commit();
+    });
+    return true;
   }
 
   private picked(e: PointerEvent): void {
@@ -273,7 +316,8 @@ export class Stage {
       stop.abort();
       end();
     };
-    window.addEventListener("pointermove", (event) => {
+    window.addEventListener(MOVES, (e) => {
+      const event = e as PointerEvent;
       if (event.pointerId !== id) return;
       this.touches.set(id, this.point(event));
       move(this.point(event), event);
@@ -315,14 +359,21 @@ export class Stage {
   }
 
   private pan(e: PointerEvent): void {
-    let last = this.point(e);
+    const first = this.point(e);
+    let last = first;
+    const start = this.camera.toUser(first);
     this.svg.classList.add("panning");
     this.follow(e, (to) => {
       if (this.touches.size > 1) return;
       this.camera.shift = [this.camera.shift[0] + to[0] - last[0], this.camera.shift[1] + to[1] - last[1]];
       last = to;
       this.layout();
-    }, () => this.svg.classList.remove("panning"));
+    }, () => {
+      this.svg.classList.remove("panning");
+      const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
+      const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
+      if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+    });
   }
 
   /** Two fingers move and magnify the view. */
@@ -354,7 +405,7 @@ export class Stage {
 
   private doubleClick(e: MouseEvent): void {
     if ((e.target as Element).closest(".knob")) return;
-    const key = this.app.addPoint(this.camera.toUser(this.point(e)));
+    const key = this.app.addPoint(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
     if (key) this.focused = key;
   }
 
@@ -368,13 +419,25 @@ export class Stage {
       const far = e.shiftKey ? 10 : 1;
       const [x, y] = this.camera.toScreen(handle.get());
       this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+    } else if (e.key === "Insert") {
+      e.preventDefault();
+      const [x, y] = handle.get();
+      // Beside the point, where there is no line to divide.
+      const at = this.app.handles.after(handle) ?? [x + 2 * REACH * this.camera.pixel, y] as XY;
+      this.focused = this.app.addPoint(at, REACH * this.camera.pixel) ?? this.focused;
     } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
       e.preventDefault();
-      handle.remove();
-      this.app.handles.write(handle.param);
-      this.focused = null;
-      void this.app.commit();
+      this.remove(handle);
     }
+  }
+
+  /** Takes a point away. */
+  remove(handle: Handle): void {
+    if (!handle.remove || !this.app.handles) return;
+    handle.remove();
+    this.app.handles.write(handle.param);
+    this.focus(null);
+    void this.app.commit();
   }
 
   /** Moves a handle by keys or by typed numbers. */

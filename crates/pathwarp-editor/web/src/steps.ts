@@ -29,7 +29,8 @@ export class Steps {
     const name = (step: Step) => {
       const deformation = app.deformation(step.deformation);
       const preset = deformation?.gallery ? step.args[deformation.gallery.presets]?.[0] : undefined;
-      return preset ? words(preset) : deformation ? called(deformation) : words(step.deformation);
+      const variant = deformation?.variants.find(({ param }) => step.args[param]);
+      return preset ? words(preset) : variant?.label ?? (deformation ? called(deformation) : words(step.deformation));
     };
     const button = (name: string, label: string, action: () => void, disabled = false) => {
       const b = h("button", { type: "button", class: "small", "aria-label": label, title: label, disabled }, icon(name));

@@ -21,6 +21,8 @@ export interface Param {
   words?: string[];
   notation?: string;
   axis?: "x" | "y" | "diagonal";
+  /** Paths that may have any number of points, or rows with equally many. */
+  points?: "any" | "rows";
   default?: string;
   least?: number;
   most?: number;
@@ -34,6 +36,8 @@ export interface Deformation {
   group: string;
   about: string;
   params: Param[];
+  /** Other ways to begin, each by one parameter. */
+  variants: { label: string; param: string }[];
   gallery: { title: string; presets: string; bend: string | null; axis: string | null } | null;
 }
 
@@ -79,6 +83,8 @@ export interface State {
   saved: boolean;
   savedTo: string | null;
   target: string;
+  /** The program that waits for the steps, if one does. */
+  program: string | null;
   restored: boolean;
   problem: string | null;
   toPx: [number, number, number, number, number, number];
@@ -115,4 +121,5 @@ export interface Answer {
   steps?: Step[];
   stretch?: Stretch | null;
   event?: string;
+  done?: boolean;
 }

@@ -16,7 +16,7 @@ async function within(test, options) {
 
 export const keyboard_alone = () => within(async (page) => {
   const before = await paths(page);
-  for (let i = 0; i < 200 && !(await page.evaluate(() => document.activeElement.matches(".knob"))); i++) await page.keyboard.press("Tab");
+  for (let i = 0; i < 40 && !(await page.evaluate(() => document.activeElement.matches(".knob"))); i++) await page.keyboard.press("Tab");
   const key = await page.evaluate(() => document.activeElement.dataset.key);
   check(key, "no handle can be reached with Tab");
   const [x, y] = await middle(page, key);
@@ -70,3 +70,28 @@ export const touch_drags = () => within(async (page) => {
   await quiet(page);
   check((await paths(page)) !== before, "touch does not drag");
 }, { hasTouch: true });
+
+/** A style is chosen, a step added and moved, and the file saved, all by keys. */
+export const styles_and_steps_by_keyboard = () => within(async (page) => {
+  await page.locator("#search").focus();
+  await page.keyboard.type("flag");
+  await page.keyboard.press("Tab");
+  check((await page.evaluate(() => document.activeElement.textContent)) === "Flag", "the card is not reached");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector("#steps").textContent.includes("Flag"));
+  await page.locator("#search").focus();
+  await page.keyboard.press("Control+a");
+  await page.keyboard.press("Delete");
+  await page.locator(".card", { hasText: /^Arc$/ }).focus();
+  await page.keyboard.press("ArrowRight");
+  check((await page.evaluate(() => document.activeElement.textContent)) === "Arc lower", "arrows do not go from card to card");
+  await page.keyboard.press("Control+s");
+  await page.waitForSelector("#toast.on");
+  check((await page.textContent("#toast")).includes("logo-bent.svg"), await page.textContent("#toast"));
+});
+
+/** Nothing moves by itself where the user does not want it. */
+export const reduced_motion = () => within(async (page) => {
+  const moving = await page.evaluate(() => Array.from(document.querySelectorAll("*")).filter((e) => getComputedStyle(e).transitionDuration.split(",").some((t) => parseFloat(t) > 0)).length);
+  check(moving === 0, `${moving} elements move`);
+}, { reducedMotion: "reduce", viewport: { width: 400, height: 800 } });

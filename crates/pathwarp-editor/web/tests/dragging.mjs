@@ -1,5 +1,5 @@
 // Every kind of handle is dragged, and the picture follows.
-import { becomes, check, choose, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, check, choose, curves, drag, edit, folder, keys, middle, open, paths, quiet, sample } from "./harness.mjs";
 
 async function started(name = "logo.svg") {
   const dir = folder({ [name]: sample(name) });
@@ -70,21 +70,6 @@ async function percentile(svg, drags) {
     editor.stop();
     await page.context().close();
   }
-}
-
-/** A drawing of curves: `count` segments in paths of fifty. */
-export function curves(count) {
-  const out = [];
-  for (let k = 0; k * 50 < count; k++) {
-    const [x, y] = [(k % 20) * 40, Math.floor(k / 20) * 40];
-    let d = `M${x + 38},${y + 20}`;
-    for (let i = 1; i <= 50; i++) {
-      const at = (j, r) => `${(x + 20 + r * Math.cos((2 * Math.PI * j) / 50)).toFixed(2)},${(y + 20 + r * Math.sin((2 * Math.PI * j) / 50)).toFixed(2)}`;
-      d += ` C${at(i - 0.7, 16)} ${at(i - 0.3, 20)} ${at(i, 18)}`;
-    }
-    out.push(`<path d="${d}Z" fill="hsl(${(k * 37) % 360} 60% 50%)"/>`);
-  }
-  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 800 400">${out.join("")}</svg>`;
 }
 
 async function speed(count, most) {

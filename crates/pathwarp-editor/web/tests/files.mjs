@@ -173,3 +173,38 @@ export const steps_are_added_moved_and_removed = () => within(null, async ({ pag
   check((await page.locator("#steps li").count()) === 1, "the step was not removed");
   void middle;
 });
+
+/** Artwork that leaves the page takes it along, on show and in the file; the command line says so. */
+export const the_page_grows = () => within(null, async ({ dir, page }) => {
+  const sheet = () => page.$eval("#stage .sheet", (s) => s.getBoundingClientRect().top);
+  const [top, [, y]] = [await sheet(), await middle(page, "shaper/0.0/2")];
+  await drag(page, "shaper/0.0/2", 0, -90);
+  check((await sheet()) < top - 20, "the sheet does not grow");
+  check(Math.abs((await middle(page, "shaper/0.0/2"))[1] - y + 90) < 9, "the view has moved");
+  await page.click("#save");
+  await page.waitForSelector("#toast.on");
+  const box = /viewBox="([^"]*)"/.exec(readFileSync(`${dir}/logo-bent.svg`, "utf8"))[1].split(/[ ,]+/).map(Number);
+  check(box[1] < -20 && box[3] > 220, `the page is ${box}`);
+  await page.evaluate(() => { navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }; });
+  await page.click("#save-as");
+  await page.click("#copy-command");
+  await page.waitForFunction(() => window.copied);
+  check(/ --fit grow -o /.test(await page.evaluate(() => window.copied)), await page.evaluate(() => window.copied));
+});
+
+/** The nodes of the result are shown with their control points, also while it is dragged. */
+export const nodes_are_shown = () => within(null, async ({ page }) => {
+  await page.click("#nodes");
+  const shown = () => page.$$eval("#stage .nodes, #stage .arms", (all) => all.map((e) => e.getAttribute("d").split("M").length - 1));
+  const [arms, nodes] = await shown();
+  const expected = (await paths(page)).match(/[MLQC]/g).length;
+  check(nodes === expected && arms > nodes / 2, `${nodes} nodes of ${expected}, ${arms} arms`);
+  const [x, y] = await middle(page, "shaper/0.0/2");
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i < 9; i++) await page.mouse.move(x + 3 * i, y - 4 * i);
+  await page.waitForTimeout(400);
+  const [, dragged] = await shown();
+  check(dragged >= nodes, `${dragged} nodes while it is dragged`);
+  await page.mouse.up();
+});

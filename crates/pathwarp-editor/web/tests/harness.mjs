@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
 export const root = fileURLToPath(new URL("../../../../", import.meta.url));
-const program = process.env.PATHWARP ?? join(root, "target/debug/pathwarp");
+export const program = process.env.PATHWARP ?? join(root, "target/debug/pathwarp");
 const browserPath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((p) => existsSync(p));
 const FLAGS = [
   "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -131,4 +131,19 @@ export async function becomes(page, picture, message) {
 
 export function check(condition, message) {
   if (!condition) throw new Error(message);
+}
+
+/** A drawing of curves: `count` segments in paths of fifty. */
+export function curves(count) {
+  const out = [];
+  for (let k = 0; k * 50 < count; k++) {
+    const [x, y] = [(k % 20) * 40, Math.floor(k / 20) * 40];
+    let d = `M${x + 38},${y + 20}`;
+    for (let i = 1; i <= 50; i++) {
+      const at = (j, r) => `${(x + 20 + r * Math.cos((2 * Math.PI * j) / 50)).toFixed(2)},${(y + 20 + r * Math.sin((2 * Math.PI * j) / 50)).toFixed(2)}`;
+      d += ` C${at(i - 0.7, 16)} ${at(i - 0.3, 20)} ${at(i, 18)}`;
+    }
+    out.push(`<path d="${d}Z" fill="hsl(${(k * 37) % 360} 60% 50%)"/>`);
+  }
+  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 800 400">${out.join("")}</svg>`;
 }

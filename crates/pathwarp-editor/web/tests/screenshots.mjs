@@ -1,10 +1,10 @@
 // Writes the pictures of docs/editor.md.
 import { choose, close, drag, edit, folder, open, quiet, root, sample } from "./harness.mjs";
 
-async function shot(name, act, options = {}) {
+async function shot(name, act) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
   const editor = await edit(`${dir}/logo.svg`);
-  const page = await open(editor.address, options);
+  const page = await open(editor.address);
   await act(page);
   // The small pictures of the gallery are drawn one by one.
   await page.waitForTimeout(4000);
@@ -28,10 +28,4 @@ await shot("editor-grid", async (page) => {
   await page.click("#stretch");
   await quiet(page);
 });
-await shot("editor-dark", async (page) => {
-  await choose(page, "Flag");
-}, { colorScheme: "dark" });
-await shot("editor-phone", async (page) => {
-  await drag(page, "shaper/0.0/2", -10, 40);
-}, { viewport: { width: 360, height: 700 }, hasTouch: true, deviceScaleFactor: 2 });
 await close();

@@ -183,6 +183,8 @@ pub struct WarpOptions {
     pub images: Images,
     /// Treatment of `use` elements that are not warped themselves but show something that is.
     pub clones: Clones,
+    /// Measure how far the result extends past its page. That takes a look at every path.
+    pub overhang: bool,
 }
 
 impl WarpOptions {
@@ -204,6 +206,7 @@ impl WarpOptions {
             letters: LetterPlaces::default(),
             images: Images::default(),
             clones: Clones::default(),
+            overhang: true,
         }
     }
 
@@ -252,4 +255,5 @@ setters! {
     letters: LetterPlaces, with_letters;
     images: Images, with_images;
     clones: Clones, with_clones;
+    overhang: bool, with_overhang;
 }

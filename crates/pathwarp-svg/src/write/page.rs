@@ -82,7 +82,11 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     let moved = input.outcomes.iter().any(|o| o.warped().is_some())
         || input.slots.iter().any(|s| s.fit != Affine::IDENTITY)
         || input.images.iter().any(|p| matches!(p, EmbeddedImage::Bent(_)));
-    if input.options.page != PageFit::None || !moved || input.drawing.specified_area().is_none() {
+    if !input.options.overhang
+        || input.options.page != PageFit::None
+        || !moved
+        || input.drawing.specified_area().is_none()
+    {
         return None;
     }
     let page = input.drawing.visible_area();

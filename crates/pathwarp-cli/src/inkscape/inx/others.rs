@@ -1,4 +1,4 @@
-//! The descriptions besides the deformations: edit, release, GIMP paths, DXF.
+//! The descriptions besides the deformations: bend by hand, edit, release, GIMP paths, DXF.
 
 use super::deformation::effect;
 use super::labels::escaped;
@@ -8,8 +8,9 @@ use crate::inkscape::names::{ACTION, CHANGES, DISCARD, SHOW, WARNINGS};
 use crate::options::OPTIONS;
 
 /// File name and content of each.
-pub(super) fn all(program: &Program) -> [(String, String); 4] {
+pub(super) fn all(program: &Program) -> [(String, String); 5] {
     [
+        ("pathwarp-bend-by-hand.inx".into(), by_hand(program)),
         ("pathwarp-edit-again.inx".into(), edit(program)),
         ("pathwarp-release.inx".into(), release(program)),
         ("pathwarp-xcf-input.inx".into(), xcf(program)),
@@ -19,6 +20,11 @@ pub(super) fn all(program: &Program) -> [(String, String); 4] {
 
 fn action(value: &str) -> String {
     format!("  <param name=\"{ACTION}\" type=\"string\" gui-hidden=\"true\">{value}</param>\n")
+}
+
+fn by_hand(program: &Program) -> String {
+    let tip = "Drag points in the browser, and see the selected objects follow";
+    effect("Bend by hand…", "bend-by-hand", tip, &action("hand"), None, false, program)
 }
 
 fn edit(program: &Program) -> String {

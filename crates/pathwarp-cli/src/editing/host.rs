@@ -22,17 +22,19 @@ use std::sync::Arc;
 const PICTURE_WIDTH: u32 = 2000;
 
 /// The command line around the editor.
-pub(super) struct EditorHost {
+pub(crate) struct EditorHost {
     registry: Arc<Registry>,
+    /// Options where neither the user nor the drawing gives any.
+    usual: Given,
     /// The options as given.
     given: Given,
     flags: Arc<Flags>,
 }
 
 impl EditorHost {
-    pub(super) fn new(registry: Registry, given: Given) -> Self {
+    pub(crate) fn new(registry: Registry, usual: Given, given: Given) -> Self {
         let flags = Arc::new(Flags::of(&registry));
-        Self { registry: Arc::new(registry), given, flags }
+        Self { registry: Arc::new(registry), usual, given, flags }
     }
 
     fn open_drawing(&self, file: &Path, bytes: &[u8]) -> Result<Opened, Failure> {
@@ -52,8 +54,8 @@ impl EditorHost {
         };
         let is_result = saved.is_some();
         let (recipe, given) = match saved {
-            Some(saved) => (saved.recipe, saved.options.overridden_by(&self.given)),
-            None => (Recipe::default(), self.given.clone()),
+            Some(saved) => (saved.recipe, self.usual.overridden_by(&saved.options).overridden_by(&self.given)),
+            None => (Recipe::default(), self.usual.overridden_by(&self.given)),
         };
         let options = given.read()?;
         let svg = SvgArtwork::read(source, file, &options, None)?;

@@ -1,18 +1,15 @@
 //! `pathwarp edit FILE`: bends a drawing by hand in the browser.
 
-mod artwork;
-mod host;
-
 use super::file_args;
+use crate::editing::EditorHost;
 use crate::failure::Failure;
 use crate::options::{self, Given};
 use crate::output;
 use crate::status::Status;
 use crate::temporaries;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use host::EditorHost;
 use pathwarp::deform::Registry;
-use pathwarp_editor::Options;
+use pathwarp_editor::{Options, Purpose};
 use std::sync::Arc;
 
 pub(super) const NAME: &str = "edit";
@@ -50,13 +47,16 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     }
     let options = Options {
         file: file.to_owned(),
-        out: file_args::target(m, [file])?.map(ToOwned::to_owned),
+        purpose: Purpose::Files { out: file_args::target(m, [file])?.map(ToOwned::to_owned) },
         port: m.get_one::<u16>("port").copied(),
         open: !m.get_flag("no-open"),
     };
     // Ctrl-C is the usual end of this command, so it needs no message.
     let _ = ctrlc::set_handler(|| temporaries::remove_all_and(|| std::process::exit(INTERRUPTED)));
-    let host = Arc::new(EditorHost::new(registry.clone(), Given::options(m)));
+    // Whoever drags a point past the page wants to keep what is there.
+    let mut usual = Given::default();
+    usual.set("fit", "grow").map_err(Failure::Usage)?;
+    let host = Arc::new(EditorHost::new(registry.clone(), usual, Given::options(m)));
     let announce = |address: &str| drop(output::to_stdout(format!("{address}\n").as_bytes()));
     pathwarp_editor::serve(host, &options, announce).map_err(Failure::Input)?;
     Ok(Status::Complete)

@@ -11,7 +11,7 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_editor::{Artwork, Bent, Fineness, Summary};
-use pathwarp_svg::Document;
+use pathwarp_svg::{Document, PageFit};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -21,6 +21,8 @@ pub(super) struct EditedArtwork {
     registry: Arc<Registry>,
     given: Given,
     options: CommonOptions,
+    /// The options of what the page shows: on the source's page, whatever becomes of it.
+    shown: CommonOptions,
     flags: Arc<Flags>,
     /// The frame for the guides and the baseline of the last picture.
     framed: Option<Framed>,
@@ -50,7 +52,8 @@ impl EditedArtwork {
         options: CommonOptions,
         flags: &Arc<Flags>,
     ) -> Self {
-        Self { svg, registry: Arc::clone(registry), given, options, flags: Arc::clone(flags), framed: None }
+        let shown = CommonOptions { page: PageFit::None, ..options.clone() };
+        Self { svg, registry: Arc::clone(registry), given, options, shown, flags: Arc::clone(flags), framed: None }
     }
 
     /// Looks up references, chooses the frame and builds the steps.
@@ -85,9 +88,10 @@ impl EditedArtwork {
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
         let Ready { resolved, built, bounds, tolerance } = self.ready(recipe)?;
         let text = || recipe_file::write(&*self.registry, recipe, &self.given, Path::new(""));
-        let embedded_recipe = (fineness == Fineness::Saved).then(text).transpose()?;
+        let embedded_recipe = (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?;
         let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
-        let request = WarpRequest { built: &built, options: &self.options, bounds, tolerance, embedded_recipe };
+        let options = if let Fineness::Finished { .. } = fineness { &self.options } else { &self.shown };
+        let request = WarpRequest { built: &built, options, bounds, tolerance, embedded_recipe };
         if let Fineness::Draft(_) = fineness {
             let svg = self.svg.draft(&request);
             sound(&built)?;
@@ -148,6 +152,11 @@ impl Artwork for EditedArtwork {
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
         let ready = self.ready(recipe);
         self.said(ready).map(|r| (r.resolved, r.built))
+    }
+
+    fn options(&self) -> Vec<(String, String)> {
+        let all = self.given.stored();
+        all.flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v))).collect()
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {

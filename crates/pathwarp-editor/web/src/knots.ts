@@ -1,0 +1,104 @@
+// Points of paths, added and taken away without changing the rest of the path.
+
+import type { Subpath, XY } from "./types";
+
+/** Samples of a piece when the place nearest to a point is looked for. */
+const SAMPLES = 32;
+
+/** A place on a path: its piece and the parameter there. */
+export interface Spot {
+  piece: number;
+  t: number;
+  at: XY;
+  distance: number;
+}
+
+/** The points of a piece, from the end of the one before: two of a line, four of a cubic. */
+function piece(sub: Subpath, k: number): XY[] {
+  const before = k === 0 ? sub.start : end(sub.segments[k - 1]!);
+  const seg = sub.segments[k]!;
+  const out: XY[] = [before];
+  for (let i = 0; i + 1 < seg.length; i += 2) out.push([seg[i]!, seg[i + 1]!]);
+  return out;
+}
+
+export function end(seg: number[]): XY {
+  return [seg[seg.length - 2]!, seg[seg.length - 1]!];
+}
+
+function mix([ax, ay]: XY, [bx, by]: XY, t: number): XY {
+  return [ax + (bx - ax) * t, ay + (by - ay) * t];
+}
+
+/** The rows of de Casteljau's scheme at a parameter, the given points first. */
+function scheme(points: XY[], t: number): XY[][] {
+  const rows = [points];
+  for (let row = points; row.length > 1; rows.push(row)) row = row.slice(1).map((p, i) => mix(row[i]!, p, t));
+  return rows;
+}
+
+/** A closed path ends with a line to its start, which may be left unsaid. */
+export function closed(sub: Subpath): Subpath {
+  const last = sub.segments[sub.segments.length - 1];
+  const isOpen = last && Math.hypot(end(last)[0] - sub.start[0], end(last)[1] - sub.start[1]) > 1e-9;
+  if (sub.closed && isOpen) sub.segments.push([...sub.start]);
+  return sub;
+}
+
+/** The place of a path that is nearest to a point. */
+export function nearest(sub: Subpath, to: XY): Spot | null {
+  let best: Spot | null = null;
+  sub.segments.forEach((_, k) => {
+    const points = piece(sub, k);
+    for (let i = 1; i < SAMPLES; i++) {
+      const t = i / SAMPLES;
+      const [at] = scheme(points, t).pop()! as [XY];
+      const distance = Math.hypot(at[0] - to[0], at[1] - to[1]);
+      if (!best || distance < best.distance) best = { piece: k, t, at, distance };
+    }
+  });
+  return best;
+}
+
+/** The middle of a piece. */
+export function middle(sub: Subpath, k: number): XY {
+  return scheme(piece(sub, k), 0.5).pop()![0]!;
+}
+
+/** Splits a piece in two. Returns the index of the new node. */
+export function split(sub: Subpath, { piece: k, t }: Spot): number {
+  const rows = scheme(piece(sub, k), t);
+  const first = rows.slice(1).map((row) => row[0]!);
+  const second = rows.slice(0, -1).map((row) => row[row.length - 1]!).reverse();
+  sub.segments.splice(k, 1, first.flat(), second.flat());
+  return k + 1;
+}
+
+/** Takes a node away; the pieces beside it become one, with their outer control points. */
+export function drop(sub: Subpath, node: number): void {
+  const { segments } = sub;
+  if (!sub.closed && node === 0) {
+    sub.start = end(segments.shift()!);
+    return;
+  }
+  if (!sub.closed && node === segments.length) {
+    segments.pop();
+    return;
+  }
+  // Of a closed path, the start is the end of the last piece.
+  const [a, b] = node === 0 ? [segments.length - 1, 0] : [node - 1, node];
+  const [from, to] = [piece(sub, a), piece(sub, b)];
+  const [first, last] = [from[0]!, to[to.length - 1]!];
+  const isLine = from.length === 2 && to.length === 2;
+  const arms = [from.length === 4 ? from[1]! : mix(first, last, 1 / 3), to.length === 4 ? to[2]! : mix(last, first, 1 / 3)];
+  segments[a] = isLine ? [...last] : [...arms.flat(), ...last];
+  segments.splice(b, 1);
+  if (node === 0) sub.start = [...last];
+}
+
+/** The control points of a curve with one more of them: the curve stays the same. */
+export function raised(points: XY[]): XY[] {
+  const n = points.length;
+  const inner = points.slice(1).map((p, i) => mix(p, points[i]!, (i + 1) / n));
+  return [points[0]!, ...inner, points[n - 1]!];
+}

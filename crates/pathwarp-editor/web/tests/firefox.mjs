@@ -1,0 +1,35 @@
+// Firefox: the page opens, handles are dragged, and the result is saved. Everything else is tested in Chromium.
+import { existsSync } from "node:fs";
+import { firefox } from "./bidi.mjs";
+import { check, edit, folder, sample } from "./harness.mjs";
+
+const program = ["/usr/bin/firefox-esr", "/usr/bin/firefox"].find((p) => existsSync(p));
+const PATHS = 'Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"), (p) => p.getAttribute("d")).join("|")';
+
+export async function firefox_opens_drags_and_saves() {
+  if (!program) return "skipped: Firefox is not installed";
+  const dir = folder({ "logo.svg": sample("logo.svg") });
+  const editor = await edit(`${dir}/logo.svg`);
+  const page = await firefox(program, editor.address);
+  try {
+    await page.until("document.querySelectorAll('.knob').length > 0", "there are no handles");
+    const first = await page.evaluate(PATHS);
+    check(first.length > 100, "there is no picture");
+    await page.drag('.knob[data-key="shaper/0.0/2"]', 37, -41);
+    await page.until(`${PATHS} !== ${JSON.stringify(first)}`, "the picture did not follow");
+    await page.until("!document.querySelector('#undo').disabled", "the drag cannot be undone");
+    await page.control("z");
+    await page.until(`${PATHS} === ${JSON.stringify(first)}`, "Ctrl Z does nothing");
+    await page.evaluate("Array.from(document.querySelectorAll('.card'), (c) => c).find((c) => c.textContent === 'Flag').click()");
+    await page.until("document.querySelector('#steps').textContent.includes('Flag')", "the style was not chosen");
+    await page.until("!document.querySelector('#save').disabled", "it cannot be saved");
+    await page.click("#save");
+    await page.until("document.querySelector('#toast').classList.contains('on')", "nothing was saved");
+    check(existsSync(`${dir}/logo-bent.svg`), "there is no file");
+    check(page.problems.length === 0, page.problems.join("; "));
+  } finally {
+    editor.stop();
+    await page.stop();
+  }
+  return undefined;
+}
