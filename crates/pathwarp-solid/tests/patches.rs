@@ -6,7 +6,6 @@
 mod exact;
 
 use exact::{Q, bernstein, q, rational_point, size_of};
-use num_traits::{One, Zero};
 use pathwarp::budget::{Budget, Limit, Limits};
 use pathwarp::param::Args;
 use pathwarp_solid::deform::Registry3;
@@ -80,7 +79,7 @@ fn collineations_keep_degree_knots_and_trims() {
     let mut map = Chain3::default();
     map.push(Arc::new(Collineation::new(matrix)));
     let truth = |[x, y, z]: [Q; 3]| {
-        let delta = Q::one() + &z / q(32.0);
+        let delta = Q::ONE + &z / q(32.0);
         [x / &delta, y / &delta, z / delta]
     };
     let points = (0..4).map(|k| DVec3::new(f64::from(k % 2), f64::from(k / 2), [0.0, 32.0, 96.0, 224.0][k as usize]));
@@ -102,7 +101,7 @@ fn collineations_keep_degree_knots_and_trims() {
 /// A lattice of degree 1 in space, some of whose corners move, with weights.
 fn trilinear([x, y, z]: [Q; 3], moved: &[([usize; 3], [f64; 3], f64)]) -> [Q; 3] {
     let t = [x, y, z].map(|v| v / q(64.0));
-    let (mut sum, mut weights) = ([Q::zero(), Q::zero(), Q::zero()], Q::zero());
+    let (mut sum, mut weights) = ([Q::ZERO, Q::ZERO, Q::ZERO], Q::ZERO);
     for k in 0..8usize {
         let node = [k & 1, k >> 1 & 1, k >> 2];
         let change = moved.iter().find(|c| c.0 == node);
@@ -144,37 +143,42 @@ fn anamorphoses_over_every_reference() {
     let map = chain("anamorph", &[at, tetrahedron, ("degree", "2"), ("push", "0,1,0,1:1.6 2,0,0,0:0.8")]);
     compare(&patch([3, 3], true), &map, [6, 6], 1e-13, |p| {
         let [u, v, w] = p.clone().map(|c| c / q(128.0));
-        let rest = Q::one() - &u - &v - &w;
+        let rest = Q::ONE - &u - &v - &w;
         // The control points between the second and the fourth corner, and at the first.
-        let delta = Q::one()
-            + (Q::one() / q(1.6) - Q::one()) * q(2.0) * u * w
-            + (Q::one() / q(0.8) - Q::one()) * &rest * &rest;
+        let delta = Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * w + (Q::ONE / q(0.8) - Q::ONE) * &rest * &rest;
         radial(p, eye, &delta)
     });
     let cuboid = chain("anamorph", &[at, ("degree", "2x1x1"), ("push", "1,0,1:1.6")]);
     compare(&patch([2, 3], true), &cuboid, [8, 12], 1e-12, |p| {
         let t = p.clone().map(|c| c / q(64.0));
         let b = bernstein(2, 1, &t[0]) * bernstein(1, 0, &t[1]) * bernstein(1, 1, &t[2]);
-        radial(p, eye, &(Q::one() + (Q::one() / q(1.6) - Q::one()) * b))
+        radial(p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * b))
     });
     // Sheets in the plane z = 0, on which the ray through a point has the coordinates O + (p − O)·512/(512 − z).
     let foot = |p: &[Q; 3], a: usize| q(eye[a]) + (&p[a] - q(eye[a])) * q(512.0) / (q(512.0) - &p[2]);
-    let rectangle = chain("anamorph", &[at, ("reference", "-64,-64,0 64,64,0"), ("degree", "1x1x1"), ("push", "1,1,0:1.6")]);
+    let rectangle =
+        chain("anamorph", &[at, ("reference", "-64,-64,0 64,64,0"), ("degree", "1x1x1"), ("push", "1,1,0:1.6")]);
     compare(&patch([2, 3], false), &rectangle, [6, 9], 1e-12, |p| {
-        let b = bernstein(1, 1, &((foot(&p, 0) + q(64.0)) / q(128.0))) * bernstein(1, 1, &((foot(&p, 1) + q(64.0)) / q(128.0)));
-        radial(p, eye, &(Q::one() + (Q::one() / q(1.6) - Q::one()) * b))
+        let b = bernstein(1, 1, &((foot(&p, 0) + q(64.0)) / q(128.0)))
+            * bernstein(1, 1, &((foot(&p, 1) + q(64.0)) / q(128.0)));
+        radial(p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * b))
     });
-    let triangle = chain("anamorph", &[at, ("reference", "0,0,0 128,0,0 0,128,0"), ("degree", "2"), ("push", "0,1,1:1.6")]);
+    let triangle =
+        chain("anamorph", &[at, ("reference", "0,0,0 128,0,0 0,128,0"), ("degree", "2"), ("push", "0,1,1:1.6")]);
     compare(&patch([3, 3], false), &triangle, [9, 9], 1e-12, |p| {
         let (u, v) = (foot(&p, 0) / q(128.0), foot(&p, 1) / q(128.0));
-        radial(p, eye, &(Q::one() + (Q::one() / q(1.6) - Q::one()) * q(2.0) * u * v))
+        radial(p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * v))
     });
 }
 
 #[test]
 fn skeletons_and_tapers() {
     let skeleton = [[0.0, 32.0, 32.0], [20.0, 40.0, 32.0], [44.0, 30.0, 36.0], [70.0, 10.0, 50.0]];
-    let handles = [[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [[0.25, 1.0, 0.0], [0.0, 0.125, 1.0]], [[0.0, 0.75, 0.5], [0.25, 0.0, 1.0]]];
+    let handles = [
+        [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[0.25, 1.0, 0.0], [0.0, 0.125, 1.0]],
+        [[0.0, 0.75, 0.5], [0.25, 0.0, 1.0]],
+    ];
     let map = chain(
         "bend",
         &[
@@ -185,23 +189,27 @@ fn skeletons_and_tapers() {
     );
     let curve = |points: Vec<[f64; 3]>, u: &Q| -> [Q; 3] {
         let n = points.len() - 1;
-        std::array::from_fn(|a| points.iter().enumerate().map(|(i, p)| bernstein(n, i, u) * q(p[a])).sum())
+        std::array::from_fn(|a| {
+            points.iter().enumerate().fold(Q::ZERO, |sum, (i, p)| sum + bernstein(n, i, u) * q(p[a]))
+        })
     };
     compare(&patch([3, 3], true), &map, [9, 9], 1e-13, |[x, y, z]| {
         let (u, v, w) = (x / q(64.0), y - q(32.0), z - q(32.0));
-        let [c, s, t] = [skeleton.to_vec(), handles.iter().map(|h| h[0]).collect(), handles.iter().map(|h| h[1]).collect()].map(|p| curve(p, &u));
+        let [c, s, t] =
+            [skeleton.to_vec(), handles.iter().map(|h| h[0]).collect(), handles.iter().map(|h| h[1]).collect()]
+                .map(|p| curve(p, &u));
         std::array::from_fn(|a| &c[a] + &v * &s[a] + &w * &t[a])
     });
     let taper = chain("bend", &[("preset", "taper"), ("along", "z"), ("factor", "0.25")]);
     compare(&patch([3, 3], false), &taper, [6, 6], 1e-13, |[x, y, z]| {
-        let r = Q::one() - q(0.75) * &z / q(64.0);
+        let r = Q::ONE - q(0.75) * &z / q(64.0);
         [q(32.0) + &r * (x - q(32.0)), q(32.0) + r * (y - q(32.0)), z]
     });
     // One after the other: degrees multiply.
     let mut both = chain("bend", &[("preset", "taper"), ("along", "z"), ("factor", "0.25")]);
     both.push(Arc::clone(&chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]).steps()[0]));
     compare(&patch([2, 1], false), &both, [12, 6], 1e-12, |[x, y, z]| {
-        let r = Q::one() - q(0.75) * &z / q(64.0);
+        let r = Q::ONE - q(0.75) * &z / q(64.0);
         let tapered = [q(32.0) + &r * (x - q(32.0)), q(32.0) + r * (y - q(32.0)), z];
         trilinear(tapered, &[([1, 1, 1], [8.0, -4.0, 16.0], 1.0)])
     });
@@ -237,7 +245,9 @@ fn refitted_surfaces_are_within_the_tolerance_and_watertight() {
     let turned = |s: &Surface| {
         let mut t = s.clone();
         // A patch beyond the edge u = 1, described from v = 1 to 0.
-        t.points = (0..16).map(|k| s.points[(3 - k / 4) * 4 + 3] + DVec3::new(5.0 * (k % 4) as f64, 0.0, (k % 4) as f64)).collect();
+        t.points = (0..16)
+            .map(|k| s.points[(3 - k / 4) * 4 + 3] + DVec3::new(5.0 * (k % 4) as f64, 0.0, (k % 4) as f64))
+            .collect();
         t.trims.clear();
         t
     };

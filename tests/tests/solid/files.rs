@@ -1,7 +1,7 @@
 //! `pathwarp solid` with PLY, glTF, curved surfaces and several models at once.
 
-use super::support::{pathwarp_in, sample};
 use super::{fails, ok, report, text};
+use crate::support::{pathwarp_in, sample};
 use serde_json::Value;
 use std::fs;
 use std::time::{Duration, Instant};
@@ -27,7 +27,13 @@ fn formats_agree() {
         let again = report(dir.path(), &args(&["ffd", &copy], &["-o", &format!("out.{format}")]));
         for key in ["area", "vertices"] {
             let [a, b] = [&straight, &again].map(|r| r["after"][key].as_f64().unwrap());
-            let same = if key == "area" { 1e-6 * a } else if format == "ply" { 0.0 } else { f64::INFINITY };
+            let same = if key == "area" {
+                1e-6 * a
+            } else if format == "ply" {
+                0.0
+            } else {
+                f64::INFINITY
+            };
             assert!((a - b).abs() <= same, "{format} {key}: {a} {b}");
         }
         let [a, b] = [&straight, &again].map(|r| r["after"]["faces"].as_u64().unwrap());
@@ -41,7 +47,16 @@ fn formats_agree() {
 fn curved_surfaces() {
     let dir = tempfile::tempdir().unwrap();
     fs::copy(sample("solid/newell.bpt"), dir.path().join("in.bpt")).unwrap();
-    let anamorph = ["anamorph", "in.bpt", "--eye", "0,2,20", "--reference", "-5,-1,3;5,-1,3;0,8,3;0,1,-6", "--push", "0,0,0,1:150%"];
+    let anamorph = [
+        "anamorph",
+        "in.bpt",
+        "--eye",
+        "0,2,20",
+        "--reference",
+        "-5,-1,3;5,-1,3;0,8,3;0,1,-6",
+        "--push",
+        "0,0,0,1:150%",
+    ];
     let projected = report(dir.path(), &[&anamorph[..], &["-o", "p.json"]].concat());
     assert!(projected["exact"] == 32 && projected["after"]["degree"] == serde_json::json!([3, 3]), "{projected}");
     assert_eq!(projected["after"]["rational"], 32);
@@ -62,7 +77,11 @@ fn curved_surfaces() {
     ok(dir.path(), &["ffd", "in.bpt", "-o", "same.bpt"], "");
     let numbers = |name: &str| -> Vec<f64> {
         let all = fs::read_to_string(dir.path().join(name)).unwrap();
-        all.lines().map(|l| l.split('#').next().unwrap()).flat_map(str::split_whitespace).map(|w| w.parse().unwrap()).collect()
+        all.lines()
+            .map(|l| l.split('#').next().unwrap())
+            .flat_map(str::split_whitespace)
+            .map(|w| w.parse().unwrap())
+            .collect()
     };
     assert_eq!(numbers("in.bpt"), numbers("same.bpt"));
     assert!(fails(dir.path(), &["ffd", "t.obj", "-o", "x.bpt"], "", 2).contains("not curved surfaces"));
@@ -77,7 +96,10 @@ fn several_models_each_on_its_own() {
         fs::copy(sample("solid/room.obj"), dir.path().join(name)).unwrap();
     }
     fs::write(dir.path().join("bad.obj"), "v 0 0\n").unwrap();
-    let all = args(&["solid", "ffd", "a.obj", "bad.obj", "b.obj"], &["--out-dir", "out", "--report", "r.json", "--preview", "{stem}.png"]);
+    let all = args(
+        &["solid", "ffd", "a.obj", "bad.obj", "b.obj"],
+        &["--out-dir", "out", "--report", "r.json", "--preview", "{stem}.png"],
+    );
     let out = pathwarp_in(dir.path(), &all, b"");
     assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
     assert!(text(&out.stderr).contains("bad.obj: line 1") && text(&out.stderr).contains("1 of 3 models failed"));
@@ -104,7 +126,11 @@ fn damage_and_endless_work() {
     fs::copy(sample("solid/newell.bpt"), dir.path().join("in.bpt")).unwrap();
     fs::write(dir.path().join("many.ply"), "ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n").unwrap();
     fs::write(dir.path().join("many.bpt"), "1000000000\n3 3\n").unwrap();
-    fs::write(dir.path().join("out.gltf"), r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{}],"buffers":[{"uri":"/etc/passwd","byteLength":9}]}"#).unwrap();
+    fs::write(
+        dir.path().join("out.gltf"),
+        r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}],"buffers":[{"uri":"/etc/passwd","byteLength":9}]}"#,
+    )
+    .unwrap();
     let begun = Instant::now();
     let refused = |input: &str, more: &[&str], part: &str| {
         let twist = ["bend", input, "--preset", "twist", "--along", "y", "--angle", "90", "-o", "o.obj"];

@@ -3,6 +3,7 @@
 //! The arithmetic is the same on all of them, to the last bit: products and sums are never fused.
 
 use super::lane::{Lane, WIDTH};
+use super::local::Local;
 use super::tensor::Tensor;
 use glam::{DMat4, DVec3};
 use pulp::{Arch, Simd, WithSimd};
@@ -73,21 +74,6 @@ impl Kernel for Matrix {
                 lane[i] = row(r) / w;
             }
         }
-    }
-}
-
-/// Coordinates −1 to 1 across a box: t = (p − middle)·scale.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Local {
-    pub(crate) middle: DVec3,
-    pub(crate) scale: DVec3,
-}
-
-impl Local {
-    #[inline(always)]
-    fn lanes(&self, p: &[Lane; 3]) -> [Lane; 3] {
-        let (middle, scale) = (self.middle.to_array(), self.scale.to_array());
-        std::array::from_fn(|k| std::array::from_fn(|i| (p[k][i] - middle[k]) * scale[k]))
     }
 }
 

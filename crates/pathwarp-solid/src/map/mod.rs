@@ -13,6 +13,7 @@ pub(crate) mod counted;
 mod crease;
 mod jet;
 mod lane;
+mod local;
 mod newton;
 mod poly;
 mod tensor;
@@ -26,6 +27,7 @@ pub use newton::NewtonInverse3;
 pub use poly::{Chart, Fraction3};
 pub use traits::Map3;
 
-pub(crate) use batch::{Displaced, Local, Quotient, Radial, Swept, for_all};
+pub(crate) use batch::{Displaced, Quotient, Radial, Swept, for_all};
+pub(crate) use local::Local;
 pub(crate) use poly::Poly3;
 pub(crate) use tensor::Tensor;

@@ -1,5 +1,6 @@
 //! Polygon meshes: vertices, faces of any number of corners, groups, materials, texture coordinates and normals.
 
+mod assets;
 mod deform;
 mod error;
 mod extrude;
@@ -12,6 +13,7 @@ pub mod stl;
 mod topology;
 mod unify;
 
+pub use assets::Assets;
 pub use deform::{Deformed, Undefined3, deform};
 pub use error::{MeshError, MeshFault};
 pub use extrude::{FlatShape, extrude};

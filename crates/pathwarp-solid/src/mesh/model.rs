@@ -1,6 +1,6 @@
 //! The mesh as data.
 
-use super::gltf::Assets;
+use super::assets::Assets;
 use crate::box3::Box3;
 use glam::DVec3;
 use std::sync::Arc;

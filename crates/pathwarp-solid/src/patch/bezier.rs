@@ -1,8 +1,10 @@
 //! A rational Bézier patch in homogeneous coordinates.
 
-use super::surface::MAX_DEGREE;
 use crate::box3::Box3;
 use glam::{DVec3, DVec4, Vec4Swizzles as _};
+
+/// Highest degree of a surface, read or made by exact composition.
+pub const MAX_DEGREE: usize = 12;
 
 /// A rational Bézier patch over 0..1 × 0..1.
 #[derive(Debug, Clone, PartialEq)]

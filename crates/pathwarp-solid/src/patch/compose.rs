@@ -4,9 +4,9 @@
 //! a patch of degree m × n becomes one of degree dm × dn, by products of Bernstein polynomials.
 
 use super::bernstein::Scaled;
-use super::bezier::BezierPatch;
+use super::bezier::{BezierPatch, MAX_DEGREE};
 use super::knots;
-use super::surface::{MAX_DEGREE, Surface};
+use super::surface::Surface;
 use crate::map::{Collineation, Fraction3, Map3};
 use glam::{DVec4, Vec4Swizzles as _};
 use std::collections::BTreeMap;
@@ -85,7 +85,8 @@ fn substituted(piece: &BezierPatch, fraction: &Fraction3, d: usize) -> Vec<DVec4
     }
     let mut sums = [(); 4].map(|()| Scaled::zero(piece.degree.map(|n| n * d)));
     for ([i, j, k], c) in terms {
-        let product = coordinates[0][i].times(&coordinates[1][j]).times(&coordinates[2][k]).times(&below[d - i - j - k]);
+        let product =
+            coordinates[0][i].times(&coordinates[1][j]).times(&coordinates[2][k]).times(&below[d - i - j - k]);
         sums.iter_mut().zip(c).for_each(|(s, c)| s.add(c, &product));
     }
     let [x, y, z, w] = sums.map(|s| s.bernstein());

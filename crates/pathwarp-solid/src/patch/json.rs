@@ -45,7 +45,8 @@ struct Curve {
 /// # Errors
 /// What is wrong, with the place in the text or the number of the surface.
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
-    let file: File = serde_json::from_slice(text).map_err(|e| MeshError::whole(format!("is not a file of surfaces: {e}")))?;
+    let file: File =
+        serde_json::from_slice(text).map_err(|e| MeshError::whole(format!("is not a file of surfaces: {e}")))?;
     let mut out = Vec::with_capacity(file.surfaces.len());
     for (n, entry) in file.surfaces.into_iter().enumerate() {
         let ones = |given: Option<Vec<f64>>, n: usize| given.unwrap_or_else(|| vec![1.0; n]);

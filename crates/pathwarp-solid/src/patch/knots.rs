@@ -26,10 +26,15 @@ pub(super) fn fault(degree: usize, knots: &[f64]) -> Option<String> {
     }
     let clamped = knots[0] == knots[degree] && knots[n - 1] == knots[n - 1 - degree];
     if !clamped || knots[0] == knots[n - 1] {
-        return Some(format!("has knots that are not clamped: the first and the last must be repeated {} times", degree + 1));
+        return Some(format!(
+            "has knots that are not clamped: the first and the last must be repeated {} times",
+            degree + 1
+        ));
     }
     let torn = knots[1..n - 1].windows(degree + 1).any(|w| w[0] == w[degree]);
-    torn.then(|| format!("has a knot repeated more than {degree} times, where it falls apart; store its parts one by one"))
+    torn.then(|| {
+        format!("has a knot repeated more than {degree} times, where it falls apart; store its parts one by one")
+    })
 }
 
 /// The different knots.
@@ -108,7 +113,8 @@ mod tests {
 
     #[test]
     fn pieces_are_the_spline() {
-        let knots = [vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 2.5, 4.0, 4.0, 4.0, 4.0], vec![-1.0, -1.0, -1.0, 0.5, 2.0, 2.0, 2.0]];
+        let knots =
+            [vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 2.5, 4.0, 4.0, 4.0, 4.0], vec![-1.0, -1.0, -1.0, 0.5, 2.0, 2.0, 2.0]];
         let (degree, size) = ([3, 2], [7, 4]);
         let points: Vec<DVec4> = (0..28)
             .map(|i| DVec4::new(((i * 37) % 11) as f64, ((i * 17) % 7) as f64, f64::from(i), 1.0 + f64::from(i % 3)))

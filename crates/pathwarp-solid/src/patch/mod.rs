@@ -12,7 +12,7 @@ mod refit;
 mod surface;
 mod tessellate;
 
-pub use bezier::BezierPatch;
+pub use bezier::{BezierPatch, MAX_DEGREE};
 pub use deform::{DeformedPatches, PatchError, deform_patches};
-pub use surface::{MAX_DEGREE, Surface, TrimCurve};
+pub use surface::{Surface, TrimCurve};
 pub use tessellate::tessellate;

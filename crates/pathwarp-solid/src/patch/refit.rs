@@ -51,7 +51,8 @@ pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, budget: &Budget
     let samples = (n * PLACES + 1) * (n * PLACES + 1);
     budget.spend(Limit::Evaluations, (3 * (n + 1) * (n + 1) + samples) as u64)?;
     let at = |i: usize| i as f64 / n as f64;
-    let corners: Vec<Corner> = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, at(i), at(j), n)).collect();
+    let corners: Vec<Corner> =
+        (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, at(i), at(j), n)).collect();
     let width = 3 * n + 1;
     let mut points = vec![DVec3::ZERO; width * width];
     let step = 1.0 / (3.0 * n as f64);
@@ -72,7 +73,9 @@ pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, budget: &Budget
     for j in 0..n * PLACES {
         for i in 0..n * PLACES {
             let (u, v) = ((i as f64 + 0.5) / (n * PLACES) as f64, (j as f64 + 0.5) / (n * PLACES) as f64);
-            let off = out.cell(i / PLACES, j / PLACES).point(u * n as f64 - (i / PLACES) as f64, v * n as f64 - (j / PLACES) as f64);
+            let off = out
+                .cell(i / PLACES, j / PLACES)
+                .point(u * n as f64 - (i / PLACES) as f64, v * n as f64 - (j / PLACES) as f64);
             let off = off.distance(map.point(patch.point(u, v)));
             out.distance = if off.is_nan() { f64::INFINITY } else { out.distance.max(off) };
         }

@@ -1,12 +1,9 @@
 //! A surface as data: a NURBS surface in general, a Bézier patch if it has one span.
 
-use super::bezier::BezierPatch;
+use super::bezier::{BezierPatch, MAX_DEGREE};
 use super::knots;
 use crate::box3::Box3;
 use glam::DVec3;
-
-/// Highest degree of a surface, read or made by exact composition.
-pub const MAX_DEGREE: usize = 12;
 
 /// A NURBS surface.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -89,7 +86,9 @@ impl Surface {
             return Some(format!("has {} control points; its degrees and knots take {nu} × {nv}", self.points.len()));
         }
         // The square of a larger number overflows.
-        if let Some(i) = self.points.iter().position(|p| p.abs().max_element().is_nan() || p.abs().max_element() > 1e100) {
+        if let Some(i) =
+            self.points.iter().position(|p| p.abs().max_element().is_nan() || p.abs().max_element() > 1e100)
+        {
             return Some(format!("control point {} is not finite", i + 1));
         }
         faulty_weights(&self.weights, self.points.len())

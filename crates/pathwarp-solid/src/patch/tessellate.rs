@@ -55,8 +55,10 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
             u32::try_from(mesh.positions.len() - 1).unwrap_or(NONE)
         })
     };
-    let grid: Vec<u32> =
-        (0..=side).flat_map(|j| (0..=side).map(move |i| (i, j))).map(|(i, j)| vertex(patch.point(at(i), at(j)))).collect();
+    let grid: Vec<u32> = (0..=side)
+        .flat_map(|j| (0..=side).map(move |i| (i, j)))
+        .map(|(i, j)| vertex(patch.point(at(i), at(j))))
+        .collect();
     for j in 0..side {
         for i in 0..side {
             let k = j * (side + 1) + i;
@@ -67,7 +69,10 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
                 corners.pop();
             }
             if corners.len() > 2 {
-                mesh.push(PolygonKind::Face, corners.into_iter().map(|vertex| Corner { vertex, uv: NONE, normal: NONE }));
+                mesh.push(
+                    PolygonKind::Face,
+                    corners.into_iter().map(|vertex| Corner { vertex, uv: NONE, normal: NONE }),
+                );
             }
         }
     }

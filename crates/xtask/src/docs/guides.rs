@@ -6,7 +6,9 @@ use std::fs;
 use std::path::Path;
 
 /// The guides; their pictures are named relative to `docs/`.
-const GUIDES: [&str; 1] = ["docs/lettering.md"];
+const GUIDES: [&str; 2] = ["docs/lettering.md", "docs/solid.md"];
+/// In the command of a picture of a model.
+const PREVIEW: &str = "--preview out.png";
 /// Width of a picture in pixels.
 const WIDTH: &str = "800";
 
@@ -20,6 +22,10 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             if let Some(folder) = png.parent() {
                 fs::create_dir_all(folder).map_err(at(folder))?;
             }
+            if command.contains(PREVIEW) {
+                preview(root, program, &png, command)?;
+                continue;
+            }
             let mut drawing = Vec::new();
             for stage in stages(command) {
                 drawing = pipe(root, program, &stage, &drawing)?;
@@ -30,6 +36,17 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
         }
     }
     Ok(())
+}
+
+/// The picture of a command that draws one itself, and whose result is a model.
+fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
+    let folder = std::env::temp_dir().join(format!("pathwarp-docs-{}", std::process::id()));
+    fs::create_dir_all(&folder).map_err(at(&folder))?;
+    let drawn = format!("--preview {}", png.display());
+    let command = command.replace(PREVIEW, &drawn).replace(" -o out.", &format!(" -o {}/out.", folder.display()));
+    let done = stages(&command).into_iter().try_for_each(|stage| pipe(root, program, &stage, &[]).map(drop));
+    let _ = fs::remove_dir_all(&folder);
+    done
 }
 
 /// Every picture of a page with the command that draws it: the next line that begins with `pathwarp`.

@@ -11,8 +11,19 @@ use pathwarp_solid::glam::DVec3;
 use std::path::PathBuf;
 
 /// The common options that make sense for solids.
-const SHARED: &[&str] =
-    &["out", "out-dir", "precision", "report", "write-recipe", "preview", "explain", "jobs", "limit", "allow-external", "quiet"];
+const SHARED: &[&str] = &[
+    "out",
+    "out-dir",
+    "precision",
+    "report",
+    "write-recipe",
+    "preview",
+    "explain",
+    "jobs",
+    "limit",
+    "allow-external",
+    "quiet",
+];
 
 /// The common options.
 pub(super) fn options() -> Vec<Arg> {

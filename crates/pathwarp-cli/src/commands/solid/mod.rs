@@ -13,6 +13,7 @@ mod report;
 mod run;
 mod surfaces;
 mod warp;
+mod work;
 
 use crate::failure::Failure;
 use crate::options::Given;
@@ -27,7 +28,8 @@ pub(super) const NAME: &str = "solid";
 
 const ABOUT: &str = "Deform solids: meshes, curved surfaces and points in space";
 
-const AFTER: &str = "Space is x right, y up, z towards the viewer. A unit of a model counts as a millimetre, so 5mm is 5; \
+const AFTER: &str =
+    "Space is x right, y up, z towards the viewer. A unit of a model counts as a millimetre, so 5mm is 5; \
 percentages refer to the model's box and count from its left, bottom and back.
 
 Chains: pathwarp solid ffd IN.obj --move … + anamorph --eye … -o OUT.obj

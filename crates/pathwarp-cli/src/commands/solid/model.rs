@@ -83,9 +83,9 @@ pub(super) fn mesh_file(mesh: &Mesh, format: ModelFormat, precision: Option<u8>)
         ModelFormat::Ply => ply::write(mesh).map_err(failed),
         ModelFormat::Glb => gltf::write_binary(mesh).map_err(failed),
         ModelFormat::Gltf => gltf::write_text(mesh).map_err(failed),
-        ModelFormat::Bpt | ModelFormat::Surfaces => {
-            Err(Failure::usage("polygons are not curved surfaces: write .obj, .stl, .ply, .glb or .gltf, not .bpt or .json"))
-        }
+        ModelFormat::Bpt | ModelFormat::Surfaces => Err(Failure::usage(
+            "polygons are not curved surfaces: write .obj, .stl, .ply, .glb or .gltf, not .bpt or .json",
+        )),
     }
 }
 

@@ -86,7 +86,8 @@ fn job(options: &CommonOptions, input: PathBuf) -> Result<Job, Failure> {
         (Some(dir), _) => {
             let target = in_folder(dir, &input, Path::new(""), None).ok_or_else(|| unnamed("--out-dir"))?;
             // A drawing gives a model.
-            let drawing = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
+            let drawing =
+                target.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
             Some(if drawing { target.with_extension("obj") } else { target })
         }
         (None, Some(out)) => Some(expanded(out, "{stem}")?),

@@ -5,7 +5,7 @@ use super::model::{mesh_file, pending, unread};
 use super::plan::Job;
 use super::preview::Preview;
 use super::report::Run;
-use super::warp::{Done, Work, shown, undefined};
+use super::work::{Done, Work, shown, undefined};
 use crate::failure::Failure;
 use crate::output::PendingFile;
 use pathwarp::budget::Budget;
@@ -42,8 +42,8 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
             _ => unread(&name, &e),
         })?;
     }
-    let deformed = deform(&mut mesh, &built.map)
-        .map_err(|e| undefined(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
+    let deformed =
+        deform(&mut mesh, &built.map).map_err(|e| undefined(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
 
     let mut warnings: Vec<String> = mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
     let partial = !warnings.is_empty();

@@ -5,7 +5,7 @@ use super::model::{mesh_file, pending};
 use super::plan::Job;
 use super::preview::Preview;
 use super::report::SurfaceRun;
-use super::warp::{Done, Work, shown, undefined};
+use super::work::{Done, Work, shown, undefined};
 use crate::advice;
 use crate::failure::Failure;
 use crate::output::PendingFile;
@@ -52,7 +52,9 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
     };
     let bytes = match format {
         ModelFormat::Bpt => bpt::write(&surfaces).map_err(|e| Failure::usage(format!("{name}: {e}")))?.into_bytes(),
-        ModelFormat::Surfaces => json::write(&surfaces).map_err(|e| Failure::Output(format!("{name}: {e}")))?.into_bytes(),
+        ModelFormat::Surfaces => {
+            json::write(&surfaces).map_err(|e| Failure::Output(format!("{name}: {e}")))?.into_bytes()
+        }
         _ => {
             let mesh = polygons(&surfaces, within)?;
             let lost = format.lost(&mesh);

@@ -141,7 +141,8 @@ impl Number {
 /// The bytes of a data URI.
 fn inside(uri: &str) -> Result<Vec<u8>, String> {
     let shown: String = uri.chars().take(60).collect();
-    let outside = || format!("is outside the file (`{shown}`), and only the file itself is read; save the model as .glb");
+    let outside =
+        || format!("is outside the file (`{shown}`), and only the file itself is read; save the model as .glb");
     let (_, data) = uri.strip_prefix("data:").and_then(|rest| rest.split_once(";base64,")).ok_or_else(outside)?;
     STANDARD.decode(data).map_err(|e| format!("is damaged: {e}"))
 }

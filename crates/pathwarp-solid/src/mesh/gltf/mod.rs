@@ -4,13 +4,11 @@
 //! Nothing outside the file is opened.
 
 mod accessor;
-mod assets;
 mod primitive;
 mod read;
 #[cfg(test)]
 mod tests;
 mod write;
 
-pub use assets::Assets;
 pub use read::{read, sniff};
 pub use write::{write_binary, write_text};

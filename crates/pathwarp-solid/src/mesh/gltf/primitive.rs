@@ -35,6 +35,41 @@ pub(super) fn append(
         }
         mesh.positions.push(p);
     }
+    let [normals, uvs] = attributes(mesh, primitive, to_scene, buffers, lost)?;
+    if !mesh.colors.is_empty() {
+        mesh.colors.resize(mesh.positions.len(), [1.0; 3]);
+    }
+    if primitive.morph_targets().next().is_some() {
+        lost.insert("morph targets".into());
+    }
+    let indices = match primitive.indices() {
+        Some(accessor) => {
+            let own = buffers.indices(&accessor)?;
+            budget.spend(Limit::Evaluations, own.len() as u64)?;
+            own
+        }
+        None => (0..u32::try_from(count).unwrap_or(NONE)).collect(),
+    };
+    if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
+        return Err(MeshError::whole(format!("an index is out of range: {i}, and there are {count} vertices")));
+    }
+    let shifted =
+        |from: Option<usize>, i: u32| from.map_or(NONE, |f| u32::try_from(f).unwrap_or(NONE).saturating_add(i));
+    let corner =
+        |i: &u32| Corner { vertex: shifted(Some(first), *i), uv: shifted(uvs, *i), normal: shifted(normals, *i) };
+    polygons(mesh, primitive.mode(), &indices, to_scene.determinant() < 0.0, corner);
+    Ok(())
+}
+
+/// Appends normals, texture coordinates and colours of the vertices that were added last, and returns the places of the first two.
+fn attributes(
+    mesh: &mut Mesh,
+    primitive: &Primitive<'_>,
+    to_scene: &DMat4,
+    buffers: &Buffers,
+    lost: &mut BTreeSet<String>,
+) -> Result<[Option<usize>; 2], MeshError> {
+    let count = primitive.get(&Semantic::Positions).map_or(0, |a| a.count());
     let same = |n: usize, what: &str| {
         let problem = || format!("has {n} {what} for {count} vertices");
         if n == count { Ok(()) } else { Err(MeshError::whole(problem())) }
@@ -62,7 +97,7 @@ pub(super) fn append(
             }
             Semantic::Colors(0) => {
                 same(accessor.count(), "colours")?;
-                mesh.colors.resize(first, [1.0; 3]);
+                mesh.colors.resize(mesh.positions.len() - count, [1.0; 3]);
                 mesh.colors.extend(buffers.floats::<3>(&accessor)?);
                 if accessor.dimensions() == gltf::accessor::Dimensions::Vec4 {
                     lost.insert("the opacity of vertices".into());
@@ -79,27 +114,7 @@ pub(super) fn append(
             }
         }
     }
-    if !mesh.colors.is_empty() {
-        mesh.colors.resize(mesh.positions.len(), [1.0; 3]);
-    }
-    if primitive.morph_targets().next().is_some() {
-        lost.insert("morph targets".into());
-    }
-    let indices = match primitive.indices() {
-        Some(accessor) => {
-            let own = buffers.indices(&accessor)?;
-            budget.spend(Limit::Evaluations, own.len() as u64)?;
-            own
-        }
-        None => (0..u32::try_from(count).unwrap_or(NONE)).collect(),
-    };
-    if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
-        return Err(MeshError::whole(format!("an index is out of range: {i}, and there are {count} vertices")));
-    }
-    let shifted = |from: Option<usize>, i: u32| from.map_or(NONE, |f| u32::try_from(f).unwrap_or(NONE).saturating_add(i));
-    let corner = |i: &u32| Corner { vertex: shifted(Some(first), *i), uv: shifted(uvs, *i), normal: shifted(normals, *i) };
-    polygons(mesh, primitive.mode(), &indices, to_scene.determinant() < 0.0, corner);
-    Ok(())
+    Ok([normals, uvs])
 }
 
 /// Appends the polygons; a mirroring turns triangles over.

@@ -1,8 +1,8 @@
 //! Reads glTF.
 
 use super::accessor::Buffers;
-use super::assets::Assets;
 use super::primitive;
+use crate::mesh::assets::Assets;
 use crate::mesh::error::MeshError;
 use crate::mesh::model::{Mark, Mesh, NONE};
 use glam::DMat4;
@@ -15,7 +15,8 @@ use std::sync::Arc;
 /// Returns `true` if the file begins like binary glTF, or is JSON that says it is glTF.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{") && bytes.windows(7).any(|w| w == b"\"asset\"")
+    bytes.starts_with(b"glTF")
+        || bytes.trim_ascii_start().starts_with(b"{") && bytes.windows(7).any(|w| w == b"\"asset\"")
 }
 
 /// Reads the meshes of the default scene, or of the first, in its coordinates.
@@ -23,15 +24,17 @@ pub fn sniff(bytes: &[u8]) -> bool {
 /// # Errors
 /// The file is damaged or refers to buffers outside itself, or shows more than the limits allow.
 pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
-    let damaged = |e: String| MeshError::whole(format!("is a damaged glTF file: {}", e.chars().take(200).collect::<String>()));
-    let mut file = Gltf::from_slice(bytes).map_err(|e| damaged(e.to_string()))?;
+    let damaged =
+        |e: String| MeshError::whole(format!("is a damaged glTF file: {}", e.chars().take(200).collect::<String>()));
+    let mut file = checked(bytes).map_err(damaged)?;
     let root = json(bytes).ok_or_else(|| damaged("its JSON cannot be read".into()))?;
     let buffers = Buffers::of(&mut file)?;
     let document = &file.document;
     let mut assets = Assets::of(&root);
     for (i, image) in document.images().enumerate() {
         if let gltf::image::Source::View { view, .. } = image.source() {
-            let bytes = buffers.view(&view).ok_or_else(|| MeshError::whole(format!("picture {i} is outside its buffer")))?;
+            let bytes =
+                buffers.view(&view).ok_or_else(|| MeshError::whole(format!("picture {i} is outside its buffer")))?;
             assets.pictures.push((i, bytes.to_vec()));
         }
     }
@@ -64,6 +67,19 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
+/// A file whose references have been checked.
+fn checked(bytes: &[u8]) -> Result<Gltf, String> {
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|e| e.to_string())?;
+    // gltf 1.4.1 panics while it checks a primitive whose positions are not among the accessors.
+    let root = document.into_json();
+    let mut attributes = root.meshes.iter().flat_map(|m| &m.primitives).flat_map(|p| p.attributes.values());
+    if let Some(index) = attributes.find(|i| i.value() >= root.accessors.len()) {
+        return Err(format!("a primitive uses accessor {}, and there are {}", index.value(), root.accessors.len()));
+    }
+    let document = gltf::Document::from_json(root).map_err(|e| e.to_string())?;
+    Ok(Gltf { document, blob })
+}
+
 fn object(
     mesh: &mut Mesh,
     node: &Node<'_>,
@@ -75,7 +91,8 @@ fn object(
 ) -> Result<(), MeshError> {
     let Some(shape) = node.mesh() else { return Ok(()) };
     let name = node.name().or(shape.name()).map_or_else(|| format!("node {}", node.index() + 1), str::to_owned);
-    let mark = |mesh: &mut Mesh, mark: Mark| mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
+    let mark =
+        |mesh: &mut Mesh, mark: Mark| mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
     mark(mesh, Mark::Object(name));
     for p in shape.primitives() {
         let material = p.material().index().and_then(|i| assets.materials.get(i));

@@ -1,7 +1,7 @@
 //! Writes glTF: one node with a mesh for each object, one primitive for each material and kind of polygon. Polygons become triangles,
 //! coordinates single precision.
 
-use super::assets::Assets;
+use crate::mesh::assets::Assets;
 use crate::mesh::error::MeshError;
 use crate::mesh::model::{Corner, Mark, Mesh, NONE, PolygonKind};
 use base64::Engine as _;
@@ -138,7 +138,8 @@ impl Store {
     fn indices(&mut self, items: &[u32]) -> usize {
         let bytes: Vec<u8> = items.iter().flat_map(|v| v.to_le_bytes()).collect();
         let view = self.view(&bytes);
-        self.accessors.push(json!({"bufferView": view, "componentType": UNSIGNED, "count": items.len(), "type": "SCALAR"}));
+        self.accessors
+            .push(json!({"bufferView": view, "componentType": UNSIGNED, "count": items.len(), "type": "SCALAR"}));
         self.accessors.len() - 1
     }
 }
@@ -158,7 +159,8 @@ fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
         attributes.insert("TEXCOORD_0".into(), json!(store.floats(uvs, false)));
     }
     if !mesh.colors.is_empty() && mesh.colors.len() == mesh.positions.len() {
-        attributes.insert("COLOR_0".into(), json!(store.floats(corners().map(|c| mesh.colors[c.vertex as usize]), false)));
+        attributes
+            .insert("COLOR_0".into(), json!(store.floats(corners().map(|c| mesh.colors[c.vertex as usize]), false)));
     }
     let mode = match part.kind {
         Some(PolygonKind::Points) => 0,

@@ -162,7 +162,10 @@ fn edges(mesh: &mut Mesh, all: &[Element]) -> Result<(), MeshError> {
 fn check_indices(mesh: &Mesh, e: &Element, kind: &str, i: usize) -> Result<(), MeshError> {
     let n = mesh.positions.len();
     if e.damaged || e.indices.iter().any(|v| *v as usize >= n) {
-        return Err(MeshError::whole(format!("an index of {kind} {} is out of range: there are {n} vertices before it", i + 1)));
+        return Err(MeshError::whole(format!(
+            "an index of {kind} {} is out of range: there are {n} vertices before it",
+            i + 1
+        )));
     }
     Ok(())
 }

@@ -26,7 +26,8 @@ fn quads_colours_normals_and_edges_come_back() {
 
 #[test]
 fn corners_with_their_own_texture_become_vertices() {
-    let mesh = obj::read(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/1\n").unwrap();
+    let mesh = obj::read(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/1\n")
+        .unwrap();
     let back = read(&write(&mesh).unwrap()).unwrap();
     assert_eq!(back.positions.len(), 5);
     let at = |c: &Corner| (back.positions[c.vertex as usize], back.uvs[c.uv as usize]);

@@ -14,10 +14,8 @@ use ply_rs_bw::writer::Writer;
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let unified = unify(mesh);
     let colored = mesh.colors.len() == mesh.positions.len() && !mesh.colors.is_empty();
-    let (with_uvs, with_normals) = (
-        unified.corners.iter().any(|c| c.uv != NONE),
-        unified.corners.iter().any(|c| c.normal != NONE),
-    );
+    let (with_uvs, with_normals) =
+        (unified.corners.iter().any(|c| c.uv != NONE), unified.corners.iter().any(|c| c.normal != NONE));
     let mut vertices = Vec::with_capacity(unified.corners.len());
     for c in &unified.corners {
         let mut e = Element::default();

@@ -6,15 +6,15 @@ use serde_json::{Map, Value};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Assets {
     /// The arrays `materials`, `textures`, `samplers`, `images` and `extensionsUsed`, as they were.
-    pub(super) json: Map<String, Value>,
+    pub(crate) json: Map<String, Value>,
     /// The names of the materials, made different.
-    pub(super) materials: Vec<String>,
+    pub(crate) materials: Vec<String>,
     /// The bytes of pictures that were in a buffer, by the number of the picture.
-    pub(super) pictures: Vec<(usize, Vec<u8>)>,
+    pub(crate) pictures: Vec<(usize, Vec<u8>)>,
 }
 
 /// The arrays that are kept.
-pub(super) const KEPT: [&str; 5] = ["materials", "textures", "samplers", "images", "extensionsUsed"];
+pub(crate) const KEPT: [&str; 5] = ["materials", "textures", "samplers", "images", "extensionsUsed"];
 
 impl Assets {
     /// Returns `true` if there are no materials.
@@ -24,7 +24,7 @@ impl Assets {
     }
 
     /// Takes the assets from a file's JSON.
-    pub(super) fn of(root: &Value) -> Self {
+    pub(crate) fn of(root: &Value) -> Self {
         let mut out = Self::default();
         for key in KEPT {
             if let Some(v) = root.get(key) {

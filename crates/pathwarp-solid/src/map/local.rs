@@ -1,0 +1,20 @@
+//! Coordinates of a box, in which polynomials are stored.
+
+use super::lane::Lane;
+use glam::DVec3;
+
+/// Coordinates −1 to 1 across a box: t = (p − middle)·scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Local {
+    pub(crate) middle: DVec3,
+    pub(crate) scale: DVec3,
+}
+
+impl Local {
+    /// The coordinates of a batch of points.
+    #[inline(always)]
+    pub(crate) fn lanes(&self, p: &[Lane; 3]) -> [Lane; 3] {
+        let (middle, scale) = (self.middle.to_array(), self.scale.to_array());
+        std::array::from_fn(|k| std::array::from_fn(|i| (p[k][i] - middle[k]) * scale[k]))
+    }
+}
