@@ -59,7 +59,7 @@ mod stretch;
 mod valley;
 
 pub use options::Options;
-pub use report::{Assurance, PathReport, RefittedPath};
+pub use report::{Assurance, PathReport, RESOLUTION, RefittedPath};
 pub use shared::SharedEdges;
 
 use crate::error::GeometryError;
@@ -73,6 +73,8 @@ use piece::PathWriter;
 /// Subpaths keep their order, direction and closedness. Unless pieces are merged, source nodes remain nodes. Smooth joints
 /// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
 /// remain lines.
+///
+/// Where coordinates are so large that the tolerance is below their rounding, [`PathReport::unresolved`] says so.
 ///
 /// # Errors
 /// [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and
@@ -106,6 +108,7 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
         }
     }
     out.report.segments_in = outline.segs().count();
-    out.report.name_a_miss(outline, options.tolerance);
-    Ok(out.finish())
+    let mut out = out.finish();
+    out.report.account_for_rounding(outline, report::extent(&out.path), options.tolerance);
+    Ok(out)
 }
