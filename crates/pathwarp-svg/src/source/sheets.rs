@@ -32,7 +32,6 @@ impl ParsingWork {
         while let Some(&b) = bytes.get(at) {
             let next = bytes.get(at + 1).copied().unwrap_or(b';');
             let fails = match b {
-                b'"' | b'\'' => false,
                 b'0'..=b'9' => inside && !is_part_of_number(next),
                 b'#' => inside && next.is_ascii_digit(),
                 b';' | b'}' | b'@' | b'\\' | b'!' | b'?' | b'$' | b'^' | b'&' | b'`' | b'<' => true,
