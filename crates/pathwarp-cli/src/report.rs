@@ -67,9 +67,12 @@ pub(crate) struct ReportedShape {
     /// The first place where the shape folds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) folded_at: Option<[f64; 2]>,
-    /// Places where the work budget ran out before the tolerance was met.
+    /// Places where the tolerance was not met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) over_budget: Vec<[f64; 2]>,
+    /// Resolution of the coordinates, in user units, if the tolerance is below it; omitted otherwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) unresolved: Option<f64>,
     /// Largest distance between the map and the affine fit that gradients and patterns follow, in user units; null if no fit is
     /// close, omitted if there is nothing to follow.
     #[serde(skip_serializing_if = "Option::is_none")]

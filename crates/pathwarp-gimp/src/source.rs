@@ -47,6 +47,17 @@ impl<'a> ByteSource<'a> {
         Self { backend, at: 0, end: limits.of(Limit::ImageBytes) as u64, limits, unpacked: 0 }
     }
 
+    /// Checks that `count` bytes are left; if not, the error at byte `place` says what `needed` them. The end of a stream is the limit,
+    /// unless a length word set another.
+    pub(crate) fn need(&self, count: u64, place: u64, needed: impl FnOnce() -> String) -> Result<(), Error> {
+        if count <= self.left() {
+            return Ok(());
+        }
+        let known = Error::truncated(place, &needed(), self.left());
+        let of_limit = self.end == self.limits.of(Limit::ImageBytes) as u64;
+        Err(if of_limit { self.beyond(self.at.saturating_add(count), known) } else { known })
+    }
+
     /// The error about byte `to`, which is beyond the end: that of a file is `known`, that of a stream is a limit.
     pub(crate) fn beyond(&self, to: u64, known: Error) -> Error {
         match (&self.backend, self.limits.check(Limit::ImageBytes, to as f64)) {
@@ -65,10 +76,7 @@ impl<'a> ByteSource<'a> {
 
     /// Fills `buffer`; an error at the end of the data names `what`.
     pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
-        if self.left() < buffer.len() as u64 {
-            let needed = format!("{what} needs {} more bytes", buffer.len());
-            return Err(Error::truncated(self.at, &needed, self.left()));
-        }
+        self.need(buffer.len() as u64, self.at, || format!("{what} needs {} more bytes", buffer.len()))?;
         let read = match &mut self.backend {
             Backend::File(f) => f.read_exact(buffer),
             Backend::Stream(s) => {
@@ -91,9 +99,7 @@ impl<'a> ByteSource<'a> {
 
     /// Reads `count` bytes, bounded by those left. Allocates as they arrive.
     pub(crate) fn vec(&mut self, count: u64, what: &str) -> Result<Vec<u8>, Error> {
-        if count > self.left() {
-            return Err(Error::truncated(self.at, &format!("{what} needs {count} bytes"), self.left()));
-        }
+        self.need(count, self.at, || format!("{what} needs {count} bytes"))?;
         let mut out = Vec::new();
         let mut left = usize::try_from(count).unwrap_or(usize::MAX);
         while left > 0 {

@@ -190,6 +190,7 @@ fn report<'py>(py: Python<'py>, warped: &embed::Path) -> PyResult<Bound<'py, PyD
     };
     out.set_item("assurance", assurance)?;
     out.set_item("over_budget", r.over_budget.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>())?;
+    out.set_item("unresolved", r.unresolved)?;
     out.set_item("folds", warped.folds)?;
     out.set_item("warnings", &warped.warnings)?;
     Ok(out)

@@ -26,6 +26,8 @@ const LAYER_REACH: f32 = 2.0;
 /// Work for a pixel, by what is done with it.
 const LAYER: f64 = 4.0;
 const GRADIENT: f64 = 2.0;
+/// The same for each stop of a gradient: the renderer looks at all of them.
+const STOP: f64 = 0.03;
 const BICUBIC: f64 = 8.0;
 const DECODED: f64 = 4.0;
 const PRIMITIVE: f64 = 6.0;
@@ -277,7 +279,8 @@ impl Load {
 fn paint_work(paint: &Paint) -> f64 {
     match paint {
         Paint::Color(_) => 1.0,
-        Paint::LinearGradient(_) | Paint::RadialGradient(_) => GRADIENT,
+        Paint::LinearGradient(g) => GRADIENT + STOP * g.stops().len() as f64,
+        Paint::RadialGradient(g) => GRADIENT + STOP * g.stops().len() as f64,
         Paint::Pattern(_) => BICUBIC,
     }
 }

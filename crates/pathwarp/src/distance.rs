@@ -20,10 +20,13 @@ const PER_SEGMENT: usize = 64;
 /// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
 
-/// Work of looking at a box, at a line and at a curve, in comparisons of the budget.
+/// Work of looking at a box, at a line, and at a place of a Bézier curve and of an arc, in comparisons of the budget.
 const BOX: f64 = 0.05;
 const LINE: f64 = 0.2;
-const CURVE: f64 = 3.0;
+const CURVE: f64 = 0.12;
+const ARC: f64 = 0.5;
+/// Places of a curve that a step of the search for its foot point counts as.
+const STEP: f64 = 2.0;
 
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
@@ -85,11 +88,6 @@ impl Target<'_> {
         if matches!(self, Self::Seg(_)) { PER_SEGMENT } else { 0 }
     }
 
-    /// The work of [`distance`](Self::distance).
-    fn work(&self) -> f64 {
-        if matches!(self, Self::Seg(Seg::Quad(_) | Seg::Cubic(_) | Seg::Arc(_))) { CURVE } else { LINE }
-    }
-
     fn eval(&self, t: f64) -> Point {
         match self {
             Self::Seg(s) => s.eval(t),
@@ -97,11 +95,14 @@ impl Target<'_> {
         }
     }
 
-    /// The distance from `p`, or `known` if that is smaller.
-    fn distance(&self, p: Point, known: f64) -> f64 {
+    /// The distance from `p`, or `known` if that is smaller. Adds to `work`.
+    fn distance(&self, p: Point, known: f64, work: &mut f64) -> f64 {
         match self {
-            Self::Seg(s) => to_segment(s, p, known),
-            Self::Dot(d) => d.distance(p).min(known),
+            Self::Seg(s) => to_segment(s, p, known, work),
+            Self::Dot(d) => {
+                *work += LINE;
+                d.distance(p).min(known)
+            }
         }
     }
 }
@@ -136,8 +137,7 @@ impl<'a> Targets<'a> {
     /// The distance from `p`. The search ends where it is known to be at most `enough`. Adds to `work`.
     fn distance(&mut self, p: Point, enough: f64, work: &mut f64) -> f64 {
         let leaves = self.boxes.len() / 2;
-        let mut best = self.all[self.last].distance(p, f64::INFINITY);
-        *work += self.all[self.last].work();
+        let mut best = self.all[self.last].distance(p, f64::INFINITY, work);
         self.pending.clear();
         self.pending.push(1);
         while let Some(node) = self.pending.pop()
@@ -156,8 +156,7 @@ impl<'a> Targets<'a> {
                 continue;
             }
             let Some(target) = self.all.get(node - leaves) else { continue };
-            *work += target.work();
-            let d = target.distance(p, best);
+            let d = target.distance(p, best, work);
             if d < best {
                 (best, self.last) = (d, node - leaves);
             }
@@ -172,14 +171,17 @@ fn box_distance(r: &Rect, p: Point) -> f64 {
     dx.hypot(dy)
 }
 
-/// The distance from `p` to `seg`, or `known` if that is smaller.
-fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
+/// The distance from `p` to `seg`, or `known` if that is smaller. Adds to `work`.
+fn to_segment(seg: &Seg, p: Point, known: f64, work: &mut f64) -> f64 {
     if let Seg::Line(l) = seg {
+        *work += LINE;
         let v = l.p1 - l.p0;
         let t = ((p - l.p0).dot(v) / v.hypot2()).clamp(0.0, 1.0);
         let foot = if t.is_nan() { l.p0 } else { l.p0.lerp(l.p1, t) };
         return foot.distance(p).min(known);
     }
+    let each = if matches!(seg, Seg::Arc(_)) { ARC } else { CURVE };
+    *work += each * (STRETCHES + 1) as f64;
     let at: [f64; STRETCHES + 1] = std::array::from_fn(|i| seg.eval(i as f64 / STRETCHES as f64).distance(p));
     let mut best = at.iter().copied().fold(known, f64::min);
     // No point is farther than this from the nearest of those.
@@ -191,6 +193,7 @@ fn to_segment(seg: &Seg, p: Point, known: f64) -> f64 {
         let (mut t, mut d) = (i as f64 / STRETCHES as f64, d);
         // Gauss–Newton for the foot point.
         for _ in 0..6 {
+            *work += STEP * each;
             let v = seg.deriv(t);
             let n = v.hypot2();
             if n == 0.0 {

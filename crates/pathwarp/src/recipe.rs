@@ -75,7 +75,8 @@ pub struct BuiltRecipe {
 }
 
 impl Recipe {
-    /// Builds every step within a budget, which counts the evaluations that find out where the artwork is after each step. See
+    /// Builds every step within a budget, which counts the segments of the paths that control the steps, and the
+    /// evaluations that find out where the artwork is after each step. See
     /// [`Recipe::build`].
     ///
     /// # Errors
@@ -87,6 +88,8 @@ impl Recipe {
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
         budget: &Budget,
     ) -> Result<BuiltRecipe, Error> {
+        let paths: usize = self.steps.iter().map(|s| s.args.path_segments()).sum();
+        budget.spend(Limit::Evaluations, MEASURED * paths as u64).map_err(GeometryError::Limit)?;
         let samples = LazyCell::new(|| (artwork.clone().flat_map(Outline::segs).count() * (PER_SEGMENT + 1)) as f64);
         let count = |out: &BuiltRecipe| {
             let places = out.placement.copies.len().max(1) as f64;
@@ -249,6 +252,9 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
 
 /// Intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
+
+/// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.
+const MEASURED: u64 = 4000;
 
 /// The work of a sample, which is taken in a batch, in evaluations of the budget.
 const SAMPLE: f64 = 0.25;

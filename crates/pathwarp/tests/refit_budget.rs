@@ -91,3 +91,39 @@ fn a_missed_tolerance_is_always_reported() {
     }
     assert!(missed > 0);
 }
+
+/// Found by fuzzing: with coordinates of 1e20 to 1e27 an error of 0.01 was reported, and the result was off by 2e7.
+#[test]
+fn coordinates_without_resolution_are_reported() {
+    let far = "M-108 55c-78 50 108 10 174445189939777770000 30c98 1e-8 -33 100 35 60c54 10 7e-29 15 89 31\
+        L66 -41248332S75 50 125 -118l65 67l-1731467919582220400000000000 4.7M50 -118l122 55";
+    let bend = map(&recipe(&[("bend", &[("along", "M-10,60 Q25,35 50,45 T110,50"), ("baseline", "1mm")])]));
+    let mls = map(&recipe(&[("mls", &[("pair", "50,15:60,5"), ("pin", "10,90")])]));
+    let large = AffineMap(Affine::scale(1e20));
+    let cases: [(&str, &dyn Map); 5] = [
+        (far, &*bend),
+        ("M70 15l35 85c-78 50 108 10 174445189939777770000 30", &*mls),
+        ("M0 0A1e17 1e17 0 0 1 2e17 0", &large),
+        // Only the image is large.
+        ("M10 10C40 0 60 30 90 10V60L10 60Z", &large),
+        ("M10 10h30l1e14 3", &AffineMap(Affine::IDENTITY)),
+    ];
+    for (data, map) in cases {
+        let outline = Outline::from_svg_lossy(data);
+        for options in [Options::new(0.01), Options::new(0.01).with_certify(true), Options::new(0.01).with_merge(true)]
+        {
+            let Ok(warped) = warp_path(&outline, map, &options) else { panic!("{data}") };
+            let r = &warped.report;
+            let resolution = r.unresolved.unwrap_or_else(|| panic!("{data}: {r:?}"));
+            assert!(resolution > 0.01 && r.max_error >= resolution && !r.over_budget.is_empty(), "{data}: {r:?}");
+            // Numbers of the largest size are rounded to steps of this size; there is some room for sums.
+            let step = outline.extent().max(Outline::from(&warped.path).extent()) * f64::EPSILON;
+            assert!(resolution >= step && resolution < 1e4 * step, "{data}: {resolution}");
+        }
+    }
+    // Nothing is said where numbers are fine enough, even if the tolerance is missed for another reason.
+    for tolerance in [1e-2, 1e-8] {
+        let near = warp_path(&path(), &*bend, &Options::new(tolerance)).unwrap().report;
+        assert_eq!(near.unresolved, None);
+    }
+}

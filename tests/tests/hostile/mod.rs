@@ -9,4 +9,6 @@ mod markup;
 mod numbers;
 mod packed;
 mod pictures;
+mod repeated;
+mod sheets;
 mod trust;

@@ -3,7 +3,7 @@
 use super::counted::{Counted, count_pixels};
 use super::inverse::{ROUNDING, inverse};
 use crate::advice;
-use pathwarp::budget::{Budget, Exceeded, Limits};
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp_raster::{
@@ -15,6 +15,14 @@ use std::sync::Arc;
 
 /// Pixels per inch of a drawing at 100 %.
 const PX_PER_INCH: f64 = 96.0;
+
+/// Evaluations of the map that a picture takes besides those of its pixels, to find its place; and a gradient, to find its
+/// resolution.
+const PICTURE: f64 = 40e3;
+const GRADIENT: f64 = 16e3;
+
+/// Work for a pixel of a gradient, in pixels painted.
+const SHADED: f64 = 20.0;
 
 /// Bends the bitmaps and gradients of drawings by one map.
 pub struct Bender {
@@ -37,6 +45,11 @@ impl Bender {
         self.with_budget(Arc::new(Budget::new(limits)))
     }
 
+    /// Counts evaluations of the map.
+    fn count(&self, evaluations: f64) -> Result<(), Exceeded> {
+        self.budget.spend(Limit::Evaluations, (evaluations * self.map.work()) as u64)
+    }
+
     /// Counts the work on all bitmaps in a budget.
     #[must_use]
     pub fn with_budget(self, budget: Arc<Budget>) -> Self {
@@ -52,6 +65,7 @@ impl ImageWarper for Bender {
         const MOST: f64 = 16e6;
         let picture = Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len()))
             .map_err(|e| e.to_string())?;
+        self.count(PICTURE).map_err(too_much)?;
         let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
@@ -128,7 +142,10 @@ impl GradientPainter for Bender {
             tolerance: if r.strict { ShadeTolerance::INVISIBLE } else { ShadeTolerance::UNNOTICED },
             finest,
         };
+        self.count(GRADIENT).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
+        let pixels = f64::from(pixmap.width()) * f64::from(pixmap.height());
+        self.budget.spend(Limit::Painting, (SHADED * pixels) as u64).map_err(too_much)?;
         Ok(BentImage { png: encode_smooth_png(&pixmap).map_err(|e| e.to_string())?, area })
     }
 }

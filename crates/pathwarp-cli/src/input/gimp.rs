@@ -19,7 +19,7 @@ use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::{Class, Map};
 use pathwarp::param::Frame;
 use pathwarp::recipe::BuiltRecipe;
-use pathwarp::refit::{self, Assurance, SharedEdges};
+use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_gimp::{GimpPath, Stroke, to_json, to_svg};
 use pathwarp_svg::{Document, OnError, ReadOptions};
@@ -235,9 +235,10 @@ impl GimpArtwork {
                     let fold = Fold::of(&orientation, &all);
                     out.warnings.extend(fold.at.map(|at| folds::warning(&path.name, &[], at)));
                     if self.format == GimpFormat::IntoXcf {
-                        warped.max_error += warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
+                        warped.report.max_error +=
+                            warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
                     }
-                    out.shapes.push(shape_report(&path.name, places.len(), &warped, &fold));
+                    out.shapes.push(shape_report(&path.name, places.len(), &warped.report, &fold));
                     out.strokes.push((i, warped.strokes));
                 }
                 Err(e) => {
@@ -254,7 +255,7 @@ impl GimpArtwork {
     }
 }
 
-fn shape_report(name: &str, copies: usize, warped: &WarpedStrokes, fold: &Fold) -> ReportedShape {
+fn shape_report(name: &str, copies: usize, warped: &PathReport, fold: &Fold) -> ReportedShape {
     ReportedShape {
         id: name.to_owned(),
         copies,
@@ -266,6 +267,7 @@ fn shape_report(name: &str, copies: usize, warped: &WarpedStrokes, fold: &Fold) 
         folds: fold.count,
         folded_at: fold.place(),
         over_budget: warped.over_budget.iter().map(|p| [p.x, p.y]).collect(),
+        unresolved: warped.unresolved,
         paint_residual: None,
         pictures: 0,
         stroke_error: None,

@@ -2,18 +2,14 @@
 
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Map};
-use pathwarp::refit::{self, Assurance};
+use pathwarp::refit::{self, PathReport};
 use pathwarp::{GeometryError, Outline};
 use pathwarp_gimp::{GimpPath, Stroke};
 
 /// A path's strokes under a map.
 pub(super) struct WarpedStrokes {
     pub(super) strokes: Vec<Stroke>,
-    pub(super) segments_in: usize,
-    pub(super) segments_out: usize,
-    pub(super) max_error: f64,
-    pub(super) assurance: Assurance,
-    pub(super) over_budget: Vec<Point>,
+    pub(super) report: PathReport,
 }
 
 /// Warps the strokes of `path`, one copy for each of `places`.
@@ -23,22 +19,15 @@ pub(super) fn warp_strokes(
     map: &dyn Map,
     options: &refit::Options,
 ) -> Result<WarpedStrokes, GeometryError> {
-    let mut out = WarpedStrokes {
-        strokes: Vec::new(),
-        segments_in: 0,
-        segments_out: 0,
-        max_error: 0.0,
-        assurance: Assurance::Exact,
-        over_budget: Vec::new(),
-    };
+    let mut out = WarpedStrokes { strokes: Vec::new(), report: PathReport::default() };
     let segments = |s: &Stroke| if s.closed { s.anchors() } else { s.anchors().saturating_sub(1) };
     for (place, stroke) in places.iter().flat_map(|p| path.strokes.iter().map(move |s| (*p, s))) {
         if let Class::Affine(m) = map.class() {
             // Every control point is kept, including handles that belong to no segment.
             let m = m * place;
             out.strokes.push(if m == Affine::IDENTITY { stroke.clone() } else { transformed(stroke, m) });
-            out.segments_in += segments(stroke);
-            out.segments_out += segments(stroke);
+            out.report.segments_in += segments(stroke);
+            out.report.segments_out += segments(stroke);
             continue;
         }
         let placed = transformed(stroke, place);
@@ -51,11 +40,9 @@ pub(super) fn warp_strokes(
         let outline = Outline::from(&result.path);
         out.strokes.extend(outline.subpaths.iter().map(Stroke::from_subpath));
         let r = result.report;
-        out.segments_in += r.segments_in;
-        out.segments_out += r.segments_out;
-        out.max_error = out.max_error.max(r.max_error);
-        out.assurance = out.assurance.min(r.assurance);
-        out.over_budget.extend(r.over_budget);
+        out.report.segments_in += r.segments_in;
+        out.report.segments_out += r.segments_out;
+        out.report.add(r);
     }
     Ok(out)
 }

@@ -208,6 +208,7 @@ fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ReportedShape {
         folds: fold.count,
         folded_at: fold.place(),
         over_budget: s.over_budget.iter().map(|p| [p.x, p.y]).collect(),
+        unresolved: s.unresolved,
         paint_residual: s.paint_residual,
         pictures: s.pictures,
         stroke_error: s.stroke_error,

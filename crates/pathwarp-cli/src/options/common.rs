@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::format::Format;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length};
+use pathwarp::refit::RESOLUTION;
 use pathwarp_dxf::Curves;
 use pathwarp_svg::{Clones, LetteringFrame, OnError, PageFit, Patterns, Strokes, Structure, TextMode};
 use std::path::PathBuf;
@@ -13,10 +14,6 @@ use std::path::PathBuf;
 /// Default tolerance as a fraction of the artwork's diagonal: a tenth of a pixel on a poster-sized screen, and finer than any
 /// plotter draws.
 const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
-
-/// Finest tolerance as a fraction of the largest coordinate: some hundreds of roundings in double precision, below which a fit
-/// chases noise.
-const RESOLUTION: f64 = 1e-13;
 
 /// The box that percentages refer to.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -19,10 +19,11 @@ pub(super) fn warn(r: &FileReport, count: usize) {
     }
     for s in r.shapes.iter().filter(|s| !s.over_budget.is_empty()).take(SHOWN) {
         let [x, y] = s.over_budget[0];
-        terminal::warning(&of_file(&format!(
-            "{} misses the tolerance near {x:.4},{y:.4}: the error there is up to {:.3e}",
-            s.id, s.max_error
-        )));
+        let why = match s.unresolved {
+            Some(resolution) => format!("it is below the resolution of these coordinates, {resolution:.0e}"),
+            None => format!("the error there is up to {:.3e}", s.max_error),
+        };
+        terminal::warning(&of_file(&format!("{} misses the tolerance near {x:.4},{y:.4}: {why}", s.id)));
     }
     let more = count.saturating_sub(SHOWN) + r.skipped.len().saturating_sub(SHOWN);
     if more > 0 {

@@ -74,9 +74,7 @@ fn item(input: &mut ByteSource<'_>, pointer_at: u64) -> Result<PathRecord, Error
     let name = string(input, "a path's name")?;
     let size_at = input.at();
     let size = u64::from(input.u32("a path")?);
-    if size > input.left() {
-        return Err(Error::truncated(size_at, &format!("a path needs {size} bytes"), input.left()));
-    }
+    input.need(size, size_at, || format!("a path needs {size} bytes"))?;
     let end = input.at() + size;
     let file_end = std::mem::replace(&mut input.end, end);
     let read = content(input);

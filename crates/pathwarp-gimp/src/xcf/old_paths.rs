@@ -46,10 +46,8 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
             }
         }
         let points_at = input.at();
-        if u64::from(n) * POINT > input.left() {
-            let needed = format!("{n} points of a path need {} bytes", u64::from(n) * POINT);
-            return Err(Error::truncated(count_at, &needed, input.left()));
-        }
+        let size = u64::from(n) * POINT;
+        input.need(size, count_at, || format!("{n} points of a path need {size} bytes"))?;
         let points = points(input, n, format == 1)?;
         // GIMP stops at a path without points, but those after it are sound.
         if !points.is_empty() {

@@ -10,9 +10,7 @@ const LONGEST_NAME: u64 = 1 << 20;
 pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, Error> {
     let at = input.at();
     let length = u64::from(input.u32(what)?);
-    if length > input.left() {
-        return Err(Error::truncated(at, &format!("{what} needs {length} bytes"), input.left()));
-    }
+    input.need(length, at, || format!("{what} needs {length} bytes"))?;
     if length > LONGEST_NAME {
         return Err(Error::damaged(at, format!("{what} of {length} bytes is longer than any name")));
     }
@@ -30,10 +28,8 @@ pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, E
 pub(super) fn count(input: &mut ByteSource<'_>, least: u64, what: &str) -> Result<u32, Error> {
     let at = input.at();
     let n = input.u32(what)?;
-    if u64::from(n) * least > input.left() {
-        let needed = format!("{n} {what} need {} bytes or more", u64::from(n) * least);
-        return Err(Error::truncated(at, &needed, input.left()));
-    }
+    let size = u64::from(n) * least;
+    input.need(size, at, || format!("{n} {what} need {size} bytes or more"))?;
     Ok(n)
 }
 

@@ -19,7 +19,7 @@ const MOST_ROUNDS: usize = 16;
 /// quarters and middles and the faces' middles tell.
 ///
 /// # Errors
-/// More evaluations of the map than the limit allows.
+/// More evaluations of the map, or more edges, than the limits allow.
 pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) -> Result<(), MeshError> {
     let mut work = Refining { images: mesh.positions.clone(), map, tolerance, budget, close: HashSet::new() };
     work.map.points(&mut work.images);
@@ -28,10 +28,14 @@ pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) 
         if split.is_empty() {
             break;
         }
+        budget.spend_cut(Limit::Segments, PER_SPLIT * split.len() as u64)?;
         work.split(mesh, &split);
     }
     Ok(())
 }
+
+/// Segments of the mesh for an edge that is halved: itself, and those across its faces, which are in turn looked at in the next round.
+const PER_SPLIT: u64 = 4;
 
 type Edge = (u32, u32);
 

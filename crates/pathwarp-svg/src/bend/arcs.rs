@@ -46,6 +46,7 @@ pub(super) fn with_arcs(
     let image = Outline { subpaths: image.subpaths.into_iter().map(short_arcs).collect() };
     report.segments_in = outline.segs().count();
     report.segments_out = image.segs().count();
+    report.account_for_rounding(outline, image.extent(), options.tolerance);
     Ok(Some((image, report)))
 }
 
@@ -121,9 +122,7 @@ fn subpath(
             run.segs.push(*g);
         }
         let refitted = refit::warp_path(&Outline { subpaths: vec![run] }, map, options)?;
-        report.max_error = report.max_error.max(refitted.report.max_error);
-        report.assurance = report.assurance.min(refitted.report.assurance);
-        report.over_budget.extend(refitted.report.over_budget);
+        report.add(refitted.report);
         out.segs.extend(Outline::from(&refitted.path).subpaths.into_iter().flat_map(|s| s.segs));
     }
     Ok(out)

@@ -41,8 +41,10 @@ pub struct ShapeReport {
     pub max_error: f64,
     /// Assurance of `max_error`.
     pub assurance: Assurance,
-    /// Points of the source where the work budget was exhausted before the tolerance was met.
+    /// Points of the source where the tolerance was not met.
     pub over_budget: Vec<Point>,
+    /// Resolution of the coordinates if the tolerance is below it; see [`PathReport::unresolved`].
+    pub unresolved: Option<f64>,
     /// Largest distance between the map and the affine fit of the shape's gradients or patterns, in root user units; infinite
     /// if no affine map comes near. `None` if there are no such paints, or they were kept or replaced.
     pub paint_residual: Option<f64>,
@@ -90,6 +92,7 @@ impl WarpedDocument {
                 last.max_error = last.max_error.max(error);
                 last.assurance = last.assurance.min(r.assurance);
                 last.over_budget.extend(&r.over_budget);
+                last.unresolved = most(last.unresolved, r.unresolved);
                 last.pictures += pictures;
                 last.paint_residual = most(last.paint_residual, part.residual);
                 last.stroke_error = most(last.stroke_error, part.stroke_error);
@@ -104,6 +107,7 @@ impl WarpedDocument {
                 max_error: error,
                 assurance: r.assurance,
                 over_budget: r.over_budget.clone(),
+                unresolved: r.unresolved,
                 paint_residual: part.residual,
                 pictures,
                 stroke_error: part.stroke_error,

@@ -118,9 +118,7 @@ fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
     none.segments_in = segments_in;
     all.into_iter().fold(none, |mut sum, r| {
         sum.segments_out += r.segments_out;
-        sum.max_error = sum.max_error.max(r.max_error);
-        sum.assurance = sum.assurance.min(r.assurance);
-        sum.over_budget.extend(r.over_budget);
+        sum.add(r);
         sum
     })
 }

@@ -33,10 +33,7 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     if let Some(dashes) = stroke.dasharray() {
         // kurbo drops dashes of zero length, which should show their caps.
         let dashes: Vec<f64> = dashes.iter().map(|d| f64::from(*d).max(dot)).collect();
-        /// Limit on the dashes of a path. More would take long and look like a grey line.
-        const MOST_DASHES: f64 = 20_000.0;
-        let period: f64 = dashes.iter().sum();
-        if period > 0.0 && rough_length(local) / period * (dashes.len() as f64) < 2.0 * MOST_DASHES {
+        if dash_count(local, &dashes) < MOST_DASHES {
             style = style.with_dashes(f64::from(stroke.dashoffset()), dashes);
         }
     }
@@ -66,6 +63,27 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
         out.subpaths.extend(Outline::from(&dot).subpaths);
     }
     out
+}
+
+/// Limit on the dashes of a path. More would take long and look like a grey line.
+const MOST_DASHES: f64 = 20_000.0;
+
+/// Segments of a dash's outline, with round caps.
+const PER_DASH: f64 = 8.0;
+
+/// A bound for the segments of the dashes into which a stroke is expanded.
+pub(crate) fn dash_segments(local: &Outline, stroke: &Stroke) -> f64 {
+    let dashes: Vec<f64> = stroke.dasharray().unwrap_or_default().iter().map(|d| f64::from(*d)).collect();
+    let count = dash_count(local, &dashes);
+    if count < MOST_DASHES { PER_DASH * count } else { 0.0 }
+}
+
+/// A bound for the number of dashes along an outline; infinite if they have no length.
+fn dash_count(local: &Outline, dashes: &[f64]) -> f64 {
+    /// A dash and a gap.
+    const PAIR: f64 = 2.0;
+    let period: f64 = dashes.iter().sum();
+    if period > 0.0 { rough_length(local) / period * dashes.len() as f64 / PAIR } else { f64::INFINITY }
 }
 
 /// Returns `true` if all control points of an outline are finite.

@@ -1,8 +1,10 @@
 //! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
 
-use super::{selectors, unfold};
+use super::{range, selectors, unfold};
+use memchr::memmem;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Exceeded, Limit};
+use std::collections::HashMap;
 use usvg::roxmltree;
 
 /// Features of a drawing that decide about fonts, images and limits.
@@ -41,14 +43,59 @@ pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget
     let features = Features::of(xml);
     selectors::count(xml, budget).map_err(|e| Error::limit(name, "its style sheet takes", e))?;
     if features.text {
-        spans(xml, budget).map_err(|e| Error::limit(name, "its texts take", e))?;
+        let texts = spans(xml, budget).and_then(|()| text_paths(xml, budget));
+        texts.map_err(|e| Error::limit(name, "its texts take", e))?;
     }
+    wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
     if unfold::may_be_large(xml, features.markers, features.references) {
         unfold::check(xml, name, budget)?;
     } else {
         unfold::count_plain(xml, name, budget)?;
     }
     Ok(features)
+}
+
+/// Counts the segments along which texts are laid out: each text measures its whole path.
+fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Fewest bytes of path data for a curve, whose length takes the time. A line takes less in fewer bytes.
+    const CURVE: usize = 12;
+    let links = || xml.descendants().filter(|n| n.tag_name().name() == "textPath").filter_map(href);
+    if links().next().is_none() {
+        return Ok(());
+    }
+    let data = |n: roxmltree::Node<'_, '_>| Some((n.attribute("id")?.to_owned(), n.attribute("d")?.len()));
+    let lengths: HashMap<String, usize> = xml.descendants().filter_map(data).collect();
+    links().try_for_each(|id| {
+        let segments = lengths.get(id).map_or(0, |length| length / CURVE);
+        budget.spend(Limit::Segments, segments as u64)
+    })
+}
+
+/// The id that a link leads to.
+fn href<'a>(n: roxmltree::Node<'a, '_>) -> Option<&'a str> {
+    let link = n.attributes().find(|a| a.name() == "href")?.value();
+    link.trim().strip_prefix('#')
+}
+
+/// Counts the shapes of a drawing with strokes so wide that single precision fails the renderer when it outlines them for their
+/// boxes: the time grows with the width.
+fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Narrower strokes take no time.
+    const WIDE: f64 = 2e6;
+    /// Comparisons for a shape and a unit of its width.
+    const UNIT: f64 = 350e-6;
+    let text = xml.input_text();
+    let widths = memmem::find_iter(text.as_bytes(), "stroke-width").filter_map(|at| {
+        let value = text.get(at + "stroke-width".len()..)?.trim_start_matches([' ', ':', '=', '"', '\'']);
+        let end = value.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-')));
+        value[..end.unwrap_or(value.len())].trim_end_matches(['e', 'E']).parse::<f64>().ok()
+    });
+    let width = widths.fold(0.0, f64::max).min(range::LARGEST);
+    if width < WIDE {
+        return Ok(());
+    }
+    let shapes = xml.descendants().filter(roxmltree::Node::is_element).count();
+    budget.spend(Limit::Comparisons, (shapes as f64 * width * UNIT) as u64)
 }
 
 /// Counts the letters that are compared with every span of their text.

@@ -20,6 +20,7 @@ pub(crate) mod range;
 pub(crate) mod read;
 pub(crate) mod select;
 mod selectors;
+mod sheets;
 pub(crate) mod stack;
 pub(crate) mod style;
 mod table;

@@ -3,7 +3,7 @@
 
 use memchr::{memchr, memchr_iter, memchr2_iter, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Shorter tags have so few attributes that comparing them takes no time.
 const LONG_TAG: usize = 4096;
@@ -15,7 +15,23 @@ const LONG_TAG: usize = 4096;
 pub(crate) fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     tags(text, budget)?;
     entities(text, budget)?;
+    namespaces(text, budget)?;
     attributes(text, budget)
+}
+
+/// Declarations of namespaces. An element with one gets a copy of all that hold around it, each compared with the others.
+fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+    /// Namespaces that are compared in the time of a comparison of the budget.
+    const COPIED: u64 = 3;
+    /// Ordinary drawings, in which any element may declare a few.
+    const FEW: usize = 64;
+    let declarations = || memmem::find_iter(text.as_bytes(), "xmlns").map(|at| at + "xmlns".len());
+    let end = |at: usize| memchr::memchr3(b' ', b'>', b'/', &text.as_bytes()[at..]).map_or(text.len(), |i| at + i);
+    let all: HashSet<&str> = declarations().filter_map(|at| text.get(at..end(at))).collect();
+    if all.len() <= FEW {
+        return Ok(());
+    }
+    budget.spend(Limit::Comparisons, declarations().count() as u64 * all.len() as u64 / COPIED)
 }
 
 /// Tags, which also count comments and texts: several make an element.

@@ -1,6 +1,7 @@
 //! The work of matching style sheets, measured by doing it once with a counter. A selector of many descendants tries every
 //! way to choose them among an element's ancestors, so a few kilobytes can ask for any amount.
 
+use super::sheets::ParsingWork;
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use simplecss::{AttributeOperator, PseudoClass, StyleSheet};
 use std::cell::Cell;
@@ -12,19 +13,24 @@ const SMALL: usize = 1 << 28;
 /// Selectors of at most this many parts are tried in few ways.
 const PLAIN: usize = 3;
 
-/// Counts the comparisons that matching a document's style sheets takes.
+/// Bytes of an attribute's value, and attributes, that are looked at in the time of a comparison.
+const VALUE: usize = 32;
+const ATTRIBUTES: usize = 64;
+
+/// Counts the comparisons that parsing and matching a document's style sheets take.
 ///
 /// # Errors
 /// They exceed the limit.
 pub(crate) fn count(doc: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    let styles = || doc.descendants().filter(|n| n.tag_name().name() == "style");
+    let texts = || styles().flat_map(|n| n.children()).filter_map(|c| c.text());
+    let mut parsing = ParsingWork::default();
+    texts().for_each(|text| parsing.add(text));
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    budget.spend(Limit::Comparisons, parsing.steps as u64)?;
     let mut sheet = StyleSheet::new();
-    let mut length = 0;
-    for node in doc.descendants().filter(|n| n.tag_name().name() == "style") {
-        for text in node.children().filter_map(|c| c.text()) {
-            length += text.len();
-            sheet.parse_more(text);
-        }
-    }
+    texts().for_each(|text| sheet.parse_more(text));
+    let length: usize = texts().map(str::len).sum();
     let deep = || sheet.rules.iter().any(|r| r.selector.to_string().split([' ', '>', '+']).count() > PLAIN);
     if length == 0 || length.saturating_mul(doc.input_text().len()) < SMALL && !deep() {
         return Ok(());
@@ -75,7 +81,10 @@ impl simplecss::Element for Counted<'_, '_, '_> {
     }
 
     fn attribute_matches(&self, name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.node.attribute(name).is_some_and(|v| operator.matches(v))
+        let value = self.node.attribute(name);
+        let looked_at = value.map_or(0, str::len) / VALUE + self.node.attributes().len() / ATTRIBUTES;
+        self.steps.set(self.steps.get() + looked_at as u64);
+        value.is_some_and(|v| operator.matches(v))
     }
 
     fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {

@@ -42,6 +42,8 @@ pub(crate) struct SourceText {
     by_tree_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     css_words: OnceLock<HashSet<String>>,
     line_starts: OnceLock<Vec<usize>>,
+    /// Numbers of characters before evenly spaced places.
+    characters: OnceLock<Vec<usize>>,
 }
 
 impl SourceText {
@@ -117,6 +119,7 @@ impl SourceText {
             by_tree_id: OnceLock::new(),
             css_words: OnceLock::new(),
             line_starts: OnceLock::new(),
+            characters: OnceLock::new(),
         }
     }
 
@@ -171,7 +174,29 @@ impl SourceText {
             .get_or_init(|| std::iter::once(0).chain(self.text.match_indices('\n').map(|(i, _)| i + 1)).collect());
         let line = starts.partition_point(|&s| s <= at);
         let start = line.checked_sub(1).and_then(|l| starts.get(l)).copied().unwrap_or(0);
-        (line, self.text.get(start..at).map_or(0, |s| s.chars().count()) + 1)
+        (line, self.characters(at) - self.characters(start) + 1)
+    }
+
+    /// Number of characters before `at`. A text of a single line is not counted from its start for each place.
+    fn characters(&self, at: usize) -> usize {
+        /// Bytes between two known numbers.
+        const STEP: usize = 1 << 12;
+        // Bytes that begin a character.
+        let count = |from: usize, to: usize| {
+            self.text.as_bytes()[from.min(to)..to].iter().filter(|b| (**b as i8) >= -0x40).count()
+        };
+        let known = self.characters.get_or_init(|| {
+            let mut before = 0;
+            let steps = (0..self.text.len()).step_by(STEP).map(|i| {
+                let here = before;
+                before += count(i, (i + STEP).min(self.text.len()));
+                here
+            });
+            steps.collect()
+        });
+        let at = at.min(self.text.len());
+        let block = (at / STEP).min(known.len().saturating_sub(1));
+        known.get(block).map_or(0, |before| before + count(block * STEP, at))
     }
 
     pub(crate) fn attr(&self, e: ElementId, name: &str) -> Option<Cow<'_, str>> {

@@ -66,6 +66,12 @@ impl Outline {
         self.subpaths.iter().flat_map(|s| &s.segs)
     }
 
+    /// The largest magnitude of coordinates; see [`Seg::extent`].
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        self.segs().map(Seg::extent).fold(0.0, f64::max)
+    }
+
     /// Returns `true` if there is nothing to draw.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -136,6 +136,18 @@ impl Seg {
         }
     }
 
+    /// The largest magnitude of the coordinates that the segment is computed with: of its control points; of an arc, a bound.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        let all = |points: &[Point]| points.iter().fold(0.0, |most: f64, p| most.max(p.x.abs()).max(p.y.abs()));
+        match self {
+            Self::Line(s) => all(&[s.p0, s.p1]),
+            Self::Quad(s) => all(&[s.p0, s.p1, s.p2]),
+            Self::Cubic(s) => all(&[s.p0, s.p1, s.p2, s.p3]),
+            Self::Arc(s) => all(&[s.center]) + s.a.hypot() + s.b.hypot(),
+        }
+    }
+
     /// Returns `true` if every coordinate is finite and below 1e100 in magnitude.
     #[must_use]
     pub fn is_finite(&self) -> bool {

@@ -93,6 +93,15 @@ impl Args {
         Ok(())
     }
 
+    /// Number of segments of all paths, those that were looked up and those that were typed.
+    pub(crate) fn path_segments(&self) -> usize {
+        /// Shorter texts hold few segments.
+        const LONG: usize = 2000;
+        let typed = self.typed.values().flatten().filter(|text| text.len() > LONG && is_inline(text));
+        let typed: usize = typed.map(|text| Outline::from_svg_lossy(text).segs().count()).sum();
+        self.paths.values().map(|p| p.outline.segs().count()).sum::<usize>() + typed
+    }
+
     /// Reads every file that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names, with `read`.
     ///
     /// # Errors

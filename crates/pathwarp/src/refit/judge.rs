@@ -113,7 +113,9 @@ impl StretchFitter<'_> {
     #[inline(never)]
     fn by_dense_check(&self, request: &FitRequest<'_>, z: &FitState, feet: &Evenly, error: f64) -> Result<f64, Point> {
         let c = request.candidate(z);
-        let e = check::dense(self.source, &c, feet, self.slow, self.tolerance)?.max(error);
+        let (e, thorough) = check::dense(self.source, &c, feet, self.slow, self.tolerance)?;
+        self.thorough.set(self.thorough.get() + usize::from(thorough));
+        let e = e.max(error);
         Ok(if e > DENSE_ACCEPTED * self.tolerance { e / DENSE_ACCEPTED } else { e })
     }
 

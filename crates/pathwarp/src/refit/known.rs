@@ -4,7 +4,7 @@ use super::merge::{MergeMemory, Shapes};
 use super::options::Options;
 use super::path;
 use super::piece::PathWriter;
-use super::report::RefittedPath;
+use super::report::{self, RefittedPath};
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Gathered, Map};
 use crate::outline::Outline;
@@ -90,7 +90,8 @@ impl KnownShapes {
             }
         }
         out.report.segments_in = outline.segs().count();
-        out.report.name_a_miss(outline, options.tolerance);
-        Ok(out.finish())
+        let mut out = out.finish();
+        out.report.account_for_rounding(outline, report::extent(&out.path), options.tolerance);
+        Ok(out)
     }
 }

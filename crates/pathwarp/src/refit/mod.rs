@@ -61,7 +61,7 @@ mod valley;
 
 pub use known::KnownShapes;
 pub use options::Options;
-pub use report::{Assurance, PathReport, RefittedPath};
+pub use report::{Assurance, PathReport, RESOLUTION, RefittedPath};
 pub use shared::SharedEdges;
 
 use crate::error::GeometryError;
@@ -73,6 +73,8 @@ use crate::outline::Outline;
 /// Subpaths keep their order, direction and closedness. Unless pieces are merged, source nodes remain nodes. Smooth joints
 /// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
 /// remain lines.
+///
+/// Where coordinates are so large that the tolerance is below their rounding, [`PathReport::unresolved`] says so.
 ///
 /// # Errors
 /// [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and

@@ -1,7 +1,11 @@
 //! The result of a refit: the path, its error, and how far that error can be trusted.
 
 use crate::outline::Outline;
-use kurbo::{BezPath, Point};
+use kurbo::{BezPath, PathEl, Point};
+
+/// Rounding relative to the largest coordinate: some hundreds of roundings in double precision. A finer error cannot be measured, as
+/// the fit chases noise.
+pub const RESOLUTION: f64 = 1e-13;
 
 /// Basis of the reported error, from the weakest to the strongest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,29 +32,45 @@ pub struct PathReport {
     pub assurance: Assurance,
     /// Places in the source at which the tolerance was not met: the work budget ran out, or rounding is larger.
     pub over_budget: Vec<Point>,
+    /// Resolution of the coordinates, [`RESOLUTION`] times the largest in source or image, if the tolerance is below it. The
+    /// image is then known no better; `max_error` is at least this, and `over_budget` holds a place.
+    pub unresolved: Option<f64>,
 }
 
 impl Default for PathReport {
     fn default() -> Self {
-        Self { segments_in: 0, segments_out: 0, max_error: 0.0, assurance: Assurance::Exact, over_budget: Vec::new() }
+        Self {
+            segments_in: 0,
+            segments_out: 0,
+            max_error: 0.0,
+            assurance: Assurance::Exact,
+            over_budget: Vec::new(),
+            unresolved: None,
+        }
     }
 }
 
 impl PathReport {
-    /// Names a place if the tolerance was missed and none is named yet: coordinates so large that their rounding exceeds it.
-    pub(super) fn name_a_miss(&mut self, outline: &Outline, tolerance: f64) {
+    /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest one of the image.
+    pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
         /// Sums of errors round up.
         const ROUNDING: f64 = 1e-9;
+        let resolution = RESOLUTION * outline.extent().max(image);
+        if resolution > tolerance {
+            self.unresolved = Some(resolution);
+            self.add_error(resolution, Assurance::Checked);
+        }
         let missed = self.max_error > tolerance * (1.0 + ROUNDING);
         if missed && self.over_budget.is_empty() {
             self.over_budget.extend(outline.subpaths.first().map(|s| s.start));
         }
     }
 
-    /// Adds the pieces of another part of the path.
-    pub(super) fn add(&mut self, part: Self) {
+    /// Adds the report of another part of the same path; the numbers of segments stay.
+    pub fn add(&mut self, part: Self) {
         self.add_error(part.max_error, part.assurance);
         self.over_budget.extend(part.over_budget);
+        self.unresolved = larger(self.unresolved, part.unresolved);
     }
 
     /// Accounts for a piece with this error.
@@ -58,6 +78,22 @@ impl PathReport {
         self.max_error = self.max_error.max(error);
         self.assurance = self.assurance.min(assurance);
     }
+}
+
+/// The larger of two numbers that may be missing.
+fn larger(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    [a, b].into_iter().flatten().reduce(f64::max)
+}
+
+/// The largest coordinate of a path.
+pub(super) fn extent(path: &BezPath) -> f64 {
+    let size = |p: Point| p.x.abs().max(p.y.abs());
+    path.elements().iter().fold(0.0, |most, e| match *e {
+        PathEl::MoveTo(p) | PathEl::LineTo(p) => size(p).max(most),
+        PathEl::QuadTo(p, q) => size(p).max(size(q)).max(most),
+        PathEl::CurveTo(p, q, r) => size(p).max(size(q)).max(size(r)).max(most),
+        PathEl::ClosePath => most,
+    })
 }
 
 /// The image of a path.

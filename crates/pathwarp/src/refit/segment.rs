@@ -12,12 +12,13 @@ use crate::budget::Limit;
 use crate::map::{Class, Creases, Jet, Map, RationalDegree};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::{CubicBez, Line, Point};
+use std::cell::Cell;
 
 /// Evaluations of the map for an attempt at a piece with its usual checks.
 const EVALUATIONS: usize = 32;
 
-/// The same with the thorough check, which most attempts need where the map oscillates faster than samples can tell. A part with
-/// more attempts than [`HARD`] is such a place.
+/// Work of the thorough check, which most attempts need where the map oscillates faster than samples can tell: its evaluations, and
+/// its own search. A part with more attempts than [`HARD`] may be such a place, so that fewer are allowed from there on.
 const EVALUATIONS_HARD: usize = 800;
 const HARD: usize = 64;
 
@@ -156,11 +157,11 @@ impl SegmentFitter<'_> {
         let form = form.map(|f| f.with_blur(blur));
         let degree = degree.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        let most_attempts = self.most_attempts();
-        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, most_attempts };
+        let (most_attempts, thorough) = (self.most_attempts(), Cell::new(0));
+        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, thorough, most_attempts };
         let covered = fitter.cover(from, to, pieces, report);
-        let each = if fitter.attempts > HARD { EVALUATIONS_HARD } else { EVALUATIONS };
-        self.spend((fitter.attempts * each) as f64 * self.work);
+        let evaluations = fitter.attempts * EVALUATIONS + fitter.thorough.get() * EVALUATIONS_HARD;
+        self.spend(evaluations as f64 * self.work);
         covered
     }
 

@@ -17,6 +17,7 @@ use super::split::SlowSpots;
 use super::straight::straight;
 use crate::map::RationalDegree;
 use kurbo::{Line, Point};
+use std::cell::Cell;
 
 /// Fits pieces to stretches of one smooth curve.
 pub(super) struct StretchFitter<'a> {
@@ -28,6 +29,8 @@ pub(super) struct StretchFitter<'a> {
     /// The map's degree, if it is a quotient of polynomials and the ends of the pieces lie on its image.
     pub(super) degree: Option<RationalDegree>,
     pub(super) attempts: usize,
+    /// Thorough checks so far.
+    pub(super) thorough: Cell<usize>,
     /// The number of attempts at which the work ends.
     pub(super) most_attempts: usize,
 }

@@ -17,14 +17,14 @@ use kurbo::{Point, Vec2};
 const STEP: f64 = 1.0 / (DENSE_BATCHES * 8) as f64;
 
 /// The distance between the candidate and the image over its stretch, by dense sampling, more densely around slow spots.
-/// `feet` are foot points of sixteen samples, to start from.
+/// `feet` are foot points of sixteen samples, to start from. Returns `true` beside it if the thorough check was needed.
 pub(in crate::refit) fn dense(
     source: &SourceCurve<'_>,
     c: &Candidate,
     feet: &Evenly,
     slow: &SlowSpots,
     tolerance: f64,
-) -> Result<f64, Point> {
+) -> Result<(f64, bool), Point> {
     let mut walk = Walk { source, c, feet, worst: 0.0, last: FootPoint { tau: 0.0, s: 0.0, slope: c.frame.t0 } };
     let mut sound = true;
     let mut even = [[0.0; 8]; DENSE_BATCHES];
@@ -50,7 +50,7 @@ pub(in crate::refit) fn dense(
         }
     }
     let worst = worst.sqrt().max(peaks);
-    if sound { Ok(worst) } else { thorough(source, c, slow, tolerance) }
+    if sound { Ok((worst, false)) } else { Ok((thorough(source, c, slow, tolerance)?, true)) }
 }
 
 /// A sample's foot point on the cubic.

@@ -1,0 +1,40 @@
+//! Style sheets and namespaces, whose parsers take time with the square of their length.
+
+use super::bounded::{Folder, RECT, expect, svg};
+
+/// A style sheet for a rectangle.
+fn sheet(css: &str) -> String {
+    format!("<style>{css}</style>{RECT}")
+}
+
+#[test]
+fn ends_of_values_are_counted() {
+    expect(&sheet(&"rect{fill:red;a:1 2 #3}".repeat(8000)), [3, 3], "comparisons");
+    expect(&sheet(&"rect{fill:red;a:1 2 #3}\n".repeat(20_000)), [3, 3], "comparisons");
+    expect(&sheet(&"{}}{;:@\\".repeat(100_000)), [3, 3], "comparisons");
+    expect(&"<style>rect{fill:red}</style>".repeat(20_000), [3, 3], "comparisons");
+    // What real sheets hold.
+    expect(&sheet(&"rect{fill:red;stroke-width:1.5;stroke:#00a0e9}\n".repeat(1000)), [0, 0], "");
+}
+
+#[test]
+fn declarations_are_counted_for_each_selector() {
+    let css = format!("{}b{{{}}}", "a,".repeat(4000), "a:b;".repeat(4000));
+    expect(&sheet(&css), [3, 3], "comparisons");
+}
+
+#[test]
+fn values_of_attributes_are_counted() {
+    let rules: String = (0..5000).map(|i| format!(".k{i}{{fill:blue}}\n")).collect();
+    let rects = format!("<rect width='9' height='9' class='{}z'/>", "y ".repeat(1000)).repeat(300);
+    expect(&format!("<style>{rules}</style>{rects}"), [3, 3], "comparisons");
+}
+
+#[test]
+fn namespaces_are_counted() {
+    let open: String = (0..12_000).map(|i| format!("<g xmlns:n{i}='u{i}'>")).collect();
+    let deep = format!("{open}{RECT}{}", "</g>".repeat(12_000));
+    Folder::with(&[("a.svg", &svg(&deep))]).expect("a.svg", [3, 3], "comparisons");
+    // Some programs declare the same ones on every element.
+    expect(&"<rect xmlns='http://www.w3.org/2000/svg' width='9' height='9'/>".repeat(9000), [0, 0], "");
+}
