@@ -12,6 +12,7 @@ use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::mesh::{deform, obj};
 use pathwarp_solid::{Box3, Frame3, map::Map3};
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::hint::black_box;
 
@@ -58,7 +59,7 @@ fn ball() -> String {
     const SIDE: usize = 1000;
     let mut out = String::new();
     for k in 0..SIDE * SIDE {
-        let (a, b) = ((k % SIDE) as f64 * 6.283185 / SIDE as f64, ((k / SIDE) as f64 + 0.5) * 3.141593 / SIDE as f64);
+        let (a, b) = ((k % SIDE) as f64 * TAU / SIDE as f64, ((k / SIDE) as f64 + 0.5) * PI / SIDE as f64);
         let r = 50.0 + 2.0 * (9.0 * a).sin() * (7.0 * b).sin();
         let _ = writeln!(out, "v {:.6} {:.6} {:.6}", r * b.sin() * a.cos(), r * b.cos(), r * b.sin() * a.sin());
     }

@@ -358,3 +358,59 @@ fn cones_and_cylinders() {
         });
     }
 }
+
+/// One pin: of all changes that reach it the smallest is d·Bᵢ(p)/ΣBⱼ(p)², and frozen layers take no part.
+#[test]
+fn pins_are_reached_with_the_smallest_change() {
+    let (pin, d) = ([14.0, 29.0, 41.0], [6.0, -5.0, 8.0]);
+    let t: P = std::array::from_fn(|a| (pin[a] - BOX[0][a]) / (BOX[1][a] - BOX[0][a]));
+    for frozen in [0, 1] {
+        let nodes = (frozen..3).flat_map(|i| (0..3).flat_map(move |j| (0..3).map(move |k| [i, j, k])));
+        let influence: Vec<([usize; 3], f64)> =
+            nodes.map(|n| (n, (0..3).map(|a| bernstein(2, n[a], t[a])).product())).collect();
+        let square: f64 = influence.iter().map(|(_, b)| b * b).sum();
+        let changed: Vec<_> = influence.iter().map(|(n, b)| (*n, d.map(|v| v * b / square), 1.0)).collect();
+        let freeze = format!("left:{frozen}");
+        let mut pairs = vec![("degree", "2"), ("pin", "14,29,41:20,24,49")];
+        if frozen > 0 {
+            pairs.push(("freeze", &freeze));
+        }
+        let map = build("ffd", &pairs);
+        assert!(map.point(DVec3::from_array(pin)).distance(DVec3::new(20.0, 24.0, 49.0)) < 1e-12);
+        for p in points() {
+            let want = lattice(p, [3; 3], |_, i, t| bernstein(2, i, t), |_, i| i as f64 / 2.0, &changed);
+            let (got, want) = (map.point(DVec3::from_array(p)), DVec3::from_array(want));
+            assert!(got.distance(want) <= 1e-9 * (1.0 + want.length()), "{p:?}: {got}, not {want}");
+        }
+    }
+}
+
+/// The paper's δ₃ = 1 + (δ − 1)/u₃ takes a point to its place; what is outside the tetrahedron stays, and the held face too.
+#[test]
+fn a_prescribed_point_of_a_local_tetrahedron() {
+    let at = [22.0, 27.0, 60.0];
+    let u = barycentric(at, CORNERS);
+    let last = 1.0 + (1.0 / 1.3 - 1.0) / u[3];
+    let map = build(
+        "anamorph",
+        &[("eye", "20,30,300"), ("reference", TETRAHEDRON), ("local", "true"), ("point", "22,27,60:1.3")],
+    );
+    let goal: P = std::array::from_fn(|k| EYE[k] + 1.3 * (at[k] - EYE[k]));
+    assert!(map.point(DVec3::from_array(at)).distance(DVec3::from_array(goal)) < 1e-9);
+    let (mut inside, mut outside) = (0, 0);
+    for p in points() {
+        let u = barycentric(p, CORNERS);
+        let moved = u.iter().all(|v| *v >= 0.0);
+        let want = if moved { radial(EYE, p, 1.0 + (last - 1.0) * u[3]) } else { p };
+        (inside, outside) = (inside + i32::from(moved), outside + i32::from(!moved));
+        let got = map.point(DVec3::from_array(p));
+        assert!(got.distance(DVec3::from_array(want)) <= 1e-9 * (1.0 + got.length()), "{p:?}: {got}, not {want:?}");
+        let back = map.inverse().unwrap().point(got);
+        // Images from inside may cover points that stay, so that either is a source.
+        assert!(map.point(back).distance(got) <= 1e-9 * (1.0 + got.length()), "{p:?} comes back as {back}");
+    }
+    assert!(inside > 20 && outside > 20);
+    // A point of the held face.
+    let face: P = std::array::from_fn(|k| 0.2 * CORNERS[0][k] + 0.3 * CORNERS[1][k] + 0.5 * CORNERS[2][k]);
+    assert!(map.point(DVec3::from_array(face)).distance(DVec3::from_array(face)) < 1e-12);
+}

@@ -296,3 +296,23 @@ fn infinity_and_endless_work_are_refused() {
     let mesh = tessellate(&[patch([3, 3], false)], Some(0.01), &budget()).unwrap();
     assert!(mesh.polygons.len() > 64 && mesh.name_of(0) == "s");
 }
+
+/// Long NURBS and high degrees in a small file: linear, or refused.
+#[test]
+fn long_surfaces_take_linear_time() {
+    let n = 20_000;
+    let points = (0..2 * n).map(|k| DVec3::new(8.0 + 40.0 * f64::from(k % n) / f64::from(n), f64::from(k / n), 20.0));
+    let mut long = Surface::bezier("long", [1, 1], points.collect());
+    long.degree = [3, 1];
+    long.knots[0] = [vec![0.0; 3], (0..n - 2).map(f64::from).collect(), vec![f64::from(n - 3); 3]].concat();
+    assert_eq!(long.fault(), None);
+    let begun = std::time::Instant::now();
+    assert_eq!(long.pieces().0.len(), 19_997);
+    let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]);
+    let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e6));
+    assert!(deform_patches(&mut [long], &map, 0.1, &small).unwrap_err().to_string().contains("evaluations"));
+    // Of too high a degree to be composed: known before any product.
+    let high = chain("ffd", &[("degree", "10"), ("move", "5,5,5:4,0,0")]);
+    let done = deform_patches(&mut [patch([3, 3], false)], &high, 0.5, &budget()).unwrap();
+    assert!(done.refitted == 1 && begun.elapsed() < std::time::Duration::from_secs(20));
+}

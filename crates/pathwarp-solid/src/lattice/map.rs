@@ -122,7 +122,7 @@ impl Map3 for LatticeMap3 {
         }
     }
 
-    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
+    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
         let (chart, region) = (Chart::on(on), self.inside);
         let outside = on.max.cmplt(region.min).any() || on.min.cmpgt(region.max).any();
         if outside && !self.extended {
@@ -137,6 +137,13 @@ impl Map3 for LatticeMap3 {
         }
         let (local, piece) = self.piece(on.center())?;
         let t = chart.local(local);
+        let degrees = match piece {
+            Piece::Displacement(tensor) => tensor.degrees(),
+            Piece::Quotient(tensor) => tensor.degrees(),
+        };
+        if degrees.iter().sum::<usize>() > most {
+            return None;
+        }
         let parts = match piece {
             Piece::Displacement(tensor) => {
                 let ([x, y, z], [dx, dy, dz]) = (chart.place(), tensor.in_terms_of(&t));

@@ -39,11 +39,16 @@ impl Poly3 {
         self.0.len() == 1 && self.0.get(&[0; 3]) == Some(&1.0)
     }
 
+    /// Adds `k` times another.
+    pub(crate) fn add(&mut self, k: f64, other: &Self) {
+        other.terms().for_each(|(powers, c)| self.add_term(*powers, k * c));
+    }
+
     /// The sum of this and `k` times another.
     #[must_use]
     pub(crate) fn plus(&self, k: f64, other: &Self) -> Self {
         let mut out = self.clone();
-        other.terms().for_each(|(powers, c)| out.add_term(*powers, k * c));
+        out.add(k, other);
         out
     }
 

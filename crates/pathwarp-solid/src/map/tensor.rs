@@ -53,7 +53,7 @@ impl<const C: usize> Tensor<C> {
         for ([i, j, k], c) in self.terms() {
             let product = powers[0][i].times(&powers[1][j]).times(&powers[2][k]);
             for (o, c) in out.iter_mut().zip(c) {
-                *o = o.plus(*c, &product);
+                o.add(*c, &product);
             }
         }
         out

@@ -40,8 +40,9 @@ pub trait Map3: Send + Sync {
         None
     }
 
-    /// The map on a box as a quotient of polynomials, if it is one there: the images of rational surfaces are then exact.
-    fn fraction(&self, _on: &Box3) -> Option<Fraction3> {
+    /// The map on a box as a quotient of polynomials of degree `most` or less, if it is one there: the images of rational surfaces
+    /// are then exact.
+    fn fraction(&self, _on: &Box3, _most: usize) -> Option<Fraction3> {
         None
     }
 
@@ -71,8 +72,8 @@ impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     fn collineation(&self) -> Option<&Collineation> {
         (**self).collineation()
     }
-    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
-        (**self).fraction(on)
+    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
+        (**self).fraction(on, most)
     }
     fn creases(&self, out: &mut Creases3) {
         (**self).creases(out);

@@ -9,16 +9,20 @@ use super::knots;
 use super::surface::Surface;
 use crate::map::{Collineation, Fraction3, Map3};
 use glam::{DVec4, Vec4Swizzles as _};
+use pathwarp::budget::{Budget, Exceeded, Limit};
 use std::collections::BTreeMap;
 
 /// The exact image under a map, if it is a surface with positive weights of a degree that is allowed.
-pub(super) fn image(surface: &Surface, map: &dyn Map3) -> Option<Surface> {
+///
+/// # Errors
+/// More work than the limit allows.
+pub(super) fn image(surface: &Surface, map: &dyn Map3, budget: &Budget) -> Result<Option<Surface>, Exceeded> {
     let out = match map.collineation() {
-        Some(c) => projected(surface, c),
-        None => composed(surface, map)?,
+        Some(c) => Some(projected(surface, c)),
+        None => composed(surface, map, budget)?,
     };
-    let sound = out.weights.iter().all(|w| *w > 0.0) && out.points.iter().all(|p| p.is_finite());
-    sound.then_some(out)
+    let sound = |s: &Surface| s.weights.iter().all(|w| *w > 0.0) && s.points.iter().all(|p| p.is_finite());
+    Ok(out.filter(sound))
 }
 
 fn projected(surface: &Surface, map: &Collineation) -> Surface {
@@ -30,11 +34,41 @@ fn projected(surface: &Surface, map: &Collineation) -> Surface {
     out
 }
 
-fn composed(surface: &Surface, map: &dyn Map3) -> Option<Surface> {
+/// The map on each piece.
+fn fractions(
+    pieces: &[BezierPatch],
+    map: &dyn Map3,
+    most: usize,
+    budget: &Budget,
+) -> Result<Option<Vec<Fraction3>>, Exceeded> {
+    let mut out: Vec<Fraction3> = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        // About as much work as so many evaluations of the map; the first piece tells for the others.
+        let d = out.last().map_or(most, Fraction3::degree) + 1;
+        budget.spend(Limit::Evaluations, d.pow(4) as u64)?;
+        match piece.bounds().and_then(|b| map.fraction(&b, most)) {
+            Some(fraction) => out.push(fraction),
+            None => return Ok(None),
+        }
+    }
+    Ok(Some(out))
+}
+
+fn composed(surface: &Surface, map: &dyn Map3, budget: &Budget) -> Result<Option<Surface>, Exceeded> {
+    let (pieces, breaks) = surface.pieces();
+    let most = MAX_DEGREE / surface.degree[0].max(surface.degree[1]);
+    let all = fractions(&pieces, map, most, budget)?;
+    Ok(all.and_then(|fractions| joined(surface, &pieces, &breaks, &fractions)))
+}
+
+fn joined(
+    surface: &Surface,
+    pieces: &[BezierPatch],
+    breaks: &[Vec<f64>; 2],
+    fractions: &[Fraction3],
+) -> Option<Surface> {
     /// Control points that two pieces share agree within this share of the surface's size, unless the map tears them apart.
     const SAME: f64 = 1e-9;
-    let (pieces, breaks) = surface.pieces();
-    let fractions: Vec<Fraction3> = pieces.iter().map(|p| map.fraction(&p.bounds()?)).collect::<Option<_>>()?;
     if fractions.iter().all(Fraction3::is_identity) {
         return Some(surface.clone());
     }
@@ -47,7 +81,7 @@ fn composed(surface: &Surface, map: &dyn Map3) -> Option<Surface> {
     let size = [0, 1].map(|a| spans[a] * degree[a] + 1);
     let mut grid: Vec<Option<DVec4>> = vec![None; size[0] * size[1]];
     let near = SAME * surface.bounds()?.diagonal();
-    for (n, (piece, fraction)) in pieces.iter().zip(&fractions).enumerate() {
+    for (n, (piece, fraction)) in pieces.iter().zip(fractions).enumerate() {
         let corner = [n % spans[0] * degree[0], n / spans[0] * degree[1]];
         for (k, p) in substituted(piece, fraction, d).into_iter().enumerate() {
             let (i, j) = (corner[0] + k % (degree[0] + 1), corner[1] + k / (degree[0] + 1));

@@ -60,7 +60,10 @@ pub fn deform_patches(
         examine(n, &pieces, map, &creases, &mut out, budget)?;
         let mut image = Some(surface.clone());
         for step in map.steps() {
-            image = image.and_then(|s| compose::image(&s, step));
+            image = match image {
+                Some(s) => compose::image(&s, step, budget)?,
+                None => None,
+            };
         }
         match image {
             Some(image) => {

@@ -1,4 +1,4 @@
-//! Knots, and the Bézier patches of a NURBS surface by inserting them (Boehm's algorithm).
+//! Knots, and the Bézier patches of a NURBS surface by their polar forms.
 
 use super::bezier::BezierPatch;
 use glam::DVec4;
@@ -46,30 +46,31 @@ fn breaks(knots: &[f64]) -> Vec<f64> {
 
 /// The control points of all Bézier spans of a curve, which share their ends.
 fn bezier_row(degree: usize, knots: &[f64], points: &[DVec4]) -> Vec<DVec4> {
-    let (mut knots, mut points) = (knots.to_vec(), points.to_vec());
-    let inner = breaks(&knots[degree + 1..knots.len() - degree - 1]);
-    for t in inner {
-        let times = knots.iter().filter(|k| **k == t).count();
-        for _ in times..degree {
-            // Boehm: points from span − degree + 1 to span − multiplicity are between their neighbours.
-            let span = knots.partition_point(|k| *k <= t) - 1;
-            let have = knots.iter().filter(|k| **k == t).count();
-            let mut next = Vec::with_capacity(points.len() + 1);
-            for i in 0..=points.len() {
-                next.push(if i + degree <= span {
-                    points[i]
-                } else if i + have > span {
-                    points[i - 1]
-                } else {
-                    let a = (t - knots[i]) / (knots[i + degree] - knots[i]);
-                    points[i - 1] * (1.0 - a) + points[i] * a
-                });
-            }
-            points = next;
-            knots.insert(span + 1, t);
+    let mut out = points[..1].to_vec();
+    for span in degree..points.len() {
+        let (from, to) = (knots[span], knots[span + 1]);
+        if from < to {
+            // The k-th is the polar form of the span at `from`, n − k times, and `to`, k times.
+            out.extend((1..=degree).map(|k| {
+                let arguments = std::iter::repeat_n(from, degree - k).chain(std::iter::repeat_n(to, k));
+                polar(degree, knots, points, span, arguments)
+            }));
         }
     }
-    points
+    out
+}
+
+/// The polar form of a span, by de Boor's algorithm with an argument for each step.
+fn polar(degree: usize, knots: &[f64], points: &[DVec4], span: usize, arguments: impl Iterator<Item = f64>) -> DVec4 {
+    let mut row = points[span - degree..=span].to_vec();
+    for (r, t) in arguments.enumerate() {
+        for i in 0..degree - r {
+            let (low, high) = (knots[span - degree + 1 + r + i], knots[span + 1 + i]);
+            let a = (t - low) / (high - low);
+            row[i] = row[i] * (1.0 - a) + row[i + 1] * a;
+        }
+    }
+    row[0]
 }
 
 /// The Bézier patches of a surface, u fastest, and the values of u and v between them.
@@ -77,7 +78,7 @@ pub(super) fn pieces(
     degree: [usize; 2],
     knots: &[Vec<f64>; 2],
     [nu, _]: [usize; 2],
-    points: Vec<DVec4>,
+    points: &[DVec4],
 ) -> (Vec<BezierPatch>, [Vec<f64>; 2]) {
     let rows: Vec<Vec<DVec4>> = points.chunks(nu).map(|row| bezier_row(degree[0], &knots[0], row)).collect();
     let width = rows.first().map_or(0, Vec::len);
@@ -119,7 +120,7 @@ mod tests {
         let points: Vec<DVec4> = (0..28)
             .map(|i| DVec4::new(((i * 37) % 11) as f64, ((i * 17) % 7) as f64, f64::from(i), 1.0 + f64::from(i % 3)))
             .collect();
-        let (pieces, breaks) = pieces(degree, &knots, size, points.clone());
+        let (pieces, breaks) = pieces(degree, &knots, size, &points);
         assert_eq!((pieces.len(), &breaks[0][..]), (6, &[0.0, 1.0, 2.5, 4.0][..]));
         for j in 0..2 {
             for i in 0..3 {

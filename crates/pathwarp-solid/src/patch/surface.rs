@@ -98,8 +98,8 @@ impl Surface {
     /// The Bézier patches, u fastest, and the values of u and v between them.
     #[must_use]
     pub fn pieces(&self) -> (Vec<BezierPatch>, [Vec<f64>; 2]) {
-        let homogeneous = self.points.iter().zip(&self.weights).map(|(p, w)| (*p * *w).extend(*w));
-        knots::pieces(self.degree, &self.knots, self.size(), homogeneous.collect())
+        let homogeneous: Vec<_> = self.points.iter().zip(&self.weights).map(|(p, w)| (*p * *w).extend(*w)).collect();
+        knots::pieces(self.degree, &self.knots, self.size(), &homogeneous)
     }
 }
 

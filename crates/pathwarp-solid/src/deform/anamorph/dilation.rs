@@ -47,7 +47,9 @@ impl Simplex {
         let term = |node: &[usize; 4]| {
             (0..4).map(|a| &powers[a][node[a]]).fold(Poly3::constant(1.0), |product, p| product.times(p))
         };
-        self.terms.iter().fold(Poly3::default(), |sum, (node, c)| sum.plus(*c, &term(node)))
+        let mut out = Poly3::default();
+        self.terms.iter().for_each(|(node, c)| out.add(*c, &term(node)));
+        out
     }
 
     /// The value and its four partial derivatives.
@@ -141,6 +143,14 @@ impl Dilation3 {
         }
     }
 
+    /// The degree of δ over the reference.
+    pub(super) fn degree(&self) -> usize {
+        match self {
+            Self::Tetrahedron { terms, .. } | Self::Triangle { terms, .. } => terms.degree,
+            Self::Cuboid { tensor, .. } | Self::Rectangle { tensor, .. } => tensor.degrees().iter().sum(),
+        }
+    }
+
     /// δ as a quotient of two polynomials.
     pub(super) fn fraction(&self, chart: &Chart) -> (Poly3, Poly3) {
         match self {
@@ -172,7 +182,7 @@ impl Dilation3 {
                 let mut delta = Poly3::default();
                 for ([i, j, k], [c]) in tensor.terms() {
                     let product = powers[0][i].times(&powers[1][j]).times(&powers[2][k]);
-                    delta = delta.plus(*c, &product.times(&below[total - i - j - k]));
+                    delta.add(*c, &product.times(&below[total - i - j - k]));
                 }
                 (delta, below[total].clone())
             }

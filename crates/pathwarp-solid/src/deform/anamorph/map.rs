@@ -56,7 +56,7 @@ impl Map3 for RadialMap {
         }
     }
 
-    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
+    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
         let chart = Chart::on(on);
         let corners = on.corners();
         if let Some(forms) = &self.within {
@@ -68,6 +68,9 @@ impl Map3 for RadialMap {
             if !corners.iter().all(|p| self.moves(*p)) {
                 return None;
             }
+        }
+        if self.dilation.degree() > most {
+            return None;
         }
         let (divisor, common) = self.dilation.fraction(&chart);
         Some(Fraction3::radial(chart, self.eye, divisor, &common))

@@ -70,7 +70,7 @@ impl Map3 for BendMap3 {
         at[0] + at[1] * v + at[2] * w
     }
 
-    fn fraction(&self, on: &Box3) -> Option<Fraction3> {
+    fn fraction(&self, on: &Box3, _most: usize) -> Option<Fraction3> {
         let chart = Chart::on(on);
         let last = self.pieces.len() - 1;
         let rate = self.pieces.len() as f64 / self.length;
