@@ -1,6 +1,7 @@
 //! `cargo bench -p pathwarp --bench merge`: pieces and time with merging, as the command line runs by default, next to no merging.
 //!
-//! Data and maps are those of the `refit` benchmark. Times are medians over interleaved rounds, per source segment.
+//! Data and maps are those of the `refit` benchmark; `PATHS=FILE` measures the path data in a file instead, a path a line.
+//! *flag* is the warp of that name by 40 % over all of them. Times are medians over interleaved rounds, per source segment.
 //! `EVERY=n` measures each n-th path (default 8; 1 is all of them); `ONLY="strong 0.1"` one row; `MODE=merged` (or `off`,
 //! `certify`) one column, for profiling.
 
@@ -9,9 +10,11 @@
 mod support;
 
 use pathwarp::Outline;
+use pathwarp::deform::{Style, Warp};
 use pathwarp::map::Map;
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::refit::{KnownShapes, Options};
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 use support::{Bicubic, Rational};
 
@@ -28,7 +31,12 @@ fn env(name: &str) -> String {
 
 fn main() {
     let every = env("EVERY").parse().unwrap_or(8);
-    let (all, fetched) = support::corpus();
+    let file = env("PATHS");
+    let (all, fetched) = if file.is_empty() {
+        support::corpus()
+    } else {
+        (std::fs::read_to_string(file).unwrap_or_default().lines().map(Outline::from_svg_lossy).collect(), true)
+    };
     let outlines: Vec<Outline> = all.into_iter().step_by(if fetched { every } else { 1 }).collect();
     let n = outlines.iter().flat_map(Outline::segs).count();
     println!("{n} segments of {} paths", outlines.len());
@@ -37,11 +45,14 @@ fn main() {
         "map, tolerance", "off", "merged", "certify", "ns off", "merged", "certify", "m/off", "c/m"
     );
     let (only, mode) = (env("ONLY"), env("MODE"));
-    let maps: [(&str, Box<dyn Map>); 3] = [
-        ("mild", Box::new(Bicubic::mild())),
-        ("strong", Box::new(Bicubic::strong())),
-        ("rational", Box::new(Rational::new())),
+    let around = outlines.iter().filter_map(Outline::bounding_box).reduce(|a, b| a.union(b)).unwrap_or_default();
+    let flag = Style::named("flag").and_then(|s| Warp::new(s, around).bend(0.4).build().ok());
+    let mut maps: Vec<(&str, Arc<dyn Map>)> = vec![
+        ("mild", Arc::new(Bicubic::mild())),
+        ("strong", Arc::new(Bicubic::strong())),
+        ("rational", Arc::new(Rational::new())),
     ];
+    maps.extend(flag.map(|built| ("flag", built.map)));
     for (name, map) in &maps {
         for tolerance in [1.0, 0.1, 0.01, 0.001] {
             let row = format!("{name} {tolerance}");
@@ -60,7 +71,9 @@ fn main() {
                         continue;
                     }
                     let start = Instant::now();
-                    let warp = |p: &Outline| warp_path(p, map.as_ref(), options).map_or(0, |w| w.report.segments_out);
+                    let known = KnownShapes::among(&outlines, map.as_ref(), options);
+                    let warp =
+                        |p: &Outline| known.warp_path(p, map.as_ref(), options).map_or(0, |w| w.report.segments_out);
                     counts[i] = black_box(outlines.iter().map(warp).sum());
                     times[i].push(start.elapsed().as_nanos() as f64 / n as f64);
                 }

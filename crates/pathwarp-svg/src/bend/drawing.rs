@@ -7,7 +7,7 @@ use super::outcome::{PartOutcome, Skipped, WarpedDocument, WarpedPart};
 use super::part;
 use super::shading::Shading;
 use super::slots::{self, PlacedSlot, written};
-use super::task::{PartContext, PartTask};
+use super::task::{PartContext, PartTask, ROUNDING};
 use super::warning::Warning;
 use crate::scene::affine::is_invertible;
 use crate::scene::drawing::Drawing;
@@ -16,6 +16,7 @@ use crate::source::parallel::map_parallel;
 use crate::source::tags::ElementId;
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{Class, Gathered, Map};
+use pathwarp::refit::KnownShapes;
 use pathwarp::{Error, GeometryError};
 use std::collections::HashMap;
 
@@ -108,8 +109,9 @@ fn warp_parts(
     let pieces = letters::pieces(drawing, options);
     let gradients = if options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
     let hairline = drawing.millimetre().map_or(0.0, |mm| HAIRLINE * mm);
-    let context = PartContext { map, options, to_px: scene.to_px, gradients, hairline };
     let identity = is_identity(map, options);
+    let known = if identity { KnownShapes::default() } else { known_shapes(drawing, map, options, selected) };
+    let context = PartContext { map, options, known: &known, to_px: scene.to_px, gradients, hairline };
     let warp = |i: usize| {
         let p = &parts[i];
         let gathered = map.prefers_batches().then(|| Gathered::new(map));
@@ -125,6 +127,14 @@ fn warp_parts(
     } else {
         map_parallel(parts.len(), |i| warp(i).map(|warped| warped.map(WarpedPart::with_data)))
     }
+}
+
+/// The shapes that come again from one part to the next.
+fn known_shapes(drawing: &Drawing, map: &dyn Map, options: &WarpOptions, selected: &[bool]) -> KnownShapes {
+    let bent = drawing.shapes().iter().zip(selected).filter(|(_, bent)| **bent);
+    // Most parts have less than the whole tolerance, because they are rounded.
+    let finer = options.refit.clone().with_tolerance((1.0 - ROUNDING) * options.refit.tolerance);
+    KnownShapes::among(bent.map(|(s, _)| &*s.outline), map, &finer)
 }
 
 /// Number of gradients on a part.

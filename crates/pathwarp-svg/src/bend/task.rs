@@ -9,12 +9,12 @@ use crate::scene::model::Part;
 use crate::source::number::{MOST_DECIMALS, arcs_data};
 use pathwarp::kurbo::{Affine, BezPath};
 use pathwarp::map::Map;
-use pathwarp::refit::{self, PathReport};
+use pathwarp::refit::{self, KnownShapes, PathReport};
 use pathwarp::{GeometryError, Outline};
 use std::sync::Arc;
 
 /// The fraction of the tolerance that rounding may use.
-const ROUNDING: f64 = 0.01;
+pub(super) const ROUNDING: f64 = 0.01;
 
 /// The number of decimals of coordinates: as given, or enough for [`ROUNDING`]. A unit as written is `size` units of root user
 /// space.
@@ -40,6 +40,8 @@ pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
 pub(super) struct PartContext<'a> {
     pub(super) map: &'a dyn Map,
     pub(super) options: &'a WarpOptions,
+    /// Shapes that come again in the drawing.
+    pub(super) known: &'a KnownShapes,
     /// Root user space to px.
     pub(super) to_px: Affine,
     /// Number of gradients in the drawing that may become pictures.
@@ -127,7 +129,7 @@ impl<'a> PartTask<'a> {
     }
 
     fn bend_with(&self, outline: &Outline, options: &refit::Options) -> Result<BentPath, GeometryError> {
-        let warped = refit::warp_path(outline, self.map, options)?;
+        let warped = self.context.known.warp_path(outline, self.map, options)?;
         Ok(BentPath { path: self.to_local(warped.path), data: None, report: warped.report })
     }
 

@@ -49,10 +49,4 @@ impl Candidate {
         let [c1, c2, c3] = self.frame.power(self.a, self.b);
         (c1 + (c2 + c3 * s) * s) * s
     }
-
-    /// Its derivative.
-    pub(super) fn slope(&self, s: f64) -> Vec2 {
-        let [c1, c2, c3] = self.frame.power(self.a, self.b);
-        c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s
-    }
 }

@@ -34,6 +34,7 @@ mod gather;
 mod hermite;
 mod improve;
 mod judge;
+mod known;
 mod lanes;
 mod limits;
 mod merge;
@@ -58,15 +59,14 @@ mod straight;
 mod stretch;
 mod valley;
 
+pub use known::KnownShapes;
 pub use options::Options;
 pub use report::{Assurance, PathReport, RefittedPath};
 pub use shared::SharedEdges;
 
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Gathered, Map};
+use crate::map::Map;
 use crate::outline::Outline;
-use merge::MergeMemory;
-use piece::PathWriter;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`.
 ///
@@ -91,21 +91,5 @@ use piece::PathWriter;
 /// assert!(warped.report.max_error <= 0.01);
 /// ```
 pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<RefittedPath, GeometryError> {
-    let mut out = PathWriter::default();
-    let gathered = (map.prefers_batches() && !map.remembers()).then(|| Gathered::new(map));
-    if let Class::Affine(m) = map.class() {
-        path::affine(outline, m, options, &mut out)?;
-    } else {
-        let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
-        let mut creases = Creases::default();
-        map.creases(&mut creases);
-        let announced = path::announce_short(outline, map, &creases, options);
-        let mut memory = MergeMemory::default();
-        for sub in &outline.subpaths {
-            path::subpath(sub, map, &creases, (options, announced), &mut memory, &mut out)?;
-        }
-    }
-    out.report.segments_in = outline.segs().count();
-    out.report.name_a_miss(outline, options.tolerance);
-    Ok(out.finish())
+    KnownShapes::default().warp_path(outline, map, options)
 }

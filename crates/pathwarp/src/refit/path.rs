@@ -2,7 +2,7 @@
 
 use super::gather;
 use super::limits::CHUNK;
-use super::merge::{self, MergeMemory, Merger, may_be_smooth};
+use super::merge::{self, MergeMemory, Merger, Shapes, may_be_smooth};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::piece::{FittedPiece, PathWriter, reverse};
@@ -14,6 +14,7 @@ use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{Affine, Point};
+use std::sync::Arc;
 
 /// Moves control points. Only arcs are approximated, after the map, so that the tolerance holds in the image.
 pub(super) fn affine(
@@ -61,7 +62,7 @@ pub(super) fn subpath(
     map: &dyn Map,
     creases: &Creases,
     (options, announced): (&Options, bool),
-    memory: &mut MergeMemory,
+    (memory, known): (&mut MergeMemory, &Arc<Shapes>),
     out: &mut PathWriter,
 ) -> Result<(), GeometryError> {
     sub.segs.first().map_or(Ok(()), finite)?;
@@ -90,7 +91,7 @@ pub(super) fn subpath(
         out.report.add(report);
         pieces = all;
     } else {
-        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::default());
+        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::new(known.clone()));
         for (more, report) in in_parallel(&sub.segs, CHUNK, alone)? {
             out.report.add(report);
             pieces.extend(more);

@@ -82,16 +82,25 @@ fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
 
 /// The largest squared distance of an image from the cubic.
 fn from_image(c: &Candidate, images: &[Vec2], curve: &[Vec2], enough: f64) -> f64 {
+    let [c1, c2, c3] = c.frame.power(c.a, c.b);
+    let at = |s: f64| (c1 + (c2 + c3 * s) * s) * s;
+    let slope = |s: f64| c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
     let mut from = 0;
     let mut worst = 0.0f64;
     for p in images {
         let (i, mut best) = nearest(curve, from, *p, enough);
         from = i;
         let mut s = i as f64 / THOROUGH_SAMPLES as f64;
+        let mut r = curve[i] - *p;
         for _ in 0..4 {
-            let (r, v) = (c.at(s) - *p, c.slope(s));
+            // A distance below the known error need not be refined.
+            if best <= worst {
+                break;
+            }
+            let v = slope(s);
             s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            best = best.min((c.at(s) - *p).hypot2());
+            r = at(s) - *p;
+            best = best.min(r.hypot2());
         }
         worst = worst.max(best);
     }
@@ -115,13 +124,13 @@ fn from_cubic(
         from = i;
         let mut tau = taus[i];
         for _ in 0..4 {
-            // A distance below the known error need not be refined.
-            if best > worst {
-                let (p, d) = source.image(c.param(tau));
-                let (r, v) = (p.to_vec2() - origin - *q, d * h);
-                best = best.min(r.hypot2());
-                tau = (tau - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            if best <= worst {
+                break;
             }
+            let (p, d) = source.image(c.param(tau));
+            let (r, v) = (p.to_vec2() - origin - *q, d * h);
+            best = best.min(r.hypot2());
+            tau = (tau - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         }
         worst = worst.max(best);
     }

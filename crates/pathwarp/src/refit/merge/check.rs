@@ -1,7 +1,7 @@
 //! The check of a cubic over several segments: the error is smooth along each segment, and may have corners at the joints.
 
 use super::cubic::RunCubic;
-use super::limits::COARSE_CHECK;
+use super::limits::{COARSE_CHECK, SHARP_TURN};
 use super::run::SegmentRun;
 use crate::refit::gather;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
@@ -9,13 +9,13 @@ use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
 use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::{ALL, Evenly};
-use kurbo::{Point, Vec2};
+use kurbo::{Line, ParamCurve, ParamCurveNearest, Point, Vec2};
 
 /// Distances and foot points of all samples under a cubic.
 #[derive(Default)]
 pub(super) struct Distances {
     /// Distances, signed by the side of the cubic.
-    errors: Vec<f64>,
+    pub(super) errors: Vec<f64>,
     pub(super) feet: Vec<f64>,
 }
 
@@ -42,7 +42,59 @@ impl Distances {
         for (i, between) in doubtful {
             worst = worst.max(self.closely(run, c, i, between)?);
         }
+        for (i, between) in self.bulging(run, c, enough) {
+            if worst <= enough {
+                worst = worst.max(self.both_ways(run, c, i, between)?);
+            }
+        }
         Ok(Some(worst))
+    }
+
+    /// The pairs of neighbouring samples, each with its segment, between which the cubic turns so sharply that it may leave the image by
+    /// more than `enough`: an arc that turns by θ bulges by θ/8 of its chord.
+    fn bulging(&self, run: &SegmentRun<'_>, c: &RunCubic, enough: f64) -> Vec<(usize, [usize; 2])> {
+        let power = c.frame.power(c.a, c.b);
+        let first = c.samples[0];
+        // Tangents of the angles, which are less than 60° between samples, are larger than those.
+        let turn = |feet: [f64; 2]| {
+            let [u, v, w] = controls(&power, feet);
+            let little = u.dot(v) > 0.0 && v.dot(w) > 0.0;
+            if little { u.cross(v).abs() / u.dot(v) + v.cross(w).abs() / v.dot(w) } else { f64::INFINITY }
+        };
+        let mut out = Vec::new();
+        for (i, [from, to]) in parts(run.per_segment, c.samples) {
+            if turn([self.feet[from - first], self.feet[to - first]]) <= SHARP_TURN {
+                continue;
+            }
+            for k in from..to {
+                let (j, chord) = (k - first, run.length[k + 1] - run.length[k]);
+                let turn = turn([self.feet[j], self.feet[j + 1]]);
+                let error = self.errors[j].abs().max(self.errors[j + 1].abs());
+                if turn > SHARP_TURN && error + 0.125 * chord * turn > enough {
+                    out.push((i, [k, k + 1]));
+                }
+            }
+        }
+        out
+    }
+
+    /// The largest distance between cubic and image, both ways, between two samples of segment `i`.
+    fn both_ways(&self, run: &SegmentRun<'_>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64, Point> {
+        let g = run.images(i, &places(run, i, [a, b]))?;
+        let sample = |k: usize| Point::new(run.x[k], run.y[k]);
+        let mut image = [sample(a); 10];
+        for k in 0..8 {
+            image[k + 1] = Point::new(g.x[k], g.y[k]);
+        }
+        image[9] = sample(b);
+        let cubic = c.cubic();
+        let feet = spread([self.feet[a - c.samples[0]], self.feet[b - c.samples[0]]]);
+        let squared = |q: Point| {
+            let sides = image.windows(2).map(|w| Line::new(w[0], w[1]).nearest(q, 0.0).distance_sq);
+            sides.fold(f64::INFINITY, f64::min)
+        };
+        let worst = feet.into_iter().map(|s| squared(cubic.eval(s))).fold(0.0, f64::max).sqrt();
+        Ok(worst.max(self.between(c, g, [a, b])))
     }
 
     /// The pairs of samples, each with its segment, between which the error may exceed `enough`.
@@ -117,8 +169,12 @@ impl Distances {
 
     /// The largest distance between two samples of segment `i`, by eight more and the parabolas through them.
     fn closely(&self, run: &SegmentRun<'_>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64, Point> {
+        Ok(self.between(c, run.images(i, &places(run, i, [a, b]))?, [a, b]))
+    }
+
+    /// The same for eight images `g` evenly between the samples.
+    fn between(&self, c: &RunCubic, mut g: Lanes, [a, b]: [usize; 2]) -> f64 {
         let feet = [self.feet[a - c.samples[0]], self.feet[b - c.samples[0]]];
-        let mut g = run.images(i, &places(run, i, [a, b]))?;
         for i in 0..8 {
             g.x[i] -= c.ends[0].x;
             g.y[i] -= c.ends[0].y;
@@ -126,7 +182,7 @@ impl Distances {
         let errors = c.frame.distances(&g, c.a, c.b, &mut spread(feet), 3).map(f64::sqrt);
         let top = largest(&errors);
         let tops = errors.windows(3).filter(|w| w[1] >= PEAK_NEAR * top && w[1] >= w[0] && w[1] >= w[2]);
-        Ok(tops.map(|w| parabola_peak(w[0], w[1], w[2])).fold(top, f64::max))
+        tops.map(|w| parabola_peak(w[0], w[1], w[2])).fold(top, f64::max)
     }
 }
 
@@ -160,8 +216,14 @@ fn interpolated(c: &RunCubic, share: f64, knot: &mut usize) -> f64 {
 
 /// Returns `true` if the cubic C(s) = ((c₃s + c₂)s + c₁)s turns little between two parameters: if the three control vectors of its
 /// derivative there are pairwise less than 60° apart. The slopes at both ends alone would not see a hook between them.
-fn turns_little_between([c1, c2, c3]: &[Vec2; 3], [s, t]: [f64; 2]) -> bool {
-    let control = |u: f64, v: f64| *c1 + *c2 * (u + v) + *c3 * (3.0 * u * v);
-    let (first, middle, last) = (control(s, s), control(s, t), control(t, t));
+fn turns_little_between(c: &[Vec2; 3], between: [f64; 2]) -> bool {
+    let [first, middle, last] = controls(c, between);
     turns_little(first, middle) && turns_little(middle, last) && turns_little(first, last)
+}
+
+/// The control vectors of its derivative between two parameters.
+#[inline(always)]
+fn controls([c1, c2, c3]: &[Vec2; 3], [s, t]: [f64; 2]) -> [Vec2; 3] {
+    let control = |u: f64, v: f64| *c1 + *c2 * (u + v) + *c3 * (3.0 * u * v);
+    [control(s, s), control(s, t), control(t, t)]
 }

@@ -6,8 +6,10 @@
 //! the segments' own pieces and every one has passed a check by samples in each of its segments or, if proofs are wanted, has
 //! been proven segment by segment.
 
+mod carry;
 mod check;
 mod cubic;
+mod leg;
 mod limits;
 mod own;
 mod proven;
@@ -25,19 +27,35 @@ use super::segment::SegmentFitter;
 use super::source::SourceCurve;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
+use carry::{Carried, Site};
 use kurbo::{Point, Vec2};
+use leg::Leg;
 use limits::{CLEAR_DERIVATIVE, MAX_RUN, MERGE_GRID, MERGE_SEARCHES, MERGE_SHARE, SMOOTH_JOINT, SURE_CORNER};
 use own::OwnPieces;
 use reach::{ReachMemory, Reaches};
-use repeats::{Repeats, Way};
+pub(super) use repeats::Shapes;
+use repeats::{CarriedWay, Repeats, Way};
 use run::{RunSegment, SegmentRun};
-use search::{Leg, fewest_legs};
+use search::fewest_legs;
+use std::sync::Arc;
 
 /// What outlasts a subpath.
 #[derive(Default)]
 pub(super) struct MergeMemory {
     repeats: Repeats,
     reach: ReachMemory,
+}
+
+impl MergeMemory {
+    /// Begins with the shapes of other paths.
+    pub(super) fn new(known: Arc<Shapes>) -> Self {
+        Self { repeats: Repeats::new(known), ..Self::default() }
+    }
+
+    /// The shapes of the runs so far.
+    pub(super) fn into_shapes(self) -> Shapes {
+        self.repeats.own
+    }
 }
 
 /// Merges the pieces of consecutive segments.
@@ -98,21 +116,72 @@ impl<'a> Merger<'a> {
         let mut i = 0;
         while i < self.segs.len() {
             let joined = smooth[i + 1..].iter().take(MAX_RUN - 1).take_while(|s| **s).count();
-            let run = if joined > 0 { Some(self.run(i, i + joined + 1)?) } else { None };
-            match run.filter(|r| r.segments.len() > 1) {
-                Some(run) => {
-                    self.merge(&run, i)?;
-                    i += run.segments.len();
-                }
-                None => {
-                    // A segment that cannot be in a run keeps its pieces.
-                    let [first, last] = &self.jets[i];
-                    self.fitter.fit(&self.segs[i], [first, last], &mut self.pieces, &mut self.report)?;
-                    i += 1;
-                }
-            }
+            i += if joined > 0 { self.joined(i, i + joined + 1)? } else { self.single(i)? };
         }
         Ok((self.pieces, self.report))
+    }
+
+    /// Appends the pieces of a segment that cannot be in a run, and returns 1.
+    fn single(&mut self, i: usize) -> Result<usize, Point> {
+        let [first, last] = &self.jets[i];
+        self.fitter.fit(&self.segs[i], [first, last], &mut self.pieces, &mut self.report)?;
+        Ok(1)
+    }
+
+    /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns how many they are.
+    fn joined(&mut self, start: usize, end: usize) -> Result<usize, Point> {
+        let (shape, off) = self.memory.repeats.shape(&self.segs[start..end], self.fitter.options.tolerance);
+        if let Some(segments) = self.carried((shape, off), start, end)? {
+            return Ok(segments);
+        }
+        let run = self.run(start, end)?;
+        if run.segments.len() < 2 {
+            return self.single(start);
+        }
+        self.merge(&run, start, (shape, off))?;
+        Ok(run.segments.len())
+    }
+
+    fn site(&self, start: usize, end: usize) -> Site<'a> {
+        Site { fitter: self.fitter, segs: &self.segs[start..end], jets: &self.jets[start..end] }
+    }
+
+    /// Appends the pieces of a run whose cubics were found at another site, and returns the number of its segments. `None` if there
+    /// are none or they may not suffice here.
+    fn carried(&mut self, (shape, off): (usize, f64), start: usize, end: usize) -> Result<Option<usize>, Point> {
+        if !self.site(start, end).carries() {
+            return Ok(None);
+        }
+        let [jet, _] = &self.jets[start];
+        let magnified = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt();
+        for (way, other) in self.memory.repeats.nearest(shape, jet) {
+            // The curves differ by at most √2 of this before the map, which may magnify more further on.
+            let unlike = 2.0 * magnified * (off + other);
+            let tolerance = MERGE_SHARE * self.fitter.options.tolerance - unlike;
+            let site = self.site(start, start + way.segments);
+            if site.segs.iter().any(|s| self.fitter.options.shared.contains(s)) {
+                continue;
+            }
+            let piece = |(leg, cubic): &(Leg, Option<Carried>)| {
+                let piece = if leg.merged { cubic.as_ref()?.at(&site, *leg, tolerance) } else { None };
+                let piece = piece.map(|(piece, error)| (piece, error + unlike));
+                (piece.is_some() || !leg.merged).then_some((*leg, piece))
+            };
+            let legs = match &way.legs {
+                None => None,
+                Some(legs) => match legs.iter().map(piece).collect::<Option<Vec<PassedLeg>>>() {
+                    None => continue,
+                    found => found,
+                },
+            };
+            let mut own = OwnPieces::new(site);
+            if count(&mut own, legs.as_deref())? <= way.pieces {
+                let segments = way.segments;
+                append(legs, &mut own, &mut self.pieces, &mut self.report)?;
+                return Ok(Some(segments));
+            }
+        }
+        Ok(None)
     }
 
     /// The longest run of smoothly joined segments from `start` up to `end`.
@@ -143,52 +212,64 @@ impl<'a> Merger<'a> {
     }
 
     /// Appends the fewest pieces for a run that begins with segment `start`.
-    fn merge(&mut self, run: &SegmentRun<'a>, start: usize) -> Result<(), Point> {
-        let range = start..start + run.segments.len();
-        let (segs, options) = (&self.segs[range.clone()], self.fitter.options);
-        let own = OwnPieces::new(self.fitter, segs, &self.jets[range]);
+    fn merge(&mut self, run: &SegmentRun<'a>, start: usize, (shape, off): (usize, f64)) -> Result<(), Point> {
+        let segments = run.segments.len();
+        let (site, options) = (self.site(start, start + segments), self.fitter.options);
+        let own = OwnPieces::new(site);
         let proof = options.certify.then_some(options.tolerance);
         let MergeMemory { repeats, reach } = &mut *self.memory;
-        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, reach);
-        let assurance = if options.certify { Assurance::Certified } else { Assurance::Checked };
-        let shape = repeats.shape(segs, options.tolerance);
-        let legs = match repeated(repeats.ways(shape), &mut reaches)? {
+        let again = repeats.comes_again(shape);
+        let mut reaches = Reaches::new(run, own, MERGE_SHARE * options.tolerance, proof, again, reach);
+        let ways = repeats.ways(shape);
+        let legs = match repeated(ways.iter().filter(|w| w.segments == segments), &mut reaches)? {
             Some(legs) => legs,
             None => {
                 let legs = passed(&mut reaches)?;
-                let pieces = count(&mut reaches, legs.as_deref())?;
+                let pieces = count(&mut reaches.own, legs.as_deref())?;
                 let found = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| *leg).collect());
-                repeats.add(shape, Way { legs: found, pieces });
+                repeats.add(shape, Way { segments, legs: found, pieces });
                 legs
             }
         };
-        match legs {
-            Some(legs) => {
-                for (leg, piece) in legs {
-                    if let Some((piece, error)) = piece {
-                        self.report.add_error(error, assurance);
-                        self.pieces.push(piece);
-                    } else {
-                        let i = leg.from / MERGE_GRID;
-                        reaches.own.append(i, &mut self.pieces, &mut self.report)?;
-                    }
-                }
-            }
-            None => {
-                for i in 0..segs.len() {
-                    reaches.own.append(i, &mut self.pieces, &mut self.report)?;
-                }
-            }
+        if site.carries() {
+            let pieces = count(&mut reaches.own, legs.as_deref())?;
+            let legs = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| (*leg, reaches.carried(*leg))).collect());
+            let Jet { dx, dy, .. } = site.jets[0][0];
+            repeats.carry(shape, CarriedWay { jacobian: [dx, dy], off, segments, pieces, legs });
         }
-        Ok(())
+        let Reaches { mut own, .. } = reaches;
+        append(legs, &mut own, &mut self.pieces, &mut self.report)
     }
+}
+
+/// Appends the pieces of a way; without one, the segments' own.
+fn append(
+    legs: Option<Vec<PassedLeg>>,
+    own: &mut OwnPieces<'_>,
+    pieces: &mut Vec<FittedPiece>,
+    report: &mut PathReport,
+) -> Result<(), Point> {
+    let assurance = if own.site.fitter.options.certify { Assurance::Certified } else { Assurance::Checked };
+    let Some(legs) = legs else { return (0..own.segments()).try_for_each(|i| own.append(i, pieces, report)) };
+    for (leg, piece) in legs {
+        if let Some((piece, error)) = piece {
+            report.add_error(error, assurance);
+            pieces.push(piece);
+        } else {
+            own.append(leg.from / MERGE_GRID, pieces, report)?;
+        }
+    }
+    Ok(())
 }
 
 /// A leg with its piece and that one's error, if it is merged.
 type PassedLeg = (Leg, Option<(FittedPiece, f64)>);
 
 /// The first of the ways for other runs of the same shape that takes no more pieces here. The inner `None` stands for the segments' own.
-fn repeated(ways: &[Way], reaches: &mut Reaches<'_, '_>) -> Result<Option<Option<Vec<PassedLeg>>>, Point> {
+fn repeated<'w>(
+    ways: impl Iterator<Item = &'w Way>,
+    reaches: &mut Reaches<'_, '_>,
+) -> Result<Option<Option<Vec<PassedLeg>>>, Point> {
     for way in ways {
         let legs = match &way.legs {
             None => None,
@@ -197,7 +278,7 @@ fn repeated(ways: &[Way], reaches: &mut Reaches<'_, '_>) -> Result<Option<Option
                 found => found,
             },
         };
-        if count(reaches, legs.as_deref())? <= way.pieces {
+        if count(&mut reaches.own, legs.as_deref())? <= way.pieces {
             return Ok(Some(legs));
         }
     }
@@ -205,9 +286,9 @@ fn repeated(ways: &[Way], reaches: &mut Reaches<'_, '_>) -> Result<Option<Option
 }
 
 /// Number of pieces that a way takes; without one, of the segments' own.
-fn count(reaches: &mut Reaches<'_, '_>, legs: Option<&[PassedLeg]>) -> Result<usize, Point> {
-    let Some(legs) = legs else { return reaches.own.total() };
-    legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { reaches.own.count(leg.from / MERGE_GRID) }).sum()
+fn count(own: &mut OwnPieces<'_>, legs: Option<&[PassedLeg]>) -> Result<usize, Point> {
+    let Some(legs) = legs else { return own.total() };
+    legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { own.count(leg.from / MERGE_GRID) }).sum()
 }
 
 /// The legs with their pieces. `None` if one of them does not pass its check.

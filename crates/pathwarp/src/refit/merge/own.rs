@@ -1,33 +1,29 @@
 //! The pieces of single segments, fitted when they are needed: where merging succeeds, most never are.
 
-use crate::map::Jet;
-use crate::outline::Seg;
+use super::carry::Site;
 use crate::refit::piece::FittedPiece;
 use crate::refit::report::PathReport;
-use crate::refit::segment::SegmentFitter;
 use kurbo::Point;
 
 /// The segments of a run with their own pieces.
 pub(super) struct OwnPieces<'a> {
-    fitter: &'a SegmentFitter<'a>,
-    segs: &'a [Seg],
-    /// At the ends of each segment.
-    jets: &'a [[Jet; 2]],
+    pub(super) site: Site<'a>,
     pieces: Vec<FittedPiece>,
     /// For each segment, its range of `pieces` and their report.
     known: Vec<Option<(usize, usize, PathReport)>>,
 }
 
 impl<'a> OwnPieces<'a> {
-    pub(super) fn new(fitter: &'a SegmentFitter<'a>, segs: &'a [Seg], jets: &'a [[Jet; 2]]) -> Self {
-        Self { fitter, segs, jets, pieces: Vec::new(), known: segs.iter().map(|_| None).collect() }
+    pub(super) fn new(site: Site<'a>) -> Self {
+        Self { site, pieces: Vec::new(), known: site.segs.iter().map(|_| None).collect() }
     }
 
     fn fit(&mut self, i: usize) -> Result<&(usize, usize, PathReport), Point> {
         if self.known[i].is_none() {
             let (start, mut report) = (self.pieces.len(), PathReport::default());
-            let [first, last] = &self.jets[i];
-            self.fitter.fit(&self.segs[i], [first, last], &mut self.pieces, &mut report)?;
+            let Site { fitter, segs, jets } = self.site;
+            let [first, last] = &jets[i];
+            fitter.fit(&segs[i], [first, last], &mut self.pieces, &mut report)?;
             self.known[i] = Some((start, self.pieces.len(), report));
         }
         Ok(self.known[i].get_or_insert_with(|| (0, 0, PathReport::default())))
@@ -40,12 +36,12 @@ impl<'a> OwnPieces<'a> {
 
     /// Number of segments.
     pub(super) fn segments(&self) -> usize {
-        self.segs.len()
+        self.site.segs.len()
     }
 
     /// Number of pieces of all segments.
     pub(super) fn total(&mut self) -> Result<usize, Point> {
-        (0..self.segs.len()).map(|i| self.count(i)).sum()
+        (0..self.segments()).map(|i| self.count(i)).sum()
     }
 
     /// Appends the pieces of segment `i`.

@@ -1,10 +1,12 @@
 //! Finds the furthest place that one cubic reaches along a run, by few fits, each remembered.
 
+use super::carry::Carried;
 use super::check::Distances;
 use super::cubic::{RunCubic, Stretch, Trial};
+use super::leg::Leg;
 use super::limits::{
-    BETWEEN_TARGET, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN, MERGE_GRID,
-    REACH_TARGET, REFUSED_ERROR, SEARCH_SHARE, SMALLEST_REACH_ERROR,
+    BETWEEN_TARGET, CARRY_BELOW, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN,
+    MERGE_GRID, REACH_TARGET, REFUSED_ERROR, SEARCH_SHARE, SMALLEST_REACH_ERROR,
 };
 use super::own::OwnPieces;
 use super::proven::proven;
@@ -20,10 +22,17 @@ struct Tried {
     error: f64,
     /// Index of the cubic, if it fits.
     cubic: Option<usize>,
-    /// The piece with its error, once it has passed its check.
-    piece: Option<(FittedPiece, f64)>,
+    /// Set once it has passed its check.
+    passed: Option<Passed>,
     /// The next entry with the same start.
     next: usize,
+}
+
+/// A piece that has passed its check.
+struct Passed {
+    piece: FittedPiece,
+    error: f64,
+    carried: Option<Carried>,
 }
 
 /// No entry.
@@ -54,6 +63,10 @@ pub(super) struct Reaches<'r, 'a> {
     tolerance: f64,
     /// The tolerance of proofs, if they are wanted.
     proof: Option<f64>,
+    /// Pieces are remembered for other sites.
+    carries: bool,
+    /// They are wanted there.
+    comes_again: bool,
     memory: &'r mut ReachMemory,
 }
 
@@ -63,6 +76,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
         own: OwnPieces<'r>,
         tolerance: f64,
         proof: Option<f64>,
+        comes_again: bool,
         memory: &'r mut ReachMemory,
     ) -> Self {
         let places = run.grid() + 1;
@@ -75,7 +89,8 @@ impl<'r, 'a> Reaches<'r, 'a> {
         let crossing = (0..=run.segments.len()).map(|j| (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt());
         memory.crossing.clear();
         memory.crossing.extend(crossing);
-        Self { run, own, tolerance, proof, memory }
+        let carries = own.site.carries();
+        Self { run, own, tolerance, proof, carries, comes_again: carries && comes_again, memory }
     }
 
     /// The last grid place.
@@ -101,33 +116,43 @@ impl<'r, 'a> Reaches<'r, 'a> {
     /// The piece from place `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
     pub(super) fn piece(&mut self, k: usize, m: usize) -> Result<Option<(FittedPiece, f64)>, Point> {
         let i = self.entry(k, m)?;
-        if let (Some(cubic), None) = (self.memory.tried[i].cubic, self.memory.tried[i].piece) {
-            let piece = self.checked(cubic, k, m)?;
+        if let (Some(cubic), None) = (self.memory.tried[i].cubic, &self.memory.tried[i].passed) {
+            let passed = self.checked(cubic, k, m)?;
             let tried = &mut self.memory.tried[i];
-            tried.piece = piece;
-            if piece.is_none() {
+            tried.passed = passed;
+            if tried.passed.is_none() {
                 (tried.error, tried.cubic) = (REFUSED_ERROR, None);
             }
         }
-        Ok(self.memory.tried[i].piece)
+        Ok(self.memory.tried[i].passed.as_ref().map(|p| (p.piece, p.error)))
     }
 
-    /// Checks a cubic, by its index, and, if it is just outside the tolerance, one fitted more closely.
-    fn checked(&mut self, cubic: usize, k: usize, m: usize) -> Result<Option<(FittedPiece, f64)>, Point> {
+    /// A leg's piece as other sites need it, if it has passed its check.
+    pub(super) fn carried(&mut self, leg: Leg) -> Option<Carried> {
+        let i = self.known(leg.from, leg.to)?;
+        self.memory.tried[i].passed.as_mut()?.carried.take()
+    }
+
+    /// Checks a cubic, by its index, and one fitted more closely if it is just outside the tolerance or to be carried with a larger error
+    /// than need be.
+    fn checked(&mut self, cubic: usize, k: usize, m: usize) -> Result<Option<Passed>, Point> {
         let cubic = self.memory.cubics[cubic];
-        let found = self.within(&cubic)?;
-        if found.is_some() {
+        let leg = Leg { from: k, to: m, merged: true };
+        let found = self.within(&cubic, leg)?;
+        let enough = if self.comes_again { CARRY_BELOW * self.tolerance } else { self.tolerance };
+        if found.as_ref().is_some_and(|f| f.error <= enough) {
             return Ok(found);
         }
-        let stretch = self.stretch(k, m)?;
-        match stretch.fitted_closely(&cubic).cubic {
-            Some(closer) => self.within(&closer),
-            None => Ok(None),
-        }
+        let closer = match self.stretch(k, m)?.fitted_closely(&cubic).cubic {
+            Some(closer) => self.within(&closer, leg)?,
+            None => None,
+        };
+        let error = |p: &Option<Passed>| p.as_ref().map_or(f64::INFINITY, |p| p.error);
+        Ok(if error(&closer) < error(&found) { closer } else { found })
     }
 
     /// The error of a cubic by the samples of all segments, or proven segment by segment. `None` if it is not within the tolerance.
-    fn within(&mut self, cubic: &RunCubic) -> Result<Option<(FittedPiece, f64)>, Point> {
+    fn within(&mut self, cubic: &RunCubic, leg: Leg) -> Result<Option<Passed>, Point> {
         let enough = self.tolerance;
         let checked = self.memory.distances.measure(self.run, cubic, enough)?;
         let Some(mut error) = checked.filter(|e| *e <= enough) else { return Ok(None) };
@@ -137,7 +162,10 @@ impl<'r, 'a> Reaches<'r, 'a> {
                 return Ok(None);
             }
         }
-        Ok(Some((cubic.piece(), error)))
+        let distances = &self.memory.distances;
+        let carried =
+            self.carries.then(|| Carried::new(&self.own.site, self.run.per_segment, leg, cubic, (distances, error)));
+        Ok(Some(Passed { piece: cubic.piece(), error, carried: carried.flatten() }))
     }
 
     fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, Point> {
@@ -145,14 +173,19 @@ impl<'r, 'a> Reaches<'r, 'a> {
         Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], SEARCH_SHARE * self.tolerance))
     }
 
+    /// The entry of the cubic from `k` to `m`, if it was tried.
+    fn known(&self, k: usize, m: usize) -> Option<usize> {
+        let mut i = self.memory.latest[k];
+        while i != NONE && self.memory.tried[i].to != m {
+            i = self.memory.tried[i].next;
+        }
+        (i != NONE).then_some(i)
+    }
+
     /// The entry of the cubic from `k` to `m`, which is fitted on first use.
     fn entry(&mut self, k: usize, m: usize) -> Result<usize, Point> {
-        let mut i = self.memory.latest[k];
-        while i != NONE {
-            if self.memory.tried[i].to == m {
-                return Ok(i);
-            }
-            i = self.memory.tried[i].next;
+        if let Some(i) = self.known(k, m) {
+            return Ok(i);
         }
         let stretch = self.stretch(k, m)?;
         let Trial { error, cubic } = stretch.fitted();
@@ -163,7 +196,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
             memory.cubics.push(cubic);
             memory.cubics.len() - 1
         });
-        memory.tried.push(Tried { to: m, error, cubic, piece: None, next: memory.latest[k] });
+        memory.tried.push(Tried { to: m, error, cubic, passed: None, next: memory.latest[k] });
         memory.latest[k] = memory.tried.len() - 1;
         Ok(memory.latest[k])
     }

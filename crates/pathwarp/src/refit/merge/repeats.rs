@@ -1,73 +1,146 @@
-//! Runs of the same shape at different places, as the letters of a text: the legs that merged one are tried first on the next.
+//! Runs of the same shape at different places, as the letters of a text: the cubics of one are carried to the next, or the legs that
+//! merged it are tried first.
 
-use super::limits::{MAX_SHAPES, MAX_WAYS, SAME_SHAPE, SEARCH_AGAIN};
-use super::search::Leg;
+use super::carry::{Carried, Change};
+use super::leg::Leg;
+use super::limits::{CARRY_TRIALS, MAX_CARRIED, MAX_SHAPES, MAX_WAYS, SAME_SHAPE, SEARCH_AGAIN};
+use crate::map::Jet;
 use crate::outline::Seg;
 use kurbo::{Point, Vec2};
+use std::sync::Arc;
 
 /// A way through the places of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Way {
+    /// Number of segments.
+    pub(super) segments: usize,
     /// `None`: the segments' own pieces.
     pub(super) legs: Option<Vec<Leg>>,
     /// Number of pieces.
     pub(super) pieces: usize,
 }
 
+/// A way with its cubics.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CarriedWay {
+    /// The partial derivatives of the map at its start.
+    pub(super) jacobian: [Vec2; 2],
+    /// Distance of its control points from those of the shape.
+    pub(super) off: f64,
+    pub(super) segments: usize,
+    pub(super) pieces: usize,
+    /// Cubics of merged legs. `None`: the segments' own pieces.
+    pub(super) legs: Option<Vec<(Leg, Option<Carried>)>>,
+}
+
 /// A shape of runs that were searched.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 struct Shape {
     /// Control points relative to the first.
     points: Vec<Vec2>,
     /// Ways that were the best somewhere, those of the fewest pieces first.
     ways: Vec<Way>,
-    /// How often the shape has come again.
+    carried: Vec<CarriedWay>,
+    /// How often cubics could not be carried to this shape.
     uses: usize,
+    /// Its index among the shapes known before, and the distance between the control points.
+    known: Option<(usize, f64)>,
 }
 
-/// The shapes of the last runs.
-#[derive(Debug, Default)]
-pub(super) struct Repeats {
+/// Shapes that were searched.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(in crate::refit) struct Shapes {
     /// Number and kinds of the segments of each shape.
     kinds: Vec<u64>,
-    shapes: Vec<Shape>,
+    all: Vec<Shape>,
+}
+
+impl Shapes {
+    /// The index of a shape whose control points are at most `near` from those of `segs`, and their largest distance.
+    fn find(&self, kinds: u64, segs: &[Seg], near: f64) -> Option<(usize, f64)> {
+        let off = |s: &Shape| {
+            points(segs).zip(&s.points).try_fold(0.0f64, |off, (p, q)| {
+                let d = (p.x - q.x).abs().max((p.y - q.y).abs());
+                (d <= near).then(|| off.max(d))
+            })
+        };
+        let alike = self.kinds.iter().zip(&self.all).enumerate().filter(|(_, (k, _))| **k == kinds);
+        alike.filter_map(|(i, (_, s))| Some((i, off(s)?))).next()
+    }
+}
+
+/// The shapes of the last runs, and those of other paths.
+#[derive(Debug, Default)]
+pub(super) struct Repeats {
+    pub(super) own: Shapes,
+    known: Arc<Shapes>,
     /// The entry to be replaced next, once there are [`MAX_SHAPES`].
     oldest: usize,
 }
 
 impl Repeats {
-    /// The index of the shape of a run, which is entered if it is new.
-    pub(super) fn shape(&mut self, segs: &[Seg], tolerance: f64) -> usize {
+    pub(super) fn new(known: Arc<Shapes>) -> Self {
+        Self { known, ..Self::default() }
+    }
+
+    /// The index of the shape of a run, which is entered if it is new, and the distance between their control points.
+    pub(super) fn shape(&mut self, segs: &[Seg], tolerance: f64) -> (usize, f64) {
         let (kinds, near) = (kinds(segs), SAME_SHAPE * tolerance);
-        let start = segs.first().map_or(Point::ORIGIN, Seg::start);
-        let same = |s: &Shape| {
-            points(segs, start).zip(&s.points).all(|(p, q)| (p.x - q.x).abs() <= near && (p.y - q.y).abs() <= near)
-        };
-        let known = self.kinds.iter().zip(&self.shapes).position(|(k, s)| *k == kinds && same(s));
-        known.unwrap_or_else(|| {
-            let new = Shape { points: points(segs, start).collect(), ways: Vec::new(), uses: 0 };
-            if self.shapes.len() < MAX_SHAPES {
-                self.kinds.push(kinds);
-                self.shapes.push(new);
-                return self.shapes.len() - 1;
+        let entered = |i: usize| (i, 0.0);
+        self.own.find(kinds, segs, near).unwrap_or_else(|| {
+            let known = self.known.find(kinds, segs, near);
+            let ways = known.map_or(Vec::new(), |(i, _)| self.known.all[i].ways.clone());
+            let new = Shape { points: points(segs).collect(), ways, carried: Vec::new(), uses: 0, known };
+            let Shapes { kinds: all_kinds, all } = &mut self.own;
+            if all.len() < MAX_SHAPES {
+                all_kinds.push(kinds);
+                all.push(new);
+                return entered(all.len() - 1);
             }
             let i = self.oldest;
-            (self.kinds[i], self.shapes[i]) = (kinds, new);
+            (all_kinds[i], all[i]) = (kinds, new);
             self.oldest = (i + 1) % MAX_SHAPES;
-            i
+            entered(i)
         })
     }
 
     /// The ways to try before a search; none if it is time to look for better ones.
     pub(super) fn ways(&mut self, shape: usize) -> &[Way] {
-        let shape = &mut self.shapes[shape];
+        let shape = &mut self.own.all[shape];
         shape.uses += 1;
         if shape.uses.is_multiple_of(SEARCH_AGAIN) { &[] } else { &shape.ways }
     }
 
+    /// Ways with their cubics, from sites much like one with the jet `to` at its start, the most alike first. Each with the distance of
+    /// its control points from those of the shape.
+    pub(super) fn nearest(&self, shape: usize, to: &Jet) -> impl Iterator<Item = (&CarriedWay, f64)> {
+        let shape = &self.own.all[shape];
+        let (known, off) = shape.known.map_or((&[][..], 0.0), |(i, off)| (&self.known.all[i].carried, off));
+        let all = shape.carried.iter().map(|w| (w, w.off)).chain(known.iter().map(move |w| (w, w.off + off)));
+        let change = |way: &CarriedWay| Change::new(way.jacobian, to).map(|c| c.factor);
+        let mut near: Vec<_> = all.filter_map(|(w, off)| Some((change(w)?, (w, off)))).collect();
+        near.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        near.into_iter().take(CARRY_TRIALS).map(|(_, way)| way)
+    }
+
+    /// Returns `true` if the shape has come before.
+    pub(super) fn comes_again(&self, shape: usize) -> bool {
+        let shape = &self.own.all[shape];
+        shape.known.is_some() || !shape.carried.is_empty()
+    }
+
+    /// Remembers a way with its cubics.
+    pub(super) fn carry(&mut self, shape: usize, way: CarriedWay) {
+        let carried = &mut self.own.all[shape].carried;
+        if carried.len() == MAX_CARRIED {
+            carried.remove(0);
+        }
+        carried.push(way);
+    }
+
     /// Remembers the result of a search.
     pub(super) fn add(&mut self, shape: usize, way: Way) {
-        let ways = &mut self.shapes[shape].ways;
+        let ways = &mut self.own.all[shape].ways;
         if !ways.contains(&way) {
             let at = ways.partition_point(|w| w.pieces <= way.pieces);
             ways.insert(at, way);
@@ -89,8 +162,9 @@ fn kinds(segs: &[Seg]) -> u64 {
     })
 }
 
-/// The points that determine the segments, without their starts.
-fn points(segs: &[Seg], start: Point) -> impl Iterator<Item = Vec2> {
+/// The points that determine the segments, relative to their start.
+fn points(segs: &[Seg]) -> impl Iterator<Item = Vec2> {
+    let start = segs.first().map_or(Point::ORIGIN, Seg::start);
     segs.iter().flat_map(move |seg| match seg {
         Seg::Line(s) => [s.p1 - start, Vec2::ZERO, Vec2::ZERO],
         Seg::Quad(s) => [s.p1 - start, s.p2 - start, Vec2::ZERO],
@@ -111,11 +185,14 @@ mod tests {
     #[test]
     fn runs_of_the_same_shape_are_found_elsewhere() {
         let mut repeats = Repeats::default();
-        let mut shape = |d: &str| repeats.shape(&segs(d), 0.1);
+        let mut shape = |d: &str| repeats.shape(&segs(d), 0.1).0;
         assert_eq!(shape("M0,0C1,2 3,4 5,5Q6,6 9,1"), 0);
         assert_eq!(shape("M0,0C1,2 3,4 5,5"), 1);
         assert_eq!(shape("M70.001,-8C71,-6 73,-4 75,-3Q76,-2 79,-7"), 0);
         assert_eq!(shape("M70,1C71,3 73,5 75,6"), 1);
+        let (_, off) = repeats.shape(&segs("M0,0C1,2 3,4.002 5,5.001"), 0.1);
+        assert!((off - 0.002).abs() < 1e-12);
+        let mut shape = |d: &str| repeats.shape(&segs(d), 0.1).0;
         assert_eq!(shape("M70,-8C71,-6 73,-4 75,-3Q76,-2 79,-7.1"), 2);
         assert_eq!(shape("M70,-8C71,-6 73,-4 75,-3L79,-7"), 3);
     }
@@ -123,8 +200,9 @@ mod tests {
     #[test]
     fn the_fewest_pieces_are_tried_first_and_searches_repeated() {
         let mut repeats = Repeats::default();
-        let shape = repeats.shape(&segs("M0,0C1,2 3,4 5,5"), 0.1);
-        let (many, few) = (Way { legs: None, pieces: 3 }, Way { legs: Some(Vec::new()), pieces: 1 });
+        let (shape, _) = repeats.shape(&segs("M0,0C1,2 3,4 5,5"), 0.1);
+        let many = Way { segments: 2, legs: None, pieces: 3 };
+        let few = Way { segments: 2, legs: Some(Vec::new()), pieces: 1 };
         for way in [&many, &few, &many] {
             repeats.add(shape, way.clone());
         }

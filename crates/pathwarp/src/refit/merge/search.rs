@@ -4,18 +4,10 @@
 //! one. So the search keeps one place for each number of pieces, extends it as far as one cubic reaches, and compares with
 //! the segments' own pieces, which lead from joint to joint.
 
+use super::leg::Leg;
 use super::limits::MERGE_GRID;
 use super::reach::Reaches;
 use kurbo::Point;
-
-/// A step between two grid places.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Leg {
-    pub(super) from: usize,
-    pub(super) to: usize,
-    /// By one cubic; otherwise by the pieces of one segment.
-    pub(super) merged: bool,
-}
 
 /// The furthest place found for some number of pieces.
 #[derive(Debug, Clone, Copy)]
