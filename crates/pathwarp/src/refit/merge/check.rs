@@ -44,7 +44,7 @@ impl Distances {
         }
         for (i, between) in self.bulging(run, c, enough) {
             if worst <= enough {
-                worst = worst.max(self.from_cubic(run, c, i, between)?);
+                worst = worst.max(self.both_ways(run, c, i, between)?);
             }
         }
         Ok(Some(worst))
@@ -79,7 +79,7 @@ impl Distances {
     }
 
     /// The largest distance between cubic and image, both ways, between two samples of segment `i`.
-    fn from_cubic(&self, run: &SegmentRun<'_>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64, Point> {
+    fn both_ways(&self, run: &SegmentRun<'_>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64, Point> {
         let g = run.images(i, &places(run, i, [a, b]))?;
         let sample = |k: usize| Point::new(run.x[k], run.y[k]);
         let mut image = [sample(a); 10];
