@@ -48,7 +48,7 @@ fn pictures_and_gradients_are_counted() {
         |n: usize| svg(&format!("<image width='9' height='9' href='data:image/png;base64,{png}'/>").repeat(n));
     let folder = Folder::with(&[("a.svg", &pictures(2000)), ("few.svg", &pictures(30))]);
     let (code, said) = folder.run(&["swirl", "a.svg", "-o", "o.svg"]);
-    assert_eq!((code, said.contains("--limit evaluations=")), (1, true), "{said}");
+    assert_eq!((code, said.contains("--limit evaluations=")), (4, true), "{said}");
     assert_eq!(folder.run(&["swirl", "few.svg", "-o", "o.svg"]).0, 0);
     let radial = |i: usize| {
         let stops = "<stop/><stop offset='1' stop-color='red'/>";

@@ -160,8 +160,9 @@ impl SegmentFitter<'_> {
         let (most_attempts, thorough) = (self.most_attempts(), Cell::new(0));
         let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, thorough, most_attempts };
         let covered = fitter.cover(from, to, pieces, report);
-        let evaluations = fitter.attempts * EVALUATIONS + fitter.thorough.get() * EVALUATIONS_HARD;
-        self.spend(evaluations as f64 * self.work);
+        let each = if fitter.attempts > HARD { EVALUATIONS_HARD } else { EVALUATIONS };
+        let checked = fitter.attempts * EVALUATIONS + fitter.thorough.get() * EVALUATIONS_HARD;
+        self.spend((fitter.attempts * each).max(checked) as f64 * self.work);
         covered
     }
 
