@@ -130,7 +130,7 @@ fn lattices_raise_the_degree() {
     assert!(image[0].weights.iter().all(|w| *w == 1.0));
 }
 
-fn radial(p: [Q; 3], eye: [f64; 3], delta: &Q) -> [Q; 3] {
+fn radial(p: &[Q; 3], eye: [f64; 3], delta: &Q) -> [Q; 3] {
     std::array::from_fn(|a| q(eye[a]) + (&p[a] - q(eye[a])) / delta)
 }
 
@@ -146,13 +146,13 @@ fn anamorphoses_over_every_reference() {
         let rest = Q::ONE - &u - &v - &w;
         // The control points between the second and the fourth corner, and at the first.
         let delta = Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * w + (Q::ONE / q(0.8) - Q::ONE) * &rest * &rest;
-        radial(p, eye, &delta)
+        radial(&p, eye, &delta)
     });
     let cuboid = chain("anamorph", &[at, ("degree", "2x1x1"), ("push", "1,0,1:1.6")]);
     compare(&patch([2, 3], true), &cuboid, [8, 12], 1e-12, |p| {
         let t = p.clone().map(|c| c / q(64.0));
         let b = bernstein(2, 1, &t[0]) * bernstein(1, 0, &t[1]) * bernstein(1, 1, &t[2]);
-        radial(p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * b))
+        radial(&p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * b))
     });
     // Sheets in the plane z = 0, on which the ray through a point has the coordinates O + (p − O)·512/(512 − z).
     let foot = |p: &[Q; 3], a: usize| q(eye[a]) + (&p[a] - q(eye[a])) * q(512.0) / (q(512.0) - &p[2]);
@@ -161,13 +161,13 @@ fn anamorphoses_over_every_reference() {
     compare(&patch([2, 3], false), &rectangle, [6, 9], 1e-12, |p| {
         let b = bernstein(1, 1, &((foot(&p, 0) + q(64.0)) / q(128.0)))
             * bernstein(1, 1, &((foot(&p, 1) + q(64.0)) / q(128.0)));
-        radial(p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * b))
+        radial(&p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * b))
     });
     let triangle =
         chain("anamorph", &[at, ("reference", "0,0,0 128,0,0 0,128,0"), ("degree", "2"), ("push", "0,1,1:1.6")]);
     compare(&patch([3, 3], false), &triangle, [9, 9], 1e-12, |p| {
         let (u, v) = (foot(&p, 0) / q(128.0), foot(&p, 1) / q(128.0));
-        radial(p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * v))
+        radial(&p, eye, &(Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * v))
     });
 }
 

@@ -118,7 +118,9 @@ mod tests {
             [vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 2.5, 4.0, 4.0, 4.0, 4.0], vec![-1.0, -1.0, -1.0, 0.5, 2.0, 2.0, 2.0]];
         let (degree, size) = ([3, 2], [7, 4]);
         let points: Vec<DVec4> = (0..28)
-            .map(|i| DVec4::new(((i * 37) % 11) as f64, ((i * 17) % 7) as f64, f64::from(i), 1.0 + f64::from(i % 3)))
+            .map(|i| {
+                DVec4::new(f64::from((i * 37) % 11), f64::from((i * 17) % 7), f64::from(i), 1.0 + f64::from(i % 3))
+            })
             .collect();
         let (pieces, breaks) = pieces(degree, &knots, size, &points);
         assert_eq!((pieces.len(), &breaks[0][..]), (6, &[0.0, 1.0, 2.5, 4.0][..]));
