@@ -68,6 +68,9 @@ impl Pipes {
             rest = self.write(rest).or_else(|()| self.stopped(running, "input", expected).map(|()| &[][..]))?;
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
+                if self.input_is_closed() {
+                    self.stopped(running, "input", expected)?;
+                }
                 return Err(Fault::Silent {
                     expected: expected.to_owned(),
                     seconds: time().as_secs_f64(),
@@ -100,6 +103,12 @@ impl Pipes {
             }
         }
         Ok(rest)
+    }
+
+    /// Returns `true` if nobody can read what is written: a request may have been sent before the program closed the pipe.
+    fn input_is_closed(&self) -> bool {
+        let mut fds = [PollFd::new(&self.input, PollFlags::empty())];
+        poll(&mut fds, Some(&Timespec { tv_sec: 0, tv_nsec: 0 })).is_ok() && !fds[0].revents().is_empty()
     }
 
     /// Waits until there is something to do; says whether output and errors have something to read, or have ended.

@@ -19,10 +19,10 @@ const PX_PER_INCH: f64 = 96.0;
 /// Evaluations of the map that a picture takes besides those of its pixels, to find its place; and a gradient, to find its
 /// resolution.
 const PICTURE: f64 = 40e3;
-const GRADIENT: f64 = 16e3;
+const GRADIENT: f64 = 24e3;
 
 /// Work for a pixel of a gradient, in pixels painted.
-const SHADED: f64 = 20.0;
+const SHADED: f64 = 40.0;
 
 /// Bends the bitmaps and gradients of drawings by one map.
 pub struct Bender {
@@ -143,6 +143,8 @@ impl GradientPainter for Bender {
             finest,
         };
         self.count(GRADIENT).map_err(too_much)?;
+        // The number of pixels follows from painting. Nothing is painted once the limit is reached.
+        self.budget.spend(Limit::Painting, SHADED as u64).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
         let pixels = f64::from(pixmap.width()) * f64::from(pixmap.height());
         self.budget.spend(Limit::Painting, (SHADED * pixels) as u64).map_err(too_much)?;

@@ -137,11 +137,11 @@ impl Map3 for LatticeMap3 {
         }
         let (local, piece) = self.piece(on.center())?;
         let t = chart.local(local);
-        let degrees = match piece {
-            Piece::Displacement(tensor) => tensor.degrees(),
-            Piece::Quotient(tensor) => tensor.degrees(),
+        let degree = match piece {
+            Piece::Displacement(tensor) => tensor.total_degree(),
+            Piece::Quotient(tensor) => tensor.total_degree(),
         };
-        if degrees.iter().sum::<usize>() > most {
+        if degree > most {
             return None;
         }
         let parts = match piece {

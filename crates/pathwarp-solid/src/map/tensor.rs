@@ -46,6 +46,12 @@ impl<const C: usize> Tensor<C> {
         self.size.map(|n| n - 1)
     }
 
+    /// The largest sum of powers whose coefficient is not 0.
+    pub(crate) fn total_degree(&self) -> usize {
+        let used = self.terms().filter(|(_, c)| c.iter().any(|v| *v != 0.0));
+        used.map(|(powers, _)| powers.iter().sum()).max().unwrap_or(0)
+    }
+
     /// The polynomials in other variables.
     pub(crate) fn in_terms_of(&self, t: &[Poly3; 3]) -> [Poly3; C] {
         let powers = [0, 1, 2].map(|a| t[a].powers(self.size[a] - 1));
