@@ -58,7 +58,10 @@ impl Pipes {
     ) -> Result<Vec<u8>, Fault> {
         let (mut rest, until) = (request, Instant::now() + time());
         loop {
-            if let Some(length) = whole(&self.incoming)?.filter(|n| *n <= self.incoming.len()) {
+            // An answer may come before all is sent: a request to build is followed by its points.
+            if rest.is_empty()
+                && let Some(length) = whole(&self.incoming)?.filter(|n| *n <= self.incoming.len())
+            {
                 let later = self.incoming.split_off(length);
                 return Ok(std::mem::replace(&mut self.incoming, later));
             }

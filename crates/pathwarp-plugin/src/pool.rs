@@ -16,6 +16,8 @@ const MOST_SILENT: usize = 3;
 pub(crate) struct Program {
     pub(crate) path: PathBuf,
     pub(crate) protocol: Protocol,
+    /// Processes at most. Asking the system for it takes longer than a request.
+    most: usize,
     state: Mutex<State>,
     returned: Condvar,
 }
@@ -33,7 +35,8 @@ impl Program {
     pub(crate) fn new(path: PathBuf, protocol: Protocol, running: Option<Session>) -> Self {
         let idle = Vec::from_iter(running);
         let state = State { running: idle.len(), idle, silent: 0 };
-        Self { path, protocol, state: Mutex::new(state), returned: Condvar::new() }
+        let most = std::thread::available_parallelism().map_or(1, usize::from);
+        Self { path, protocol, most, state: Mutex::new(state), returned: Condvar::new() }
     }
 
     /// Builds a map.
@@ -68,7 +71,6 @@ impl Program {
     }
 
     fn take(&self, id: u64) -> Result<Session, Fault> {
-        let most = std::thread::available_parallelism().map_or(1, usize::from);
         let mut state = self.state();
         loop {
             if state.silent >= MOST_SILENT {
@@ -80,7 +82,7 @@ impl Program {
             if let Some(i) = same.or_else(|| state.idle.len().checked_sub(1)) {
                 return Ok(state.idle.swap_remove(i));
             }
-            if state.running < most {
+            if state.running < self.most {
                 state.running += 1;
                 break;
             }

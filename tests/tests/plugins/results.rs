@@ -264,3 +264,22 @@ for line in sys.stdin:
         assert!(a.distance(p.into()) < 0.01 && b.distance(q.into()) < 0.01, "{svg}");
     }
 }
+
+#[test]
+fn two_maps_of_one_program_take_turns_over_many_points() {
+    let scratch = Scratch::new();
+    let curves: String = (0..12_000).map(|i| format!("Q{i},30 {},{}", i + 1, 10 + i % 7)).collect();
+    let drawing =
+        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 12000 40'><path d='M0,10{curves}'/></svg>");
+    fs::write(scratch.file("many.svg"), drawing).unwrap();
+    let ripple = ["--wavelength", "300", "--height", "2"];
+    let chain = [&["ripple", "many.svg"], &ripple[..], &["+", "ripple"], &ripple[..]].concat();
+    let expected = scratch.file("expected.svg");
+    let mut own = Command::new(compiled_in());
+    own.args(&chain).arg("-q").arg("-o").arg(&expected).current_dir(scratch.dir.path());
+    assert!(own.status().unwrap().success());
+    let program = program("pathwarp-ripple-program");
+    let plugin = ["-q", "-o", "out.svg", "--plugin", program.to_str().unwrap(), "-j", "1"];
+    scratch.expect(0, &[&chain[..], &plugin].concat());
+    assert_same(&scratch.file("out.svg"), &expected, 4.0);
+}
