@@ -1,7 +1,6 @@
 //! The command line with the same effect as the steps.
 
 use pathwarp::deform::Registry;
-use pathwarp::param::Kind;
 use pathwarp::recipe::Recipe;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -22,14 +21,10 @@ pub(crate) fn command_line(
             let _ = write!(line, " {}", quoted(&source.display().to_string()));
         }
         let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
-        for (name, values) in step.args.iter() {
-            let is_flag = params.iter().any(|p| p.name == name && p.kind == Kind::Flag);
-            for value in values {
-                let _ = match (is_flag, value.as_str()) {
-                    (true, "true") => write!(line, " --{name}"),
-                    (true, _) => Ok(()),
-                    (false, value) => write!(line, " --{name} {}", quoted(value)),
-                };
+        for (name, value) in step.options(params) {
+            let _ = write!(line, " --{name}");
+            if let Some(value) = value {
+                let _ = write!(line, " {}", quoted(value));
             }
         }
         if step.inverse {

@@ -1,8 +1,8 @@
-//! What the editing is for.
+//! The destination of an edit: files, or a program that waits for the steps.
 
 use std::path::PathBuf;
 
-/// What becomes of the steps.
+/// The use of the steps once they are chosen.
 #[derive(Debug, Clone)]
 pub enum Purpose {
     /// Results are saved to files; `out` is the one that *Save* writes, `None` a name beside the drawing.

@@ -8,8 +8,8 @@ use crate::picture::Picture;
 use pathwarp::kurbo::{BezPath, Rect, Shape as _};
 use std::ops::Range;
 
-/// What a text must not have: shapes without path data, shapes that are drawn elsewhere or again, and paints and effects that usvg
-/// computes from bounding boxes.
+/// Markup that rules the short way out: shapes without path data, shapes that are drawn elsewhere or again, and paints and effects
+/// that usvg computes from bounding boxes.
 const DERIVED: [&str; 16] = [
     "<rect", "<circle", "<ellipse", "<line", "<poly", "<text", "<use", "<svg:", "<switch", "Gradient", "<pattern",
     "clipPath", "<mask", "<filter", "<marker", "<style",

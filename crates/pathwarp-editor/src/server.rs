@@ -31,7 +31,7 @@ const MOST_CONNECTIONS: usize = 64;
 pub struct Options {
     /// The drawing.
     pub file: PathBuf,
-    /// What becomes of the steps.
+    /// The use of the steps once they are chosen.
     pub purpose: Purpose,
     /// The port; `None`: a free one.
     pub port: Option<u16>,

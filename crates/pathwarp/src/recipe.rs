@@ -28,7 +28,7 @@ use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
-use crate::param::{Args, Frame, Letter};
+use crate::param::{Args, Frame, Kind, Letter, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::cell::LazyCell;
 use std::sync::Arc;
@@ -49,6 +49,16 @@ impl Step {
     #[must_use]
     pub fn new(deformation: impl Into<String>, args: Args) -> Self {
         Self { deformation: deformation.into(), args, inverse: false }
+    }
+
+    /// The given values with their names, as a command line takes them: a flag that is set has no value, one that is not is left out.
+    /// `params` are the deformation's parameters.
+    pub fn options<'a>(&'a self, params: &'a [Param]) -> impl Iterator<Item = (&'a str, Option<&'a str>)> {
+        self.args.iter().flat_map(move |(name, values)| {
+            let is_flag = params.iter().any(|p| p.name == name && p.kind == Kind::Flag);
+            let values = values.iter().filter(move |v| !is_flag || *v == "true");
+            values.map(move |v| (name, (!is_flag).then_some(v.as_str())))
+        })
     }
 }
 

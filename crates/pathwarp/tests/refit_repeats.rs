@@ -85,7 +85,7 @@ impl Map for Counted<'_> {
     }
 }
 
-/// What letters cost with what is known of their like, next to letters refitted one by one, which know nothing.
+/// Compares letters refitted with known shapes to letters refitted one by one, in work and in pieces.
 #[test]
 fn letters_that_come_again_take_little_work_and_no_more_pieces() {
     let options = Options::new(0.3).with_merge(true);
@@ -117,7 +117,7 @@ fn letters_that_come_again_take_little_work_and_no_more_pieces() {
     }
 }
 
-/// What is known does not depend on who asks, nor on the order.
+/// The known shapes depend neither on the caller nor on the order.
 #[test]
 fn knowledge_is_the_same_every_time() {
     let (map, options, lines) = (Bicubic::strong(), Options::new(0.1).with_merge(true), lines(40));

@@ -5,6 +5,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use std::fs;
 use std::io::Write as _;
 
 #[test]
@@ -13,6 +14,17 @@ fn a_long_name_does_not_pad_all_lines() {
     let folder = Folder::with(&[("a.svg", &svg(&body))]);
     for command in [&["paths", "a.svg"][..], &["compare", "a.svg", "a.svg"]] {
         assert_eq!(folder.run(command).0, 0, "{command:?}");
+    }
+}
+
+#[test]
+fn a_file_larger_than_the_memory_is_an_error() {
+    let folder = Folder::with(&[]);
+    fs::File::create(folder.path().join("a.svg")).unwrap().set_len(3 << 30).unwrap();
+    for command in [&["warp", "a.svg", "--style", "flag", "-o", "o.svg"][..], &["paths", "a.svg"]] {
+        let (code, said) = folder.run(command);
+        assert_eq!(code, 3, "{command:?}: {said}");
+        assert!(said.contains("a.svg: cannot be read"), "{said}");
     }
 }
 

@@ -6,6 +6,7 @@ use crate::support::pathwarp;
 use pathwarp_svg::objects::{Object, objects};
 use std::fs;
 use std::path::{Path, PathBuf};
+use tempfile::TempDir;
 
 /// A drawing with everything that can be selected. The text is in the bundled font, whatever is installed.
 const BODY: &str = "<g id='layer' inkscape:groupmode='layer' inkscape:label='Layer 1'>\
@@ -58,17 +59,23 @@ pub fn install(profile: &Path) {
     fs::write(home.join("edited.inx"), text).unwrap();
 }
 
+/// A folder with a profile that has the extension, and a document with this content, which is `source.svg` there.
+pub fn workplace(body: &str) -> (TempDir, String) {
+    let dir = tempfile::tempdir().unwrap();
+    install(&dir.path().join("profile"));
+    let source = document(body);
+    fs::write(dir.path().join("source.svg"), &source).unwrap();
+    (dir, source)
+}
+
 #[test]
 fn effects_run_in_inkscape() {
     if !(editor::is_installed() && editor::has_screen()) {
         return;
     }
-    let dir = tempfile::tempdir().unwrap();
+    let (dir, source) = workplace(BODY);
     let folder = dir.path();
-    install(&folder.join("profile"));
     let at = |name: &str| folder.join(name);
-    let source = document(BODY);
-    fs::write(at("source.svg"), &source).unwrap();
 
     // Warp one selection after another, and save.
     let mut actions = String::new();

@@ -1,8 +1,7 @@
 //! *Bend by hand…* in an installed Inkscape, with a program in the place of the user and the browser.
 
-use super::drawings::document;
 use super::editor;
-use super::extension::{assert_near, install, numbers, read, run};
+use super::extension::{assert_near, numbers, read, run, workplace};
 use crate::support::{browser, root};
 use pathwarp_svg::objects::objects;
 use std::fs;
@@ -10,7 +9,7 @@ use std::path::Path;
 
 const BODY: &str = "<path id='a' d='M 20,20 H 60 V 60 H 20 Z'/><path id='b' d='M 80,20 H 120 V 60 Z'/>";
 
-/// What the user does: keeps the result, or closes the page.
+/// Stands in for the user and the browser: `keep`s the result, or closes the page.
 fn user(folder: &Path, does: &str) {
     let opener = folder.join("browser");
     let web = root().join("crates/pathwarp-editor/web");
@@ -32,12 +31,9 @@ fn bending_by_hand_comes_back_to_inkscape() {
         println!("skipped: bending by hand is not tested without {what}");
         return;
     }
-    let dir = tempfile::tempdir().unwrap();
+    let (dir, source) = workplace(BODY);
     let folder = dir.path();
-    install(&folder.join("profile"));
     let at = |name: &str| folder.join(name);
-    let source = document(BODY);
-    fs::write(at("source.svg"), &source).unwrap();
     let act = |from: &str, to: &str| {
         let to = at(to);
         let actions =

@@ -4,7 +4,7 @@ use super::root;
 use std::path::Path;
 use std::process::Command;
 
-/// What tests in a browser need besides the program and is not there.
+/// Names a tool that tests in a browser need and that is missing.
 pub fn missing() -> Option<&'static str> {
     let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success());
     let browsers = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];

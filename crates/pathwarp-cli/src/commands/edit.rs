@@ -53,7 +53,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     };
     // Ctrl-C is the usual end of this command, so it needs no message.
     let _ = ctrlc::set_handler(|| temporaries::remove_all_and(|| std::process::exit(INTERRUPTED)));
-    // Whoever drags a point past the page wants to keep what is there.
+    // A point dragged past the page takes artwork there, which is to be kept.
     let mut usual = Given::default();
     usual.set("fit", "grow").map_err(Failure::Usage)?;
     let host = Arc::new(EditorHost::new(registry.clone(), usual, Given::options(m)));

@@ -23,11 +23,11 @@ pub(super) fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
         }
         line.push(step.deformation.clone());
         let params = stage.registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
-        for (name, values) in step.args.iter() {
-            let is_flag = params.iter().any(|p| p.name == name && p.kind == Kind::Flag);
-            let values = values.iter().filter(|v| !is_flag || *v == "true");
-            line.extend(values.map(|v| if is_flag { format!("--{name}") } else { format!("--{name}={v}") }));
-        }
+        let word = |(name, value): (&str, Option<&str>)| match value {
+            Some(value) => format!("--{name}={value}"),
+            None => format!("--{name}"),
+        };
+        line.extend(step.options(params).map(word));
         if step.inverse {
             line.push(format!("--{INVERSE}"));
         }

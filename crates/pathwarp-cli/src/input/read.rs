@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::options::Reading;
 use crate::watch;
 use pathwarp_svg::{Document, ReadOptions};
+use std::fmt::Display;
 use std::fs::{File, Metadata};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,10 @@ pub(crate) fn ordinary_bytes(input: &Path) -> Result<Option<Vec<u8>>, Failure> {
     }
     let Ok(mut file) = File::open(input) else { return Ok(None) };
     let size = file.metadata().ok().filter(Metadata::is_file).map(|m| m.len());
-    let mut bytes = Vec::with_capacity(size.and_then(|n| usize::try_from(n).ok()).unwrap_or_default() + ROOM);
+    let unreadable = |e: &dyn Display| Failure::file(input, format!("cannot be read: {e}"));
+    let room = usize::try_from(size.unwrap_or_default()).unwrap_or(usize::MAX).saturating_add(ROOM);
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(room).map_err(|e| unreadable(&e))?;
     // A pipe is not probed: it can be read only once.
     if size.is_some() {
         let head = file.by_ref().take(pathwarp_gimp::HEAD as u64).read_to_end(&mut bytes);
@@ -61,8 +65,7 @@ pub(crate) fn ordinary_bytes(input: &Path) -> Result<Option<Vec<u8>>, Failure> {
         }
     }
     // Without a limit, the size would be asked for again.
-    let rest = file.take(u64::MAX).read_to_end(&mut bytes);
-    rest.map_err(|e| Failure::file(input, format!("cannot be read: {e}")))?;
+    file.take(u64::MAX).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
     watch::count_input(bytes.len());
     Ok(Some(bytes))
 }

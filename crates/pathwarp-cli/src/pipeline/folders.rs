@@ -15,17 +15,12 @@ pub(crate) struct Folders {
 
 impl Folders {
     /// Creates the folders that are missing.
-    pub(super) fn create(options: &CommonOptions, jobs: &[Job]) -> Result<Self, Failure> {
+    pub(crate) fn create(options: &CommonOptions, jobs: &[Job]) -> Result<Self, Failure> {
         let pattern = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_pattern);
         let own_target = options.out_dir.is_some() || pattern(&options.out);
         let targets = jobs.iter().filter(|_| own_target).flat_map(|j| &j.target);
         let previews = jobs.iter().filter(|_| pattern(&options.preview)).flat_map(|j| &j.preview);
-        Self::of(targets.chain(previews).map(PathBuf::as_path))
-    }
-
-    /// Creates the folders of files that are missing.
-    pub(crate) fn of<'a>(files: impl Iterator<Item = &'a Path>) -> Result<Self, Failure> {
-        let folders: HashSet<&Path> = files.filter_map(Path::parent).collect();
+        let folders: HashSet<&Path> = targets.chain(previews).filter_map(|file| file.parent()).collect();
         let mut made = Self { made: Vec::new() };
         for folder in folders {
             made.create_one(folder)?;

@@ -8,21 +8,28 @@ use walkdir::{DirEntry, WalkDir};
 
 /// An input file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct InputFile {
-    pub(super) path: PathBuf,
+pub(crate) struct InputFile {
+    pub(crate) path: PathBuf,
     /// The folder of a file found in a folder, relative to it; else empty.
-    pub(super) below: PathBuf,
+    pub(crate) below: PathBuf,
+}
+
+impl InputFile {
+    /// A file that is named itself.
+    pub(crate) fn named(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into(), below: PathBuf::new() }
+    }
 }
 
 /// The inputs that the options name, in order; folders are replaced by the files in them, sorted by name.
 pub(super) fn inputs(options: &CommonOptions) -> Result<Vec<InputFile>, Failure> {
     if options.inputs.is_empty() {
-        return Ok(vec![InputFile { path: "-".into(), below: PathBuf::new() }]);
+        return Ok(vec![InputFile::named("-")]);
     }
     let mut out = Vec::with_capacity(options.inputs.len());
     for input in &options.inputs {
         if !input.is_dir() {
-            out.push(InputFile { path: input.clone(), below: PathBuf::new() });
+            out.push(InputFile::named(input));
         } else if options.recursive {
             let before = out.len();
             drawings_in(input, options, &mut out)?;

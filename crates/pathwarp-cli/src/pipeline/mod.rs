@@ -14,7 +14,7 @@ mod session;
 
 use crate::advice::Flags;
 use crate::failure::Failure;
-use crate::input::display;
+use crate::input::{PREVIEW, display};
 use crate::options::{Given, OnFailure};
 use crate::output::{self, Draft, PendingFile};
 use crate::status::Status;
@@ -23,14 +23,15 @@ use file_run::{Batch, FileRun};
 pub(crate) use file_run::{explained, first_baseline};
 pub(crate) use folders::Folders;
 use indicatif::ProgressBar;
+pub(crate) use inputs::InputFile;
 pub(crate) use memory::warp_bytes;
-pub(crate) use naming::{by_pattern, in_folder, is_pattern};
 use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
-use plan::Job;
+pub(crate) use plan::{Inputs, Job};
 use rayon::prelude::*;
 use report_file::ReportFile;
 use session::Session;
+use std::convert;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
@@ -49,8 +50,12 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     watch::begin(options.reading.limits);
     let inputs = inputs::inputs(&options)?;
     options.reading.check()?;
-    let jobs = plan::plan(registry, recipe, &options, &inputs, from)?;
+    let kind = Inputs { files: &inputs, kind: "input", replaceable: true, result: convert::identity };
+    let jobs = kind.plan(registry, recipe, &options, from)?;
     drop(inputs);
+    if let Some(preview) = &options.preview {
+        PREVIEW.format(Some(preview), None)?;
+    }
     if options.dry_run {
         output::to_stdout(plan::listing(&options, &jobs).as_bytes())?;
         return Ok(Status::Complete);

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 const STEM: &str = "{stem}";
 
 /// Returns `true` if `name` gives every input an output of its own.
-pub(crate) fn is_pattern(name: &Path) -> bool {
+pub(super) fn is_pattern(name: &Path) -> bool {
     name.to_string_lossy().contains(STEM)
 }
 
@@ -19,7 +19,7 @@ pub(super) fn fixed_folder(pattern: &Path) -> PathBuf {
 
 /// The output of `input` by the file name `pattern`. `below` is the input's folder below one given with `--recursive`; it is
 /// repeated. `None` if the input has no name.
-pub(crate) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
+pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
     let named = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
     let file = named.file_name()?;
     Some(named.parent().unwrap_or(Path::new("")).join(below).join(file))
@@ -27,7 +27,7 @@ pub(crate) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<P
 
 /// The output of `input` in the folder `dir`, which may be a pattern: of a folder, or of a file with an extension. In a folder it
 /// has the input's name, with `extension` if given. `None` if the input has no name.
-pub(crate) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Option<&str>) -> Option<PathBuf> {
+pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Option<&str>) -> Option<PathBuf> {
     let last = dir.file_name().unwrap_or_default();
     if is_pattern(Path::new(last)) && dir.extension().is_some() {
         return by_pattern(dir, input, below);

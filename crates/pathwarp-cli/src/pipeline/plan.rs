@@ -2,112 +2,131 @@
 
 use super::inputs::InputFile;
 use super::naming::{by_pattern, in_folder, is_pattern};
+use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::input::PREVIEW;
 use crate::options::CommonOptions;
 use crate::output::is_device;
 use crate::references::{files_read, files_written};
 use crate::sources::Files;
-use pathwarp::deform::Registry;
 use pathwarp::recipe::Recipe;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// One input with the files it gives.
-pub(super) struct Job {
-    pub(super) input: PathBuf,
+pub(crate) struct Job {
+    pub(crate) input: PathBuf,
     /// `None`: standard output, or the copy that `--into` names.
-    pub(super) target: Option<PathBuf>,
-    pub(super) preview: Option<PathBuf>,
+    pub(crate) target: Option<PathBuf>,
+    pub(crate) preview: Option<PathBuf>,
 }
 
-/// Plans the jobs of a recipe, which was read from the file `from` if there is one, and checks that no source and no output is overwritten.
-pub(super) fn plan(
-    registry: &Registry,
-    recipe: &Recipe,
-    options: &CommonOptions,
-    inputs: &[InputFile],
-    from: Option<&Path>,
-) -> Result<Vec<Job>, Failure> {
-    if inputs.len() > 1 {
-        check_several(registry, recipe, options)?;
-    }
-    let jobs: Vec<Job> = inputs.iter().map(|i| job(options, i)).collect::<Result<_, _>>()?;
-    let mut files = Files::default();
-    files_read(registry, recipe).iter().for_each(|f| files.read(f));
-    from.iter().for_each(|f| files.read(f));
-    options.reading.fonts.paths.iter().for_each(|f| files.read(f));
-    jobs.iter().for_each(|j| files.read_artwork(&j.input));
-    if options.in_place {
-        files.allow_in_place();
-    }
-    for job in &jobs {
-        if options.into.is_none() {
-            files.write(job.target.as_deref().unwrap_or(Path::new("-")), "")?;
+/// Inputs of one kind.
+pub(crate) struct Inputs<'a> {
+    pub(crate) files: &'a [InputFile],
+    /// The kind's name in messages.
+    pub(crate) kind: &'static str,
+    /// `--in-place` can be given.
+    pub(crate) replaceable: bool,
+    /// Corrects the name of a result in a folder.
+    pub(crate) result: fn(PathBuf) -> PathBuf,
+}
+
+impl Inputs<'_> {
+    /// Plans the jobs of a recipe, which was read from the file `from` if there is one, and checks that no source and no output is
+    /// overwritten.
+    pub(crate) fn plan(
+        &self,
+        catalogue: &dyn Catalogue,
+        recipe: &Recipe,
+        options: &CommonOptions,
+        from: Option<&Path>,
+    ) -> Result<Vec<Job>, Failure> {
+        if self.files.len() > 1 {
+            self.check_several(catalogue, recipe, options)?;
         }
-        if let Some(preview) = &job.preview {
-            files.write(preview, "preview")?;
+        let jobs: Vec<Job> = self.files.iter().map(|i| self.job(options, i)).collect::<Result<_, _>>()?;
+        let mut files = Files::default();
+        files_read(catalogue, recipe).iter().for_each(|f| files.read(f));
+        from.iter().for_each(|f| files.read(f));
+        options.reading.fonts.paths.iter().for_each(|f| files.read(f));
+        for job in &jobs {
+            if self.replaceable { files.read_artwork(&job.input) } else { files.read(&job.input) }
         }
-    }
-    let others = [("into", &options.into), ("report", &options.report), ("write-recipe", &options.write_recipe)];
-    for (option, file) in others {
-        if let Some(file) = file {
+        if options.in_place {
+            files.allow_in_place();
+        }
+        for job in &jobs {
+            if options.into.is_none() {
+                files.write(job.target.as_deref().unwrap_or(Path::new("-")), "")?;
+            }
+            if let Some(preview) = &job.preview {
+                files.write(preview, "preview")?;
+            }
+        }
+        let others = [("into", &options.into), ("report", &options.report), ("write-recipe", &options.write_recipe)];
+        for (option, file) in others {
+            if let Some(file) = file {
+                files.write(file, option)?;
+            }
+        }
+        for (option, file) in files_written(catalogue, recipe) {
             files.write(file, option)?;
         }
+        Ok(jobs)
     }
-    for (option, file) in files_written(registry, recipe) {
-        files.write(file, option)?;
-    }
-    if let Some(preview) = &options.preview {
-        PREVIEW.format(Some(preview), None)?;
-    }
-    Ok(jobs)
-}
 
-/// Checks that the options give every one of several inputs its own output.
-fn check_several(registry: &Registry, recipe: &Recipe, options: &CommonOptions) -> Result<(), Failure> {
-    let own_name = options.out.as_deref().is_some_and(is_pattern);
-    if options.into.is_some() {
-        return Err(Failure::usage("--into writes one file; give one XCF"));
+    /// Checks that the options give every one of several inputs its own output.
+    fn check_several(
+        &self,
+        catalogue: &dyn Catalogue,
+        recipe: &Recipe,
+        options: &CommonOptions,
+    ) -> Result<(), Failure> {
+        let kind = self.kind;
+        let own_name = options.out.as_deref().is_some_and(is_pattern);
+        if options.into.is_some() {
+            return Err(Failure::usage("--into writes one file; give one XCF"));
+        }
+        if !(options.out_dir.is_some() || own_name || options.in_place && options.out.is_none()) {
+            return Err(Failure::usage(format!(
+                "several {kind}s need --out-dir DIR, or -o with {{stem}} in the name; their results cannot share one file"
+            )));
+        }
+        if options.preview.as_deref().is_some_and(|p| !is_pattern(p)) {
+            return Err(Failure::usage(format!("--preview draws one {kind}; give one, or a name with {{stem}}")));
+        }
+        if let Some((option, _)) = files_written(catalogue, recipe).next() {
+            return Err(Failure::usage(format!("--{option} writes one file; give one {kind}")));
+        }
+        Ok(())
     }
-    if !(options.out_dir.is_some() || own_name || options.in_place && options.out.is_none()) {
-        return Err(Failure::usage(
-            "several inputs need --out-dir DIR, or -o with {stem} in the name; their results cannot share one file",
-        ));
-    }
-    if options.preview.as_deref().is_some_and(|p| !is_pattern(p)) {
-        return Err(Failure::usage("--preview draws one input; give one, or a name with {stem}"));
-    }
-    if let Some((option, _)) = files_written(registry, recipe).next() {
-        return Err(Failure::usage(format!("--{option} writes one file; give one input")));
-    }
-    Ok(())
-}
 
-fn job(options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
-    let InputFile { path, below } = input;
-    let unnamed = |option: &str| Failure::usage(format!("{option} needs named inputs"));
-    let expanded = |pattern: &PathBuf, option: &str| -> Result<PathBuf, Failure> {
-        if is_pattern(pattern) {
-            by_pattern(pattern, path, below).ok_or_else(|| unnamed(option))
-        } else {
-            Ok(pattern.clone())
-        }
-    };
-    let target = match (&options.out_dir, &options.out) {
-        (Some(dir), _) => {
-            let extension = options.format.map(Format::extension);
-            Some(in_folder(dir, path, below, extension).ok_or_else(|| unnamed("--out-dir"))?)
-        }
-        (None, Some(out)) => Some(expanded(out, "{stem}")?),
-        (None, None) if options.in_place && options.into.is_none() => {
-            Some(path.clone()).filter(|p| p.as_os_str() != "-").ok_or_else(|| unnamed("--in-place")).map(Some)?
-        }
-        (None, None) => None,
-    };
-    let preview = options.preview.as_ref().map(|p| expanded(p, "--preview")).transpose()?;
-    Ok(Job { input: path.clone(), target, preview })
+    fn job(&self, options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
+        let InputFile { path, below } = input;
+        let unnamed = |option: &str| Failure::usage(format!("{option} needs named {}s", self.kind));
+        let expanded = |pattern: &PathBuf, option: &str| -> Result<PathBuf, Failure> {
+            if is_pattern(pattern) {
+                by_pattern(pattern, path, below).ok_or_else(|| unnamed(option))
+            } else {
+                Ok(pattern.clone())
+            }
+        };
+        let target = match (&options.out_dir, &options.out) {
+            (Some(dir), _) => {
+                let extension = options.format.map(Format::extension);
+                let target = in_folder(dir, path, below, extension).ok_or_else(|| unnamed("--out-dir"))?;
+                Some((self.result)(target))
+            }
+            (None, Some(out)) => Some(expanded(out, "{stem}")?),
+            (None, None) if options.in_place && options.into.is_none() => {
+                Some(path.clone()).filter(|p| p.as_os_str() != "-").ok_or_else(|| unnamed("--in-place")).map(Some)?
+            }
+            (None, None) => None,
+        };
+        let preview = options.preview.as_ref().map(|p| expanded(p, "--preview")).transpose()?;
+        Ok(Job { input: path.clone(), target, preview })
+    }
 }
 
 /// The list that `--dry-run` prints: every input with its output.

@@ -1,7 +1,8 @@
 //! The tiles of a picture that a shape covers: what lies in other tiles is never seen.
 
 use super::area::TILE;
-use kurbo::{Affine, BezPath, PathEl, Point, Rect};
+use kurbo::{Affine, BezPath, Point, Rect};
+use pathwarp::outline::boundary;
 
 /// Flattening tolerance in pixels.
 const FLAT: f64 = 0.25;
@@ -20,10 +21,10 @@ impl Cover {
         let [columns, rows] = [width, height].map(|n| (n as usize).div_ceil(TILE));
         let mut cover = Self { columns, tiles: vec![false; columns * rows] };
         let mut windings = vec![0_i32; columns * rows];
-        for (a, b) in lines(&(shown.inverse() * shape)) {
+        boundary(&(shown.inverse() * shape), FLAT, |a, b| {
             cover.touch(a, b, rows);
             wind(a, b, &mut windings, columns);
-        }
+        });
         // A tile without edges is all inside or all outside. Where windings cancel under the even-odd rule, too much is covered.
         for (tile, winding) in cover.tiles.iter_mut().zip(windings) {
             *tile |= winding != 0;
@@ -67,29 +68,6 @@ fn wind(a: Point, b: Point, windings: &mut [i32], columns: usize) {
             row.iter_mut().skip(first).for_each(|w| *w += direction);
         }
     }
-}
-
-/// The lines of a flattened path, with subpaths closed.
-fn lines(path: &BezPath) -> Vec<(Point, Point)> {
-    let (mut start, mut at, mut out) = (Point::ORIGIN, Point::ORIGIN, Vec::new());
-    kurbo::flatten(path, FLAT, |e| match e {
-        PathEl::MoveTo(p) => {
-            out.push((at, start));
-            (start, at) = (p, p);
-        }
-        PathEl::LineTo(p) => {
-            out.push((at, p));
-            at = p;
-        }
-        PathEl::ClosePath => {
-            out.push((at, start));
-            at = start;
-        }
-        // Flattened paths have no curves.
-        PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
-    });
-    out.push((at, start));
-    out
 }
 
 #[cfg(test)]

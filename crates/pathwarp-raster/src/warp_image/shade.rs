@@ -32,8 +32,8 @@ pub struct Shade<'a> {
     pub shape: Option<&'a BezPath>,
 }
 
-/// Warps a paint. Pixels without an inverse, and those far from the shape, have the colour of the nearest in their row, or else of the nearest row: a clip along
-/// the edge of the image shows no gap, and the file stays small.
+/// Warps a paint. Pixels without an inverse, and those far from the shape, have the colour of the nearest in their row, or else of the
+/// nearest row: a clip along the edge of the image shows no gap, and the file stays small.
 ///
 /// # Errors
 /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result; [`Error::NoInverse`] if no pixel has an inverse.

@@ -9,6 +9,7 @@ mod chain;
 mod collineation;
 mod collineation_map;
 #[cfg(test)]
+#[path = "../../../pathwarp/src/map/counted.rs"]
 pub(crate) mod counted;
 mod crease;
 mod jet;
@@ -29,5 +30,7 @@ pub use traits::Map3;
 
 pub(crate) use batch::{Displaced, Quotient, Radial, Swept, for_all};
 pub(crate) use local::Local;
+#[cfg(test)]
+use pathwarp::map::Real;
 pub(crate) use poly::Poly3;
 pub(crate) use tensor::Tensor;

@@ -9,7 +9,7 @@ use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use thiserror::Error;
 
-/// What happened to surfaces.
+/// Counts of deformed surfaces, and the largest error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DeformedPatches {
     /// Surfaces whose image is exact.

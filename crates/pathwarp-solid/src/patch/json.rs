@@ -43,7 +43,7 @@ struct Curve {
 /// Reads surfaces.
 ///
 /// # Errors
-/// What is wrong, with the place in the text or the number of the surface.
+/// Returns the problem, with its place in the text or the number of the surface.
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     let file: File =
         serde_json::from_slice(text).map_err(|e| MeshError::whole(format!("is not a file of surfaces: {e}")))?;

@@ -18,8 +18,11 @@ pub(crate) struct PaintFit {
 /// space to one with the transform `write`. Returns `None` where the map is not finite.
 pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Option<PaintFit> {
     let back = write.inverse();
+    let places: Vec<Point> = grid(area).map(|p| read * p).collect();
+    let mut images = places.clone();
+    map.points(&places, &mut images);
     let pairs: Vec<(Point, Point)> =
-        grid(area).map(|p| (p, back * map.point(read * p))).filter(|(_, q)| q.is_finite()).collect();
+        grid(area).zip(images).map(|(p, q)| (p, back * q)).filter(|(_, q)| q.is_finite()).collect();
     let n = pairs.len() as f64;
     if pairs.len() < 3 {
         return None;

@@ -1,7 +1,8 @@
 //! Places at which the paint of a shape is seen: inside a fill, or along a stroke.
 
 use pathwarp::Outline;
-use pathwarp::kurbo::{self, BezPath, ParamCurve as _, ParamCurveArclen as _, PathEl, Point, Rect, Vec2};
+use pathwarp::kurbo::{self, BezPath, ParamCurve as _, ParamCurveArclen as _, Point, Rect, Vec2};
+use pathwarp::outline::boundary;
 use usvg::FillRule;
 
 /// Number of places tried over the box of a fill; a Fibonacci number, for which the lattice is most even.
@@ -50,8 +51,12 @@ fn golden(n: f64) -> f64 {
     (n * RATIO).fract()
 }
 
+fn flatness(bounds: Rect) -> f64 {
+    FLATNESS * bounds.width().hypot(bounds.height())
+}
+
 fn flat(outline: &Outline, bounds: Rect) -> BezPath {
-    let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
+    let tolerance = flatness(bounds);
     let mut out = BezPath::new();
     kurbo::flatten(outline.to_bez_path(tolerance), tolerance, |e| out.push(e));
     out
@@ -59,27 +64,9 @@ fn flat(outline: &Outline, bounds: Rect) -> BezPath {
 
 /// The lines of the flattened outline, with subpaths closed.
 fn lines(outline: &Outline, bounds: Rect) -> Vec<(Point, Point)> {
-    let (mut start, mut at) = (Point::ORIGIN, Point::ORIGIN);
+    let tolerance = flatness(bounds);
     let mut out = Vec::new();
-    for e in flat(outline, bounds) {
-        match e {
-            PathEl::MoveTo(p) => {
-                out.push((at, start));
-                (start, at) = (p, p);
-            }
-            PathEl::LineTo(p) => {
-                out.push((at, p));
-                at = p;
-            }
-            PathEl::ClosePath => {
-                out.push((at, start));
-                at = start;
-            }
-            // Flattened paths have no curves.
-            PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
-        }
-    }
-    out.push((at, start));
+    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| out.push((a, b)));
     out
 }
 

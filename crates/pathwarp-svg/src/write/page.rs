@@ -12,8 +12,8 @@ use crate::scene::model::{Group, Node, Part, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};
 use crate::source::number::short;
 use crate::source::select::Selection;
-use pathwarp::Outline;
-use pathwarp::kurbo::{Affine, BezPath, ParamCurve as _, PathSeg, Point, Rect, Shape as _};
+use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
+use pathwarp::{Outline, Seg};
 use std::borrow::Cow;
 use std::str::FromStr;
 use svgtypes::{Length, LengthUnit};
@@ -247,17 +247,9 @@ fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezPath> {
 
 /// Bounding box of a path; empty if it draws nothing.
 fn extent(path: &BezPath) -> Rect {
-    let ends = path.segments().flat_map(|s| [s.start(), s.end()]).map(|p| Rect::from_points(p, p));
-    let Some(ends) = ends.reduce(|a, b| a.union(b)) else { return Rect::ZERO };
-    // The extremes of most curves lie inside the box of all ends.
-    path.segments().fold(ends, |all, s| {
-        let controls = match s {
-            PathSeg::Line(_) => return all,
-            PathSeg::Quad(q) => Rect::from_points(q.p1, q.p1),
-            PathSeg::Cubic(c) => Rect::from_points(c.p1, c.p2),
-        };
-        if all.union(controls) == all { all } else { all.union(s.bounding_box()) }
-    })
+    let segs = || path.segments().map(Seg::from);
+    let ends = segs().map(|s| Rect::from_points(s.start(), s.end())).reduce(|a, b| a.union(b));
+    ends.map_or(Rect::ZERO, |ends| segs().fold(ends, |all, s| s.extend(all)))
 }
 
 /// Bounding box of a path's image under `frame`.

@@ -1,7 +1,7 @@
 //! Points inside a filled outline, found in one sweep.
 
-use crate::outline::Outline;
-use kurbo::{BezPath, PathEl, Point, Rect};
+use crate::outline::{Outline, boundary};
+use kurbo::{Point, Rect};
 
 /// Flattening tolerance, relative to the diagonal of the outline: far below the spacing of any grid.
 const FLATNESS: f64 = 1e-3;
@@ -14,25 +14,7 @@ const FLATNESS: f64 = 1e-3;
 pub(super) fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
     let mut rows = Rows { bounds, n, crossings: vec![Vec::new(); n] };
     let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
-    let path: BezPath = outline.to_bez_path(tolerance);
-    let (mut start, mut at) = (Point::ORIGIN, Point::ORIGIN);
-    kurbo::flatten(path, tolerance, |element| match element {
-        PathEl::MoveTo(p) => {
-            rows.add(at, start);
-            (start, at) = (p, p);
-        }
-        PathEl::LineTo(p) => {
-            rows.add(at, p);
-            at = p;
-        }
-        PathEl::ClosePath => {
-            rows.add(at, start);
-            at = start;
-        }
-        // Flattened paths have no curves.
-        PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
-    });
-    rows.add(at, start);
+    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| rows.add(a, b));
     rows.points()
 }
 

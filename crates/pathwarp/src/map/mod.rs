@@ -38,6 +38,8 @@ pub mod batch;
 mod birational;
 mod chain;
 mod class;
+#[cfg(test)]
+pub(crate) mod counted;
 mod crease;
 pub(crate) mod curves;
 mod dual;

@@ -9,12 +9,14 @@
 //! counts from the shape that was drawn.
 
 mod arc;
+mod boundary;
 mod builder;
 mod path;
 mod seg;
 mod svg;
 
 pub use arc::EllipticArc;
+pub use boundary::boundary;
 pub use builder::Builder;
 pub use path::{Outline, Subpath};
 pub use seg::Seg;

@@ -1,7 +1,7 @@
 //! One segment of a path.
 
 use super::EllipticArc;
-use kurbo::{Affine, CubicBez, Line, ParamCurve, ParamCurveDeriv, Point, QuadBez, Rect, Shape, Vec2};
+use kurbo::{Affine, CubicBez, Line, ParamCurve, ParamCurveDeriv, PathSeg, Point, QuadBez, Rect, Shape, Vec2};
 
 /// A segment of a path, parametrised over [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +14,16 @@ pub enum Seg {
     Cubic(CubicBez),
     /// An arc of an ellipse.
     Arc(EllipticArc),
+}
+
+impl From<PathSeg> for Seg {
+    fn from(s: PathSeg) -> Self {
+        match s {
+            PathSeg::Line(s) => Self::Line(s),
+            PathSeg::Quad(s) => Self::Quad(s),
+            PathSeg::Cubic(s) => Self::Cubic(s),
+        }
+    }
 }
 
 impl Seg {
@@ -110,7 +120,8 @@ impl Seg {
     }
 
     /// Extends a box that holds the ends to hold the segment. Extremes are computed only if control points lie outside.
-    pub(super) fn extend(&self, b: Rect) -> Rect {
+    #[must_use]
+    pub fn extend(&self, b: Rect) -> Rect {
         let holds = |p: Point| b.x0 <= p.x && p.x <= b.x1 && b.y0 <= p.y && p.y <= b.y1;
         let inside = match self {
             Self::Line(_) => true,

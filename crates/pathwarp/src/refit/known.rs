@@ -52,7 +52,7 @@ impl KnownShapes {
         };
         // A path that cannot be refitted says so when it is its turn.
         let mut memory = MergeMemory::default();
-        let _ = Self::default().refit(outline, map, options, &mut memory);
+        let _ = refit(outline, map, options, &mut memory);
         Self(Arc::new(memory.into_shapes()))
     }
 
@@ -66,32 +66,31 @@ impl KnownShapes {
         map: &dyn Map,
         options: &Options,
     ) -> Result<RefittedPath, GeometryError> {
-        self.refit(outline, map, options, &mut MergeMemory::new(self.0.clone()))
+        refit(outline, map, options, &mut MergeMemory::new(Arc::clone(&self.0)))
     }
+}
 
-    fn refit(
-        &self,
-        outline: &Outline,
-        map: &dyn Map,
-        options: &Options,
-        memory: &mut MergeMemory,
-    ) -> Result<RefittedPath, GeometryError> {
-        let mut out = PathWriter::default();
-        let gathered = (map.prefers_batches() && !map.remembers()).then(|| Gathered::new(map));
-        if let Class::Affine(m) = map.class() {
-            path::affine(outline, m, options, &mut out)?;
-        } else {
-            let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
-            let mut creases = Creases::default();
-            map.creases(&mut creases);
-            let announced = path::announce_short(outline, map, &creases, options);
-            for sub in &outline.subpaths {
-                path::subpath(sub, map, &creases, (options, announced), (memory, &self.0), &mut out)?;
-            }
+fn refit(
+    outline: &Outline,
+    map: &dyn Map,
+    options: &Options,
+    memory: &mut MergeMemory,
+) -> Result<RefittedPath, GeometryError> {
+    let mut out = PathWriter::default();
+    let gathered = (map.prefers_batches() && !map.remembers()).then(|| Gathered::new(map));
+    if let Class::Affine(m) = map.class() {
+        path::affine(outline, m, options, &mut out)?;
+    } else {
+        let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
+        let mut creases = Creases::default();
+        map.creases(&mut creases);
+        let announced = path::announce_short(outline, map, &creases, options);
+        for sub in &outline.subpaths {
+            path::subpath(sub, map, &creases, (options, announced), memory, &mut out)?;
         }
-        out.report.segments_in = outline.segs().count();
-        let mut out = out.finish();
-        out.report.account_for_rounding(outline, report::extent(&out.path), options.tolerance);
-        Ok(out)
     }
+    out.report.segments_in = outline.segs().count();
+    let mut out = out.finish();
+    out.report.account_for_rounding(outline, report::extent(&out.path), options.tolerance);
+    Ok(out)
 }

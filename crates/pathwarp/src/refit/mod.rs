@@ -74,7 +74,7 @@ use crate::outline::Outline;
 /// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
 /// remain lines.
 ///
-/// Where coordinates are so large that the tolerance is below their rounding, [`PathReport::unresolved`] says so.
+/// Sets [`PathReport::unresolved`] if coordinates are so large that their rounding exceeds the tolerance.
 ///
 /// # Errors
 /// [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and

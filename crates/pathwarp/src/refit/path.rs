@@ -2,7 +2,7 @@
 
 use super::gather;
 use super::limits::CHUNK;
-use super::merge::{self, MergeMemory, Merger, Shapes, may_be_smooth};
+use super::merge::{self, MergeMemory, Merger, may_be_smooth};
 use super::options::Options;
 use super::parallel::in_parallel;
 use super::piece::{FittedPiece, PathWriter, reverse};
@@ -62,7 +62,7 @@ pub(super) fn subpath(
     map: &dyn Map,
     creases: &Creases,
     (options, announced): (&Options, bool),
-    (memory, known): (&mut MergeMemory, &Arc<Shapes>),
+    memory: &mut MergeMemory,
     out: &mut PathWriter,
 ) -> Result<(), GeometryError> {
     sub.segs.first().map_or(Ok(()), finite)?;
@@ -91,7 +91,8 @@ pub(super) fn subpath(
         out.report.add(report);
         pieces = all;
     } else {
-        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::new(known.clone()));
+        let known = memory.known();
+        let alone = |i: usize, segs: &[Seg]| refitted(i, segs, &mut MergeMemory::new(Arc::clone(&known)));
         for (more, report) in in_parallel(&sub.segs, CHUNK, alone)? {
             out.report.add(report);
             pieces.extend(more);

@@ -6,7 +6,6 @@ mod format;
 mod list;
 mod map;
 mod model;
-mod plan;
 mod polygons;
 mod preview;
 mod report;

@@ -2,12 +2,12 @@
 
 use super::format::ModelFormat;
 use super::model::{mesh_file, pending, unread};
-use super::plan::Job;
 use super::preview::Preview;
 use super::report::Run;
 use super::work::{Done, Work, shown, undefined};
 use crate::failure::Failure;
 use crate::output::PendingFile;
+use crate::pipeline::Job;
 use pathwarp::budget::Budget;
 use pathwarp::param::Axis;
 use pathwarp_solid::glam::DVec3;

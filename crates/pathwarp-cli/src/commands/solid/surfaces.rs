@@ -2,13 +2,13 @@
 
 use super::format::ModelFormat;
 use super::model::{mesh_file, pending};
-use super::plan::Job;
 use super::preview::Preview;
 use super::report::SurfaceRun;
 use super::work::{Done, Work, shown, undefined};
 use crate::advice;
 use crate::failure::Failure;
 use crate::output::PendingFile;
+use crate::pipeline::Job;
 use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::param::Axis;
 use pathwarp_solid::Box3;

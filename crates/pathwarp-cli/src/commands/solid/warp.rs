@@ -3,7 +3,6 @@
 use super::args::{self, Own};
 use super::format::ModelFormat;
 use super::model::{Content, Model};
-use super::plan::{self, Job};
 use super::work::{Done, Work};
 use super::{polygons, report, surfaces};
 use crate::advice::Flags;
@@ -11,15 +10,16 @@ use crate::catalogue::Catalogue;
 use crate::commands::deformation;
 use crate::failure::Failure;
 use crate::input::display;
-use crate::options::Given;
+use crate::options::{CommonOptions, Given};
 use crate::output::PendingFile;
+use crate::pipeline::{Folders, InputFile, Inputs, Job};
 use crate::status::Status;
 use crate::{recipe_file, references, terminal, watch};
 use clap::Command;
 use pathwarp::deform::Info;
 use pathwarp::recipe::Recipe;
 use pathwarp_solid::deform::Registry3;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub(super) fn command(info: &Info) -> Command {
     deformation::described(info).args(args::all())
@@ -35,7 +35,7 @@ pub(super) fn run(
 ) -> Result<Status, Failure> {
     let options = given.read()?;
     watch::begin(options.reading.limits);
-    let jobs = plan::plan(registry, recipe, &options, from)?;
+    let jobs = plan(registry, recipe, &options, from)?;
     for job in &jobs {
         // A wrong extension must not cost a long run.
         ModelFormat::of_output(job.target.as_deref(), ModelFormat::Obj)?;
@@ -53,11 +53,31 @@ pub(super) fn run(
     }
 }
 
+/// The outputs of all models, planned before anything is read.
+fn plan(
+    registry: &Registry3,
+    recipe: &Recipe,
+    options: &CommonOptions,
+    from: Option<&Path>,
+) -> Result<Vec<Job>, Failure> {
+    /// A drawing gives a model.
+    fn result(target: PathBuf) -> PathBuf {
+        let is_drawing =
+            target.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
+        if is_drawing { target.with_extension("obj") } else { target }
+    }
+    let mut files: Vec<InputFile> = options.inputs.iter().map(InputFile::named).collect();
+    if files.is_empty() {
+        files.push(InputFile::named("-"));
+    }
+    Inputs { files: &files, kind: "model", replaceable: false, result }.plan(registry, recipe, options, from)
+}
+
 impl Work<'_> {
     /// Deforms the models one after another, each with all threads, and finishes each on its own.
     fn all(&self, jobs: &[Job], given: &Given) -> Result<Status, Failure> {
         let options = self.options;
-        let _folders = plan::folders(options, jobs)?;
+        let _empty_ones_removed_at_the_end = Folders::create(options, jobs)?;
         let (mut failed, mut partial, mut reports) = (Vec::new(), false, Vec::new());
         for job in jobs {
             let _batch = (jobs.len() > 1).then(watch::InBatch::begin);

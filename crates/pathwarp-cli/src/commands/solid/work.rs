@@ -1,4 +1,4 @@
-//! What all models of a run share, and what a run makes of one.
+//! The shared state of a run over models, and the outcome for one model.
 
 use super::args::Own;
 use crate::advice::Flags;

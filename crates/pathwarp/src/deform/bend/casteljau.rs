@@ -121,83 +121,7 @@ fn binomial(n: usize, k: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::cell::Cell;
-    use std::ops::{Add, Div, Mul, Neg, Sub};
-
-    thread_local! {
-        /// Products, sums and differences made so far on this thread.
-        static COUNT: Cell<[usize; 3]> = const { Cell::new([0; 3]) };
-    }
-
-    /// A number that counts the operations on it.
-    #[derive(Clone, Copy)]
-    struct Counted(f64);
-
-    fn count(kind: usize) {
-        COUNT.with(|c| {
-            let mut n = c.get();
-            n[kind] += 1;
-            c.set(n);
-        });
-    }
-
-    macro_rules! counted {
-        ($($trait:ident $method:ident $op:tt $kind:expr;)*) => {$(
-            impl $trait for Counted {
-                type Output = Self;
-                fn $method(self, o: Self) -> Self { count($kind); Self(self.0 $op o.0) }
-            }
-            impl $trait<f64> for Counted {
-                type Output = Self;
-                fn $method(self, o: f64) -> Self { count($kind); Self(self.0 $op o) }
-            }
-        )*};
-    }
-    counted! { Mul mul * 0; Div div / 0; Add add + 1; Sub sub - 2; }
-
-    impl Neg for Counted {
-        type Output = Self;
-        fn neg(self) -> Self {
-            Self(-self.0)
-        }
-    }
-    impl From<f64> for Counted {
-        fn from(v: f64) -> Self {
-            Self(v)
-        }
-    }
-    impl Real for Counted {
-        fn value(self) -> f64 {
-            self.0
-        }
-        fn sqrt(self) -> Self {
-            Self(self.0.sqrt())
-        }
-        fn sin(self) -> Self {
-            Self(self.0.sin())
-        }
-        fn cos(self) -> Self {
-            Self(self.0.cos())
-        }
-        fn exp(self) -> Self {
-            Self(self.0.exp())
-        }
-        fn ln(self) -> Self {
-            Self(self.0.ln())
-        }
-        fn atan2(self, x: Self) -> Self {
-            Self(self.0.atan2(x.0))
-        }
-        fn powi(self, n: i32) -> Self {
-            Self(self.0.powi(n))
-        }
-        fn powf(self, n: f64) -> Self {
-            Self(self.0.powf(n))
-        }
-        fn hypot(self, y: Self) -> Self {
-            Self(self.0.hypot(y.0))
-        }
-    }
+    use crate::map::counted::{Counted, operations};
 
     /// Table 1 of the paper: 9, 27 and 54 products and as many sums per point in space for degrees 1, 2 and 3. The paper takes
     /// q − p as given; computing it costs three differences a step, which Table 1 leaves out. In the plane a step is 4 and 4.
@@ -206,17 +130,18 @@ mod tests {
         for (degree, expected) in [(1, 9), (2, 27), (3, 54)] {
             let point = |i: usize| [i as f64, 1.0, 2.0].map(Counted);
             let handles = [[0.5, 1.0, 0.0], [0.0, 0.3, 1.0]];
-            COUNT.with(|c| c.set([0; 3]));
-            let mut row: Vec<_> = (0..=degree).map(point).collect();
-            let _ = eval(&mut row, |_, _| &handles[..], &[0.3, 0.4, 0.5].map(Counted));
-            let [products, sums, differences] = COUNT.with(Cell::get);
+            let [products, sums, differences] = operations(|| {
+                let mut row: Vec<_> = (0..=degree).map(point).collect();
+                let _ = eval(&mut row, |_, _| &handles[..], &[0.3, 0.4, 0.5].map(Counted));
+            });
             assert_eq!((products, sums, differences), (expected, expected, expected / 3), "degree {degree}");
 
             let levels: Vec<_> = (1..=degree).map(|j| vec![Vec2::new(1.0, 2.0); degree + 1 - j]).collect();
             let ribbon = Ribbon::new((0..=degree).map(|i| Point::new(i as f64, 1.0)).collect(), &levels).unwrap();
-            COUNT.with(|c| c.set([0; 3]));
-            let _ = ribbon.at(Counted(0.3), Counted(0.4));
-            assert_eq!(COUNT.with(Cell::get)[0], 4 * degree * (degree + 1) / 2);
+            let [products, ..] = operations(|| {
+                let _ = ribbon.at(Counted(0.3), Counted(0.4));
+            });
+            assert_eq!(products, 4 * degree * (degree + 1) / 2);
         }
     }
 

@@ -52,6 +52,11 @@ impl MergeMemory {
         Self { repeats: Repeats::new(known), ..Self::default() }
     }
 
+    /// The shapes it began with.
+    pub(super) fn known(&self) -> Arc<Shapes> {
+        Arc::clone(&self.repeats.known)
+    }
+
     /// The shapes of the runs so far.
     pub(super) fn into_shapes(self) -> Shapes {
         self.repeats.own

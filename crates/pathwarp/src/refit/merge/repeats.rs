@@ -73,7 +73,7 @@ impl Shapes {
 #[derive(Debug, Default)]
 pub(super) struct Repeats {
     pub(super) own: Shapes,
-    known: Arc<Shapes>,
+    pub(super) known: Arc<Shapes>,
     /// The entry to be replaced next, once there are [`MAX_SHAPES`].
     oldest: usize,
 }

@@ -1,16 +1,16 @@
-//! A number that counts the operations on it, for tests.
+//! A number that counts the operations on it, for tests here and of pathwarp-solid.
 
-use pathwarp::map::Real;
+use super::Real;
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 thread_local! {
-    static COUNT: Cell<[usize; 2]> = const { Cell::new([0; 2]) };
+    static COUNT: Cell<[usize; 3]> = const { Cell::new([0; 3]) };
 }
 
-/// Products (with quotients) and sums (with differences) of `work`.
-pub(crate) fn operations(work: impl FnOnce()) -> [usize; 2] {
-    COUNT.with(|c| c.set([0; 2]));
+/// Products (with quotients), sums and differences of `work`.
+pub(crate) fn operations(work: impl FnOnce()) -> [usize; 3] {
+    COUNT.with(|c| c.set([0; 3]));
     work();
     COUNT.with(Cell::get)
 }
@@ -39,7 +39,7 @@ macro_rules! counted {
         }
     )*};
 }
-counted! { Mul mul * 0; Div div / 0; Add add + 1; Sub sub - 1; }
+counted! { Mul mul * 0; Div div / 0; Add add + 1; Sub sub - 2; }
 
 impl Neg for Counted {
     type Output = Self;
