@@ -1,4 +1,4 @@
-"""The command line of both pipelines: SOURCE FOLDER DEFORMATION [NAME=VALUE …] [--workers N]."""
+"""The command line of both pipelines: SOURCE FOLDER DEFORMATION [NAME=VALUE …] [--workers N] [--read worker|system]."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ def read(doc: str) -> argparse.Namespace:
     parser.add_argument("deformation")
     parser.add_argument("parameters", nargs="*", metavar="NAME=VALUE")
     parser.add_argument("--workers", type=int, default=2)
+    who = "who reads the files: each worker its own, by their paths, or the system, which knows object storage"
+    parser.add_argument("--read", choices=("worker", "system"), default="worker", help=who)
     given = parser.parse_args()
     given.deformation = pathwarp.Deformation(given.deformation, **dict(p.split("=", 1) for p in given.parameters))
     return given

@@ -8,37 +8,81 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
-from typing import Any, Dict
+import pathlib
+import secrets
+import threading
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Union
 
 import pathwarp
 
-SUFFIXES = (".svg",)
+SUFFIX = ".svg"
+
+Row = Dict[str, Any]
+"""What is listed about a file: path, sha256 of the result, number of warnings, error."""
+
+_RANDOM = secrets.token_hex(8)
+"""Sets this program apart from those on other machines, which may have processes of the same number. Forks share it."""
+
+COLUMNS = ("path", "sha256", "warnings", "error")
 
 
-def bend(content: bytes, name: str, deformation: pathwarp.Deformation, options: Dict[str, Any]) -> Dict[str, Any]:
-    """The warped file, or the error that it causes: a bad file must not stop the others."""
+def find(root: str) -> List[str]:
+    """The drawings below a folder."""
+    return sorted(str(path) for path in pathlib.Path(root).rglob(f"*{SUFFIX}"))
+
+
+def warp(
+    paths: Sequence[str],
+    contents: Optional[Iterable[bytes]],
+    root: str,
+    folder: str,
+    deformation: pathwarp.Deformation,
+    options: Dict[str, Any],
+) -> List[Row]:
+    """Warps files below `root`, reading those whose contents are not given, and writes the results to `folder`.
+
+    A file that cannot be read or warped must not stop the others: its row has the error.
+    """
+    found = [_read(path) for path in paths] if contents is None else list(contents)
+    readable = [(path, content) for path, content in zip(paths, found) if not isinstance(content, OSError)]
+    warped = iter(deformation.warp_svgs([c for _, c in readable], names=[p for p, _ in readable], **options))
+    return [_row(path, c if isinstance(c, OSError) else next(warped), root, folder) for path, c in zip(paths, found)]
+
+
+def _read(path: str) -> Union[bytes, OSError]:
     try:
-        warped = deformation.warp_svg(content, name=name, **options)
-        return {"content": bytes(warped), "warnings": len(warped.warnings), "error": ""}
-    except pathwarp.PathwarpError as e:
-        return {"content": b"", "warnings": 0, "error": f"{type(e).__name__}: {e}"}
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError as e:
+        return e
 
 
-def put(content: bytes, source: str, root: str, folder: str) -> Dict[str, Any]:
-    """Writes a result where its source lies below `root`, all of it or nothing."""
-    below = os.path.relpath(source, root)
-    target = os.path.join(folder, below)
-    os.makedirs(os.path.dirname(target), exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=os.path.dirname(target), prefix=".pathwarp-")
+def _row(path: str, result: Union[pathwarp.Warped, Exception], root: str, folder: str) -> Row:
+    if isinstance(result, Exception):
+        return {"path": path, "sha256": "", "warnings": 0, "error": f"{type(result).__name__}: {result}"}
+    below = os.path.relpath(path, root)
+    put(result, os.path.join(folder, below))
+    return {"path": below, "sha256": hashlib.sha256(result).hexdigest(), "warnings": len(result.warnings), "error": ""}
+
+
+def put(content: bytes, target: str) -> None:
+    """Writes a file, all of it or nothing."""
+    parent = os.path.dirname(target)
+    temporary = os.path.join(parent, f".pathwarp-{_RANDOM}-{os.getpid()}-{threading.get_ident()}")
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
+        try:
+            file = open(temporary, "wb", buffering=0)
+        except FileNotFoundError:
+            os.makedirs(parent, exist_ok=True)
+            file = open(temporary, "wb", buffering=0)
+        with file:
+            view = memoryview(content)
+            while view:
+                view = view[file.write(view) :]
         os.replace(temporary, target)
     except BaseException:
-        os.unlink(temporary)
+        pathlib.Path(temporary).unlink(missing_ok=True)
         raise
-    return {"path": below, "sha256": hashlib.sha256(content).hexdigest()}
 
 
 def one_thread_per_worker() -> None:

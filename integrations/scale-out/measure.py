@@ -134,9 +134,9 @@ def by_ray(args: Any, source: pathlib.Path, folder: pathlib.Path, deformation: p
     ray.init(num_cpus=args.workers, _node_ip_address="127.0.0.2", include_dashboard=False, log_to_driver=False)
     warm = folder.parent / "warm"
     copies(args.source, warm / "in", 64)
-    ray_warp.run(str(warm / "in"), str(warm / "out"), deformation, {}, args.workers)
+    ray_warp.run(str(warm / "in"), str(warm / "out"), deformation, {}, args.workers, args.read)
     is_worker = lambda p: "warp" in " ".join(p.cmdline()) and p.cmdline()[0].startswith("ray::")  # noqa: E731
-    return Watch(is_worker, args.kill), lambda: ray_warp.run(str(source), str(folder), deformation, {}, args.workers).to_pandas()
+    return Watch(is_worker, args.kill), lambda: ray_warp.run(str(source), str(folder), deformation, {}, args.workers, args.read).to_pandas()
 
 
 def by_spark(args: Any, source: pathlib.Path, folder: pathlib.Path, deformation: pathwarp.Deformation) -> Any:
@@ -145,7 +145,7 @@ def by_spark(args: Any, source: pathlib.Path, folder: pathlib.Path, deformation:
     spark = spark_warp.session(args.workers)
     warm = folder.parent / "warm"
     copies(args.source, warm / "in", 64)
-    run = lambda a, b: spark_warp.run(spark, str(a), str(b), deformation, {}, f"{b}.results").toPandas()  # noqa: E731
+    run = lambda a, b: spark_warp.run(spark, str(a), str(b), deformation, {}, f"{b}.results", args.read).toPandas()  # noqa: E731
     run(warm / "in", warm / "out")
 
     def is_worker(p: psutil.Process) -> bool:
@@ -163,6 +163,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=20_000)
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     parser.add_argument("--kill", type=int, default=0, metavar="N", help="kill N workers on the way")
+    parser.add_argument("--read", choices=("worker", "system"), default="worker", help="who reads the files")
     parser.add_argument("systems", nargs="+", choices=("ray", "spark"))
     args = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="pathwarp-scale-") as made:

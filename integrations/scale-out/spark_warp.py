@@ -1,4 +1,4 @@
-"""Warps a folder of SVG files with Spark: binaryFile, mapInPandas, write.
+"""Warps a folder of SVG files with Spark and mapInPandas.
 
     python spark_warp.py icons/ warped/ arc bend=40%
 
@@ -19,20 +19,18 @@ import pathwarp
 
 SCHEMA = "path string, sha256 string, warnings long, error string"
 
+PARTS_PER_WORKER = 16
+"""Tasks per worker: the last ones leave others idle for at most a sixteenth of the time."""
 
-def warper(root: str, folder: str, deformation: pathwarp.Deformation, options: Dict[str, Any]) -> Any:
-    """The function for mapInPandas: bends the files of each batch, and writes them."""
+
+def warper(**how: Any) -> Any:
+    """The function for mapInPandas: warps the files of each batch."""
 
     def warp(batches: Iterator[pd.DataFrame]) -> Iterator[pd.DataFrame]:
         files.one_thread_per_worker()
         for batch in batches:
-            rows = []
-            for path, content in zip(batch["path"], batch["content"]):
-                path = files.local(path)
-                done = files.bend(content, path, deformation, options)
-                row = {"path": path, "sha256": ""} if done["error"] else files.put(done["content"], path, root, folder)
-                rows.append({**row, "warnings": done["warnings"], "error": done["error"]})
-            yield pd.DataFrame(rows, columns=["path", "sha256", "warnings", "error"])
+            paths = [files.local(path) for path in batch["path"]]
+            yield pd.DataFrame(files.warp(paths, batch.get("content"), **how), columns=list(files.COLUMNS))
 
     return warp
 
@@ -63,19 +61,35 @@ def session(workers: int) -> Any:
     return made
 
 
-def run(spark: Any, source: str, folder: str, deformation: pathwarp.Deformation, options: Dict[str, Any], results: str) -> Any:
-    """Warps all files of a folder, and writes the list of results as Parquet, which Spark commits whole."""
-    reader = spark.read.format("binaryFile").option("recursiveFileLookup", "true")
-    drawings = reader.option("pathGlobFilter", "*.svg").load(source).select("path", "content")
-    done = drawings.mapInPandas(warper(source, folder, deformation, options), SCHEMA)
-    done.write.mode("overwrite").parquet(results)
+def run(
+    spark: Any,
+    source: str,
+    folder: str,
+    deformation: pathwarp.Deformation,
+    options: Dict[str, Any],
+    results: str,
+    read: str = "worker",
+) -> Any:
+    """Warps all files of a folder, and writes the list of results as Parquet, which Spark commits whole.
+
+    With `read="system"`, Spark reads the files, which works for object storage, too.
+    """
+    if read == "system":
+        reader = spark.read.format("binaryFile").option("recursiveFileLookup", "true")
+        drawings = reader.option("pathGlobFilter", f"*{files.SUFFIX}").load(source).select("path", "content")
+    else:
+        parts = PARTS_PER_WORKER * spark.sparkContext.defaultParallelism
+        paths = spark.sparkContext.parallelize(files.find(source), parts)
+        drawings = spark.createDataFrame(paths.map(lambda path: (path,)), "path string")
+    how = warper(root=source, folder=folder, deformation=deformation, options=options)
+    drawings.mapInPandas(how, SCHEMA).write.mode("overwrite").parquet(results)
     return spark.read.parquet(results)
 
 
 def main() -> None:
     given = commandline.read(__doc__)
     source, folder = os.path.abspath(given.source), os.path.abspath(given.folder)
-    done = run(session(given.workers), source, folder, given.deformation, {}, folder + ".results").toPandas()
+    done = run(session(given.workers), source, folder, given.deformation, {}, folder + ".results", given.read).toPandas()
     commandline.summarize(done)
 
 

@@ -32,10 +32,14 @@ impl Ask {
     }
 }
 
+/// The point in two numbers of an answer.
+pub(crate) fn point(&[x, y]: &[f64; 2]) -> Point {
+    Point::new(x, y)
+}
+
 /// The jet in six numbers of an answer: F, ∂F/∂x, ∂F/∂y.
-pub(crate) fn jet(n: &[f64]) -> Option<Jet> {
-    let [x, y, xx, xy, yx, yy] = *n else { return None };
-    Some(Jet { p: Point::new(x, y), dx: Vec2::new(xx, xy), dy: Vec2::new(yx, yy) })
+pub(crate) fn jet(&[x, y, xx, xy, yx, yy]: &[f64; 6]) -> Jet {
+    Jet { p: Point::new(x, y), dx: Vec2::new(xx, xy), dy: Vec2::new(yx, yy) }
 }
 
 /// A program's description of the map that it has built.

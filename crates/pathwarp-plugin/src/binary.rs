@@ -44,23 +44,29 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     };
     out.reserve(HEAD + 16 * points.len());
     head(kind, 16 * points.len(), out);
-    for p in points {
-        out.extend_from_slice(&p.x.to_le_bytes());
-        out.extend_from_slice(&p.y.to_le_bytes());
+    let start = out.len();
+    out.resize(start + 16 * points.len(), 0);
+    let places = out.get_mut(start..).unwrap_or_default().as_chunks_mut::<8>().0;
+    for (place, number) in places.iter_mut().zip(points.iter().flat_map(|p| [p.x, p.y])) {
+        *place = number.to_le_bytes();
     }
 }
 
 /// The length of the message at the beginning of `bytes`, once its head is there. `body` is the length of the body if it is known;
 /// a message instead of it may have up to [`MESSAGE_BYTES`].
-pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &str) -> Result<Option<usize>, Fault> {
+pub(crate) fn length(
+    bytes: &[u8],
+    body: Option<usize>,
+    expected: &dyn Fn() -> String,
+) -> Result<Option<usize>, Fault> {
     let Some((head, _)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
     let [a, b, c, d, kind] = *head;
     let length = u32::from_le_bytes([a, b, c, d]) as usize;
-    let garbage = || Err(Fault::Garbage { expected: expected.to_owned(), found: beginning(bytes) });
+    let garbage = || Err(Fault::Garbage { expected: expected(), found: beginning(bytes) });
     match (kind, body) {
         (DONE, Some(body)) if length == body + 1 => Ok(Some(length + 4)),
         (DONE, Some(body)) if length % 16 == 1 && length < 100 * (body + 16) => Err(Fault::Count {
-            expected: expected.to_owned(),
+            expected: expected(),
             found: format!("has {} bytes of numbers instead of {body}", length - 1),
         }),
         (DONE, None) | (REFUSED, _) if (1..=MESSAGE_BYTES).contains(&length) => Ok(Some(length + 4)),
@@ -79,6 +85,6 @@ pub(crate) fn body(bytes: &[u8]) -> Result<&[u8], Fault> {
 
 /// Reads the numbers of an answer to a batch.
 pub(crate) fn read_batch(bytes: &[u8], out: &mut Vec<f64>) -> Result<(), Fault> {
-    out.extend(body(bytes)?.chunks_exact(8).filter_map(|c| c.try_into().ok().map(f64::from_le_bytes)));
+    out.extend(body(bytes)?.as_chunks::<8>().0.iter().map(|c| f64::from_le_bytes(*c)));
     Ok(())
 }

@@ -20,7 +20,7 @@ pub enum Fault {
     #[error("cannot be started: {0}; a script needs a first line such as #!/usr/bin/env python3")]
     NotStarted(String),
     /// It ended while an answer was expected.
-    #[error("ended while {expected} was expected ({status}){}", quoted(.said))]
+    #[error("ended ({status}) without giving {expected}{}", quoted(.said))]
     Ended {
         /// The expected answer.
         expected: String,

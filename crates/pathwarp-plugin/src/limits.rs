@@ -1,5 +1,6 @@
 //! Limits on a program: seconds and bytes.
 
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// Environment variable for the seconds that a program may take for one answer.
@@ -28,7 +29,10 @@ pub(crate) const QUOTED_BYTES: usize = 300;
 
 /// The time for one answer.
 pub(crate) fn time() -> Duration {
-    let given = std::env::var(SECONDS_VARIABLE).ok().and_then(|t| t.parse().ok());
-    let seconds: f64 = given.filter(|s: &f64| *s > 0.0 && *s < 1e6).unwrap_or(SECONDS);
-    Duration::from_secs_f64(seconds)
+    static TIME: OnceLock<Duration> = OnceLock::new();
+    *TIME.get_or_init(|| {
+        let given = std::env::var(SECONDS_VARIABLE).ok().and_then(|t| t.parse().ok());
+        let seconds: f64 = given.filter(|s: &f64| *s > 0.0 && *s < 1e6).unwrap_or(SECONDS);
+        Duration::from_secs_f64(seconds)
+    })
 }

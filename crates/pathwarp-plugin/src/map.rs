@@ -1,12 +1,13 @@
 //! The map of a program.
 
-use crate::answer::{Ask, jet};
+use crate::answer::{Ask, jet, point};
 use crate::differences;
 use crate::fault::Fault;
 use crate::instance::Instance;
 use crate::pool::Program;
 use pathwarp::kurbo::{Point, Vec2};
 use pathwarp::map::{Creases, Jet, Map};
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 /// What a program can answer.
@@ -31,56 +32,58 @@ pub(crate) struct ProgramMap {
 }
 
 impl ProgramMap {
-    /// The numbers that the program answers for `ps`, of which all are finite. `None` if it has failed.
-    fn ask(&self, ask: Ask, ps: &[Point]) -> Option<Vec<f64>> {
+    /// The program's answers, or `None` if it has failed.
+    fn answers<T>(&self, answers: impl FnOnce(&Program) -> Result<T, Fault>) -> Option<T> {
         if self.failed.get().is_some() {
             return None;
         }
-        match self.program.ask(&self.instance, ask, ps) {
-            Ok(numbers) => Some(numbers),
-            Err(fault) => {
-                // Of several threads, the first one tells.
-                let _ = self.failed.set(fault);
-                None
-            }
-        }
+        // Of several threads, the first one tells.
+        answers(&self.program).map_err(|fault| self.failed.set(fault)).ok()
     }
 
-    /// Asks for the points of `ps` that are finite, and gives each answer to `take` with its index.
-    fn answers(&self, ask: Ask, ps: &[Point], mut take: impl FnMut(usize, &[f64])) {
-        let finite: Vec<usize> = (0..ps.len()).filter(|i| ps[*i].is_finite()).collect();
-        if finite.is_empty() {
-            return;
-        }
-        let numbers = if finite.len() == ps.len() {
-            self.ask(ask, ps)
-        } else {
-            self.ask(ask, &finite.iter().map(|i| ps[*i]).collect::<Vec<_>>())
-        };
-        let Some(numbers) = numbers else { return };
-        for (i, answer) in finite.iter().zip(numbers.chunks_exact(ask.numbers())) {
-            let p = ps[*i];
-            let defined = ask != Ask::Inverse && !self.abilities.partial && self.creases.defined_at(p);
+    /// Writes the answers for those of `ps` that are finite. All others are undefined, and so are all once the program has failed.
+    fn write<const N: usize, T: Clone>(
+        &self,
+        ask: Ask,
+        (ps, out): (&[Point], &mut [T]),
+        numbers: &[f64],
+        read: impl Fn(&[f64; N]) -> T,
+    ) {
+        let places = ps.iter().zip(out).filter(|(p, _)| p.is_finite());
+        for ((p, o), answer) in places.zip(numbers.as_chunks::<N>().0) {
+            let defined = ask != Ask::Inverse && !self.abilities.partial && self.creases.defined_at(*p);
             if defined && answer.iter().any(|v| !v.is_finite()) {
                 let _ = self.failed.set(Fault::NotFinite(p.x, p.y));
                 return;
             }
-            take(*i, answer);
+            *o = read(answer);
         }
     }
 
     fn points_by(&self, ask: Ask, ps: &[Point], out: &mut [Point]) {
-        out.fill(Point::new(f64::NAN, f64::NAN));
-        self.answers(ask, ps, |i, answer| {
-            if let (Some(o), &[x, y]) = (out.get_mut(i), answer) {
-                *o = Point::new(x, y);
-            }
-        });
+        out.fill(UNDEFINED);
+        let finite = finite(ps);
+        if let (false, Some(numbers)) =
+            (finite.is_empty(), self.answers(|program| program.ask(&self.instance, ask, &finite)))
+        {
+            self.write(ask, (ps, out), &numbers, point);
+        }
     }
 
     /// The same map, as it is on the side of `inside` of every crease.
     fn beside(&self, inside: Point) -> Beside {
         Beside { map: self.clone(), inside }
+    }
+}
+
+const UNDEFINED: Point = Point::new(f64::NAN, f64::NAN);
+
+/// The points that are finite: others are not asked for.
+fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
+    if ps.iter().all(|p| p.is_finite()) {
+        Cow::Borrowed(ps)
+    } else {
+        Cow::Owned(ps.iter().copied().filter(|p| p.is_finite()).collect())
     }
 }
 
@@ -99,12 +102,7 @@ impl Map for ProgramMap {
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         if self.abilities.jacobian {
-            out.fill(Jet::UNDEFINED);
-            self.answers(Ask::Jets, ps, |i, answer| {
-                if let (Some(o), Some(jet)) = (out.get_mut(i), jet(answer)) {
-                    *o = jet;
-                }
-            });
+            self.points_and_jets((&[], &mut []), (ps, out));
         } else {
             out.copy_from_slice(&differences::jets(ps, self.size, |ps, out| self.points(ps, out)));
         }
@@ -112,6 +110,26 @@ impl Map for ProgramMap {
 
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         self.points_by(Ask::Points, ps, out);
+    }
+
+    fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
+        if !self.abilities.jacobian {
+            self.points(ps, images);
+            return self.jets(qs, jets);
+        }
+        images.fill(UNDEFINED);
+        jets.fill(Jet::UNDEFINED);
+        let (points, others) = (finite(ps), finite(qs));
+        let answers = self.answers(|program| match (points.is_empty(), others.is_empty()) {
+            (true, true) => Ok([Vec::new(), Vec::new()]),
+            (false, true) => Ok([program.ask(&self.instance, Ask::Points, &points)?, Vec::new()]),
+            (true, false) => Ok([Vec::new(), program.ask(&self.instance, Ask::Jets, &others)?]),
+            (false, false) => program.ask_both(&self.instance, [&points, &others]),
+        });
+        if let Some([values, derivatives]) = answers {
+            self.write(Ask::Points, (ps, images), &values, point);
+            self.write(Ask::Jets, (qs, jets), &derivatives, jet);
+        }
     }
 
     fn creases(&self, out: &mut Creases) {

@@ -53,7 +53,7 @@ impl Pipes {
         &mut self,
         running: &mut Running,
         request: &[u8],
-        (expected, limit): (&str, usize),
+        (expected, limit): (&dyn Fn() -> String, usize),
         mut whole: impl FnMut(&[u8]) -> Result<Option<usize>, Fault>,
     ) -> Result<Vec<u8>, Fault> {
         let (mut rest, until) = (request, Instant::now() + time());
@@ -66,7 +66,7 @@ impl Pipes {
                 return Ok(std::mem::replace(&mut self.incoming, later));
             }
             if self.incoming.len() > limit {
-                return Err(Fault::Flood { expected: expected.to_owned(), limit });
+                return Err(Fault::Flood { expected: expected(), limit });
             }
             rest = self.write(rest).or_else(|()| self.stopped(running, "input", expected).map(|()| &[][..]))?;
             let left = until.saturating_duration_since(Instant::now());
@@ -75,7 +75,7 @@ impl Pipes {
                     self.stopped(running, "input", expected)?;
                 }
                 return Err(Fault::Silent {
-                    expected: expected.to_owned(),
+                    expected: expected(),
                     seconds: time().as_secs_f64(),
                     said: readable(&self.said),
                 });
@@ -160,7 +160,7 @@ impl Pipes {
     }
 
     /// The fault of a program that has ended, or closed a stream.
-    fn stopped(&mut self, running: &mut Running, stream: &str, expected: &str) -> Result<(), Fault> {
+    fn stopped(&mut self, running: &mut Running, stream: &str, expected: &dyn Fn() -> String) -> Result<(), Fault> {
         let until = Instant::now() + GRACE;
         while Instant::now() < until && !(running.has_ended() && self.errors.is_none()) {
             if !self.wait(false, LOOK.min(GRACE / 10))[1] && running.has_ended() {
@@ -169,7 +169,7 @@ impl Pipes {
             self.hear()?;
             std::thread::sleep(Duration::from_millis(1));
         }
-        let (expected, said) = (expected.to_owned(), readable(&self.said));
+        let (expected, said) = (expected(), readable(&self.said));
         if !running.has_ended() {
             return Err(Fault::Closed { stream: stream.to_owned(), expected, said });
         }

@@ -62,7 +62,7 @@ impl Pipes {
         &mut self,
         running: &mut Running,
         request: &[u8],
-        (expected, limit): (&str, usize),
+        (expected, limit): (&dyn Fn() -> String, usize),
         mut whole: impl FnMut(&[u8]) -> Result<Option<usize>, Fault>,
     ) -> Result<Vec<u8>, Fault> {
         let until = Instant::now() + time();
@@ -76,14 +76,14 @@ impl Pipes {
                 return Ok(std::mem::replace(&mut self.incoming, later));
             }
             if self.incoming.len() > limit {
-                return Err(Fault::Flood { expected: expected.to_owned(), limit });
+                return Err(Fault::Flood { expected: expected(), limit });
             }
             if let Some(stream) = ended {
                 return Err(self.stopped(running, stream, expected));
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                let (expected, said) = (expected.to_owned(), readable(&self.said));
+                let (expected, said) = (expected(), readable(&self.said));
                 return Err(Fault::Silent { expected, seconds: time().as_secs_f64(), said });
             }
             match self.events.recv_timeout(left.min(LOOK)) {
@@ -112,7 +112,7 @@ impl Pipes {
     }
 
     /// The fault of a program that has ended, or closed a stream.
-    fn stopped(&mut self, running: &mut Running, stream: &str, expected: &str) -> Fault {
+    fn stopped(&mut self, running: &mut Running, stream: &str, expected: &dyn Fn() -> String) -> Fault {
         let until = Instant::now() + GRACE;
         while Instant::now() < until && !running.has_ended() {
             std::thread::sleep(Duration::from_millis(1));
@@ -124,7 +124,7 @@ impl Pipes {
                 return fault;
             }
         }
-        let (expected, said) = (expected.to_owned(), readable(&self.said));
+        let (expected, said) = (expected(), readable(&self.said));
         if !running.has_ended() {
             return Fault::Closed { stream: stream.to_owned(), expected, said };
         }
@@ -169,7 +169,7 @@ mod tests {
         let mut running = Running::start(&file)?;
         let mut pipes = Pipes::new(&running)?;
         let answer =
-            pipes.exchange(&mut running, request, ("an answer", 1000), |b| Ok((b.len() >= length).then_some(length)));
+            pipes.exchange(&mut running, request, (&|| "an answer".to_owned(), 1000), |b| Ok((b.len() >= length).then_some(length)));
         assert!(answer.is_err() || pipes.left_over().is_empty());
         answer
     }

@@ -48,9 +48,26 @@ impl Program {
     pub(crate) fn ask(&self, instance: &Instance, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Fault> {
         let mut out = Vec::with_capacity(ask.numbers() * points.len());
         self.with_session(instance.id, |s| {
-            points.chunks(MOST_POINTS).try_for_each(|ps| s.ask(self.protocol, instance, (ask, ps), &mut out))
+            points
+                .chunks(MOST_POINTS)
+                .try_for_each(|ps| s.ask(self.protocol, instance, &mut [(ask, ps, &mut out)]))
         })?;
         Ok(out)
+    }
+
+    /// Asks for the values of `points` and the jets of `others`: at once by the binary protocol, if they are few enough.
+    pub(crate) fn ask_both(
+        &self,
+        instance: &Instance,
+        [points, others]: [&[Point]; 2],
+    ) -> Result<[Vec<f64>; 2], Fault> {
+        if self.protocol == Protocol::Text || points.len() + others.len() > MOST_POINTS {
+            return Ok([self.ask(instance, Ask::Points, points)?, self.ask(instance, Ask::Jets, others)?]);
+        }
+        let (mut values, mut jets) = (Vec::new(), Vec::new());
+        let mut batches = [(Ask::Points, points, &mut values), (Ask::Jets, others, &mut jets)];
+        self.with_session(instance.id, |s| s.ask(self.protocol, instance, &mut batches))?;
+        Ok([values, jets])
     }
 
     /// Runs `f` with a process, preferably one that has built the map `id`. A process that fails is ended.

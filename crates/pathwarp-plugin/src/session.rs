@@ -43,91 +43,98 @@ impl Session {
         let pipes = Pipes::new(&running)?;
         let mut session = Self { running, pipes, instance: 0 };
         let mut scan = JsonScan::default();
-        let entry = session.exchange(&[], (ENTRY, ENTRY_BYTES), |bytes| scan.end(bytes))?;
+        let expected = || ENTRY.to_owned();
+        let entry = session.pipes.exchange(&mut session.running, &[], (&expected, ENTRY_BYTES), |b| scan.end(b))?;
         Ok((session, entry))
     }
 
     /// Builds a map.
     pub(crate) fn build(&mut self, protocol: Protocol, instance: &Instance) -> Result<BuildAnswer, Fault> {
-        let answer = self.built(protocol, &instance.request)?;
-        self.nothing_left(BUILT)?;
+        let answer = self.built(protocol, &instance.request, 0)?;
+        self.nothing_left(|| BUILT.to_owned())?;
         self.instance = instance.id;
         Ok(answer)
     }
 
-    fn built(&mut self, protocol: Protocol, request: &[u8]) -> Result<BuildAnswer, Fault> {
-        let (expected, limit) = (BUILT, MESSAGE_BYTES);
+    /// Sends `request`, which begins with that for a map, and reads the description of the map. Up to `more` bytes may follow it.
+    fn built(&mut self, protocol: Protocol, request: &[u8], more: usize) -> Result<BuildAnswer, Fault> {
+        let expected = || BUILT.to_owned();
+        let bytes =
+            self.pipes.exchange(&mut self.running, request, (&expected, MESSAGE_BYTES + more), |b| match protocol {
+                Protocol::Text => Ok(text::build_length(b)),
+                Protocol::Binary => binary::length(b, None, &expected),
+            })?;
         match protocol {
-            Protocol::Text => {
-                let bytes = self.exchange(request, (expected, limit), |b| Ok(text::build_length(b)))?;
-                text::read_build(&bytes)
-            }
-            Protocol::Binary => {
-                let bytes = self.exchange(request, (expected, limit), |b| binary::length(b, None, expected))?;
-                text::read_build(binary::body(&bytes)?)
-            }
+            Protocol::Text => text::read_build(&bytes),
+            Protocol::Binary => text::read_build(binary::body(&bytes)?),
         }
     }
 
-    /// Asks for a batch of a map, which is built first if it is not the last one. Appends the numbers of the answer to `out`.
+    /// Asks for batches of a map, which is built first if it is not the last one. All requests are sent at once. Appends the
+    /// numbers of each answer to the list beside the question.
     pub(crate) fn ask(
         &mut self,
         protocol: Protocol,
         instance: &Instance,
-        (ask, points): (Ask, &[Point]),
-        out: &mut Vec<f64>,
+        batches: &mut [(Ask, &[Point], &mut Vec<f64>)],
     ) -> Result<(), Fault> {
-        let count = points.len();
-        let expected = format!("the answer for {count} {}", if count == 1 { "point" } else { "points" });
         let must_build = self.instance != instance.id;
         let mut request = if must_build { instance.request.clone() } else { Vec::new() };
-        match protocol {
-            Protocol::Text => text::batch(ask, points, &mut request),
-            Protocol::Binary => binary::batch(ask, points, &mut request),
+        for (ask, points, _) in batches.iter() {
+            match protocol {
+                Protocol::Text => text::batch(*ask, points, &mut request),
+                Protocol::Binary => binary::batch(*ask, points, &mut request),
+            }
         }
+        // The first answer is read while the requests are sent, with all that follows it.
+        let mut limit = batches.iter().map(|(ask, points, _)| answer_bytes(protocol, *ask, points.len())).sum();
         if must_build {
-            // Both requests go at once; this reads the first answer.
-            self.built(protocol, &request)?;
+            self.built(protocol, &request, limit)?;
             self.instance = instance.id;
             request.clear();
         }
-        let body = 8 * ask.numbers() * count;
-        match protocol {
-            Protocol::Text => {
-                let mut lines = LineCount::default();
-                let limit = LINE_BYTES * count + MESSAGE_BYTES;
-                let bytes = self.exchange(&request, (&expected, limit), |b| Ok(lines.length(b, count)))?;
-                text::read_batch(&bytes, ask, out)?;
+        for (ask, points, out) in batches.iter_mut() {
+            let count = points.len();
+            let expected = || for_points(count);
+            let mut lines = LineCount::default();
+            let bytes = self.pipes.exchange(&mut self.running, &request, (&expected, limit), |b| match protocol {
+                Protocol::Text => Ok(lines.length(b, count)),
+                Protocol::Binary => binary::length(b, Some(8 * ask.numbers() * count), &expected),
+            })?;
+            match protocol {
+                Protocol::Text => text::read_batch(&bytes, *ask, out)?,
+                Protocol::Binary => binary::read_batch(&bytes, out)?,
             }
-            Protocol::Binary => {
-                let limit = body + MESSAGE_BYTES;
-                let whole = |b: &[u8]| binary::length(b, Some(body), &expected);
-                let bytes = self.exchange(&request, (&expected, limit), whole)?;
-                binary::read_batch(&bytes, out)?;
-            }
+            limit -= answer_bytes(protocol, *ask, count);
+            request.clear();
         }
-        self.nothing_left(&expected)
-    }
-
-    fn exchange(
-        &mut self,
-        request: &[u8],
-        expected: (&str, usize),
-        whole: impl FnMut(&[u8]) -> Result<Option<usize>, Fault>,
-    ) -> Result<Vec<u8>, Fault> {
-        self.pipes.exchange(&mut self.running, request, expected, whole)
+        self.nothing_left(|| for_points(batches.last().map_or(0, |(_, points, _)| points.len())))
     }
 
     /// Checks that the program has not written more than its answer.
-    fn nothing_left(&self, expected: &str) -> Result<(), Fault> {
+    fn nothing_left(&self, expected: impl Fn() -> String) -> Result<(), Fault> {
         match self.pipes.left_over() {
             [] => Ok(()),
             more => {
                 let found = format!("is followed by {}", beginning(more));
-                Err(Fault::Count { expected: expected.to_owned(), found })
+                Err(Fault::Count { expected: expected(), found })
             }
         }
     }
+}
+
+/// Words for messages.
+fn for_points(count: usize) -> String {
+    format!("the answer for {count} {}", if count == 1 { "point" } else { "points" })
+}
+
+/// The most bytes of the answer for `count` points.
+fn answer_bytes(protocol: Protocol, ask: Ask, count: usize) -> usize {
+    let body = match protocol {
+        Protocol::Text => LINE_BYTES * count,
+        Protocol::Binary => 8 * ask.numbers() * count,
+    };
+    body + MESSAGE_BYTES
 }
 
 /// Finds the end of a JSON object as it arrives.

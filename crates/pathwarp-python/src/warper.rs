@@ -8,9 +8,12 @@ use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::refit::Assurance;
 use pathwarp_cli::embed::{self, Error, PointMap};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyBytes, PyDict};
-use std::path::{Path, PathBuf};
+use rayon::prelude::*;
+use std::path::PathBuf;
 
 /// Deformations one after another, with options.
 #[pyclass(frozen, module = "pathwarp._native")]
@@ -145,16 +148,19 @@ impl Warper {
         Ok((verbs, coordinates.into_pyarray(py), report(py, &warped)?))
     }
 
-    /// Warps a drawing: its bytes, the report as JSON, and the notes that `explain` asks for.
-    fn warp_drawing<'py>(
+    /// Warps drawings: for each its bytes, the report as JSON, its warnings, and the notes that `explain` asks for; or the exception.
+    fn warp_drawings<'py>(
         &self,
         py: Python<'py>,
-        data: &[u8],
-        name: Option<PathBuf>,
-    ) -> PyResult<(Bound<'py, PyBytes>, String, Vec<String>)> {
-        let name = name.as_deref();
-        let warped = done(py, py.detach(|| on_threads(|| self.0.warp_drawing(data, name.map(Path::new)))))?;
-        Ok((PyBytes::new(py, &warped.bytes), warped.report, warped.notes))
+        drawings: Vec<(PyBackedBytes, Option<PathBuf>)>,
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let warp = |(data, name): &(PyBackedBytes, Option<PathBuf>)| self.0.warp_drawing(data, name.as_deref());
+        let warped: Vec<_> = py.detach(|| on_threads(|| drawings.par_iter().map(warp).collect()));
+        let result = |warped: Result<embed::Drawing, Error>| match warped {
+            Ok(d) => (PyBytes::new(py, &d.bytes), d.report, d.warnings, d.notes).into_bound_py_any(py),
+            Err(e) => exception(py, &e).into_bound_py_any(py),
+        };
+        warped.into_iter().map(result).collect()
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, BufReader, Read, Write};
 
 const ENTRY: &str = r#"{
   "pathwarp-plugin": 1,
@@ -82,10 +82,10 @@ const DONE: u8 = 0;
 const REFUSED: u8 = 1;
 
 fn main() -> io::Result<()> {
-    let (mut input, mut output) = (io::stdin().lock(), unbuffered()?);
+    let (mut input, mut output) = (BufReader::with_capacity(1 << 16, io::stdin().lock()), unbuffered()?);
     output.write_all(ENTRY.as_bytes())?;
     let mut map = None;
-    let mut body = Vec::new();
+    let (mut body, mut answers) = (Vec::new(), Vec::new());
     // A request is the length of what follows, its kind, and its body. Without a further one, the program ends.
     let mut length = [0; 4];
     while input.read_exact(&mut length).is_ok() {
@@ -108,11 +108,14 @@ fn main() -> io::Result<()> {
             Ok(numbers) => (DONE, numbers),
             Err(problem) => (REFUSED, problem.into_bytes()),
         };
-        let mut answer = Vec::with_capacity(body.len() + 5);
-        answer.extend_from_slice(&(body.len() as u32 + 1).to_le_bytes());
-        answer.push(kind);
-        answer.extend_from_slice(&body);
-        output.write_all(&answer)?;
+        answers.extend_from_slice(&(body.len() as u32 + 1).to_le_bytes());
+        answers.push(kind);
+        answers.extend_from_slice(&body);
+        // Another request may have come with this one; then both answers go together.
+        if input.buffer().is_empty() {
+            output.write_all(&answers)?;
+            answers.clear();
+        }
     }
     Ok(())
 }

@@ -65,7 +65,7 @@ fn crashes() {
     fails_in_use(
         "mid-batch",
         &script("bad", "echo $line; [ $i -gt 3 ] && kill -9 $$"),
-        &["points was expected", "signal: 9"],
+        &["without giving the answer for", "signal: 9"],
     );
     fails_at_start("before its entry", "#!/bin/sh\nexit 3\n", 0o755, &["its entry as JSON", "exit status: 3"]);
 }

@@ -174,5 +174,9 @@ fn new_plug_ins_replace_nothing() {
     for name in ["Swell", "../swell", "a b", "", "-x"] {
         scratch.expect(2, &["new-plugin", "rust", name]);
     }
+    for name in ["shaper", "list", "help"] {
+        let (_, stderr) = scratch.expect(2, &["new-plugin", "python", name]);
+        assert!(stderr.contains("is a command already"), "{stderr}");
+    }
     scratch.expect(2, &["new-plugin", "cobol", "swell"]);
 }

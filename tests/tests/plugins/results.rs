@@ -60,6 +60,42 @@ fn a_program_gives_what_the_compiled_in_deformation_gives() {
     }
 }
 
+/// By numbers, values and derivatives are asked for together. A program may answer one request before it reads the next.
+#[test]
+fn requests_that_come_together_may_be_answered_one_by_one() {
+    if !python() {
+        return;
+    }
+    let scratch = Scratch::new();
+    let script = r#"#!/usr/bin/env python3
+import math, os, struct
+entry = 'ENTRY'.replace('"text"', '"binary"').replace('"title"', '"jacobian": true, "title"')
+os.write(1, entry.encode() + b"\n")
+def read(n):
+    got = b""
+    while len(got) < n and (more := os.read(0, n - len(got))):
+        got += more
+    return got
+while head := read(4):
+    kind, *body = read(struct.unpack("<I", head)[0])
+    body, out = bytes(body), b""
+    for x, y in struct.iter_unpack("<dd", body) if kind != 1 else []:
+        out += struct.pack("<dd", x, y + 5 * math.sin(x / 9))
+        if kind == 3:
+            out += struct.pack("<dddd", 1, 5 / 9 * math.cos(x / 9), 0, 1)
+    with open("requests", "a") as log:
+        log.write(str(kind))
+    os.write(1, struct.pack("<IB", len(out) + 1, 0) + out)
+"#;
+    scratch.install("pathwarp-waves", &script.replace("ENTRY", &entry("waves").replace('\n', " ")));
+    scratch.expect(0, &["waves", "in.svg", "-o", "out.svg", "-q"]);
+    let requests = fs::read_to_string(scratch.file("requests")).unwrap();
+    assert!(requests.contains("23"), "{requests}");
+    let formula = ["expr", "in.svg", "-o", "expected.svg", "-q", "--x", "x", "--y", "y + 5*sin(x/9)"];
+    scratch.expect(0, &formula);
+    assert_same(&scratch.file("out.svg"), &scratch.file("expected.svg"), 0.2);
+}
+
 #[test]
 fn the_examples_and_built_in_deformations_pass_the_check() {
     let scratch = Scratch::new();

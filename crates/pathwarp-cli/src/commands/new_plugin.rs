@@ -42,12 +42,16 @@ pub(super) fn command() -> Command {
         )
 }
 
-pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
+/// Writes it. `taken` tells whether a name is that of a command.
+pub(super) fn run(m: &ArgMatches, taken: impl Fn(&str) -> bool) -> Result<Status, Failure> {
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let (language, name) = (word("LANGUAGE"), word("NAME"));
     let is_word = |w: &str| !w.is_empty() && w.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
     if !name.split('-').all(is_word) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return Err(Failure::usage(format!("NAME: `{name}` is not lower-case words joined by hyphens")));
+    }
+    if taken(name) {
+        return Err(Failure::usage(format!("NAME: `{name}` is a command already; choose another name")));
     }
     let folder = m.get_one::<PathBuf>("dir").map_or(Path::new("."), PathBuf::as_path);
     let program = format!("pathwarp-{name}");

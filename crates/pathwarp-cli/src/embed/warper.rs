@@ -52,6 +52,8 @@ pub struct Drawing {
     pub bytes: Vec<u8>,
     /// What was done, shape by shape: the entry of this input in the JSON that `--report` writes.
     pub report: String,
+    /// The warnings of the report.
+    pub warnings: Vec<String>,
     /// The decisions that the option `explain` asks for.
     pub notes: Vec<String>,
 }
@@ -226,7 +228,7 @@ impl Warper {
             let name = name.unwrap_or(FilePath::new(""));
             let done = pipeline::warp_bytes(&self.registry, &self.resolved, &self.given, name, bytes)?;
             let report = serde_json::to_string(&done.report).map_err(|e| Failure::Output(e.to_string()))?;
-            Ok(Drawing { bytes: done.bytes, report, notes: done.notes })
+            Ok(Drawing { bytes: done.bytes, report, warnings: done.report.warnings, notes: done.notes })
         })
     }
 

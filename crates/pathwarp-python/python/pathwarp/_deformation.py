@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _values
-from ._errors import InputError, UsageError
+from ._errors import InputError, PathwarpError, UsageError
 
 Frame = Union[str, Sequence[float]]
 """A box: (x, y, width, height), or one of the names that the option `frame` has on the command line."""
@@ -28,17 +28,24 @@ class WarpedPath(str):
 class Warped(bytes):
     """A warped drawing: the bytes of the file.
 
-    `report` tells what was done, shape by shape, as the command line's `--report` does; `report["warnings"]` holds what the command
-    line would print. `notes` are the decisions that the option `explain` asks for.
+    `report` tells what was done, shape by shape, as the command line's `--report` does; `warnings` holds what the command line would
+    print. `notes` are the decisions that the option `explain` asks for.
     """
 
-    report: Dict[str, Any]
     notes: List[str]
+    warnings: List[str]
+    """What the caller should know: artwork that folds over, leaves the page, or cannot be bent as it should."""
+
+    _json: str
+    _report: Optional[Dict[str, Any]] = None
 
     @property
-    def warnings(self) -> List[str]:
-        """What the caller should know: artwork that folds over, leaves the page, or cannot be bent as it should."""
-        return list(self.report["warnings"])
+    def report(self) -> Dict[str, Any]:
+        """What was done, shape by shape."""
+        # Read when it is asked for: for small drawings that takes a while.
+        if self._report is None:
+            self._report = json.loads(self._json)
+        return self._report
 
 
 class Deformation:
@@ -172,11 +179,28 @@ class Deformation:
         `name` is the drawing's file, for messages and for linked pictures beside it. All options of the command line work that do
         not name outputs: `tolerance`, `strokes`, `fit`, `format="pdf"`… `pathwarp.options()` lists them with their help.
         """
-        data = svg.encode() if isinstance(svg, str) else bytes(svg)
-        result, report, notes = self._with(options).warp_drawing(data, None if name is None else os.fspath(name))
-        warped = Warped(result)
-        warped.report, warped.notes = json.loads(report), notes
-        return warped
+        (done,) = self.warp_svgs([svg], names=None if name is None else [name], **options)
+        if isinstance(done, PathwarpError):
+            raise done
+        return done
+
+    def warp_svgs(
+        self,
+        svgs: Iterable[Union[bytes, bytearray, memoryview, str]],
+        /,
+        *,
+        names: Optional[Iterable[Union[str, "os.PathLike[str]"]]] = None,
+        **options: Any,
+    ) -> List[Union[Warped, PathwarpError]]:
+        """Warps many drawings, on all processors, and returns the results in their order, each as by `warp_svg`.
+
+        In place of a drawing that cannot be warped stands the exception, so one bad file does not stop the others.
+        """
+        data = [svg.encode() if isinstance(svg, str) else bytes(svg) for svg in svgs]
+        named: List[Optional[str]] = [None] * len(data) if names is None else [os.fspath(name) for name in names]
+        if len(named) != len(data):
+            raise UsageError(f"names: has {len(named)} entries for {len(data)} drawings")
+        return [_warped(result) for result in self._with(options).warp_drawings(list(zip(data, named)))]
 
     def __repr__(self) -> str:
         return f"<pathwarp.Deformation {' + '.join(self.steps)}>"
@@ -205,6 +229,15 @@ class Deformation:
 
     def _with(self, options: Dict[str, Any]) -> _native.Warper:
         return self._warper.with_options(_values.options(options)) if options else self._warper
+
+
+def _warped(result: Union[Tuple[bytes, str, List[str], List[str]], PathwarpError]) -> Union[Warped, PathwarpError]:
+    if isinstance(result, PathwarpError):
+        return result
+    content, report, warnings, notes = result
+    made = Warped(content)
+    made._json, made.warnings, made.notes = report, warnings, notes
+    return made
 
 
 def _unpickled(recipe: str, folder: str, options: List[Tuple[str, str]]) -> Deformation:

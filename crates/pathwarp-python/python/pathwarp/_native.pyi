@@ -1,8 +1,10 @@
 from os import PathLike
-from typing import Any, Dict, List, Optional, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ._errors import PathwarpError
 
 __version__: str
 
@@ -29,6 +31,6 @@ class Warper:
     def warp_verbs(
         self, verbs: str, coordinates: NDArray[np.float64]
     ) -> Tuple[str, NDArray[np.float64], Dict[str, Any]]: ...
-    def warp_drawing(
-        self, data: bytes, name: Union[str, PathLike[str], None]
-    ) -> Tuple[bytes, str, List[str]]: ...
+    def warp_drawings(
+        self, drawings: Sequence[Tuple[bytes, Union[str, PathLike[str], None]]]
+    ) -> List[Union[Tuple[bytes, str, List[str], List[str]], PathwarpError]]: ...

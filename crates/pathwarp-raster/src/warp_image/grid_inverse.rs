@@ -136,6 +136,10 @@ impl Map for GridInverse<'_> {
         Jet { p, dx: Vec2::new(there.dy.y, -there.dx.y) / det, dy: Vec2::new(-there.dy.x, there.dx.x) / det }
     }
 
+    fn prefers_batches(&self) -> bool {
+        self.map.prefers_batches()
+    }
+
     fn point(&self, q: Point) -> Point {
         let mut out = [Point::ORIGIN];
         self.points(&[q], &mut out);

@@ -1,6 +1,6 @@
 //! Warps a bitmap tile by tile.
 
-use super::area::{PixelArea, SMALLEST, TILE};
+use super::area::{PixelArea, SMALLEST, TILE, announce};
 use super::block::{BYTES, BitmapBytes, SourceBlock};
 use super::color::bytes;
 use super::image_warp::{ImageWarp, in_pixels};
@@ -14,7 +14,7 @@ use crate::parallel::for_each_chunk;
 use crate::pixmap::new_pixmap;
 use kurbo::{Affine, Point, Vec2};
 use pathwarp::budget::Limits;
-use pathwarp::map::Jet;
+use pathwarp::map::{Gathered, Jet, Map};
 use tiny_skia::Pixmap;
 
 /// Warps a bitmap.
@@ -41,14 +41,14 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     };
     let columns = width as usize;
     for_each_chunk(out.data_mut(), columns * BYTES * TILE, |band, rows| {
-        let mut band = ImageBand { top: band * TILE, stride: columns * BYTES, rows, block: SourceBlock::default() };
-        let height = band.rows.len() / band.stride;
-        for left in (0..columns).step_by(TILE) {
-            if reach.touches(left / TILE, band.top / TILE) {
-                let area = PixelArea { left, top: band.top, width: TILE.min(columns - left), height };
-                painter.tile(&mut band, area);
-            }
-        }
+        let (top, height) = (band * TILE, rows.len() / (columns * BYTES));
+        let touched = (0..columns).step_by(TILE).filter(|left| reach.touches(left / TILE, band));
+        let tile = |left: usize| PixelArea { left, top, width: TILE.min(columns - left), height };
+        let tiles: Vec<PixelArea> = touched.map(tile).collect();
+        let memory = warp.inverse.prefers_batches().then(|| painter.memory(tiles.clone()));
+        let inverse = memory.as_ref().map_or(warp.inverse, |m| m as &dyn Map);
+        let mut band = ImageBand { top, stride: columns * BYTES, rows, block: SourceBlock::default(), inverse };
+        tiles.into_iter().for_each(|tile| painter.tile(&mut band, tile));
     });
     Ok(out)
 }
@@ -60,6 +60,8 @@ struct ImageBand<'a> {
     rows: &'a mut [u8],
     /// The part of the source that a tile reads; the memory is reused by the next tile.
     block: SourceBlock,
+    /// The inverse, or a memory of it.
+    inverse: &'a dyn Map,
 }
 
 impl ImageBand<'_> {
@@ -80,10 +82,17 @@ struct ImagePainter<'a> {
     arch: pulp::Arch,
 }
 
-impl ImagePainter<'_> {
+impl<'a> ImagePainter<'a> {
+    /// A memory of what the inverse answers for these tiles.
+    fn memory(&self, tiles: Vec<PixelArea>) -> Gathered<'a> {
+        let memory = Gathered::new(self.warp.inverse);
+        announce(tiles, &self.basis, (self.warp.shown, self.to_source), &memory, |pixels| memory.prepare(&[], pixels));
+        memory
+    }
+
     /// Paints a tile, dividing it until the inverse is close to a cubic.
     fn tile(&self, band: &mut ImageBand<'_>, area: PixelArea) {
-        match area.trace(&self.basis, self.warp.shown, self.warp.inverse, self.to_source) {
+        match area.trace(&self.basis, self.warp.shown, band.inverse, self.to_source) {
             Some(trace) => self.arch.dispatch(TracedTile { painter: self, band, area, trace }),
             None if area.width.max(area.height) > SMALLEST => {
                 area.quarters().for_each(|quarter| self.tile(band, quarter));
@@ -104,16 +113,17 @@ impl ImagePainter<'_> {
             for (i, p) in places[..area.width].iter_mut().enumerate() {
                 *p = place(i as isize, j as isize);
             }
-            self.warp.inverse.jets(&places[..area.width], &mut row[..area.width]);
+            band.inverse.jets(&places[..area.width], &mut row[..area.width]);
             for jet in &mut row[..area.width] {
                 *jet = here(jet);
             }
         }
+        let inverse = band.inverse;
         let at = |i: isize, j: isize| {
             let known = usize::try_from(i).ok().zip(usize::try_from(j).ok());
             match known.filter(|(i, j)| *i < area.width && *j < area.height) {
                 Some((i, j)) => jets[j][i],
-                None => here(&self.warp.inverse.jet(place(i, j))),
+                None => here(&inverse.jet(place(i, j))),
             }
         };
         for (j, row) in jets.iter().enumerate().take(area.height) {

@@ -1,15 +1,15 @@
 //! Warps a paint: every pixel of the result asks the inverse map for its place in the paint, and the paint for its colour.
 
-use super::area::{PixelArea, SMALLEST, TILE};
+use super::area::{PixelArea, SMALLEST, TILE, announce};
 use super::cover::Cover;
 use super::grid_inverse::GridInverse;
 use super::trace::{ChebyshevBasis, MAX_ERROR};
 use crate::error::Error;
 use crate::parallel::for_each_chunk_pair;
 use crate::pixmap::new_pixmap;
-use kurbo::{Affine, BezPath, Point, Vec2};
+use kurbo::{Affine, BezPath, Point};
 use pathwarp::budget::Limits;
-use pathwarp::map::Map;
+use pathwarp::map::{Gathered, Map};
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 /// Largest error of a place in pixels if a tile is traced.
@@ -49,19 +49,29 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let columns = width as usize;
     let mut known = vec![false; columns * height as usize];
     let cover = shade.shape.map(|shape| Cover::of(shape, shade.shown, shade.size));
-    let paint = |band: usize, pixels: &mut [PremultipliedColorU8], known: &mut [bool]| {
-        let mut band = ShadeBand { top: band * TILE, columns, pixels, known };
-        let height = band.pixels.len() / columns;
-        let top = band.top;
-        for left in (0..columns).step_by(TILE).filter(|left| cover.as_ref().is_none_or(|c| c.holds(*left, top))) {
-            painter.tile(&mut band, PixelArea { left, top, width: TILE.min(columns - left), height });
-        }
+    let tiles = |top: usize, rows: usize| {
+        let held = (0..columns).step_by(TILE).filter(|left| cover.as_ref().is_none_or(|c| c.holds(*left, top)));
+        let tiles = held.map(|left| PixelArea { left, top, width: TILE.min(columns - left), height: rows });
+        tiles.filter(|a| shade.inverse.touches(a.covered(shade.shown))).collect::<Vec<_>>()
     };
+    let paint = |band: usize, pixels: &mut [PremultipliedColorU8], known: &mut [bool], inverse: &dyn Map| {
+        let top = band * TILE;
+        let tiles = tiles(top, pixels.len() / columns);
+        let mut band = ShadeBand { top, columns, pixels, known, inverse };
+        tiles.into_iter().for_each(|tile| painter.tile(&mut band, tile));
+    };
+    let batches = shade.inverse.prefers_batches();
     if known.len() >= WORTH_THREADS {
-        for_each_chunk_pair(out.pixels_mut(), &mut known, columns * TILE, paint);
+        for_each_chunk_pair(out.pixels_mut(), &mut known, columns * TILE, |i, pixels, known| {
+            let memory = batches.then(|| painter.memory(tiles(i * TILE, pixels.len() / columns)));
+            paint(i, pixels, known, memory.as_ref().map_or(shade.inverse, |m| m as &dyn Map));
+        });
     } else {
+        let all = || (0..height as usize).step_by(TILE).flat_map(|top| tiles(top, TILE.min(height as usize - top)));
+        let memory = batches.then(|| painter.memory(all().collect()));
+        let inverse = memory.as_ref().map_or(shade.inverse as &dyn Map, |m| m);
         let bands = out.pixels_mut().chunks_mut(columns * TILE).zip(known.chunks_mut(columns * TILE));
-        bands.enumerate().for_each(|(i, (pixels, known))| paint(i, pixels, known));
+        bands.enumerate().for_each(|(i, (pixels, known))| paint(i, pixels, known, inverse));
     }
     if !known.contains(&true) {
         return Err(Error::NoInverse);
@@ -78,6 +88,8 @@ struct ShadeBand<'a> {
     columns: usize,
     pixels: &'a mut [PremultipliedColorU8],
     known: &'a mut [bool],
+    /// The inverse, or a memory of it.
+    inverse: &'a dyn Map,
 }
 
 /// The data shared by all tiles.
@@ -87,28 +99,29 @@ struct ShadePainter<'a> {
     to_pixels: Affine,
 }
 
-impl ShadePainter<'_> {
+impl<'a> ShadePainter<'a> {
+    /// A memory of what the inverse answers for these tiles.
+    fn memory(&self, tiles: Vec<PixelArea>) -> Gathered<'a> {
+        let memory = Gathered::new(self.shade.inverse);
+        announce(tiles, &self.basis, (self.shade.shown, self.to_pixels), &memory, |pixels| memory.prepare(pixels, &[]));
+        memory
+    }
+
     /// Paints a tile, dividing it until the inverse is close to a cubic.
     fn tile(&self, band: &mut ShadeBand<'_>, area: PixelArea) {
-        if !self.shade.inverse.touches(area.covered(self.shade.shown)) {
-            return;
-        }
-        match area.trace(&self.basis, self.shade.shown, self.shade.inverse, self.to_pixels) {
+        match area.trace(&self.basis, self.shade.shown, band.inverse, self.to_pixels) {
             Some(trace) => self.paint(band, area, |j| {
                 let row = trace.pixels(j);
                 move |i| row.point(i)
             }),
             None if area.width.max(area.height) > SMALLEST => {
-                area.quarters().for_each(|quarter| self.tile(band, quarter));
+                let touched = |a: &PixelArea| self.shade.inverse.touches(a.covered(self.shade.shown));
+                area.quarters().filter(touched).for_each(|quarter| self.tile(band, quarter));
             }
             None => {
-                let place =
-                    |k: usize| Point::new((area.left + k % area.width) as f64, (area.top + k / area.width) as f64);
-                let pixels: Vec<Point> = (0..area.width * area.height)
-                    .map(|k| self.shade.shown * (place(k) + Vec2::new(0.5, 0.5)))
-                    .collect();
+                let pixels: Vec<Point> = area.pixels(self.shade.shown).collect();
                 let mut found = vec![Point::ORIGIN; pixels.len()];
-                self.shade.inverse.points(&pixels, &mut found);
+                band.inverse.points(&pixels, &mut found);
                 let found = &found;
                 self.paint(band, area, |j| move |i| self.to_pixels * found[j * area.width + i]);
             }
@@ -167,7 +180,7 @@ fn extend(out: &mut Pixmap, known: &[bool]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kurbo::Rect;
+    use kurbo::{Rect, Vec2};
     use pathwarp::map::{Formula, Jet, Real};
 
     /// Two shears, whose inverse has a closed form.

@@ -33,7 +33,8 @@ pub(super) fn with_arcs(
         return Ok(None);
     } else {
         if map.prefers_batches() {
-            map.prepare(&outline.segs().flat_map(on_circle).collect::<Vec<_>>(), &[]);
+            let starts = outline.subpaths.iter().map(|s| s.start);
+            map.prepare(&outline.segs().flat_map(on_circle).chain(starts).collect::<Vec<_>>(), &[]);
         }
         let images = |s: &Subpath| s.segs.iter().map(|g| circle_of(g, map)).collect();
         let all: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();

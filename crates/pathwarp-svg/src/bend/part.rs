@@ -152,19 +152,25 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<Outline> {
     /// Samples along a line.
     const SAMPLES: u32 = 16;
     let (p, outline, map) = (t.part, &t.outline, t.map);
+    let on_line = |a: Point, b: Point, i: u32| a.lerp(b, f64::from(i) / f64::from(SAMPLES));
     let bends = |a: Point, b: Point| {
         let (from, to) = (map.point(a), map.point(b));
         (1..SAMPLES).any(|i| {
-            let q = map.point(a.lerp(b, f64::from(i) / f64::from(SAMPLES)));
+            let q = map.point(on_line(a, b, i));
             let off = Line::new(from, to).nearest(q, tolerance).distance_sq.sqrt();
             off > tolerance && q.is_finite()
         })
     };
     let open = |s: &Subpath| !s.closed && s.start != s.end();
-    if p.fill.is_none() && p.role != PartRole::Clip
-        || matches!(map.class(), Class::Affine(_))
-        || !outline.subpaths.iter().any(|s| open(s) && bends(s.end(), s.start))
-    {
+    if p.fill.is_none() && p.role != PartRole::Clip || matches!(map.class(), Class::Affine(_)) {
+        return None;
+    }
+    if map.prefers_batches() {
+        let lines = outline.subpaths.iter().filter(|s| open(s)).map(|s| (s.end(), s.start));
+        let line = |(a, b): (Point, Point)| (1..SAMPLES).map(move |i| on_line(a, b, i)).chain([a, b]);
+        map.prepare(&lines.flat_map(line).collect::<Vec<_>>(), &[]);
+    }
+    if !outline.subpaths.iter().any(|s| open(s) && bends(s.end(), s.start)) {
         return None;
     }
     let closed = |s: &Subpath| {

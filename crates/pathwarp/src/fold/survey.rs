@@ -3,7 +3,7 @@
 use super::interior::interior;
 use super::orientation::Orientation;
 use super::sign;
-use crate::map::{Class, Creases, Gathered, Jet, Map};
+use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::{Outline, Seg};
 use kurbo::{Affine, Point, Rect};
 
@@ -103,15 +103,14 @@ impl<'a> Survey<'a> {
     }
 
     fn sampled(&self, outline: &Outline, filled: bool) -> Orientation {
-        let gathered = self.map.prefers_batches().then(|| Gathered::new(self.map));
-        let map = gathered.as_ref().map_or(self.map, |g| g as &dyn Map);
-        if gathered.is_some() {
-            map.prepare(&[], &self.samples_of(outline, filled));
+        if self.map.prefers_batches() {
+            return self.sampled_at_once(outline, filled);
         }
+        let map = self.map;
         let mut out = Orientation::default();
         let mut jets = [Jet::default(); PER_SEGMENT + 1];
         for seg in outline.segs() {
-            let points: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64));
+            let points = along(seg);
             map.jets(&points, &mut jets);
             out.add(&points, &jets);
         }
@@ -127,15 +126,32 @@ impl<'a> Survey<'a> {
         out
     }
 
-    /// All points that are sampled.
-    fn samples_of(&self, outline: &Outline, filled: bool) -> Vec<Point> {
-        let along = |seg: Seg| (0..=PER_SEGMENT).map(move |i| seg.eval(i as f64 / PER_SEGMENT as f64));
-        let mut out: Vec<Point> = outline.segs().flat_map(|seg| along(*seg)).collect();
+    /// The same with one call of the map for all samples.
+    fn sampled_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
+        let mut points: Vec<Point> = outline.segs().flat_map(along).collect();
+        let mut rows = vec![PER_SEGMENT + 1; points.len() / (PER_SEGMENT + 1)];
         if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
-            out.extend(interior(outline, bounds, GRID).into_iter().flatten().filter(|p| self.creases.defined_at(*p)));
+            for row in interior(outline, bounds, GRID) {
+                let before = points.len();
+                points.extend(row.into_iter().filter(|p| self.creases.defined_at(*p)));
+                rows.push(points.len() - before);
+            }
+        }
+        let mut jets = vec![Jet::default(); points.len()];
+        self.map.jets(&points, &mut jets);
+        let mut out = Orientation::default();
+        let (mut points, mut jets) = (points.as_slice(), jets.as_slice());
+        for n in rows {
+            out.add(&points[..n], &jets[..n]);
+            (points, jets) = (&points[n..], &jets[n..]);
         }
         out
     }
+}
+
+/// The samples of a segment.
+fn along(seg: &Seg) -> [Point; PER_SEGMENT + 1] {
+    std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64))
 }
 
 #[cfg(test)]

@@ -185,10 +185,12 @@ impl Map for Chain {
         let mut at = inside;
         let mut any = false;
         let mut steps = Vec::with_capacity(self.steps.len());
-        for m in &self.steps {
+        for (i, m) in self.steps.iter().enumerate() {
             let b = m.branch(at);
             any |= b.is_some();
-            at = m.point(at);
+            if i + 1 < self.steps.len() {
+                at = m.point(at);
+            }
             steps.push(b.unwrap_or_else(|| m.clone()));
         }
         any.then(|| Arc::new(Self { steps }) as Arc<dyn Map>)
@@ -205,6 +207,14 @@ impl Map for Chain {
 
     fn prefers_batches(&self) -> bool {
         self.steps.iter().any(Map::prefers_batches)
+    }
+
+    fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
+        if let [only] = self.steps.as_slice() {
+            return only.points_and_jets((ps, images), (qs, jets));
+        }
+        self.points(ps, images);
+        self.jets(qs, jets);
     }
 
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {

@@ -19,11 +19,14 @@ pub struct Gathered<'a> {
 }
 
 /// Answers by the bits of their point.
-pub(super) type Memory<T> = HashMap<[u64; 2], T, BuildHasherDefault<Mixer>>;
+pub(super) type Memory<T> = HashMap<Key, T, BuildHasherDefault<Mixer>>;
 
-/// The key of a point.
-pub(super) fn key(p: Point) -> [u64; 2] {
-    [p.x.to_bits(), p.y.to_bits()]
+/// The key of a point: the bits of its coordinates.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Key(u64, u64);
+
+pub(super) fn key(p: Point) -> Key {
+    Key(p.x.to_bits(), p.y.to_bits())
 }
 
 /// A hash of coordinates. The points are computed here, so nobody can choose them to collide.
@@ -35,13 +38,16 @@ impl Hasher for Mixer {
         self.0
     }
 
-    fn write(&mut self, bytes: &[u8]) {
+    fn write_u64(&mut self, word: u64) {
         /// The golden ratio, as a fraction of 2⁶⁴.
         const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-        for word in bytes.chunks(8) {
-            let word = word.iter().rev().fold(0, |w, b| w << 8 | u64::from(*b));
-            self.0 = (self.0.rotate_left(23) ^ word).wrapping_mul(GOLDEN);
-            self.0 ^= self.0 >> 32;
+        self.0 = (self.0.rotate_left(23) ^ word).wrapping_mul(GOLDEN);
+        self.0 ^= self.0 >> 32;
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u64((*byte).into());
         }
     }
 }
@@ -54,37 +60,44 @@ impl<'a> Gathered<'a> {
     }
 }
 
-/// Copies the answers for `ps` to `out`; those that are not known are asked for in one call and remembered.
-fn recall<T: Copy + Default>(memory: &Mutex<Memory<T>>, ps: &[Point], out: &mut [T], ask: impl Fn(&[Point], &mut [T])) {
+/// The points of `ps` that are not remembered.
+fn unknown<T>(memory: &Mutex<Memory<T>>, ps: &[Point]) -> Vec<Point> {
+    let known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+    ps.iter().filter(|p| !known.contains_key(&key(**p))).copied().collect()
+}
+
+/// Remembers the answers for `ps`.
+fn remember<T: Copy>(memory: &Mutex<Memory<T>>, ps: &[Point], answers: &[T]) {
     let mut known = memory.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut missing = Vec::new();
-    for (p, o) in ps.iter().zip(out.iter_mut()) {
-        match known.get(&key(*p)) {
-            Some(answer) => *o = *answer,
-            None => missing.push(*p),
-        }
-    }
-    if missing.is_empty() {
-        return;
-    }
-    // Other threads need not wait for the answer.
-    drop(known);
-    let mut answers = vec![T::default(); missing.len()];
-    ask(&missing, &mut answers);
-    known = memory.lock().unwrap_or_else(PoisonError::into_inner);
     if known.len() > MOST_REMEMBERED {
         known.clear();
     }
-    known.reserve(missing.len());
-    let mut fresh = answers.iter();
-    let mut asked = missing.iter().peekable();
-    for (p, o) in ps.iter().zip(out) {
-        if asked.next_if(|q| key(**q) == key(*p)).is_some()
-            && let Some(answer) = fresh.next()
-        {
-            known.insert(key(*p), *answer);
-            *o = *answer;
+    known.extend(ps.iter().map(|p| key(*p)).zip(answers.iter().copied()));
+}
+
+/// Copies the answers for `ps` to `out`; those that are not known are asked for in one call and remembered.
+fn recall<T: Copy + Default>(memory: &Mutex<Memory<T>>, ps: &[Point], out: &mut [T], ask: impl Fn(&[Point], &mut [T])) {
+    let (mut missing, mut places) = (Vec::new(), Vec::new());
+    let known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+    for (p, o) in ps.iter().zip(out.iter_mut()) {
+        match known.get(&key(*p)) {
+            Some(answer) => *o = *answer,
+            None => {
+                missing.push(*p);
+                places.push(o);
+            }
         }
+    }
+    // Other threads need not wait for the answer.
+    drop(known);
+    if missing.is_empty() {
+        return;
+    }
+    let mut answers = vec![T::default(); missing.len()];
+    ask(&missing, &mut answers);
+    remember(memory, &missing, &answers);
+    for (o, answer) in places.into_iter().zip(answers) {
+        *o = answer;
     }
 }
 
@@ -150,8 +163,13 @@ impl Map for Gathered<'_> {
     }
 
     fn prepare(&self, points: &[Point], jets: &[Point]) {
-        self.points(points, &mut vec![Point::ORIGIN; points.len()]);
-        self.jets(jets, &mut vec![Jet::default(); jets.len()]);
+        let (ps, qs) = (unknown(&self.points, points), unknown(&self.jets, jets));
+        let (mut images, mut jets) = (vec![Point::ORIGIN; ps.len()], vec![Jet::default(); qs.len()]);
+        if !(ps.is_empty() && qs.is_empty()) {
+            self.map.points_and_jets((&ps, &mut images), (&qs, &mut jets));
+        }
+        remember(&self.points, &ps, &images);
+        remember(&self.jets, &qs, &jets);
     }
 }
 

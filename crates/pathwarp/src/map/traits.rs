@@ -91,6 +91,13 @@ pub trait Map: Send + Sync {
     #[doc(hidden)]
     fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
 
+    /// Maps a batch of points, and gives the jets at others: one call where each costs much.
+    #[doc(hidden)]
+    fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
+        self.points(ps, images);
+        self.jets(qs, jets);
+    }
+
     /// Maps a batch of points in place. See [`batch`](super::batch).
     #[doc(hidden)]
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
@@ -158,6 +165,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     }
     fn prepare(&self, points: &[Point], jets: &[Point]) {
         (**self).prepare(points, jets);
+    }
+    fn points_and_jets(&self, points: (&[Point], &mut [Point]), jets: (&[Point], &mut [Jet])) {
+        (**self).points_and_jets(points, jets);
     }
     fn lanes(&self, x: &mut Lane, y: &mut Lane) {
         (**self).lanes(x, y);
@@ -229,6 +239,9 @@ mod tests {
         fn prepare(&self, _points: &[Point], _jets: &[Point]) {
             self.record("prepare", ());
         }
+        fn points_and_jets(&self, _points: (&[Point], &mut [Point]), _jets: (&[Point], &mut [Jet])) {
+            self.record("points_and_jets", ());
+        }
         fn lanes(&self, _x: &mut Lane, _y: &mut Lane) {
             self.record("lanes", ());
         }
@@ -255,6 +268,7 @@ mod tests {
         let _ = map.prefers_batches();
         let _ = map.remembers();
         map.prepare(&[p], &[p]);
+        map.points_and_jets((&[p], &mut [p]), (&[p], &mut [Jet::default()]));
         map.lanes(&mut [1.0; WIDTH], &mut [2.0; WIDTH]);
         let _ = map.denominators(&[1.0; WIDTH], &[2.0; WIDTH]);
     }
