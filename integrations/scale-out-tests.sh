@@ -25,7 +25,12 @@ if ! "$env/bin/python" -m pip install --quiet --disable-pip-version-check $packa
 fi
 "$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheel"
 cargo build --quiet --locked -p pathwarp-cli
+measure() {
+    "$env/bin/python" -B integrations/scale-out/measure.py --program target/debug/pathwarp --source samples --workers 2 "$@" 2>&1 |
+        grep -v "INFO\|WARNING"
+    return "${PIPESTATUS[0]}"
+}
 # shellcheck disable=SC2086
-"$env/bin/python" -B integrations/scale-out/measure.py --program target/debug/pathwarp --source samples --count 2000 --kill 1 --workers 2 $systems 2>&1 |
-    grep -v "INFO\|WARNING"
-exit "${PIPESTATUS[0]}"
+measure --count 2000 --kill 1 $systems
+# shellcheck disable=SC2086
+measure --count 200 --read system $systems

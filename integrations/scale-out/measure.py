@@ -133,7 +133,7 @@ def by_ray(args: Any, source: pathlib.Path, folder: pathlib.Path, deformation: p
     ray.data.DataContext.get_current().enable_progress_bars = False
     ray.init(num_cpus=args.workers, _node_ip_address="127.0.0.2", include_dashboard=False, log_to_driver=False)
     warm = folder.parent / "warm"
-    copies(args.source, warm / "in", 64)
+    copies(args.source, warm / "in", args.count // 10)
     ray_warp.run(str(warm / "in"), str(warm / "out"), deformation, {}, args.workers, args.read)
     is_worker = lambda p: "warp" in " ".join(p.cmdline()) and p.cmdline()[0].startswith("ray::")  # noqa: E731
     return Watch(is_worker, args.kill), lambda: ray_warp.run(str(source), str(folder), deformation, {}, args.workers, args.read).to_pandas()
@@ -144,9 +144,11 @@ def by_spark(args: Any, source: pathlib.Path, folder: pathlib.Path, deformation:
 
     spark = spark_warp.session(args.workers)
     warm = folder.parent / "warm"
-    copies(args.source, warm / "in", 64)
+    copies(args.source, warm / "in", args.count // 10)
     run = lambda a, b: spark_warp.run(spark, str(a), str(b), deformation, {}, f"{b}.results", args.read).toPandas()  # noqa: E731
-    run(warm / "in", warm / "out")
+    # Java compiles what runs often.
+    for _ in range(3):
+        run(warm / "in", warm / "out")
 
     def is_worker(p: psutil.Process) -> bool:
         # The daemon forks the workers; they have its command line.

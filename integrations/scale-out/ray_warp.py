@@ -19,8 +19,8 @@ import pathwarp
 BATCH = 128
 """Files per batch: few enough that little is repeated if a worker dies, many enough that the cluster's share of the time is small."""
 
-BLOCKS_PER_WORKER = 16
-"""Tasks per worker: the last ones leave others idle for at most a sixteenth of the time."""
+BLOCKS_PER_WORKER = 8
+"""Tasks per worker: the last ones leave others idle for at most an eighth of the time."""
 
 
 def warp(batch: Dict[str, np.ndarray], **how: Any) -> Dict[str, Any]:

@@ -19,8 +19,8 @@ import pathwarp
 
 SCHEMA = "path string, sha256 string, warnings long, error string"
 
-PARTS_PER_WORKER = 16
-"""Tasks per worker: the last ones leave others idle for at most a sixteenth of the time."""
+PARTS_PER_WORKER = 8
+"""Tasks per worker: the last ones leave others idle for at most an eighth of the time."""
 
 
 def warper(**how: Any) -> Any:
@@ -46,6 +46,7 @@ def session(workers: int) -> Any:
         "spark.driver.host": "127.0.0.1",
         "spark.driver.bindAddress": "127.0.0.1",
         "spark.ui.enabled": "false",
+        "spark.ui.showConsoleProgress": "false",
         "spark.sql.execution.arrow.maxRecordsPerBatch": "128",
         # Small files: their number decides, not their size.
         "spark.sql.files.openCostInBytes": str(64 * 1024),
@@ -78,9 +79,9 @@ def run(
         reader = spark.read.format("binaryFile").option("recursiveFileLookup", "true")
         drawings = reader.option("pathGlobFilter", f"*{files.SUFFIX}").load(source).select("path", "content")
     else:
+        paths = [(path,) for path in files.find(source)]
         parts = PARTS_PER_WORKER * spark.sparkContext.defaultParallelism
-        paths = spark.sparkContext.parallelize(files.find(source), parts)
-        drawings = spark.createDataFrame(paths.map(lambda path: (path,)), "path string")
+        drawings = spark.createDataFrame(paths, "path string").repartition(parts)
     how = warper(root=source, folder=folder, deformation=deformation, options=options)
     drawings.mapInPandas(how, SCHEMA).write.mode("overwrite").parquet(results)
     return spark.read.parquet(results)

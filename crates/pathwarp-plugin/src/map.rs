@@ -149,6 +149,10 @@ impl Map for ProgramMap {
     fn prefers_batches(&self) -> bool {
         true
     }
+
+    fn differentiates(&self) -> bool {
+        !self.abilities.jacobian
+    }
 }
 
 /// The map on one side of its creases. The program does not know the side, so points on a crease are moved towards `inside` a little.

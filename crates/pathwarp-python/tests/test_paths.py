@@ -57,6 +57,20 @@ def test_a_drawing_is_the_command_lines(cli, tmp_path, sample):
     assert warped.warnings == warped.report["warnings"]
 
 
+def test_many_drawings_are_those_warped_singly():
+    names = [str(p) for p in sorted(SAMPLES.glob("*.svg"))]
+    drawings = [pathlib.Path(name).read_bytes() for name in names]
+    arc = Deformation("arc", bend=0.4)
+    done = arc.warp_svgs([*drawings, b"<svg"], names=[*names, "broken.svg"], fit="grow")
+    for drawing, name, warped in zip(drawings, names, done):
+        alone = arc.warp_svg(drawing, name=name, fit="grow")
+        assert (warped, warped.report, warped.warnings) == (alone, alone.report, alone.warnings)
+    assert len(done) == len(names) + 1 and isinstance(done[-1], pathwarp.InputError) and "broken.svg" in str(done[-1])
+    assert arc.warp_svgs([]) == []
+    with pytest.raises(pathwarp.UsageError):
+        arc.warp_svgs(drawings, names=names[1:])
+
+
 @pytest.mark.parametrize("format", ["pdf", "dxf", "svgz"])
 def test_other_formats(cli, tmp_path, format):
     file = tmp_path / f"out.{format}"

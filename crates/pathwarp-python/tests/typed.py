@@ -12,5 +12,6 @@ shaper: Deformation = deform.shaper(shaper="M0,0 H9 V9 H0 Z", reverse_shaper=Tru
 points = shaper.map(np.zeros((3, 2)))
 points = shaper.inverse().map(points, out=points)
 drawing: bytes = pathwarp.warp_svg(b"<svg/>", [shaper, "swirl"], fit="grow")
+several: list[pathwarp.Warped] = [w for w in shaper.warp_svgs([b"<svg/>"]) if isinstance(w, pathwarp.Warped)]
 recipe: Deformation = Deformation.chain(Path("recipe.toml"))
 helps: list[str] = [p.help for i in pathwarp.deformations().values() for p in i.parameters]

@@ -209,6 +209,10 @@ impl Map for Chain {
         self.steps.iter().any(Map::prefers_batches)
     }
 
+    fn differentiates(&self) -> bool {
+        self.steps.iter().any(Map::differentiates)
+    }
+
     fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
         if let [only] = self.steps.as_slice() {
             return only.points_and_jets((ps, images), (qs, jets));

@@ -158,6 +158,10 @@ impl Map for Gathered<'_> {
         true
     }
 
+    fn differentiates(&self) -> bool {
+        self.map.differentiates()
+    }
+
     fn remembers(&self) -> bool {
         true
     }

@@ -55,6 +55,7 @@ pub(crate) mod polynomial;
 mod projective;
 mod rational_bezier;
 mod rounds;
+mod secant;
 mod traits;
 
 pub use birational::{Birational, BirationalInverse, Rows};

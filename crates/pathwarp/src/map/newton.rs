@@ -15,6 +15,7 @@
 //! core's center count, and of those the preimage nearest to the core is chosen.
 
 use super::rounds::by_rounds;
+use super::secant::{Target, approach};
 use super::{Jet, Map};
 use kurbo::{Point, Rect, Vec2};
 use std::sync::Arc;
@@ -44,6 +45,8 @@ pub struct NewtonInverse {
     orientation: f64,
     reach: f64,
     starts: Vec<Start>,
+    /// Size of a starting point's cell.
+    cell: Vec2,
     /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
     buckets: Vec<Vec<u32>>,
     bounds: Rect,
@@ -56,7 +59,7 @@ pub struct NewtonInverse {
 #[derive(Debug, Clone, Copy)]
 struct Start {
     at: Point,
-    image: Point,
+    jet: Jet,
     in_core: bool,
 }
 
@@ -111,7 +114,7 @@ impl NewtonInverse {
                 0.75 * (j.dx.x.abs() * cell.x + j.dy.x.abs() * cell.y),
                 0.75 * (j.dx.y.abs() * cell.x + j.dy.y.abs() * cell.y),
             );
-            starts.push(Start { at: *at, image: j.p, in_core: core.contains(*at) });
+            starts.push(Start { at: *at, jet: *j, in_core: core.contains(*at) });
             boxes.push(Rect::from_points(j.p - half, j.p + half));
         }
         let bounds = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
@@ -131,6 +134,7 @@ impl NewtonInverse {
                 * f64::EPSILON
                 * [bounds.x0, bounds.y0, bounds.x1, bounds.y1].iter().fold(1e-300, |a: f64, v| a.max(v.abs())),
             starts,
+            cell,
         };
         for (k, b) in boxes.iter().enumerate() {
             let ((i0, j0), (i1, j1)) = (out.bucket(b.origin()), out.bucket(Point::new(b.x1, b.y1)));
@@ -161,32 +165,35 @@ impl NewtonInverse {
         self.solve_by(&*self.map, q, accept)
     }
 
+    /// The next starting point for `q` in its bucket: those in the core first, then in the order of their images' distances from q.
+    fn next_start(&self, q: Point, tried: &[u32]) -> Option<u32> {
+        let (i, j) = self.bucket(q);
+        let key = |k: u32| {
+            let s = &self.starts[k as usize];
+            (!s.in_core, (s.jet.p - q).hypot2())
+        };
+        let all = self.buckets[j * self.side + i].iter().copied().filter(|k| !tried.contains(k));
+        all.min_by(|a, b| {
+            let (a, b) = (key(*a), key(*b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
+    }
+
     /// The same with the jets of `map`, which is this inverse's map or a memory of it.
     fn solve_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() {
             return None;
         }
         let (i, j) = self.bucket(q);
-        let near = &self.buckets[j * self.side + i];
-        let off = |s: &Start| (s.image - q).hypot2();
-        if near.is_empty() {
+        if self.buckets[j * self.side + i].is_empty() {
+            let off = |s: &Start| (s.jet.p - q).hypot2();
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
             return self.newton(map, start.at, q).filter(|found| self.counts(found) && accept(found.p));
         }
         let mut tried = [u32::MAX; MAX_TRIES];
         let mut best: Option<(f64, Jet)> = None;
         for n in 0..MAX_TRIES {
-            // Starting points in the core first, then in the order of their images' distances from q.
-            let key = |k: u32| {
-                let s = &self.starts[k as usize];
-                (!s.in_core, off(s))
-            };
-            let all = near.iter().copied().filter(|k| !tried.contains(k));
-            let less = |a: &u32, b: &u32| {
-                let (a, b) = (key(*a), key(*b));
-                a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-            };
-            let Some(k) = all.min_by(less) else { break };
+            let Some(k) = self.next_start(q, &tried) else { break };
             tried[n] = k;
             let Some(found) = self.newton(map, self.starts[k as usize].at, q).filter(|f| accept(f.p)) else {
                 continue;
@@ -200,6 +207,44 @@ impl NewtonInverse {
             }
         }
         best.map(|b| b.1)
+    }
+
+    /// For each point the place near its first starting point to which values alone lead, if it is in the core: what Newton's method
+    /// finds from there, up to rounding.
+    fn approached(&self, qs: &[Point]) -> Vec<Option<Point>> {
+        let target = |q: &Point| {
+            let start = self.starts.get(self.next_start(*q, &[])? as usize).filter(|_| q.is_finite())?;
+            Some(Target { q: *q, start: start.at, jet: start.jet })
+        };
+        let targets: Vec<Option<Target>> = qs.iter().map(target).collect();
+        let mut found = approach(&*self.map, &targets, self.rounding);
+        for (place, target) in found.iter_mut().zip(&targets) {
+            let near = |p: &Point, start: Point| {
+                let off = *p - start;
+                off.x.abs() <= self.cell.x && off.y.abs() <= self.cell.y && self.distance_from_core(*p) <= self.reach
+            };
+            *place = place.filter(|p| target.as_ref().is_some_and(|t| near(p, t.start)));
+        }
+        found
+    }
+
+    /// The jets of the inverse at `qs` by the places to which values lead; by Newton's method where there is none.
+    fn jets_by_values(&self, qs: &[Point]) -> Vec<Jet> {
+        let places = self.approached(qs);
+        let known: Vec<Point> = places.iter().flatten().copied().collect();
+        let mut jets = vec![Jet::default(); known.len()];
+        self.map.jets(&known, &mut jets);
+        let mut next = jets.iter().zip(known);
+        let polished = |(place, q): (&Option<Point>, &Point)| {
+            place.and_then(|_| next.next()).and_then(|(jet, x)| {
+                let step = solve(jet, *q - jet.p)?;
+                self.accepted(x, jet, *q - jet.p).map(|found| Jet { p: found.p + step, ..found })
+            })
+        };
+        let found: Vec<Option<Jet>> = places.iter().zip(qs).map(polished).collect();
+        let left: Vec<Point> = found.iter().zip(qs).filter(|(f, _)| f.is_none()).map(|(_, q)| *q).collect();
+        let mut rest = by_rounds(&*self.map, &left, |map, q| self.solve_by(map, *q, |_| true)).into_iter();
+        found.into_iter().map(|f| f.or_else(|| rest.next().flatten()).unwrap_or(Jet::UNDEFINED)).collect()
     }
 
     /// Distance from the core along the axis where it is larger; 0 inside.
@@ -282,7 +327,9 @@ impl Map for NewtonInverse {
 
     fn jets(&self, qs: &[Point], out: &mut [Jet]) {
         let one = |map: &dyn Map, q: &Point| self.solve_by(map, *q, |_| true).unwrap_or(Jet::UNDEFINED);
-        if self.map.prefers_batches() {
+        if self.map.prefers_batches() && self.map.differentiates() {
+            out.copy_from_slice(&self.jets_by_values(qs));
+        } else if self.map.prefers_batches() {
             out.copy_from_slice(&by_rounds(&*self.map, qs, one));
         } else {
             qs.iter().zip(out).for_each(|(q, o)| *o = one(&*self.map, q));

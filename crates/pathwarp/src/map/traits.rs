@@ -80,6 +80,12 @@ pub trait Map: Send + Sync {
         false
     }
 
+    /// Returns `true` if derivatives are computed from several values each, by differences. Callers then use values where they can.
+    #[doc(hidden)]
+    fn differentiates(&self) -> bool {
+        false
+    }
+
     /// Returns `true` for a memory in front of a map that [prefers batches](Map::prefers_batches).
     #[doc(hidden)]
     fn remembers(&self) -> bool {
@@ -160,6 +166,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     fn prefers_batches(&self) -> bool {
         (**self).prefers_batches()
     }
+    fn differentiates(&self) -> bool {
+        (**self).differentiates()
+    }
     fn remembers(&self) -> bool {
         (**self).remembers()
     }
@@ -233,6 +242,9 @@ mod tests {
         fn prefers_batches(&self) -> bool {
             self.record("prefers_batches", true)
         }
+        fn differentiates(&self) -> bool {
+            self.record("differentiates", true)
+        }
         fn remembers(&self) -> bool {
             self.record("remembers", true)
         }
@@ -266,6 +278,7 @@ mod tests {
         let _ = map.inverse();
         let _ = map.work();
         let _ = map.prefers_batches();
+        let _ = map.differentiates();
         let _ = map.remembers();
         map.prepare(&[p], &[p]);
         map.points_and_jets((&[p], &mut [p]), (&[p], &mut [Jet::default()]));
