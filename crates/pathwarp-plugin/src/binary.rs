@@ -54,11 +54,7 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
 
 /// The length of the message at the beginning of `bytes`, once its head is there. `body` is the length of the body if it is known;
 /// a message instead of it may have up to [`MESSAGE_BYTES`].
-pub(crate) fn length(
-    bytes: &[u8],
-    body: Option<usize>,
-    expected: &dyn Fn() -> String,
-) -> Result<Option<usize>, Fault> {
+pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &dyn Fn() -> String) -> Result<Option<usize>, Fault> {
     let Some((head, _)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
     let [a, b, c, d, kind] = *head;
     let length = u32::from_le_bytes([a, b, c, d]) as usize;

@@ -168,8 +168,9 @@ mod tests {
         fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).unwrap();
         let mut running = Running::start(&file)?;
         let mut pipes = Pipes::new(&running)?;
-        let answer =
-            pipes.exchange(&mut running, request, (&|| "an answer".to_owned(), 1000), |b| Ok((b.len() >= length).then_some(length)));
+        let answer = pipes.exchange(&mut running, request, (&|| "an answer".to_owned(), 1000), |b| {
+            Ok((b.len() >= length).then_some(length))
+        });
         assert!(answer.is_err() || pipes.left_over().is_empty());
         answer
     }

@@ -48,9 +48,7 @@ impl Program {
     pub(crate) fn ask(&self, instance: &Instance, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Fault> {
         let mut out = Vec::with_capacity(ask.numbers() * points.len());
         self.with_session(instance.id, |s| {
-            points
-                .chunks(MOST_POINTS)
-                .try_for_each(|ps| s.ask(self.protocol, instance, &mut [(ask, ps, &mut out)]))
+            points.chunks(MOST_POINTS).try_for_each(|ps| s.ask(self.protocol, instance, &mut [(ask, ps, &mut out)]))
         })?;
         Ok(out)
     }

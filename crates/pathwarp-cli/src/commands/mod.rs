@@ -151,9 +151,8 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         list::NAME => list::run(registry, &plugins, m),
         check::NAME => check::run(registry, &plugins, m),
         new_plugin::NAME => {
-            let taken = |name: &str| {
-                name == "help" || OTHERS.iter().any(|(n, _)| *n == name) || registry.get(name).is_some()
-            };
+            let taken =
+                |name: &str| name == "help" || OTHERS.iter().any(|(n, _)| *n == name) || registry.get(name).is_some();
             new_plugin::run(m, taken)
         }
         map::NAME => map::run(registry, m, &later),

@@ -90,8 +90,7 @@ pub(super) fn announce(
         let samples: Vec<Point> = areas.iter().flat_map(|a| a.samples(basis, shown)).collect();
         inverse.prepare(&samples, &[]);
         areas.retain(|a| a.trace(basis, shown, inverse, last).is_none());
-        let (divided, smallest): (Vec<_>, Vec<_>) =
-            areas.into_iter().partition(|a| a.width.max(a.height) > SMALLEST);
+        let (divided, smallest): (Vec<_>, Vec<_>) = areas.into_iter().partition(|a| a.width.max(a.height) > SMALLEST);
         announce_pixels(&smallest.iter().flat_map(|a| a.pixels(shown)).collect::<Vec<_>>());
         areas = divided.into_iter().flat_map(PixelArea::quarters).collect();
     }
