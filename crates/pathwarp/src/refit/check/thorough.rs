@@ -8,6 +8,9 @@ use crate::refit::source::SourceCurve;
 use crate::refit::split::SlowSpots;
 use kurbo::{Point, Vec2};
 
+/// The check's work in evaluations of the map: its own, and its search.
+pub(in crate::refit) const THOROUGH_WORK: usize = 800;
+
 /// The Hausdorff distance between candidate and image, by sampling: the nearest sample by search, then Newton steps.
 #[cold]
 pub(in crate::refit) fn thorough(

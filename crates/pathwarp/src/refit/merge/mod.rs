@@ -39,6 +39,9 @@ use run::{RunSegment, SegmentRun};
 use search::fewest_legs;
 use std::sync::Arc;
 
+/// Work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
+const TRIAL_WORK: f64 = 60.0;
+
 /// What outlasts a subpath.
 #[derive(Default)]
 pub(super) struct MergeMemory {
@@ -242,6 +245,7 @@ impl<'a> Merger<'a> {
             let Jet { dx, dy, .. } = site.jets[0][0];
             repeats.carry(shape, CarriedWay { jacobian: [dx, dy], off, segments, pieces, legs });
         }
+        self.fitter.spend(TRIAL_WORK * reaches.tried() as f64);
         let Reaches { mut own, .. } = reaches;
         append(legs, &mut own, &mut self.pieces, &mut self.report)
     }
