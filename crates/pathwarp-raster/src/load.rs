@@ -153,7 +153,7 @@ impl Load {
         let [w, h] = canvas.seen(bounds);
         if let Some(fill) = p.fill() {
             self.add(w * h * paint_work(fill.paint()))?;
-            self.add(Edges::of_fill(p.data(), transform, canvas.height).work(h))?;
+            self.add(Edges::of_fill(p.data(), transform, [canvas.width, canvas.height]).work([w, h]))?;
             self.pattern(fill.paint(), transform, canvas)?;
         }
         if let Some(stroke) = p.stroke() {
@@ -163,7 +163,7 @@ impl Load {
                 return Err(Error::TooFar);
             }
             self.add(w * h * paint_work(stroke.paint()))?;
-            self.add(Edges::of_stroke(p.data(), stroke, width, transform, canvas.height).work(h))?;
+            self.add(Edges::of_stroke(p.data(), stroke, width, transform, [canvas.width, canvas.height]).work([w, h]))?;
             if let Some(dashes) = stroke.dasharray() {
                 self.add(DASH * dashes_along(p.data(), dashes))?;
             }
@@ -187,7 +187,7 @@ impl Load {
     fn image(&mut self, kind: &ImageKind, bounds: Rect, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
         let data = match kind {
             ImageKind::SVG(tree) => {
-                let area = f64::from(canvas.width) * f64::from(canvas.height);
+                let area = f64::from(canvas.width) * f64::from([canvas.width, canvas.height]);
                 self.add(2.0 * LAYER * area)?;
                 let inner = self.hold(canvas, area)?;
                 return self.group(tree.root(), transform, &inner);
