@@ -187,7 +187,7 @@ impl Load {
     fn image(&mut self, kind: &ImageKind, bounds: Rect, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
         let data = match kind {
             ImageKind::SVG(tree) => {
-                let area = f64::from(canvas.width) * f64::from([canvas.width, canvas.height]);
+                let area = f64::from(canvas.width) * f64::from(canvas.height);
                 self.add(2.0 * LAYER * area)?;
                 let inner = self.hold(canvas, area)?;
                 return self.group(tree.root(), transform, &inner);

@@ -41,7 +41,7 @@ use search::fewest_legs;
 use std::sync::Arc;
 
 /// Work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
-const TRIAL_WORK: f64 = 60.0;
+const TRIAL_WORK: f64 = 40.0;
 
 /// What outlasts a subpath.
 #[derive(Default)]
