@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// The version of the file's format.
 const VERSION: u32 = 1;
+/// Bytes of the longest draft that is read: one with a drawing of 100 MB.
+const LONGEST: u64 = 150 << 20;
 /// The end of the file's name; the name begins with a dot and the drawing's name.
 const EXTENSION: &str = "pathwarp-edit";
 
@@ -41,9 +43,12 @@ impl Draft {
         Self { path: Some(file.with_file_name(format!(".{name}.{EXTENSION}"))) }
     }
 
-    /// What was kept; `None` if there is no draft, or one of another version.
+    /// What was kept; `None` if there is no draft, or one of another version. Drawings come with folders from anywhere: a link or a pipe
+    /// in the draft's place is none.
     pub(crate) fn read(&self) -> Option<Kept> {
-        let text = std::fs::read_to_string(self.path.as_ref()?).ok()?;
+        let path = self.path.as_ref()?;
+        std::fs::symlink_metadata(path).ok().filter(|m| m.is_file() && m.len() <= LONGEST)?;
+        let text = std::fs::read_to_string(path).ok()?;
         serde_json::from_str::<Kept>(&text).ok().filter(|k| k.pathwarp == VERSION)
     }
 

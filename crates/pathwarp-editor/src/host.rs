@@ -18,6 +18,12 @@ pub trait Host: Send + Sync {
     /// The bytes are not a drawing that can be read.
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String>;
 
+    /// Refuses steps from a file that a stranger may have written if they name files anywhere, as the drawing itself may not.
+    ///
+    /// # Errors
+    /// A step names such a file.
+    fn admits(&self, recipe: &Recipe) -> Result<(), String>;
+
     /// Converts a finished drawing into the format that the extension of `to` names. Returns the bytes and what the format cannot
     /// hold.
     ///

@@ -4,7 +4,7 @@ use crate::assets::ASSETS;
 use crate::guard::{Guard, Refusal};
 use std::io::{self, Read as _, Write};
 use std::net::TcpStream;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tungstenite::handshake::server::{create_response, write_response};
 use tungstenite::http::{Method, Request, Version};
 
@@ -12,7 +12,7 @@ use tungstenite::http::{Method, Request, Version};
 const LONGEST_HEAD: usize = 16 << 10;
 /// Most headers of a request.
 const MOST_HEADERS: usize = 64;
-/// A browser that has connected sends its request at once.
+/// A browser that has connected sends its request at once, all of it within this time.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// The rules for the page. Its own script and style are files; a drawing may hold styles in attributes and embedded pictures, but
@@ -22,7 +22,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 
 /// Answers the request on a new connection. Returns the connection if it has become a WebSocket.
 pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<TcpStream>> {
-    stream.set_read_timeout(Some(PATIENCE))?;
+    stream.set_write_timeout(Some(PATIENCE))?;
     stream.set_nodelay(true)?;
     let Some(request) = read(&mut stream)? else {
         return refuse(&mut stream, "400 Bad Request", "this is not a request of a browser");
@@ -70,9 +70,13 @@ fn explain(refusal: Refusal) -> &'static str {
 
 /// Reads the head of a request; `None` if it is none.
 fn read(stream: &mut TcpStream) -> io::Result<Option<Request<()>>> {
+    let begun = Instant::now();
     let mut head = Vec::new();
     let mut piece = [0; 2048];
     loop {
+        // One that comes in drops would hold one of the few connections for hours.
+        let rest = PATIENCE.checked_sub(begun.elapsed()).filter(|d| !d.is_zero()).ok_or(io::ErrorKind::TimedOut)?;
+        stream.set_read_timeout(Some(rest))?;
         let n = stream.read(&mut piece)?;
         head.extend_from_slice(piece.get(..n).unwrap_or_default());
         if let Some(parsed) = parse(&head) {

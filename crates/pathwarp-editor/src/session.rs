@@ -62,6 +62,15 @@ impl Shown {
     }
 }
 
+/// Whether a draft, which may come from a stranger as the drawing does, keeps to what both may do: it reads no files from elsewhere.
+fn admitted(host: &dyn Host, kept: &Kept, file: &Path) -> Result<(), String> {
+    if let Some((name, _)) = &kept.dropped {
+        saving::named(name, file)?;
+    }
+    let mut states = kept.undo.iter().chain(&kept.redo).chain([&kept.steps]);
+    states.try_for_each(|steps| host.admits(&recipe(steps)))
+}
+
 impl Session {
     /// Opens a drawing, with its draft if one was left behind.
     pub(crate) fn open(
@@ -71,11 +80,16 @@ impl Session {
         purpose: Purpose,
         draft: Draft,
     ) -> Result<Self, String> {
-        let mut kept = draft.read();
+        let (mut kept, mut problem) = (draft.read(), None);
+        if let Some(Err(e)) = kept.as_ref().map(|k| admitted(&*host, k, file)) {
+            problem = Some(format!("the draft beside the drawing was not opened: {e}"));
+            kept = None;
+        }
         let dropped = kept.as_ref().and_then(|k| k.dropped.as_ref());
-        let dropped = dropped.and_then(|(name, bytes)| Some((PathBuf::from(name), STANDARD.decode(bytes).ok()?)));
+        let dropped =
+            dropped.and_then(|(name, bytes)| Some((saving::named(name, file).ok()?, STANDARD.decode(bytes).ok()?)));
         let opened = match dropped {
-            Some((name, bytes)) => host.open(&file.with_file_name(name), &bytes)?,
+            Some((name, bytes)) => host.open(&name, &bytes)?,
             None => host.open(file, bytes)?,
         };
         let restored = kept.is_some();
@@ -84,7 +98,7 @@ impl Session {
         let kept = kept.take().unwrap_or_else(|| Kept::new(as_opened));
         let file = file.to_owned();
         let handed_over = false;
-        Ok(Self { host, file, purpose, handed_over, opened, kept, draft, saved, restored, problem: None })
+        Ok(Self { host, file, purpose, handed_over, opened, kept, draft, saved, restored, problem })
     }
 
     /// Opens a drawing that was dropped on the page instead of the present one.

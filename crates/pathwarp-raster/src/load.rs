@@ -7,8 +7,11 @@
 //!
 //! A unit of work is about five nanoseconds, which is a pixel composited with a little arithmetic.
 
+mod edges;
+
 use crate::error::Error;
 use crate::picture::header_size;
+use edges::Edges;
 use pathwarp::budget::{Exceeded, Limit, Limits};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -35,9 +38,7 @@ const BLURRED: f64 = 20.0;
 const LIT: f64 = 20.0;
 const OCTAVE: f64 = 24.0;
 const WINDOW: f64 = 0.4;
-/// Work for a segment on a scan line, for a segment, for a path, and for a dash.
-const CROSSING: f64 = 0.5;
-const SEGMENT: f64 = 10.0;
+/// Work for a path, and for a dash.
 const PATH: f64 = 50.0;
 const DASH: f64 = 200.0;
 
@@ -150,11 +151,9 @@ impl Load {
         }
         let bounds = p.stroke_bounding_box().transform(transform).filter(is_near).ok_or(Error::TooFar)?;
         let [w, h] = canvas.seen(bounds);
-        let segments = p.data().len() as f64;
-        let mut edges = 0.0;
         if let Some(fill) = p.fill() {
             self.add(w * h * paint_work(fill.paint()))?;
-            edges += segments;
+            self.add(Edges::of_fill(p.data(), transform, [canvas.width, canvas.height]).work([w, h]))?;
             self.pattern(fill.paint(), transform, canvas)?;
         }
         if let Some(stroke) = p.stroke() {
@@ -164,13 +163,13 @@ impl Load {
                 return Err(Error::TooFar);
             }
             self.add(w * h * paint_work(stroke.paint()))?;
-            edges += 4.0 * segments;
+            self.add(Edges::of_stroke(p.data(), stroke, width, transform, [canvas.width, canvas.height]).work([w, h]))?;
             if let Some(dashes) = stroke.dasharray() {
                 self.add(DASH * dashes_along(p.data(), dashes))?;
             }
             self.pattern(stroke.paint(), transform, canvas)?;
         }
-        self.add(PATH + edges * (SEGMENT + CROSSING * h))
+        self.add(PATH)
     }
 
     /// The tile of a pattern, which the renderer paints for every shape.

@@ -21,10 +21,10 @@ const PER_SEGMENT: usize = 64;
 const STRETCHES: usize = 16;
 
 /// Work of looking at a box, at a line, and at a place of a Bézier curve and of an arc, in comparisons of the budget.
-const BOX: f64 = 0.05;
-const LINE: f64 = 0.2;
-const CURVE: f64 = 0.12;
-const ARC: f64 = 0.5;
+const BOX: f64 = 0.08;
+const LINE: f64 = 0.3;
+const CURVE: f64 = 0.2;
+const ARC: f64 = 0.7;
 /// Places of a curve that a step of the search for its foot point counts as.
 const STEP: f64 = 2.0;
 

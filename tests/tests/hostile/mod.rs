@@ -2,6 +2,7 @@
 //! nothing that was not named.
 
 mod bounded;
+mod crowded;
 mod exports;
 mod formulas;
 mod lists;
@@ -10,5 +11,6 @@ mod numbers;
 mod packed;
 mod pictures;
 mod repeated;
+mod served;
 mod sheets;
 mod trust;

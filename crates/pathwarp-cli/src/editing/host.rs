@@ -93,6 +93,11 @@ impl Host for EditorHost {
         self.said(self.open_drawing(file, bytes))
     }
 
+    fn admits(&self, recipe: &Recipe) -> Result<(), String> {
+        let external = self.said(self.given.read())?.reading.external;
+        recipe_file::check_files(&*self.registry, recipe, external)
+    }
+
     fn export(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), String> {
         self.said(self.converted(svg, to))
     }

@@ -28,14 +28,26 @@ pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) 
         if split.is_empty() {
             break;
         }
-        budget.spend_cut(Limit::Segments, PER_SPLIT * split.len() as u64)?;
+        budget.spend_cut(Limit::Segments, PER_SPLIT * halved(mesh, &split))?;
         work.split(mesh, &split);
     }
     Ok(())
 }
 
-/// Segments of the mesh for an edge that is halved: itself, and those across its faces, which are in turn looked at in the next round.
-const PER_SPLIT: u64 = 4;
+/// Segments of the mesh for the side of a polygon that is halved: half of it, and one across the face, which are in turn looked at in the
+/// next round.
+const PER_SPLIT: u64 = 2;
+
+/// The sides of polygons that are to be halved: an edge may belong to any number of them. A face that is cut becomes triangles, whose
+/// sides count as well.
+fn halved(mesh: &Mesh, split: &HashSet<Edge>) -> u64 {
+    let of = |corners: &[Corner]| {
+        let next = corners.iter().cycle().skip(1);
+        let sides = corners.iter().zip(next).filter(|(a, b)| split.contains(&edge(a.vertex, b.vertex))).count();
+        if sides > 0 { sides + corners.len().saturating_sub(3) } else { 0 }
+    };
+    mesh.polygons().map(|(_, corners)| of(corners) as u64).sum()
+}
 
 type Edge = (u32, u32);
 

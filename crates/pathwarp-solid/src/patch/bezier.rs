@@ -16,6 +16,11 @@ pub struct BezierPatch {
 }
 
 impl BezierPatch {
+    /// Work of a point, in evaluations of a map.
+    pub(super) fn work(&self) -> usize {
+        2 + (self.degree[0] + 1) * (self.degree[1] + 1) / 2
+    }
+
     /// The value in homogeneous coordinates and its derivatives by u and v.
     #[must_use]
     pub fn homogeneous(&self, u: f64, v: f64) -> [DVec4; 3] {

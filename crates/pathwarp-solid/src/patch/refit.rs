@@ -49,7 +49,7 @@ fn corner(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64, n: usize) -> Corn
 /// More evaluations than the limit allows.
 pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, budget: &Budget) -> Result<Cells, Exceeded> {
     let samples = (n * PLACES + 1) * (n * PLACES + 1);
-    budget.spend(Limit::Evaluations, (3 * (n + 1) * (n + 1) + samples) as u64)?;
+    budget.spend(Limit::Evaluations, (patch.work() * (3 * (n + 1) * (n + 1) + samples)) as u64)?;
     let at = |i: usize| i as f64 / n as f64;
     let corners: Vec<Corner> =
         (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, at(i), at(j), n)).collect();

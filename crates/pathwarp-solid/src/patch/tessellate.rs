@@ -20,18 +20,19 @@ const MOST: usize = 256;
 pub fn tessellate(surfaces: &[Surface], within: Option<f64>, budget: &Budget) -> Result<Mesh, Exceeded> {
     let patches: Vec<(usize, BezierPatch)> =
         surfaces.iter().enumerate().flat_map(|(n, s)| s.pieces().0.into_iter().map(move |p| (n, p))).collect();
+    let work: usize = patches.iter().map(|(_, p)| p.work()).sum();
     let mut side = if within.is_some() { 1 } else { DEFAULT };
     if let Some(within) = within {
         // A power of two, so that parameters from both ends of an edge are the same numbers.
         while side < MOST {
-            budget.spend(Limit::Evaluations, (patches.len() * 4 * side * side) as u64)?;
+            budget.spend(Limit::Evaluations, (work * 4 * side * side) as u64)?;
             if patches.iter().all(|(_, p)| is_close(p, side, within)) {
                 break;
             }
             side *= 2;
         }
     }
-    budget.spend(Limit::Evaluations, (patches.len() * (side + 1) * (side + 1)) as u64)?;
+    budget.spend(Limit::Evaluations, (work * (side + 1) * (side + 1)) as u64)?;
     let mut mesh = Mesh::default();
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
     let mut last = None;

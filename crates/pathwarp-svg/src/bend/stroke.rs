@@ -5,7 +5,7 @@ use super::outcome::StrokeOutcome;
 use super::task::PartTask;
 use super::width::StrokeWidth;
 use crate::scene::affine::stretch;
-use crate::scene::expand::{dash_segments, stroke_outline};
+use crate::scene::expand::{stroke_outline, stroke_segments};
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::refit::{self, Assurance, PathReport};
@@ -115,8 +115,8 @@ fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
 /// the part's user space to root user space.
 fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
-    let dashes = dash_segments(&p.local, s) as u64;
-    options.refit.budget.spend(Limit::Segments, dashes).map_err(GeometryError::Limit)?;
+    let segments = stroke_segments(&p.local, s) as u64;
+    options.refit.budget.spend_cut(Limit::Segments, segments).map_err(GeometryError::Limit)?;
     let allowed = t.allowed();
     let expanded = |fine: f64| {
         let one = |local: &Outline, places: &[Affine]| {

@@ -68,14 +68,19 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
 /// Limit on the dashes of a path. More would take long and look like a grey line.
 const MOST_DASHES: f64 = 20_000.0;
 
-/// Segments of a dash's outline, with round caps.
-const PER_DASH: f64 = 8.0;
+/// Segments of the outline of a dash or a subpath with its caps, and of a segment with its join. All are held three times: expanded,
+/// bent, and as they are written.
+const PER_DASH: f64 = 3.0 * 8.0;
+const PER_SEGMENT: f64 = 3.0 * 2.0;
+const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 
-/// A bound for the segments of the dashes into which a stroke is expanded.
-pub(crate) fn dash_segments(local: &Outline, stroke: &Stroke) -> f64 {
+/// A bound for the segments into which a stroke is expanded.
+pub(crate) fn stroke_segments(local: &Outline, stroke: &Stroke) -> f64 {
     let dashes: Vec<f64> = stroke.dasharray().unwrap_or_default().iter().map(|d| f64::from(*d)).collect();
     let count = dash_count(local, &dashes);
-    if count < MOST_DASHES { PER_DASH * count } else { 0.0 }
+    let dashes = if count < MOST_DASHES { count } else { 0.0 };
+    let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
+    PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64
 }
 
 /// A bound for the number of dashes along an outline; infinite if they have no length.

@@ -1,9 +1,9 @@
 //! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
 
 use super::{range, selectors, unfold};
-use memchr::memmem;
-use pathwarp::Error;
+use memchr::{memchr2, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::{Error, Outline, Seg};
 use std::collections::HashMap;
 use usvg::roxmltree;
 
@@ -52,6 +52,7 @@ pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget
     } else {
         unfold::count_plain(xml, name, budget)?;
     }
+    wide_arcs(xml, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
     Ok(features)
 }
 
@@ -77,6 +78,30 @@ fn href<'a>(n: roxmltree::Node<'a, '_>) -> Option<&'a str> {
     link.trim().strip_prefix('#')
 }
 
+/// Counts what arcs become whose ellipses are much wider than any page, such as those with one small radius that have to be enlarged to
+/// reach their ends. usvg turns an arc into cubics whose number grows with the radius, and the time with its square.
+fn wide_arcs(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Radii of fewer cubics take no time.
+    const WIDE: f64 = 1e8;
+    /// A cubic's error times the sixth power of their number in a turn, for the radius 1, and the error that usvg allows.
+    const ERROR: f64 = 1.1163;
+    const ALLOWED: f64 = 0.1;
+    /// Comparisons for an arc, by the square of its cubics.
+    const MOVED: f64 = 0.0125;
+    let arcs = |d: &str| memchr2(b'a', b'A', d.as_bytes()).is_some().then(|| Outline::from_svg_lossy(d));
+    let radius = |s: &Seg| if let Seg::Arc(a) = s { a.a.hypot().max(a.b.hypot()) } else { 0.0 };
+    let widest = |o: Outline| o.segs().map(radius).fold(0.0, f64::max);
+    let paths = xml.descendants().filter_map(|n| n.attribute("d")).filter_map(arcs);
+    let radius = paths.map(widest).fold(0.0, f64::max);
+    if radius < WIDE {
+        return Ok(());
+    }
+    let cubics = (ERROR * radius / ALLOWED).powf(1.0 / 6.0);
+    // Each of them may be as wide, and all were counted with what references show again.
+    let arcs = budget.limits().of(Limit::Segments) - budget.left(Limit::Segments);
+    budget.spend_cut(Limit::Comparisons, (arcs * MOVED * cubics * cubics) as u64)
+}
+
 /// Counts the shapes of a drawing with strokes so wide that single precision fails the renderer when it outlines them for their
 /// boxes: the time grows with the width.
 fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
@@ -100,6 +125,7 @@ fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Ex
 
 /// Counts the letters that are compared with every span of their text.
 fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    const AT_A_TIME: u64 = 64;
     let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
     for text in texts {
         let (mut spans, mut letters) = (0, 0);
@@ -107,11 +133,12 @@ fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded>
             if n.is_element() {
                 spans += 1;
             } else {
-                letters += n.text().map_or(0, str::len) as u64;
+                letters += n.text().map_or(0, |t| t.chars().count()) as u64;
             }
         }
-        // The text itself is no span.
-        budget.spend(Limit::Comparisons, (spans - 1) * letters)?;
+        // The text itself is no span. Its letters are also compared with each other, some at a time.
+        let compared = letters.min(budget.limits().of(Limit::Letters) as u64);
+        budget.spend(Limit::Comparisons, (spans - 1) * letters + compared * compared / AT_A_TIME)?;
     }
     Ok(())
 }

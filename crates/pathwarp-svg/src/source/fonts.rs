@@ -1,9 +1,10 @@
 //! Fonts for text: installed ones if wanted, given files, and a bundled fallback.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
+use std::fs;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use usvg::fontdb::{self, Database, Family, ID};
+use usvg::fontdb::{self, Database, Family, ID, Source};
 use usvg::{FontFamily, FontResolver};
 
 static BUNDLED: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
@@ -75,39 +76,81 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
 
 /// Finds fonts like usvg's own resolver, but always returns one, and records the families that were not found.
 pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolver<'static> {
+    let held = Arc::new(Held::default());
+    let also_held = held.clone();
+    let fallback = FontResolver::default_fallback_selector();
     FontResolver {
         select_font: Box::new(move |font, db| {
-            let query = |family: &str| {
-                db.query(&fontdb::Query {
-                    families: &[Family::Name(family)],
-                    weight: fontdb::Weight(font.weight()),
-                    stretch: stretch(font.stretch()),
-                    style: match font.style() {
-                        usvg::FontStyle::Normal => fontdb::Style::Normal,
-                        usvg::FontStyle::Italic => fontdb::Style::Italic,
-                        usvg::FontStyle::Oblique => fontdb::Style::Oblique,
-                    },
-                })
-            };
-            let mut absent = Vec::new();
-            for family in font.families() {
-                let found = match family {
-                    FontFamily::Named(name) => query(name),
-                    other => of_kind(other, &generic, query),
-                };
-                if found.is_some() {
-                    return found;
-                }
-                absent.extend(asked_for(family, &generic).cloned());
-            }
-            if let Ok(mut m) = missing.lock() {
-                m.extend(absent);
-            }
-            let last: Option<ID> = of_kind(&FontFamily::Serif, &generic, query);
-            last.or_else(|| query(BUNDLED_FAMILY)).or_else(|| db.faces().next().map(|f| f.id))
+            let face = select(font, db, &generic, &missing)?;
+            Some(held.face(face, db))
         }),
-        select_fallback: FontResolver::default_fallback_selector(),
+        select_fallback: Box::new(move |c, used, db| {
+            let face = fallback(c, used, db)?;
+            let face = also_held.face(face, db);
+            (!used.contains(&face)).then_some(face)
+        }),
     }
+}
+
+/// Bytes of a font.
+type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
+
+/// Font files in memory, with their faces in the database that was used last; pictures have databases besides the drawing's. From a file,
+/// usvg would read each letter up to four times.
+#[derive(Default)]
+struct Held(Mutex<HashMap<PathBuf, (Bytes, Vec<ID>)>>);
+
+impl Held {
+    /// The face in memory, or the given one if it cannot be read.
+    fn face(&self, id: ID, db: &mut Arc<Database>) -> ID {
+        let Some((Source::File(path), index)) = db.face(id).map(|f| (f.source.clone(), f.index)) else { return id };
+        let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !files.contains_key(&path) {
+            let Ok(data) = fs::read(&path) else { return id };
+            files.insert(path.clone(), (Arc::new(data), Vec::new()));
+        }
+        let Some((data, faces)) = files.get_mut(&path) else { return id };
+        let of_data = |db: &Database, id: ID| match db.face(id) {
+            Some(f) if f.index == index => matches!(&f.source, Source::Binary(d) if Arc::ptr_eq(d, data)),
+            _ => false,
+        };
+        if !faces.iter().any(|f| of_data(db, *f)) {
+            *faces = Arc::make_mut(db).load_font_source(Source::Binary(data.clone())).to_vec();
+        }
+        faces.iter().copied().find(|f| of_data(db, *f)).unwrap_or(id)
+    }
+}
+
+/// The face for a font of the drawing.
+fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
+    let query = |family: &str| {
+        db.query(&fontdb::Query {
+            families: &[Family::Name(family)],
+            weight: fontdb::Weight(font.weight()),
+            stretch: stretch(font.stretch()),
+            style: match font.style() {
+                usvg::FontStyle::Normal => fontdb::Style::Normal,
+                usvg::FontStyle::Italic => fontdb::Style::Italic,
+                usvg::FontStyle::Oblique => fontdb::Style::Oblique,
+            },
+        })
+    };
+    let mut absent = Vec::new();
+    for family in font.families() {
+        let found = match family {
+            FontFamily::Named(name) => query(name),
+            other => of_kind(other, generic, query),
+        };
+        if found.is_some() {
+            return found;
+        }
+        absent.extend(asked_for(family, generic).cloned());
+    }
+    if let Ok(mut m) = missing.lock() {
+        m.extend(absent);
+    }
+    let last: Option<ID> = of_kind(&FontFamily::Serif, generic, query);
+    last.or_else(|| query(BUNDLED_FAMILY)).or_else(|| db.faces().next().map(|f| f.id))
 }
 
 /// The name of a family; of a generic one, the name configured for it.

@@ -114,7 +114,9 @@ impl StretchFitter<'_> {
     fn by_dense_check(&self, request: &FitRequest<'_>, z: &FitState, feet: &Evenly, error: f64) -> Result<f64, Point> {
         let c = request.candidate(z);
         let (e, thorough) = check::dense(self.source, &c, feet, self.slow, self.tolerance)?;
-        self.thorough.set(self.thorough.get() + usize::from(thorough));
+        if thorough {
+            self.extra.set(self.extra.get() + check::THOROUGH_WORK);
+        }
         let e = e.max(error);
         Ok(if e > DENSE_ACCEPTED * self.tolerance { e / DENSE_ACCEPTED } else { e })
     }

@@ -1,5 +1,6 @@
 //! One segment: its canonical direction, its smooth parts, and their pieces.
 
+use super::check::THOROUGH_WORK;
 use super::limits::{MAX_ATTEMPTS, MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
 use super::piece::{FittedPiece, reverse};
@@ -17,9 +18,8 @@ use std::cell::Cell;
 /// Evaluations of the map for an attempt at a piece with its usual checks.
 const EVALUATIONS: usize = 32;
 
-/// Work of the thorough check, which most attempts need where the map oscillates faster than samples can tell: its evaluations, and
-/// its own search. A part with more attempts than [`HARD`] may be such a place, so that fewer are allowed from there on.
-const EVALUATIONS_HARD: usize = 800;
+/// A part with more attempts may be one where the map oscillates faster than samples can tell, so that most need the thorough check:
+/// fewer are allowed from there on.
 const HARD: usize = 64;
 
 /// Fits the images of single segments.
@@ -130,13 +130,13 @@ impl SegmentFitter<'_> {
     /// what other threads count at the same time.
     fn most_attempts(&self) -> usize {
         let left = self.options.budget.left(Limit::Evaluations) / self.work;
-        let (usual, hard) = (left / EVALUATIONS as f64, left / EVALUATIONS_HARD as f64);
+        let (usual, hard) = (left / EVALUATIONS as f64, left / THOROUGH_WORK as f64);
         let most = if usual < HARD as f64 { usual } else { hard.max(HARD as f64) };
         MAX_ATTEMPTS.min((most as usize).saturating_add(1))
     }
 
     /// Counts work. Too much of it is an error of the whole path, which ends by itself: `fit` does no more.
-    fn spend(&self, evaluations: f64) {
+    pub(super) fn spend(&self, evaluations: f64) {
         let _ = self.options.budget.spend(Limit::Evaluations, evaluations as u64);
     }
 
@@ -157,11 +157,11 @@ impl SegmentFitter<'_> {
         let form = form.map(|f| f.with_blur(blur));
         let degree = degree.filter(|_| blur == 0.0);
         let tolerance = self.options.tolerance;
-        let (most_attempts, thorough) = (self.most_attempts(), Cell::new(0));
-        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, thorough, most_attempts };
+        let (most_attempts, extra) = (self.most_attempts(), Cell::new(0));
+        let mut fitter = StretchFitter { source, slow, tolerance, form, degree, attempts: 0, extra, most_attempts };
         let covered = fitter.cover(from, to, pieces, report);
-        let each = if fitter.attempts > HARD { EVALUATIONS_HARD } else { EVALUATIONS };
-        let checked = fitter.attempts * EVALUATIONS + fitter.thorough.get() * EVALUATIONS_HARD;
+        let each = if fitter.attempts > HARD { THOROUGH_WORK } else { EVALUATIONS };
+        let checked = fitter.attempts * EVALUATIONS + fitter.extra.get();
         self.spend((fitter.attempts * each).max(checked) as f64 * self.work);
         covered
     }

@@ -29,8 +29,8 @@ pub(super) struct StretchFitter<'a> {
     /// The map's degree, if it is a quotient of polynomials and the ends of the pieces lie on its image.
     pub(super) degree: Option<RationalDegree>,
     pub(super) attempts: usize,
-    /// Thorough checks so far.
-    pub(super) thorough: Cell<usize>,
+    /// Evaluations besides those of attempts with their usual checks, so far.
+    pub(super) extra: Cell<usize>,
     /// The number of attempts at which the work ends.
     pub(super) most_attempts: usize,
 }

@@ -12,3 +12,4 @@ mod thorough;
 
 pub(super) use dense::dense;
 pub(super) use halfway::halfway;
+pub(super) use thorough::THOROUGH_WORK;

@@ -8,6 +8,9 @@ use crate::refit::source::SourceCurve;
 use crate::refit::split::SlowSpots;
 use kurbo::{Point, Vec2};
 
+/// The check's work in evaluations of the map: its own, and its search.
+pub(in crate::refit) const THOROUGH_WORK: usize = 800;
+
 /// Newton steps from the nearest sample.
 const NEWTON_STEPS: usize = 4;
 

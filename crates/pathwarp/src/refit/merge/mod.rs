@@ -25,6 +25,7 @@ use super::proof::RationalForm;
 use super::report::{Assurance, PathReport};
 use super::segment::SegmentFitter;
 use super::source::SourceCurve;
+use crate::budget::Limit;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use carry::{Carried, Site};
@@ -38,6 +39,9 @@ use repeats::{CarriedWay, Repeats, Way};
 use run::{RunSegment, SegmentRun};
 use search::fewest_legs;
 use std::sync::Arc;
+
+/// Work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
+const TRIAL_WORK: f64 = 40.0;
 
 /// What outlasts a subpath.
 #[derive(Default)]
@@ -135,6 +139,10 @@ impl<'a> Merger<'a> {
 
     /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns how many they are.
     fn joined(&mut self, start: usize, end: usize) -> Result<usize, Point> {
+        // The whole path is refused then.
+        if self.fitter.options.budget.left(Limit::Evaluations) <= 0.0 {
+            return self.single(start);
+        }
         let (shape, off) = self.memory.repeats.shape(&self.segs[start..end], self.fitter.options.tolerance);
         if let Some(segments) = self.carried((shape, off), start, end)? {
             return Ok(segments);
@@ -242,6 +250,7 @@ impl<'a> Merger<'a> {
             let Jet { dx, dy, .. } = site.jets[0][0];
             repeats.carry(shape, CarriedWay { jacobian: [dx, dy], off, segments, pieces, legs });
         }
+        self.fitter.spend(TRIAL_WORK * reaches.tried() as f64);
         let Reaches { mut own, .. } = reaches;
         append(legs, &mut own, &mut self.pieces, &mut self.report)
     }

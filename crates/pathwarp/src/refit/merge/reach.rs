@@ -93,6 +93,11 @@ impl<'r, 'a> Reaches<'r, 'a> {
         Self { run, own, tolerance, proof, carries, comes_again: carries && comes_again, memory }
     }
 
+    /// Number of cubics that were tried.
+    pub(super) fn tried(&self) -> usize {
+        self.memory.tried.len()
+    }
+
     /// The last grid place.
     pub(super) fn last(&self) -> usize {
         self.run.grid()
