@@ -60,7 +60,17 @@ export interface Stretch {
   factors: (number | null)[];
 }
 
+/** An adjust value of a text shape, in 1/100000 of the box or, if it goes beyond a million, 1/60000 of a degree. */
+export interface Adjust {
+  name: string;
+  least: number;
+  most: number;
+  default: number;
+  value?: number;
+}
+
 export interface Grip {
+  adjust?: Adjust[];
   point?: XY;
   points?: XY[];
   pairs?: [XY, XY][];

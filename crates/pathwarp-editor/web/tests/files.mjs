@@ -113,6 +113,19 @@ export const a_port_is_chosen_and_ctrl_c_ends = async () => {
   check(code === 130, `exit ${code}`);
 };
 
+export const a_program_that_was_stopped_goes_on = () => within(null, async ({ page, editor }) => {
+  await drag(page, "shaper/0.0/2", 20, 30);
+  editor.child.kill("SIGSTOP");
+  // Longer than the program waits for a page to come back.
+  await page.waitForTimeout(6000);
+  editor.child.kill("SIGCONT");
+  await page.waitForTimeout(500);
+  check(!(await page.isVisible("#gone")), "the page has lost the program");
+  const before = await paths(page);
+  await drag(page, "shaper/0.0/2", 20, 30);
+  check((await paths(page)) !== before, "the picture does not follow any more");
+});
+
 export const a_dropped_file_is_opened = () => within(null, async ({ page, dir }) => {
   const text = readFileSync(sample("badge.svg"), "utf8");
   await page.evaluate((svg) => {
