@@ -97,15 +97,13 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
     }
     let mut notes = work.notes(&frame, &built);
     notes.push(match done.refitted {
+        _ if !format.is_curved() => "the corners of all polygons are exact images".into(),
         0 => format!("the images of {} surfaces are exact", done.exact),
         n => format!("the images of {} surfaces are exact, and of {n} within {:.3e}", done.exact, done.distance),
     });
-    if done.cut > 0 {
-        notes.push(format!(
-            "{} surfaces are cut along a crease of the map, which makes {} of all",
-            done.cut,
-            surfaces.len()
-        ));
+    if done.cut > 0 && format.is_curved() {
+        let (cut, all) = (done.cut, surfaces.len());
+        notes.push(format!("{cut} of them are cut along a crease of the map; the result has {all} surfaces"));
     }
     let partial = format.is_curved() && done.distance > tolerance;
     Ok(Done { files, warnings, notes, report, partial })
