@@ -1,6 +1,6 @@
 // Saving, opening again, drafts, dropped files, two pages, the end of the server.
 import { existsSync, readFileSync, readdirSync } from "node:fs";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { becomes, check, choose, drag, edit, folder, middle, open, paths, program, quiet, root, sample } from "./harness.mjs";
 
 async function within(file, test, ...args) {
@@ -129,6 +129,7 @@ export const a_program_that_was_stopped_goes_on = () => within(null, async ({ pa
 
 /** Two steps, one of them a plug-in's: the copied line gives the file that was saved. */
 export const a_copied_command_line_gives_the_same = () => {
+  if (spawnSync("python3", ["--version"]).status !== 0) return "a_copied_command_line_gives_the_same skipped: python3 is missing";
   const plugin = `${root}examples/plug-ins/pathwarp-ripple.py`;
   return within(null, async ({ dir, page }) => {
     await choose(page, "Ripple");

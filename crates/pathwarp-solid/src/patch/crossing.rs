@@ -1,7 +1,8 @@
 //! The curves on a patch along which the derivative of a map jumps, as graphs over u where they are graphs.
 
 use super::bezier::BezierPatch;
-use crate::map::{Creases3, Level3, Map3};
+use crate::map::{Creases3, Jet3, Level3, Map3};
+use glam::{DMat3, DVec3};
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::map::CreaseKind;
 
@@ -58,16 +59,47 @@ pub(super) fn crossing(
     Ok(out)
 }
 
-/// Returns `true` if value or derivative jump at the level set between two places.
-fn jumps(patch: &BezierPatch, map: &dyn Map3, level: &Level3, a: [f64; 2], b: [f64; 2]) -> bool {
+/// A place at which the map itself jumps across a level set, among places of a coarse grid and its lines.
+pub(super) fn tear(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Option<DVec3> {
+    /// Lines of the grid, with the sides.
+    const LINES: usize = 8;
+    let at = |k: usize| [k % LINES, k / LINES].map(|i| i as f64 / (LINES - 1) as f64);
+    let point = |k: usize| patch.point(at(k)[0], at(k)[1]);
+    levels.iter().find_map(|level| {
+        let side: Vec<bool> = (0..LINES * LINES).map(|k| level(point(k)) > 0.0).collect();
+        let right = (0..side.len()).filter(|k| (k + 1) % LINES > 0).map(|k| (k, k + 1));
+        let up = (0..side.len() - LINES).map(|k| (k, k + LINES));
+        let mut crossed = right.chain(up).filter(|(a, b)| side[*a] != side[*b]);
+        crossed.find_map(|(a, b)| {
+            let [p, q] = beside(patch, level, at(a), at(b));
+            let (from, to) = (map.jet(p), map.jet(q));
+            moved_apart(&from, &to, p.distance(q)).then_some(p)
+        })
+    })
+}
+
+/// The places on either side of a level set between two places that it separates.
+fn beside(patch: &BezierPatch, level: &Level3, a: [f64; 2], b: [f64; 2]) -> [DVec3; 2] {
     let between = |t: f64| patch.point(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
     let t = bisected(|t| level(between(t)), 0.0, 1.0);
-    let beside = BESIDE * PLACES as f64;
-    let (p, q) = (map.jet(between(t - beside)), map.jet(between(t + beside)));
-    let size = |d: glam::DMat3| d.to_cols_array().iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    // The values are a little apart anyway.
-    let apart = (between(t - beside) - between(t + beside)).length();
-    size(p.d - q.d) > JUMP * size(p.d).max(size(q.d)) || p.p.distance(q.p) > 10.0 * size(p.d).max(size(q.d)) * apart
+    let off = BESIDE * PLACES as f64;
+    [between(t - off), between(t + off)]
+}
+
+fn size(d: DMat3) -> f64 {
+    d.to_cols_array().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+}
+
+/// Returns `true` if the images of two places, which are a little apart anyway, are far more so than the derivatives explain.
+fn moved_apart(p: &Jet3, q: &Jet3, apart: f64) -> bool {
+    p.p.distance(q.p) > 10.0 * size(p.d).max(size(q.d)) * apart
+}
+
+/// Returns `true` if value or derivative jump at the level set between two places.
+fn jumps(patch: &BezierPatch, map: &dyn Map3, level: &Level3, a: [f64; 2], b: [f64; 2]) -> bool {
+    let [from, to] = beside(patch, level, a, b);
+    let (p, q) = (map.jet(from), map.jet(to));
+    size(p.d - q.d) > JUMP * size(p.d).max(size(q.d)) || moved_apart(&p, &q, from.distance(to))
 }
 
 /// A zero of a function with different signs at both ends, to the last bits.

@@ -55,7 +55,7 @@ impl Cutter<'_> {
         }
         let mut out = Parts::default();
         for (piece, levels) in pieces.iter().zip(crossed) {
-            self.part(piece.clone(), &levels, [0, 0], &mut out)?;
+            self.part(piece, &levels, [0, 0], &mut out)?;
         }
         for part in &mut out.surfaces {
             part.name.clone_from(&surface.name);
@@ -64,18 +64,18 @@ impl Cutter<'_> {
     }
 
     /// Adds the image of a part that these creases may cross, after so many cuts in the middle and of all kinds.
-    fn part(&self, patch: BezierPatch, levels: &[Level3], cuts: [usize; 2], out: &mut Parts) -> Result<(), Exceeded> {
-        let crossing = crossing::crossing(&patch, self.map, levels, self.budget)?;
+    fn part(&self, patch: &BezierPatch, levels: &[Level3], cuts: [usize; 2], out: &mut Parts) -> Result<(), Exceeded> {
+        let crossing = crossing::crossing(patch, self.map, levels, self.budget)?;
         let most = if cuts[0] < DEEPEST && cuts[1] < MOST_CUTS { ENOUGH } else { MOST_CELLS };
         let turned = patch.transposed();
-        if let Some((surfaces, off)) = self.whole(&patch, &turned, &crossing, most)?
+        if let Some((surfaces, off)) = self.whole(patch, &turned, &crossing, most)?
             && (off <= self.tolerance || most == MOST_CELLS)
         {
             out.distance = out.distance.max(off);
             out.surfaces.extend(surfaces);
             return Ok(());
         }
-        let (u, v) = (crossing::cut(&patch, &crossing), crossing::cut(&turned, &crossing));
+        let (u, v) = (crossing::cut(patch, &crossing), crossing::cut(&turned, &crossing));
         let parts = match (u, v) {
             (Some(u), _) => vec![([0.0, 0.0], [u, 1.0]), ([u, 0.0], [1.0, 1.0])],
             (None, Some(v)) => vec![([0.0, 0.0], [1.0, v]), ([0.0, v], [1.0, 1.0])],
@@ -86,7 +86,7 @@ impl Cutter<'_> {
         };
         let cuts = [cuts[0] + usize::from(parts.len() == 4), cuts[1] + 1];
         for (from, to) in parts {
-            self.part(patch.part(from, to), levels, cuts, out)?;
+            self.part(&patch.part(from, to), levels, cuts, out)?;
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use super::bezier::BezierPatch;
 use super::compose;
 use super::crossing;
 use super::cut::Cutter;
-use super::refit::{self, MOST_CELLS};
+use super::refit::{self, INSIDE, MOST_CELLS};
 use super::surface::Surface;
 use crate::map::{Chain3, Creases3, Map3};
 use glam::DVec3;
@@ -26,6 +26,8 @@ pub struct DeformedPatches {
     pub folded: usize,
     /// The first of them, before the map.
     pub folded_at: Option<DVec3>,
+    /// A place on a surface at which the map jumps, before the map.
+    pub torn_at: Option<DVec3>,
 }
 
 /// The reason why surfaces have no image.
@@ -66,6 +68,9 @@ pub fn deform_patches(
     for (n, surface) in surfaces.iter().enumerate() {
         let (pieces, breaks) = surface.pieces();
         examine(n, &pieces, map, &creases, &mut out, budget)?;
+        if out.torn_at.is_none() {
+            out.torn_at = pieces.iter().find_map(|p| crossing::tear(p, map, &levels));
+        }
         let mut image = Some(surface.clone());
         for step in map.steps() {
             image = match image {
@@ -86,7 +91,9 @@ pub fn deform_patches(
         }
     }
     out.refitted = left.len() + out.cut;
-    let far = refitted(surfaces, &left, map, tolerance, &mut images, budget)?;
+    // A crease may lie along sides.
+    let inside = if levels.is_empty() { 0.0 } else { INSIDE };
+    let far = refitted(surfaces, &left, map, (tolerance, inside), &mut images, budget)?;
     out.distance = out.distance.max(far);
     *surfaces = images.into_iter().flatten().collect();
     Ok(out)
@@ -95,12 +102,13 @@ pub fn deform_patches(
 /// A surface's index, its pieces, and the parameters between them.
 type Left = (usize, Vec<BezierPatch>, [Vec<f64>; 2]);
 
-/// Fits surfaces alike, with as many cells as the worst of them needs. Returns the largest distance.
+/// Fits surfaces alike, with as many cells as the worst of them needs to come within the tolerance. Derivatives at sides are taken
+/// `inside` of them. Returns the largest distance.
 fn refitted(
     surfaces: &[Surface],
     left: &[Left],
     map: &Chain3,
-    tolerance: f64,
+    (tolerance, inside): (f64, f64),
     images: &mut [Vec<Surface>],
     budget: &Budget,
 ) -> Result<f64, Exceeded> {
@@ -111,7 +119,7 @@ fn refitted(
         for (_, pieces, _) in left {
             let mut cells = Vec::with_capacity(pieces.len());
             for piece in pieces {
-                let fit = refit::fit(piece, map, n, budget)?;
+                let fit = refit::fit(piece, map, n, inside, budget)?;
                 distance = distance.max(fit.distance);
                 cells.push(fit);
             }

@@ -5,15 +5,10 @@
 
 use super::bezier::BezierPatch;
 use super::crossing::Graphs;
-use super::refit::{self, Cells, Corner};
+use super::refit::{self, Cells, Corner, INSIDE};
 use crate::map::Map3;
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, Limit};
-
-/// Derivatives at a side of a layer are taken this far inside, in its parameters.
-const INSIDE: f64 = 1e-6;
-/// A map that moves a place and its neighbour inside apart by this many times what its derivative explains tears the layers.
-const TORN: f64 = 100.0;
 
 /// The parts of a patch between the curves, from v = 0 upwards.
 pub(super) struct Layers<'a> {
@@ -72,11 +67,10 @@ impl Layers<'_> {
 
     fn corner(&self, [exact, inside]: &[Rung; 2], t: f64, n: usize) -> Corner {
         let h = 1e-4 / n as f64;
-        let [beside, ds, dt] = self.tangents(inside, t.clamp(INSIDE, 1.0 - INSIDE));
+        let own = self.tangents(inside, t.clamp(INSIDE, 1.0 - INSIDE));
         let (before, after) = ((t - h).max(INSIDE), (t + h).min(1.0 - INSIDE));
         let twist = (self.tangents(inside, after)[1] - self.tangents(inside, before)[1]) / (after - before);
         let at = self.map.point(self.place(exact, t));
-        let torn = at.distance(beside) > TORN * INSIDE * (ds.length() + dt.length());
-        [if torn { beside } else { at }, ds, dt, twist]
+        [if refit::is_torn(at, &own, INSIDE) { own[0] } else { at }, own[1], own[2], twist]
     }
 }

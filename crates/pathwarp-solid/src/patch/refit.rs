@@ -13,6 +13,8 @@ use pathwarp::budget::{Budget, Exceeded, Limit};
 
 /// Cells along a side of a patch at most; more would mean a crease, at which they converge slowly.
 pub(super) const MOST_CELLS: usize = 64;
+/// Derivatives beside a crease are taken this far from it, in the parameters. A power of two, so that neighbours take the same place.
+pub(super) const INSIDE: f64 = 1.0 / 1_048_576.0;
 /// Places along each side of a cell at which the distance is measured.
 pub(super) const PLACES: usize = 4;
 
@@ -34,13 +36,29 @@ fn tangents(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64) -> [DVec3; 3] {
     [jet.p, jet.d * du, jet.d * dv]
 }
 
-fn corner(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64, n: usize) -> Corner {
+fn corner(patch: &BezierPatch, map: &dyn Map3, [u, v]: [f64; 2], n: usize, inside: f64) -> Corner {
+    let within = |t: f64| t.clamp(inside, 1.0 - inside);
     // The twist by differences of tangents, to about this relative error: it moves one control point of a cell by a ninth.
     let h = 1e-4 / n as f64;
-    let (before, after) = ((v - h).max(0.0), (v + h).min(1.0));
+    let (before, after) = ((v - h).max(inside), (v + h).min(1.0 - inside));
     let [p, du, dv] = tangents(patch, map, u, v);
-    let twist = (tangents(patch, map, u, after)[1] - tangents(patch, map, u, before)[1]) / (after - before);
-    [p, du, dv, twist]
+    let across = |v: f64| tangents(patch, map, within(u), v)[1];
+    let twist = (across(after) - across(before)) / (after - before);
+    if [u, v] == [within(u), within(v)] {
+        return [p, du, dv, twist];
+    }
+    let own = tangents(patch, map, within(u), within(v));
+    if is_torn(p, &own, inside) {
+        return [own[0], own[1], own[2], twist];
+    }
+    // Neighbours agree on the derivative along the side that they share, and each has its own across it.
+    [p, across(v), tangents(patch, map, u, within(v))[2], twist]
+}
+
+/// Returns `true` if the map moves a place apart from its neighbour inside, given with its derivatives, by far more than those explain.
+pub(super) fn is_torn(at: DVec3, [beside, ds, dt]: &[DVec3; 3], inside: f64) -> bool {
+    const FAR: f64 = 100.0;
+    at.distance(*beside) > FAR * inside * (ds.length() + dt.length())
 }
 
 /// The evaluations that n × n cells take.
@@ -49,14 +67,22 @@ pub(super) fn work(n: usize) -> u64 {
     (3 * (n + 1) * (n + 1) + samples) as u64
 }
 
-/// Fits n × n cells and measures their distance from the image.
+/// Fits n × n cells and measures their distance from the image. Derivatives at the sides are taken `inside` of them, in the parameters:
+/// 0, or [`INSIDE`] if a crease may lie along a side.
 ///
 /// # Errors
 /// More evaluations than the limit allows.
-pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, budget: &Budget) -> Result<Cells, Exceeded> {
+pub(super) fn fit(
+    patch: &BezierPatch,
+    map: &dyn Map3,
+    n: usize,
+    inside: f64,
+    budget: &Budget,
+) -> Result<Cells, Exceeded> {
     budget.spend(Limit::Evaluations, work(n))?;
     let at = |i: usize| i as f64 / n as f64;
-    let corners = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, at(i), at(j), n));
+    let corners =
+        (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, [at(i), at(j)], n, inside));
     let mut out = Cells::new(n, corners.collect());
     out.measure(|_, u, v| map.point(patch.point(u, v)));
     Ok(out)

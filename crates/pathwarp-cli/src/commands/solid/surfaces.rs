@@ -22,6 +22,9 @@ use std::time::Instant;
 /// The largest distance of a refitted surface, as a share of the model's size, unless one is given.
 const TOLERANCE: f64 = 1e-4;
 
+/// The distance of polygons in previews, as a share of the model's size: facets are not seen.
+const SEEN: f64 = 3e-4;
+
 /// Surfaces as read, and the format to write.
 pub(super) struct Source {
     pub(super) name: String,
@@ -48,7 +51,8 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
         PatchError::Limit(e) => too_much(&name, &e),
     })?;
     let mut warnings = work.warnings(&built);
-    warnings.extend(shape_warnings(&done, format.is_curved().then_some(tolerance)));
+    let shape = shape_warnings(&done, format.is_curved().then_some(tolerance));
+    warnings.extend(shape.into_iter().map(|w| work.flags.in_text(&w)));
     // Polygons are those of the source, with the images of its points: surfaces that are closed stay closed.
     let image = |within: Option<f64>| -> Result<Mesh, Failure> {
         let mesh = tessellate_image(&before, &built.map, within, budget).map_err(|e| too_much(&name, &e))?;
@@ -90,8 +94,9 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
     if let Some(file) = &job.preview {
         let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
         let eye = built.steps.iter().find_map(|s| s.eye);
-        let before = tessellate(&before, None, budget).map_err(|e| too_much(&name, &e))?;
-        let after = image(None)?;
+        let fine = bounds.map(|b| SEEN * b.diagonal());
+        let before = tessellate(&before, fine, budget).map_err(|e| too_much(&name, &e))?;
+        let after = image(fine)?;
         let preview = Preview { before: &before, after: &after, guides: &guides, eye };
         files.push(PendingFile::new(file, &preview.file(file, options.quality)?)?);
     }
@@ -126,5 +131,12 @@ fn shape_warnings(done: &DeformedPatches, tolerance: Option<f64>) -> Vec<String>
             done.refitted, done.distance
         )
     });
-    fold.into_iter().chain(far).collect()
+    let tear = done.torn_at.map(|at| {
+        format!(
+            "the surfaces are torn apart, for example near {}, where the moved region ends: keep the control points of that face in \
+             place (`freeze` of ffd), or choose another region",
+            shown(at)
+        )
+    });
+    fold.into_iter().chain(tear).chain(far).collect()
 }
