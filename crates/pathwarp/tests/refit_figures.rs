@@ -166,7 +166,7 @@ fn single(seg: Seg) -> Outline {
 fn pieces_and_work_stay_at_their_figures() {
     let outlines: Vec<Outline> = segments().into_iter().map(single).collect();
     let found = figures(&outlines, Options::new);
-    stay_at("checked", found, [[1507, 27770], [2073, 35834], [2902, 46270], [4142, 65138]]);
+    stay_at("checked", found, [[1496, 28081], [2064, 35793], [2894, 46879], [4131, 65432]]);
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn proven_pieces_and_work_stay_at_their_figures() {
 #[test]
 fn merged_pieces_and_work_stay_at_their_figures() {
     let found = figures(&runs(), |t| Options::new(t).with_merge(true));
-    stay_at("merged", found, [[250, 4726], [398, 8099], [635, 11999], [890, 13716]]);
+    stay_at("merged", found, [[250, 3777], [402, 6774], [629, 10619], [888, 13569]]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::frame::ChordFrame;
 use super::lanes::{Lane, Lanes};
 use super::source::SourceCurve;
-use kurbo::{Point, Vec2};
+use kurbo::Point;
 
 /// A fitted cubic.
 #[derive(Debug, Clone, Copy)]
@@ -42,11 +42,5 @@ impl Candidate {
             g.y[i] -= self.p0.y;
         }
         Ok(g)
-    }
-
-    /// The cubic, relative to the first point.
-    pub(super) fn at(&self, s: f64) -> Vec2 {
-        let [c1, c2, c3] = self.frame.power(self.a, self.b);
-        (c1 + (c2 + c3 * s) * s) * s
     }
 }

@@ -19,10 +19,10 @@
 //! −k₂δaδb; one Newton step along ∇α returns to it.
 
 use super::frame::ChordFrame;
-use super::lanes::{Lane, Lanes, clamp_unit, sum};
+use super::lanes::{Lane, Lanes};
 use super::limits::{
-    FAR_MISS, GIVE_UP, LAWSON_FLOOR, LAWSON_NEAR, MAX_EVALUATIONS, MIN_GAIN, PROMISE_AFTER, PROMISE_GAIN,
-    RUN_EVALUATIONS, RUN_LAWSON_STEPS, RUN_TRUST_RADIUS, TRUST_RADIUS,
+    FAR_MISS, GIVE_UP, MAX_EVALUATIONS, MIN_GAIN, PROMISE_AFTER, PROMISE_GAIN, RUN_EVALUATIONS, RUN_TRUST_RADIUS,
+    TRUST_RADIUS,
 };
 use super::residuals::{FitState, Residuals, gauss_newton};
 
@@ -116,56 +116,4 @@ pub(super) fn fit_with(
         (step[0], step[1], length) = frame.bent(newton, &z[best], trust);
     }
     Fit { z: z[best], error: error.sqrt(), reach: (error * left).sqrt(), ds: r[best].ds, squares: r[best].squares }
-}
-
-/// Minimax fit to sixteen samples by Lawson's reweighting: weights grow with the residuals until the largest ones level out.
-/// Returns the best state of both halves, and its largest residual. Goes on after `steps`, up to [`RUN_LAWSON_STEPS`], only towards
-/// an error of `wanted` and if it is near.
-pub(super) fn lawson(
-    frame: &ChordFrame,
-    g: [&Lanes; 2],
-    start: [FitState; 2],
-    steps: usize,
-    wanted: f64,
-) -> ([FitState; 2], f64) {
-    let mut w = [[1.0; 8]; 2];
-    let mut z = start;
-    let mut best = (start, f64::INFINITY);
-    let mut r = [Residuals::NONE; 2];
-    for k in 0..=RUN_LAWSON_STEPS {
-        for h in 0..2 {
-            frame.residuals(g[h], &z[h], &w[h], &mut r[h]);
-        }
-        let ([mut sums, more], error) = {
-            let (s0, _, e0) = frame.pulled(r[0].sums(), &z[0]);
-            let (s1, _, e1) = r[1].sums();
-            ([s0, s1], e0.max(e1).sqrt())
-        };
-        if error < best.1 {
-            best = (z, error);
-        }
-        if best.1 <= wanted || k >= steps && best.1 > LAWSON_NEAR * wanted {
-            break;
-        }
-        for (a, b) in sums.iter_mut().zip(more) {
-            *a += b;
-        }
-        let Some((step, _)) = gauss_newton(&sums) else { break };
-        let (da, db, _) = frame.bent(step, &z[0], TRUST_RADIUS * frame.size);
-        for h in 0..2 {
-            z[h].a += da;
-            z[h].b += db;
-            for i in 0..8 {
-                z[h].s[i] = clamp_unit(z[h].s[i] + r[h].ds[i] + da * r[h].sa[i] + db * r[h].sb[i]);
-                w[h][i] *= r[h].squares[i].sqrt() / error + LAWSON_FLOOR;
-            }
-        }
-        let total = sum(&w[0]) + sum(&w[1]);
-        for h in &mut w {
-            for v in h {
-                *v *= 16.0 / total;
-            }
-        }
-    }
-    best
 }

@@ -1,8 +1,9 @@
 //! Attempts to find a better cubic where the Hermite cubic does not fit.
 
-use super::fit::{Fit, fit, lawson};
+use super::fit::{Fit, fit};
 use super::lanes::{clamp_unit, larger};
-use super::limits::{GOOD_ENOUGH, LAWSON_STEPS, MINIMAX_WITHIN, RESTART_GAIN};
+use super::limits::{GOOD_ENOUGH, MINIMAX_WITHIN, RESTART_GAIN};
+use super::minimax::minimax;
 use super::outcome::FitOutcome;
 use super::piece::FittedPiece;
 use super::polyline::SamplePolygon;
@@ -108,7 +109,7 @@ impl StretchFitter<'_> {
         let z = best.fit.z;
         let other = FitState { s: between(&z.s), ..z };
         let check = *self.checked(request)?;
-        let (z, error) = lawson(&request.frame, [request.g, &check], [z, other], LAWSON_STEPS, 0.0);
+        let (z, error) = minimax(&request.frame, [request.g, &check], [z, other], [0.0, tol]);
         if error < best.error {
             let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
             *best = BestFit { fit, error };

@@ -17,7 +17,7 @@ use kurbo::Point;
 pub(super) struct Measured<'a> {
     z: &'a FitState,
     pub(super) s: Lane,
-    squares: Lane,
+    pub(super) squares: Lane,
     pub(super) error: f64,
 }
 

@@ -10,7 +10,7 @@
 //! 4. **Fit** (`frame`, `residuals`, `fit`). A piece keeps end points and end tangents (G¹). Its two handle lengths minimise the
 //!    normal residuals: Gauss–Newton by variable projection, each step bent along the valley of equal area. The error is of sixth
 //!    order in the piece's length. The Hermite cubic, with the image's end derivatives, is tried first (`hermite`).
-//! 5. **Further attempts** (`improve`): converge, restart elsewhere in the valley, minimax by Lawson's reweighting.
+//! 5. **Further attempts** (`improve`): converge, restart elsewhere in the valley, minimax by exchange (`minimax`).
 //! 6. **Acceptance** (`judge`). A fit is judged by the cheapest test that can decide: eight samples; sixteen, with the peaks
 //!    predicted between them (`resolution`, `peaks`); samples halfway beside doubtful ones; a dense check (`check`); or, if
 //!    asked for, a proof by polynomial bounds (`proof`).
@@ -38,6 +38,7 @@ mod known;
 mod lanes;
 mod limits;
 mod merge;
+mod minimax;
 mod options;
 mod outcome;
 mod parallel;

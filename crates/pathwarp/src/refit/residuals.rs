@@ -18,7 +18,7 @@ pub(super) struct FitState {
 /// and vectorises it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Residuals {
-    /// Weighted normal equations (`JᵀJ` and `Jᵀn`) and the weighted sum of squares, each in four partial sums.
+    /// Normal equations (`JᵀJ` and `Jᵀn`) and the sum of squares, each in four partial sums.
     parts: [[f64; 4]; 6],
     /// Squares of the normal residuals.
     pub(super) squares: Lane,
@@ -62,12 +62,6 @@ impl ChordFrame {
         (sums, squares + self.pull * (da * da + db * db), error)
     }
 
-    /// Evaluates the state `z` with weights `w`.
-    #[inline(never)]
-    pub(super) fn residuals(&self, g: &Lanes, z: &FitState, w: &Lane, out: &mut Residuals) {
-        self.measure(g, z, w, out);
-    }
-
     /// Moves the handles of `z` by (da, db) and the foot points along with them, and evaluates the result.
     #[inline(never)]
     pub(super) fn advance(
@@ -83,12 +77,12 @@ impl ChordFrame {
         for i in 0..8 {
             to.s[i] = clamp_unit(z.s[i] + fma(da, at.sa[i], fma(db, at.sb[i], at.ds[i])));
         }
-        self.measure(g, to, &[1.0; 8], out);
+        self.measure(g, to, out);
     }
 
     /// The normal part of a residual ρ is ρ×C′/|C′|. Products of two of them need only the factor 1/|C′|², no root.
     #[inline(always)]
-    fn measure(&self, g: &Lanes, z: &FitState, w: &Lane, out: &mut Residuals) {
+    fn measure(&self, g: &Lanes, z: &FitState, out: &mut Residuals) {
         let c = self.power(z.a, z.b);
         let (t0, t1) = (self.t0, self.t1);
         let o = [0.0; 8];
@@ -103,8 +97,7 @@ impl ChordFrame {
             n[i] = fma(rx, dy, -(ry * dx));
             na[i] = fma(t0.x, dy, -(t0.y * dx)) * b1;
             nb[i] = fma(t1.y, dx, -(t1.x * dy)) * b2;
-            let kw = k * w[i];
-            (kn[i], ka[i], kb[i]) = (n[i] * kw, na[i] * kw, nb[i] * kw);
+            (kn[i], ka[i], kb[i]) = (n[i] * k, na[i] * k, nb[i] * k);
             out.squares[i] = n[i] * n[i] * k;
             out.ds[i] = -fma(rx, dx, ry * dy) * k;
             out.sa[i] = -fma(t0.x, dx, t0.y * dy) * (b1 * k);

@@ -5,7 +5,7 @@ use super::thorough::thorough;
 use crate::refit::candidate::Candidate;
 use crate::refit::gather;
 use crate::refit::lanes::{Lane, largest};
-use crate::refit::limits::{DENSE_BATCHES, FOOT_ROUNDING, MAX_ZOOMS, PEAK_NEAR, WALK_DEPTH, ZOOM_RISE};
+use crate::refit::limits::{DENSE_BATCHES, FOOT_ROUNDING, MAX_CLOSER, MAX_ZOOMS, PEAK_NEAR, ZOOM_RISE};
 use crate::refit::peaks::parabola_peak;
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::Evenly;
@@ -25,17 +25,18 @@ pub(in crate::refit) fn dense(
     slow: &SlowSpots,
     tolerance: f64,
 ) -> Result<(f64, bool), Point> {
-    let mut walk = Walk { source, c, feet, worst: 0.0, last: FootPoint { tau: 0.0, s: 0.0, slope: c.frame.t0 } };
+    let last = FootPoint { tau: 0.0, s: 0.0, slope: c.frame.t0 };
+    let mut walk = Walk { source, c, feet, worst: 0.0, last, closer: MAX_CLOSER };
     let mut sound = true;
     let mut even = [[0.0; 8]; DENSE_BATCHES];
     let tau = |k: usize| -> Lane { std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (DENSE_BATCHES * 8) as f64) };
     gather::announce(source, &(0..DENSE_BATCHES).map(|k| tau(k).map(|t| c.param(t))), &std::iter::empty());
     for (k, squares) in even.iter_mut().enumerate() {
-        let (advances, d) = walk.advance(&tau(k), 0)?;
+        let (advances, d) = walk.advance(&tau(k))?;
         sound &= advances;
         *squares = d;
     }
-    sound &= turns_little(walk.last.slope, c.frame.t1) || walk.advance(&spread(walk.last.tau, 1.0), 1)?.0;
+    sound &= turns_little(walk.last.slope, c.frame.t1) || walk.closer(1.0)?;
     let mut worst = walk.worst;
     let peaks = walk.zoom_on_peaks(even.as_flattened())?;
     for t in slow.all() {
@@ -69,13 +70,15 @@ struct Walk<'a> {
     /// Square of the largest distance so far.
     worst: f64,
     last: FootPoint,
+    /// Batches of closer samples that may still be taken.
+    closer: usize,
 }
 
 impl Walk<'_> {
     /// Measures the next eight samples. Where two consecutive foot points see the cubic turn by more than 60°, samples
     /// eight more places in between. Returns `false` if the foot points do not advance or the cubic between them remains
     /// unknown; and the eight squared distances.
-    fn advance(&mut self, tau: &Lane, depth: u32) -> Result<(bool, Lane), Point> {
+    fn advance(&mut self, tau: &Lane) -> Result<(bool, Lane), Point> {
         let c = self.c;
         // Newton steps left out would only make distances larger.
         let Probe { s, squares, .. } = probe(self.source, c, self.feet, tau, 2)?;
@@ -97,11 +100,18 @@ impl Walk<'_> {
                 return Ok((false, squares));
             }
             if !turns_little(self.last.slope, next.slope) {
-                sound &= depth < WALK_DEPTH && self.advance(&spread(self.last.tau, next.tau), depth + 1)?.0;
+                sound &= self.closer(next.tau)?;
             }
             self.last = next;
         }
         Ok((sound, squares))
+    }
+
+    /// Measures eight more samples up to `tau`. Returns `false` if the cubic remains unknown.
+    fn closer(&mut self, tau: f64) -> Result<bool, Point> {
+        let Some(left) = self.closer.checked_sub(1) else { return Ok(false) };
+        self.closer = left;
+        Ok(self.advance(&spread(self.last.tau, tau))?.0)
     }
 
     /// Eight more samples between the neighbours of every local maximum that is nearly the largest: where the cubic nearly

@@ -2,11 +2,14 @@
 
 use crate::refit::candidate::Candidate;
 use crate::refit::gather;
-use crate::refit::lanes::Lane;
+use crate::refit::lanes::{Lane, Lanes, larger, largest};
 use crate::refit::limits::THOROUGH_SAMPLES;
 use crate::refit::source::SourceCurve;
 use crate::refit::split::SlowSpots;
 use kurbo::{Point, Vec2};
+
+/// Newton steps from the nearest sample.
+const NEWTON_STEPS: usize = 4;
 
 /// The Hausdorff distance between candidate and image, by sampling: the nearest sample by search, then Newton steps.
 #[cold]
@@ -17,40 +20,49 @@ pub(in crate::refit) fn thorough(
     tolerance: f64,
 ) -> Result<f64, Point> {
     let taus = places(c, slow);
-    let mut images = Vec::with_capacity(taus.len());
+    let mut images = Vec::with_capacity(taus.len() / 8);
     let lanes = taus.chunks_exact(8).map(|chunk| std::array::from_fn(|i| c.param(chunk[i])));
     gather::announce(source, &lanes, &std::iter::empty());
     for chunk in taus.chunks_exact(8) {
         let tau: Lane = std::array::from_fn(|i| chunk[i]);
-        let g = c.images(source, &tau)?;
-        images.extend((0..8).map(|i| Vec2::new(g.x[i], g.y[i])));
+        images.push(c.images(source, &tau)?);
     }
-    let curve: Vec<Vec2> = (0..=THOROUGH_SAMPLES).map(|i| c.at(i as f64 / THOROUGH_SAMPLES as f64)).collect();
+    let [c1, c2, c3] = c.frame.power(c.a, c.b);
+    let at = |s: f64| (c1 + (c2 + c3 * s) * s) * s;
+    let curve: Vec<Vec2> = (0..=THOROUGH_SAMPLES).map(|i| at(i as f64 / THOROUGH_SAMPLES as f64)).collect();
     let enough = tolerance * tolerance;
     let worst = from_image(c, &images, &curve, enough);
+    let images: Vec<Vec2> = images.iter().flat_map(|g| (0..8).map(|i| Vec2::new(g.x[i], g.y[i]))).collect();
     Ok(from_cubic(source, c, [&curve, &images], &taus, enough, worst).sqrt())
 }
 
-/// Evenly spaced places, and geometrically denser ones around slow spots; a multiple of eight.
+/// Evenly spaced places, and geometrically denser ones around slow spots, in order; a multiple of eight.
 fn places(c: &Candidate, slow: &SlowSpots) -> Vec<f64> {
-    let mut taus = Vec::with_capacity(THOROUGH_SAMPLES + 72);
-    taus.extend((0..=THOROUGH_SAMPLES).map(|i| i as f64 / THOROUGH_SAMPLES as f64));
+    let step = 1.0 / THOROUGH_SAMPLES as f64;
+    let mut dense = Vec::new();
     for t in slow.all() {
         let at = c.tau(*t);
         if at > 0.0 && at < 1.0 {
-            let mut w = 1.0 / THOROUGH_SAMPLES as f64;
-            taus.push(at);
+            let mut w = step;
+            dense.push(at);
             for _ in 0..16 {
-                taus.extend([at - w, at + w]);
+                dense.extend([at - w, at + w]);
                 w *= 0.6;
             }
         }
     }
-    taus.retain(|t| (0.0..=1.0).contains(t));
-    taus.sort_by(f64::total_cmp);
-    while taus.len() % 8 != 0 {
-        taus.push(1.0);
+    dense.retain(|t| (0.0..=1.0).contains(t));
+    dense.sort_by(f64::total_cmp);
+    let mut dense = dense.into_iter().peekable();
+    let mut taus = Vec::with_capacity(THOROUGH_SAMPLES + 8 + dense.len());
+    for i in 0..=THOROUGH_SAMPLES {
+        let even = i as f64 / THOROUGH_SAMPLES as f64;
+        while let Some(t) = dense.next_if(|t| *t < even) {
+            taus.push(t);
+        }
+        taus.push(even);
     }
+    taus.resize(taus.len().next_multiple_of(8), 1.0);
     taus
 }
 
@@ -81,28 +93,16 @@ fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
 }
 
 /// The largest squared distance of an image from the cubic.
-fn from_image(c: &Candidate, images: &[Vec2], curve: &[Vec2], enough: f64) -> f64 {
-    let [c1, c2, c3] = c.frame.power(c.a, c.b);
-    let at = |s: f64| (c1 + (c2 + c3 * s) * s) * s;
-    let slope = |s: f64| c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
+fn from_image(c: &Candidate, images: &[Lanes], curve: &[Vec2], enough: f64) -> f64 {
     let mut from = 0;
-    let mut worst = 0.0f64;
-    for p in images {
-        let (i, mut best) = nearest(curve, from, *p, enough);
-        from = i;
-        let mut s = i as f64 / THOROUGH_SAMPLES as f64;
-        let mut r = curve[i] - *p;
-        for _ in 0..4 {
-            // A distance below the known error need not be refined.
-            if best <= worst {
-                break;
-            }
-            let v = slope(s);
-            s = (s - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            r = at(s) - *p;
-            best = best.min(r.hypot2());
+    let mut worst = 0.0;
+    for g in images {
+        let mut s = [0.0; 8];
+        for i in 0..8 {
+            from = nearest(curve, from, Vec2::new(g.x[i], g.y[i]), enough).0;
+            s[i] = from as f64 / THOROUGH_SAMPLES as f64;
         }
-        worst = worst.max(best);
+        worst = larger(worst, largest(&c.frame.distances(g, c.a, c.b, &mut s, NEWTON_STEPS)));
     }
     worst
 }
@@ -123,7 +123,8 @@ fn from_cubic(
         let (i, mut best) = nearest(images, from, *q, enough);
         from = i;
         let mut tau = taus[i];
-        for _ in 0..4 {
+        for _ in 0..NEWTON_STEPS {
+            // A distance below the known error need not be refined.
             if best <= worst {
                 break;
             }

@@ -2,11 +2,13 @@
 
 use super::limits::{COARSE, RUN_MINIMAX_WITHIN};
 use super::run::SegmentRun;
-use crate::refit::fit::{Fit, THOROUGH, fit_with, lawson};
+use crate::refit::fit::{Fit, THOROUGH, fit_with};
 use crate::refit::frame::ChordFrame;
 use crate::refit::judge::settled;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
-use crate::refit::limits::{GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, LAWSON_STEPS, RESTART_GAIN};
+use crate::refit::limits::{GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, PEAK_NEAR, RESTART_GAIN};
+use crate::refit::minimax::minimax;
+use crate::refit::peaks::parabola_peak;
 use crate::refit::piece::FittedPiece;
 use crate::refit::residuals::FitState;
 use crate::refit::samples::{ALL, Evenly, UNIT, interleaved};
@@ -134,7 +136,7 @@ impl Stretch {
     pub(super) fn fitted_closely(&self, from: &RunCubic) -> Trial {
         let z = FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) };
         let mut best = self.judged(self.least_squares(z, 0.0));
-        self.lawson(&mut best, 0.0);
+        self.minimised(&mut best, 0.0);
         self.trial(&best)
     }
 
@@ -162,7 +164,12 @@ impl Stretch {
         let (z, fitted) = (&fit.z, settled(&self.frame, &self.g, &fit, self.tolerance));
         let mut s = self.between(&fitted.s);
         let squares = self.frame.distances(&self.check, z.a, z.b, &mut s, 1);
-        let error = larger(fitted.error, largest(&squares).sqrt());
+        let mut error = larger(fitted.error, largest(&squares).sqrt());
+        if error <= self.tolerance {
+            let e0 = self.frame.signed_distances(&self.g, z.a, z.b, &fitted.s, &fitted.squares);
+            let e1 = self.frame.signed_distances(&self.check, z.a, z.b, &s, &squares);
+            error = highest_parabola(&interleaved(&e0, &e1, 0.0), error);
+        }
         BestFit { fit, error, feet: interleaved(&fitted.s, &s, 1.0) }
     }
 
@@ -208,20 +215,32 @@ impl Stretch {
     /// Minimax on all sixteen samples, where that may bring the error below the tolerance.
     fn minimax(&self, best: &mut BestFit) {
         if best.error > self.tolerance && best.error <= RUN_MINIMAX_WITHIN * self.tolerance {
-            self.lawson(best, self.tolerance);
+            self.minimised(best, self.tolerance);
         }
     }
 
-    fn lawson(&self, best: &mut BestFit, wanted: f64) {
+    /// Minimax until the error is at most `wanted`.
+    fn minimised(&self, best: &mut BestFit, wanted: f64) {
         let z = best.fit.z;
         let other = FitState { s: self.between(&z.s), ..z };
-        let (z, error) = lawson(&self.frame, [&self.g, &self.check], [z, other], LAWSON_STEPS, wanted);
+        let (z, error) = minimax(&self.frame, [&self.g, &self.check], [z, other], [wanted, self.tolerance]);
         if error < best.error {
             let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
             let judged = self.judged(fit);
             *best = BestFit { error: judged.error.max(error), ..judged };
         }
     }
+}
+
+/// The height of the highest parabola through three neighbours whose middle one is an extreme, and nearly as far from zero as `most`.
+fn highest_parabola(errors: &Evenly, most: f64) -> f64 {
+    let tops = errors.windows(3).filter(|w| w[1].abs() >= PEAK_NEAR * most);
+    tops.map(|w| {
+        let side = 1.0f64.copysign(w[1]);
+        let [a, b, c] = [w[0] * side, w[1] * side, w[2] * side];
+        if b >= a && b >= c { parabola_peak(a, b, c) } else { b }
+    })
+    .fold(most, larger)
 }
 
 /// The values at some of the samples.

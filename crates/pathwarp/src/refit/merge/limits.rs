@@ -87,21 +87,17 @@ pub(super) const SHARP_TURN: f64 = 0.25;
 /// likely to save a piece.
 pub(super) const LEAST_PAST_JOINT: usize = MERGE_GRID / 2;
 
-/// Share of the tolerance for merged pieces that cubics of the search have to keep to at sixteen samples: a piece that then fails its
-/// check has cost time. 1: −0.1 % pieces, more refusals.
-pub(super) const SEARCH_SHARE: f64 = 0.99;
-
 /// Try a minimax fit over several segments if the error is within this multiple of the tolerance. 1.4, as for single segments: −0.02 %
-/// pieces, on curves of evenly spaced nodes −0.2 %, and +5 % time; 1.1: +0.1 % pieces, −8 % time.
+/// pieces, on curves of evenly spaced nodes −0.2 %, and +5 % time; 1.15: +0.3 % pieces there, −2.4 % work.
 pub(super) const RUN_MINIMAX_WITHIN: f64 = 1.25;
 
 /// Longer stretches are tried after a miss by less than this factor. 3: +0.04 % pieces, −4 % trials; 10: unchanged, +3.5 % trials.
 /// Test: *figures* (at 1).
 pub(super) const LEAP_WITHIN: f64 = 5.0;
 
-/// Number of places tried beyond the one that misses nearly. 0: +0.1 % pieces, −15 % trials; 6: unchanged, +5 % trials.
+/// Number of places tried beyond the one that misses nearly. 3: −0.1 % pieces, but on curves of evenly spaced nodes +10 % work.
 /// Test: *figures* (at 0).
-pub(super) const LEAPS: usize = 3;
+pub(super) const LEAPS: usize = 1;
 
 /// Error recorded for a piece that failed the final check: a miss, but a near one. 1e9: unchanged.
 pub(super) const REFUSED_ERROR: f64 = 1.2;

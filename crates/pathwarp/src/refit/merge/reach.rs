@@ -6,7 +6,7 @@ use super::cubic::{RunCubic, Stretch, Trial};
 use super::leg::Leg;
 use super::limits::{
     BETWEEN_TARGET, CARRY_BELOW, INTERPOLATIONS, JUMP_ERROR, LEAP_WITHIN, LEAPS, LEAST_PAST_JOINT, MAX_SPAN,
-    MERGE_GRID, REACH_TARGET, REFUSED_ERROR, SEARCH_SHARE, SMALLEST_REACH_ERROR,
+    MERGE_GRID, REACH_TARGET, REFUSED_ERROR, SMALLEST_REACH_ERROR,
 };
 use super::own::OwnPieces;
 use super::proven::proven;
@@ -170,7 +170,7 @@ impl<'r, 'a> Reaches<'r, 'a> {
 
     fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, Point> {
         let ends = [self.end(k)?, self.end(m)?];
-        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], SEARCH_SHARE * self.tolerance))
+        Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], self.tolerance))
     }
 
     /// The entry of the cubic from `k` to `m`, if it was tried.

@@ -32,10 +32,8 @@ pub(super) fn fewest_legs(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<Le
         let joint = k - k % MERGE_GRID;
         let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
         if let Some((from, true)) = leg {
-            for earlier in [joint, k - 1] {
-                if let Some(place) = beyond(reaches, [from, earlier, k], best.place)? {
-                    best = Furthest { place, leg: Some((earlier, true)) };
-                }
+            if let Some(place) = beyond(reaches, [from, joint, k], best.place)? {
+                best = Furthest { place, leg: Some((joint, true)) };
             }
         }
         // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
@@ -63,16 +61,16 @@ pub(super) fn fewest_legs(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<Le
     Ok(None)
 }
 
-/// The place that a cubic from `earlier` reaches beyond `best`, if it does. `earlier` is a place before `k` to which the cubic
-/// that begins at `from` can be shortened: its end tangent may suit what follows better.
-fn beyond(reaches: &mut Reaches<'_, '_>, [from, earlier, k]: [usize; 3], best: usize) -> Result<Option<usize>, Point> {
-    let limit = reaches.limit(earlier);
-    let possible = from < earlier && earlier < k && best < limit;
-    if !(possible && reaches.fits(earlier, best + 1)? && reaches.fits(from, earlier)?) {
+/// The place that a cubic from `joint` reaches beyond `best`, if it does. The joint lies before `k`, and the cubic that begins at `from`
+/// can be shortened to it: its tangent may suit what follows better.
+fn beyond(reaches: &mut Reaches<'_, '_>, [from, joint, k]: [usize; 3], best: usize) -> Result<Option<usize>, Point> {
+    let limit = reaches.limit(joint);
+    let possible = from < joint && joint < k && best < limit;
+    if !(possible && reaches.fits(joint, best + 1)? && reaches.fits(from, joint)?) {
         return Ok(None);
     }
     let mut place = best + 1;
-    while place < limit && reaches.fits(earlier, place + 1)? {
+    while place < limit && reaches.fits(joint, place + 1)? {
         place += 1;
     }
     Ok(Some(place))
