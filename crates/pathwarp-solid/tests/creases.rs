@@ -129,7 +129,7 @@ fn closed_surfaces_give_closed_polygons() {
     let map = local(corners);
     // The Jacobian of O + (p − O)/δ for a linear δ has the determinant δ(O)/δ(p)⁴.
     let delta = |p: DVec3| 1.0 + (1.0 / PUSH - 1.0) * along(p, corners);
-    let cells = (0..60 * 60 * 60).map(|k| DVec3::new((k % 60) as f64, (k / 60 % 60) as f64, (k / 3600) as f64));
+    let cells = (0..60 * 60 * 60_usize).map(|k| DVec3::new((k % 60) as f64, (k / 60 % 60) as f64, (k / 3600) as f64));
     let cells = cells.map(|c| (c + 0.5) * 0.8 + 4.0);
     let volume: f64 =
         cells.map(|p| 0.8f64.powi(3) * if along(p, corners) > 0.0 { delta(EYE) / delta(p).powi(4) } else { 1.0 }).sum();

@@ -1,7 +1,6 @@
 // Handles of plain numbers, for steps that have no points: dials for angles, arms for lengths, and tracks for the adjust values of text shapes.
 
-import type { Handle, Line } from "./handles";
-import type { Adjust, Deformation, Grip, Param, XY } from "./types";
+import type { Adjust, Deformation, Grip, Handle, Line, Param, XY } from "./types";
 import { adjustName } from "./values";
 import { words } from "./dom";
 

@@ -1,35 +1,10 @@
 // The handles of a step, from the geometry of its parameters.
 
-import type { Deformation, Grip, Net, Param, Step, StepGrips, Subpath, XY } from "./types";
+import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
 import { called, words } from "./dom";
 import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
-
-export type Shape = "node" | "control" | "source";
-
-export interface Handle {
-  /** The same for the same handle of another picture. */
-  key: string;
-  param: string;
-  shape: Shape;
-  label: string;
-  /** The row or path it belongs to: symmetry looks for partners there. */
-  group: string;
-  get: () => XY;
-  /** Moves it, and what is tied to it. */
-  set: (to: XY, smooth: boolean) => void;
-  /** Takes it away; only handles of which there may be any number can. */
-  remove?: () => void;
-}
-
-export interface Line {
-  kind: "path" | "arm" | "net";
-  points: XY[];
-  /** Control points of cubics, as in path data. */
-  cubic?: boolean;
-  closed?: boolean;
-}
 
 /** A place on a path of a parameter. */
 interface Near {

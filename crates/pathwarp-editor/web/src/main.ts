@@ -3,12 +3,12 @@
 import { App } from "./app";
 import { byId } from "./dom";
 import { Gallery } from "./gallery";
-import type { Handle } from "./handles";
 import { Modes, snapLines } from "./modes";
 import { Saving, toast } from "./saving";
 import { Settings } from "./settings";
 import { Stage } from "./stage";
 import { Steps } from "./steps";
+import type { Handle } from "./types";
 import { short } from "./values";
 
 /** The factor of one step of magnification. */

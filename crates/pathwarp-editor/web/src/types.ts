@@ -133,3 +133,28 @@ export interface Answer {
   event?: string;
   done?: boolean;
 }
+
+export type Shape = "node" | "control" | "source";
+
+export interface Handle {
+  /** The same for the same handle of another picture. */
+  key: string;
+  param: string;
+  shape: Shape;
+  label: string;
+  /** The row or path it belongs to: symmetry looks for partners there. */
+  group: string;
+  get: () => XY;
+  /** Moves it, and what is tied to it. */
+  set: (to: XY, smooth: boolean) => void;
+  /** Takes it away; only handles of which there may be any number can. */
+  remove?: () => void;
+}
+
+export interface Line {
+  kind: "path" | "arm" | "net";
+  points: XY[];
+  /** Control points of cubics, as in path data. */
+  cubic?: boolean;
+  closed?: boolean;
+}
