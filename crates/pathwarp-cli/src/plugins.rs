@@ -22,6 +22,8 @@ const ARGUMENTS: [&str; 7] = [INVERSE, OPTION, "help", "version", "points", "jac
 #[derive(Default)]
 pub(crate) struct Plugins {
     plugins: Vec<Plugin>,
+    /// The files named on the command line.
+    pub(crate) given: Vec<PathBuf>,
     pub(crate) broken: Vec<Broken>,
 }
 
@@ -74,6 +76,7 @@ pub(crate) fn load(
     for file in &files {
         plugins.add(file, reserved)?;
     }
+    plugins.given = files;
     // `check FILE` needs no `--plugin`.
     let checked = args.get(2).map(Path::new).filter(|_| args.get(1).is_some_and(|a| a == "check"));
     if let Some(file) = checked.filter(|f| is_file_name(f)) {

@@ -20,6 +20,10 @@
     waiting = /* @__PURE__ */ new Map();
     next = 1;
     isStopped = false;
+    /** The requests that somebody waits for; small pictures come when they come. */
+    urgent = /* @__PURE__ */ new Set();
+    onBusy = () => {
+    };
     /** The length of the last message from the server. */
     size = 0;
     connect() {
@@ -36,6 +40,8 @@
         this.socket = null;
         for (const { reject } of this.waiting.values()) reject(new Gone("pathwarp has ended"));
         this.waiting.clear();
+        this.urgent.clear();
+        this.onBusy(false);
         this.onGone();
         if (!this.isStopped) setTimeout(() => this.connect(), RETRY);
       };
@@ -48,6 +54,7 @@
       if (answer.id === void 0) return this.onEvent(answer);
       const waiting = this.waiting.get(answer.id);
       this.waiting.delete(answer.id);
+      if (this.urgent.delete(answer.id) && this.urgent.size === 0) this.onBusy(false);
       if (answer.error === void 0) waiting?.resolve(answer);
       else waiting?.reject(new Refused(answer.error));
     }
@@ -56,6 +63,10 @@
       const { socket } = this;
       if (!socket) return Promise.reject(new Gone("pathwarp has ended"));
       const id = this.next++;
+      if (request.do !== "thumbnail") {
+        this.urgent.add(id);
+        this.onBusy(true);
+      }
       return new Promise((resolve, reject) => {
         this.waiting.set(id, { resolve, reject });
         socket.send(JSON.stringify({ ...request, id }));
@@ -102,6 +113,32 @@
   }
   function corners({ start, segments }, frame) {
     return [start, ...segments].map((p) => point([p[0], p[1]], frame)).join(" ");
+  }
+  var SHARES = 1e6;
+  var PER_CENT = 1e3;
+  var DEGREE = 6e4;
+  function adjustUnit(a) {
+    return a.most > SHARES ? ["deg", DEGREE] : ["%", PER_CENT];
+  }
+  function adjustName(all, i) {
+    return all.length === 1 ? "Shape" : `Shape ${i + 1}`;
+  }
+  function readAdjust(all, typed) {
+    for (const a of all) a.value = a.default;
+    typed.forEach((text, n) => {
+      const [name, value] = text.includes("=") ? text.split("=") : [null, text];
+      const a = name === null ? all[n] : all.find((a2) => a2.name === name.trim());
+      const number = Number.parseFloat(value);
+      const unit = value.trim().replace(/^[-+.\de]+/, "");
+      if (a && Number.isFinite(number)) a.value = number * (unit === "%" ? PER_CENT : unit === "" ? 1 : DEGREE);
+    });
+  }
+  function writeAdjust(all) {
+    return all.filter((a) => a.value !== a.default).map((a) => {
+      const [unit, size] = adjustUnit(a);
+      const round = a.value > (a.least + a.most) / 2 ? Math.floor : Math.ceil;
+      return `${a.name}=${short(round(100 * a.value / size) / 100)}${unit}`;
+    });
   }
   function node(name, at, frame) {
     return `${name}:${point(at, frame)}`;
@@ -150,6 +187,70 @@
   function words(name) {
     const text = name.replaceAll("-", " ").replace(/([a-z])([0-9])/g, "$1 $2");
     return text.charAt(0).toUpperCase() + text.slice(1);
+  }
+
+  // src/dials.ts
+  var DIAL = 0.3;
+  var FURTHER = 1.25;
+  function dials(place3) {
+    const out = [];
+    let radius = DIAL * Math.max(place3.frame[2], place3.frame[3]);
+    for (const param of place3.deformation.params) {
+      const grip = place3.grips[param.name];
+      if (!grip) continue;
+      grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust, i, place3.frame)));
+      if (grip.value === void 0 || param.default === void 0) continue;
+      if (param.kind === "angle" && !param.name.startsWith("skew")) {
+        out.push(turner(param, grip, place3, radius));
+        radius *= FURTHER;
+      } else if (param.kind === "length" && !place3.grips.about?.point) {
+        out.push(arm(param, grip, place3.frame));
+      }
+    }
+    return out;
+  }
+  function dial(param, key, label, from, get, set2) {
+    return {
+      handle: { key, param: param.name, shape: "node", label, group: param.name, get, set: (to) => set2(to) },
+      line: () => ({ kind: "arm", points: [from(), get()] })
+    };
+  }
+  function turner(param, grip, { grips, frame: [x, y, w, h2] }, radius) {
+    const centre = () => grips.about?.point ?? [x + w / 2, y + h2 / 2];
+    const get = () => {
+      const [cx, cy] = centre();
+      const a = grip.value * Math.PI / 180;
+      return [cx + radius * Math.cos(a), cy + radius * Math.sin(a)];
+    };
+    const set2 = (to) => {
+      const [cx, cy] = centre();
+      const angle = Math.atan2(to[1] - cy, to[0] - cx) * 180 / Math.PI;
+      grip.value = within(angle + 360 * Math.round((grip.value - angle) / 360), param.least, param.most);
+    };
+    return dial(param, param.name, words(param.name), centre, get, set2);
+  }
+  function arm(param, grip, [x, y, w, h2]) {
+    const isUp = param.axis === "y";
+    const from = isUp ? [x + w / 2, y + h2 / 2] : [x, y + h2];
+    const get = () => isUp ? [from[0], from[1] - grip.value] : [from[0] + grip.value, from[1]];
+    const set2 = (to) => {
+      grip.value = within(isUp ? from[1] - to[1] : to[0] - from[0], param.least, param.most);
+    };
+    return dial(param, param.name, words(param.name), () => from, get, set2);
+  }
+  function track(param, all, i, [x, y, w, h2]) {
+    const a = all[i];
+    const share = () => (a.value - a.least) / (a.most - a.least);
+    const isUp = i === 0;
+    const get = () => isUp ? [x, y + h2 - share() * h2] : [x + share() * w, y + h2];
+    const set2 = (to) => {
+      const t = isUp ? (y + h2 - to[1]) / Math.max(h2, 1e-9) : (to[0] - x) / Math.max(w, 1e-9);
+      a.value = a.least + within(t, 0, 1) * (a.most - a.least);
+    };
+    return dial(param, `${param.name}/${i}`, adjustName(all, i), () => [x, y + h2], get, set2);
+  }
+  function within(value, least = -Infinity, most = Infinity) {
+    return Math.min(Math.max(value, least), most);
   }
 
   // src/knots.ts
@@ -228,6 +329,7 @@
 
   // src/handles.ts
   var MARGIN = 0.15;
+  var PAIR = "X,Y:X,Y";
   var FEWEST_CLOSED = 3;
   var Handles = class {
     constructor(deformation, step2, grips) {
@@ -235,12 +337,15 @@
       this.step = step2;
       this.frame = grips.frame;
       this.grips = structuredClone(grips.params);
+      for (const [name, { adjust }] of Object.entries(this.grips)) if (adjust) readAdjust(adjust, step2.args[name] ?? []);
       this.collect();
     }
     deformation;
     step;
     handles = [];
     grips;
+    /** Handles of plain numbers. */
+    dials = [];
     /** Control points of nets that have been moved. */
     moved = {};
     frame;
@@ -257,6 +362,8 @@
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
         grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isFree(name) ? closed(sub) : sub, `${i}.${j}`)));
       }
+      this.dials = this.handles.every(({ param }) => param === "about") ? dials({ deformation: this.deformation, grips: this.grips, frame: this.frame }) : [];
+      this.handles.push(...this.dials.map(({ handle }) => handle));
     }
     points(name) {
       return this.deformation.params.find((p) => p.name === name)?.points;
@@ -393,7 +500,7 @@
             if (n > 0 || joined) arrive.splice(arrive.length - 2, 2, ...to);
           }
         });
-        const arm = (side) => {
+        const arm2 = (side) => {
           const seg = side === "in" ? before2(n) : after(n);
           if (seg?.length !== 6) return;
           const k = side === "in" ? 2 : 0;
@@ -414,8 +521,8 @@
             }
           });
         };
-        arm("in");
-        arm("out");
+        arm2("in");
+        arm2("out");
       }
     }
     /** Takes a node of a path away, if enough are left. */
@@ -496,7 +603,7 @@
     }
     /** The lines to draw under the handles. */
     lines() {
-      const out = [];
+      const out = this.dials.map(({ line }) => line());
       for (const grip of Object.values(this.grips)) {
         for (const pair of grip.pairs ?? []) out.push({ kind: "arm", points: [...pair] });
         if (grip.value !== void 0 && grip === this.grips[this.deformation.gallery?.bend ?? ""]) {
@@ -538,6 +645,8 @@
       const grip = this.grips[name];
       if (!param || !grip) return;
       if (grip.net) this.writeNet(name, grip.net);
+      else if (grip.adjust) this.step.args[name] = writeAdjust(grip.adjust);
+      else if (grip.value !== void 0 && param.kind === "angle") this.step.args[name] = [String(Number(grip.value.toFixed(1)))];
       else if (grip.value !== void 0) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];
       else this.step.args[name] = valuesOf(param, grip, this.frame, this.step.args[name] ?? []);
     }
@@ -563,10 +672,11 @@
       const divided = this.divide(at, reach);
       if (divided) return divided;
       if (!this.grows) return null;
-      for (const { name, repeat, notation } of this.deformation.params) {
+      const params = [...this.deformation.params].sort((a, b) => Number(b.notation === PAIR) - Number(a.notation === PAIR));
+      for (const { name, repeat, notation } of params) {
         const grip = this.grips[name];
         if (!repeat || !grip) continue;
-        if (notation === "X,Y:X,Y" && grip.pairs) {
+        if (notation === PAIR && grip.pairs) {
           grip.pairs.push([[...at], [...at]]);
           this.collect();
           this.write(name);
@@ -662,6 +772,8 @@
     isBusy = false;
     isWanted = false;
     since = 0;
+    /** Changes of the steps, one after another. */
+    turns = Promise.resolve();
     connection;
     constructor() {
       this.connection = new Connection(
@@ -769,8 +881,17 @@
       await this.load(this.state);
       this.fail(problem);
     }
+    /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
+    inTurn(work) {
+      const done = this.turns.then(work);
+      this.turns = done.catch(() => void 0);
+      return done;
+    }
     /** Undoes or redoes. */
-    async turn(direction) {
+    turn(direction) {
+      return this.inTurn(() => this.turned(direction));
+    }
+    async turned(direction) {
       if (this.isProposal && direction === "undo") return;
       await this.attempt(async () => {
         const answer = await this.connection.ask({ do: direction, shown: null });
@@ -779,7 +900,10 @@
       });
     }
     /** Replaces the step being changed, or appends one. */
-    async choose(deformation, args, append, variant = null) {
+    choose(deformation, args, append, variant = null) {
+      return this.inTurn(() => this.chosen(deformation, args, append, variant));
+    }
+    async chosen(deformation, args, append, variant) {
       const at = append ? this.steps.length : this.selected;
       const before2 = this.steps.slice(0, at);
       const step2 = await this.opening(deformation, before2, variant);
@@ -789,27 +913,38 @@
       if (this.steps.length === 0) this.steps = [step2];
       this.selected = Math.min(at, this.steps.length - 1);
       this.tell("steps");
+      this.dropHandles();
       await this.commit();
       this.tell("steps");
     }
     /** Changes the list of steps. */
-    async arrange(steps, selected) {
+    arrange(steps, selected) {
+      return this.inTurn(() => this.arranged(steps, selected));
+    }
+    async arranged(steps, selected) {
       this.steps = steps;
       this.selected = Math.max(0, Math.min(selected, steps.length - 1));
       this.tell("steps");
+      this.dropHandles();
       await this.commit();
       if (this.steps.length === 0 && this.state) await this.load(this.state);
       this.tell("steps");
     }
-    async select(step2) {
-      this.selected = step2;
-      this.tell("steps");
-      await this.refresh();
+    select(step2) {
+      return this.inTurn(async () => {
+        this.selected = step2;
+        this.tell("steps");
+        await this.refresh();
+      });
     }
     /** Sets a parameter of the step being changed. */
     set(name, values, isDone) {
       const { step: step2 } = this;
       if (!step2) return;
+      const { presets } = this.deformation(step2.deformation)?.gallery ?? {};
+      if (name === presets) {
+        for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step2.args[other];
+      }
       if (values.length === 0) delete step2.args[name];
       else step2.args[name] = values;
       if (isDone) void this.commit();
@@ -831,6 +966,12 @@
       this.tell("picture");
       if (!this.isDragging) this.takeHandles();
       this.tell("report");
+    }
+    /** The handles of a step that is replaced must not be pulled while its successor is on the way. */
+    dropHandles() {
+      this.handles = null;
+      this.grips = [];
+      this.tell("handles");
     }
     takeHandles() {
       const deformation = this.deformation(this.step?.deformation);
@@ -1132,7 +1273,7 @@
       if (!state) return;
       byId("file").textContent = state.file;
       const isEmpty = state.steps.length === 0;
-      byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? `Saved as ${state.savedTo}` : isEmpty ? "" : "Not saved yet";
+      byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}` : isEmpty ? "No changes yet" : "Not saved yet";
       const save = byId("save");
       save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
       if (state.program) {
@@ -1233,7 +1374,7 @@
       this.app = app2;
       app2.listen((change) => {
         if (change === "steps" || change === "state") this.build();
-        if (change === "handles") this.refresh();
+        if (change === "handles") this.build();
       });
     }
     app;
@@ -1246,13 +1387,14 @@
     build() {
       const { step: step2 } = this.app;
       const deformation = this.app.deformation(step2?.deformation);
-      const signature = `${this.app.selected}:${step2?.deformation}:${step2?.args ? Object.keys(step2.args).join() : ""}`;
+      const signature = `${this.app.selected}:${step2?.deformation}:${step2?.args ? Object.keys(step2.args).join() : ""}:${this.adjusts(deformation?.params ?? []).join()}`;
       if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
       this.shown = signature;
       this.refreshers = [];
       if (!step2 || !deformation) return this.box.replaceChildren();
-      const main = deformation.params.filter((p) => isMain(p));
-      const more = deformation.params.filter((p) => !isMain(p));
+      const isShown = (p) => isMain(p) || this.app.grip(p.name)?.adjust !== void 0;
+      const main = deformation.params.filter(isShown);
+      const more = deformation.params.filter((p) => !isShown(p));
       const gives = more.some((p) => p.kind === "file" && step2.args[p.name]);
       const parts = [
         h("p", { class: "about" }, sentence(deformation.title)),
@@ -1274,7 +1416,9 @@
     control(p) {
       const id = `set-${p.name}`;
       const title = plain(p.help);
-      const label = h("label", { for: id, title }, words(p.name));
+      const label = h("label", { for: id, title }, p.kind === "angle" ? `${words(p.name)} (°)` : words(p.name));
+      const adjust = this.app.grip(p.name)?.adjust;
+      if (adjust) return h("div", {}, ...adjust.map((_, i) => this.adjust(p, adjust, i, title)));
       switch (p.kind) {
         case "flag":
           return this.flag(p, id, title);
@@ -1342,6 +1486,41 @@
         input.rows = Math.min(Math.max(values.length, 1), 4);
       });
       return input;
+    }
+    /** The names of the adjust values on show. */
+    adjusts(params) {
+      return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
+    }
+    /** The slider of an adjust value. */
+    adjust(p, all, i, title) {
+      const { least, most, name } = all[i];
+      const [unit, size] = adjustUnit(all[i]);
+      const id = `set-${p.name}-${name}`;
+      const range = [Math.ceil(least / size), Math.floor(most / size)];
+      const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
+      const field = h("input", { type: "text", id, class: "value", spellcheck: false, autocomplete: "off" });
+      const take = (value, isDone) => {
+        const present = structuredClone(all);
+        readAdjust(present, this.values(p));
+        present[i].value = Math.min(Math.max(value * size, least), most);
+        this.app.set(p.name, writeAdjust(present), isDone);
+      };
+      slider.addEventListener("input", () => take(Number(slider.value), false));
+      slider.addEventListener("change", () => take(Number(slider.value), true));
+      slider.addEventListener("dblclick", () => take(all[i].default / size, true));
+      field.addEventListener("change", () => {
+        const value = Number.parseFloat(field.value.replace(",", "."));
+        take(Number.isFinite(value) ? value : all[i].default / size, true);
+      });
+      this.refreshers.push(() => {
+        const present = structuredClone(all);
+        readAdjust(present, this.values(p));
+        const value = Number((present[i].value / size).toFixed(2));
+        if (document.activeElement !== field) field.value = `${value}${unit === "deg" ? "°" : unit}`;
+        if (document.activeElement !== slider || !slider.matches(":active")) slider.value = String(value);
+      });
+      const label = h("label", { for: id, title }, adjustName(all, i));
+      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
     }
     slider(p, id, label, title) {
       const [unit, range] = scale(p);
@@ -2117,6 +2296,15 @@
   new Steps(app, gallery);
   var saving = new Saving(app);
   modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
+  var SLOW = 250;
+  var slow = 0;
+  app.connection.onBusy = (isBusy) => {
+    clearTimeout(slow);
+    const view = byId("view");
+    view.setAttribute("aria-busy", String(isBusy));
+    if (isBusy) slow = window.setTimeout(() => view.classList.add("busy"), SLOW);
+    else view.classList.remove("busy");
+  };
   function on(id, action) {
     byId(id).addEventListener("click", action);
   }
@@ -2228,9 +2416,10 @@
     const { state, summary } = app;
     if (change === "report" || change === "state") {
       const folds = summary?.folds.length ?? 0;
-      byId("counts").textContent = summary ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
+      const isBent = !app.isProposal && summary !== null && summary.segmentsIn > 0;
+      byId("counts").textContent = isBent ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
       byId("error").title = "The largest distance to the exact image, in units of the drawing";
-      byId("error").textContent = summary && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "";
+      byId("error").textContent = isBent && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "";
       const fold = byId("folds");
       fold.hidden = folds === 0;
       fold.textContent = folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`;
@@ -2249,7 +2438,7 @@
       byId("start-over").disabled = state.steps.length === 0;
       byId("keep-preset").disabled = state.steps.length === 0;
     }
-    if (change === "handles") {
+    if (change === "handles" && app.grips.length > 0) {
       const grows = app.handles?.grows ?? false;
       const has = (app.handles?.handles.length ?? 0) > 0;
       const isCurve = app.handles?.handles.some((h2) => /\/(in|out)$/.test(h2.key)) ?? false;

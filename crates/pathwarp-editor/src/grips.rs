@@ -3,13 +3,14 @@
 //! Which handles a parameter has follows from its kind and, for text, from its notation; so parameters of plug-ins have theirs.
 
 use pathwarp::Outline;
-use pathwarp::deform::Info;
+use pathwarp::deform::{Info, TextShape};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::{Seg, deform::Registry};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 
 /// The curves of a handle path are shown as cubics; arcs come as near as this share of the frame's diagonal.
 const ARCS_WITHIN: f64 = 1e-6;
@@ -19,6 +20,8 @@ const MOST_NODES: usize = 400;
 /// The notations of parameters that place control points of nets.
 const GRID: &str = "I,J:X,Y";
 const TRIANGLE: &str = "I,J,K:X,Y";
+/// The notation of the adjust values of text shapes.
+const ADJUST: &str = "[NAME=]VALUE";
 
 /// The handles of every step.
 pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe) -> Value {
@@ -70,6 +73,11 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
                 Some(json!([xy(s.point_in(p.name, from).ok()?), xy(s.point_in(p.name, to).ok()?)]))
             };
             Some(json!({ "pairs": words(s, p).map(pair).collect::<Option<Vec<_>>>()? }))
+        }
+        Kind::Text(ADJUST) => {
+            let shape = TextShape::named(s.texts(info.gallery?.presets).last()?)?;
+            let of = |(name, range, default): (&str, RangeInclusive<f64>, f64)| json!({ "name": name, "least": range.start(), "most": range.end(), "default": default });
+            Some(json!({ "adjust": shape.adjust_values().map(of).collect::<Vec<_>>() }))
         }
         Kind::Text(GRID | TRIANGLE) => Some(json!({ "net": net(info, p, s)? })),
         _ => None,

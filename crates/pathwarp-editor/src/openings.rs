@@ -10,7 +10,7 @@ use pathwarp::param::{Kind, Param, is_inline};
 use std::collections::BTreeMap;
 
 /// Values by deformation and parameter. Points are in % of the frame; path data is laid from the box 0,0,100,100 onto it.
-const NEUTRAL: [(&str, &str, &[&str]); 13] = [
+const NEUTRAL: [(&str, &str, &[&str]); 12] = [
     (
         "shaper",
         "shaper",
@@ -33,8 +33,7 @@ const NEUTRAL: [(&str, &str, &[&str]); 13] = [
          M0,66.6667 C16.6667,66.6667 33.3333,66.6667 50,66.6667 C66.6667,66.6667 83.3333,66.6667 100,66.6667 \
          M0,100 C16.6667,100 33.3333,100 50,100 C66.6667,100 83.3333,100 100,100"],
     ),
-    ("mls", "pin", &["0%,0%", "100%,0%", "100%,100%", "0%,100%"]),
-    ("mls", "pair", &["50%,50%:50%,50%"]),
+    ("mls", "pair", &["0%,0%:0%,0%", "100%,0%:100%,0%", "100%,100%:100%,100%", "0%,100%:0%,100%", "50%,50%:50%,50%"]),
     ("similitude", "target", &["0%,100% 100%,100%"]),
     ("ffd", "degree", &["3x3"]),
 ];

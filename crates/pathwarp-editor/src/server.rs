@@ -94,16 +94,16 @@ fn accept(
 ) -> Result<(), String> {
     let busy = Arc::new(AtomicUsize::new(0));
     let start = Instant::now();
-    let mut last_open = start;
+    // Counted from the moment that is noticed, so that a program that was stopped for a while waits as long as any other.
+    let mut alone_since: Option<Instant> = None;
     loop {
         if shared.pages.is_done() {
             std::thread::sleep(FAREWELL);
             return Ok(());
         }
         if shared.pages.is_awaited() {
-            last_open = Instant::now();
-        }
-        if last_open.elapsed() > GRACE {
+            alone_since = None;
+        } else if alone_since.get_or_insert_with(Instant::now).elapsed() > GRACE {
             return Ok(());
         }
         if first_page.is_some_and(|most| start.elapsed() > most && !shared.pages.was_open()) {

@@ -39,6 +39,8 @@ pub(crate) fn run(stream: TcpStream, shared: &Arc<Shared>) -> Result<(), Error> 
             Err(Error::Io(e)) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
                 page.announce()?;
             }
+            // A program that was stopped and goes on finds its call interrupted.
+            Err(Error::Io(e)) if e.kind() == io::ErrorKind::Interrupted => {}
             Err(e) => return Err(e),
         }
     }

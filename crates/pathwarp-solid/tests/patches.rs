@@ -50,7 +50,7 @@ fn patch(degree: [usize; 2], rational: bool) -> Surface {
 
 /// Compares the image with the formula at a grid of parameters, exactly up to `within` relative.
 fn compare(source: &Surface, map: &Chain3, degree: [usize; 2], within: f64, truth: impl Fn([Q; 3]) -> [Q; 3]) {
-    let mut images = [source.clone()];
+    let mut images = vec![source.clone()];
     let done = deform_patches(&mut images, map, 1e-3, &budget()).unwrap();
     let image = &images[0];
     assert_eq!((done.exact, done.refitted, image.degree), (1, 0, degree));
@@ -84,7 +84,7 @@ fn collineations_keep_degree_knots_and_trims() {
     };
     let points = (0..4).map(|k| DVec3::new(f64::from(k % 2), f64::from(k / 2), [0.0, 32.0, 96.0, 224.0][k as usize]));
     let flat = Surface::bezier("flat", [1, 1], points.collect());
-    let mut image = [flat.clone()];
+    let mut image = vec![flat.clone()];
     deform_patches(&mut image, &map, 1.0, &budget()).unwrap();
     assert_eq!(image[0].weights, [1.0, 2.0, 4.0, 8.0]);
     assert_eq!(image[0].points[3], DVec3::new(0.125, 0.125, 28.0));
@@ -125,7 +125,7 @@ fn lattices_raise_the_degree() {
     let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16 0,1,0:-2,6,1"), ("weight", "0,1,0:3")]);
     compare(&patch([3, 3], true), &map, [9, 9], 1e-13, |p| trilinear(p, &weighted));
     // Polynomials stay polynomials.
-    let mut image = [patch([3, 3], false)];
+    let mut image = vec![patch([3, 3], false)];
     deform_patches(&mut image, &chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]), 1.0, &budget()).unwrap();
     assert!(image[0].weights.iter().all(|w| *w == 1.0));
 }
@@ -230,11 +230,11 @@ fn pieces_within_cells_are_exact_and_others_are_refitted() {
         [x + q(4.0) * &k, y + q(8.0) * k, z]
     };
     compare(&nurbs, &map, [6, 3], 1e-13, tent);
-    let mut across = [patch([3, 3], false)];
+    let mut across = vec![patch([3, 3], false)];
     let done = deform_patches(&mut across, &map, 0.5, &budget()).unwrap();
     assert!(done.refitted == 1 && done.distance <= 0.5, "{done:?}");
     let region = chain("ffd", &[("region", "0,0,80,64,64,64"), ("move", "1,1,1:4,8,0")]);
-    let mut outside = [patch([3, 3], true)];
+    let mut outside = vec![patch([3, 3], true)];
     deform_patches(&mut outside, &region, 0.5, &budget()).unwrap();
     assert_eq!(outside[0], patch([3, 3], true));
 }
@@ -257,7 +257,7 @@ fn refitted_surfaces_are_within_the_tolerance_and_watertight() {
     ] {
         let mut before = 0;
         for tolerance in [0.5, 0.01, 1e-4] {
-            let source = [patch([3, 3], false), turned(&patch([3, 3], false))];
+            let source = vec![patch([3, 3], false), turned(&patch([3, 3], false))];
             let mut images = source.clone();
             let done: DeformedPatches = deform_patches(&mut images, &map, tolerance, &budget()).unwrap();
             assert!(done.refitted == 2 && done.distance <= tolerance && images[0].trims == source[0].trims);
@@ -285,11 +285,11 @@ fn refitted_surfaces_are_within_the_tolerance_and_watertight() {
 fn infinity_and_endless_work_are_refused() {
     // The eye is inside the box, and points behind it have no image.
     let map = chain("anamorph", &[("eye", "30,30,20"), ("reference", "0,0,0 64,0,0 0,64,0"), ("push", "1,0,0:2")]);
-    let e = deform_patches(&mut [patch([3, 3], false)], &map, 0.1, &budget()).unwrap_err();
+    let e = deform_patches(&mut vec![patch([3, 3], false)], &map, 0.1, &budget()).unwrap_err();
     assert!(matches!(e, PatchError::Undefined { surface: 0, .. }), "{e}");
     let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e4));
     let twist = chain("bend", &[("preset", "twist"), ("along", "y"), ("angle", "100")]);
-    let e = deform_patches(&mut [patch([3, 3], false)], &twist, 1e-12, &small).unwrap_err();
+    let e = deform_patches(&mut vec![patch([3, 3], false)], &twist, 1e-12, &small).unwrap_err();
     assert!(e.to_string().contains("evaluations"), "{e}");
     let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e3));
     assert!(tessellate(&[patch([3, 3], false)], Some(1e-9), &small).is_err());
@@ -310,9 +310,9 @@ fn long_surfaces_take_linear_time() {
     assert_eq!(long.pieces().0.len(), 19_997);
     let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]);
     let small = Budget::new(Limits::default().with(Limit::Evaluations, 1e6));
-    assert!(deform_patches(&mut [long], &map, 0.1, &small).unwrap_err().to_string().contains("evaluations"));
+    assert!(deform_patches(&mut vec![long], &map, 0.1, &small).unwrap_err().to_string().contains("evaluations"));
     // Of too high a degree to be composed: known before any product.
     let high = chain("ffd", &[("degree", "10"), ("move", "5,5,5:4,0,0")]);
-    let done = deform_patches(&mut [patch([3, 3], false)], &high, 0.5, &budget()).unwrap();
+    let done = deform_patches(&mut vec![patch([3, 3], false)], &high, 0.5, &budget()).unwrap();
     assert!(done.refitted == 1 && begun.elapsed() < std::time::Duration::from_secs(20));
 }

@@ -5,6 +5,7 @@ use crate::editing::EditorHost;
 use crate::failure::Failure;
 use crate::options::{self, Given};
 use crate::output;
+use crate::plugins::Plugins;
 use crate::status::Status;
 use crate::temporaries;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -40,7 +41,7 @@ pub(super) fn command() -> Command {
         )
 }
 
-pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
+pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "FILE")?;
     if output::is_stdout(file) {
         return Err(Failure::usage("edit needs a file: its results are saved beside it"));
@@ -56,7 +57,7 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     // A point dragged past the page takes artwork there, which is to be kept.
     let mut usual = Given::default();
     usual.set("fit", "grow").map_err(Failure::Usage)?;
-    let host = Arc::new(EditorHost::new(registry.clone(), usual, Given::options(m)));
+    let host = Arc::new(EditorHost::new(registry.clone(), usual, Given::options(m)).with_plugins(&plugins.given));
     let announce = |address: &str| drop(output::to_stdout(format!("{address}\n").as_bytes()));
     pathwarp_editor::serve(host, &options, announce).map_err(Failure::Input)?;
     Ok(Status::Complete)

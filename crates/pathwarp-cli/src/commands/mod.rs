@@ -147,7 +147,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")));
     }
     match name {
-        edit::NAME => edit::run(registry, m),
+        edit::NAME => edit::run(registry, &plugins, m),
         list::NAME => list::run(registry, &plugins, m),
         check::NAME => check::run(registry, &plugins, m),
         new_plugin::NAME => {

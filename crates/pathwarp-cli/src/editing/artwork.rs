@@ -4,7 +4,7 @@ use crate::advice::Flags;
 use crate::failure::Failure;
 use crate::input::{Artwork as _, Baseline, SvgArtwork, WarpRequest, WarpedResult};
 use crate::options::{CommonOptions, Given};
-use crate::{pipeline, recipe_file, references};
+use crate::{pipeline, plugins, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
@@ -24,6 +24,8 @@ pub(super) struct EditedArtwork {
     /// The options of what the page shows: on the source's page, whatever becomes of it.
     shown: CommonOptions,
     flags: Arc<Flags>,
+    /// The files of plug-ins that a command line has to name.
+    plugins: Vec<String>,
     /// The frame for the guides and the baseline of the last picture.
     framed: Option<Framed>,
 }
@@ -53,7 +55,20 @@ impl EditedArtwork {
         flags: &Arc<Flags>,
     ) -> Self {
         let shown = CommonOptions { page: PageFit::None, ..options.clone() };
-        Self { svg, registry: Arc::clone(registry), given, options, shown, flags: Arc::clone(flags), framed: None }
+        Self {
+            svg,
+            registry: Arc::clone(registry),
+            given,
+            options,
+            shown,
+            flags: Arc::clone(flags),
+            plugins: Vec::new(),
+            framed: None,
+        }
+    }
+
+    pub(super) fn with_plugins(self, files: &[String]) -> Self {
+        Self { plugins: files.to_vec(), ..self }
     }
 
     /// Looks up references, chooses the frame and builds the steps.
@@ -156,7 +171,8 @@ impl Artwork for EditedArtwork {
 
     fn options(&self) -> Vec<(String, String)> {
         let all = self.given.stored();
-        all.flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v))).collect()
+        let stored = all.flat_map(|(name, values)| values.into_iter().map(move |v| (name.to_owned(), v)));
+        stored.chain(self.plugins.iter().map(|file| (plugins::OPTION.to_owned(), file.clone()))).collect()
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {

@@ -15,7 +15,7 @@ use pathwarp::recipe::Recipe;
 use pathwarp_editor::{Host, Opened};
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::{Origin, ReadOptions, usvg_tree};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The width of pictures, in px: enough for a screen in full.
@@ -28,13 +28,20 @@ pub(crate) struct EditorHost {
     usual: Given,
     /// The options as given.
     given: Given,
+    /// The files of plug-ins that a command line has to name.
+    plugins: Vec<String>,
     flags: Arc<Flags>,
 }
 
 impl EditorHost {
     pub(crate) fn new(registry: Registry, usual: Given, given: Given) -> Self {
         let flags = Arc::new(Flags::of(&registry));
-        Self { registry: Arc::new(registry), usual, given, flags }
+        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags }
+    }
+
+    /// Names the files of plug-ins in command lines.
+    pub(crate) fn with_plugins(self, files: &[PathBuf]) -> Self {
+        Self { plugins: files.iter().map(|f| f.display().to_string()).collect(), ..self }
     }
 
     fn open_drawing(&self, file: &Path, bytes: &[u8]) -> Result<Opened, Failure> {
@@ -59,7 +66,7 @@ impl EditorHost {
         };
         let options = given.read()?;
         let svg = SvgArtwork::read(source, file, &options, None)?;
-        let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags);
+        let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags).with_plugins(&self.plugins);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 

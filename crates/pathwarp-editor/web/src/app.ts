@@ -39,6 +39,8 @@ export class App {
   private isBusy = false;
   private isWanted = false;
   private since = 0;
+  /** Changes of the steps, one after another. */
+  private turns: Promise<unknown> = Promise.resolve();
   readonly connection: Connection;
 
   constructor() {
@@ -162,8 +164,19 @@ export class App {
     this.fail(problem);
   }
 
+  /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
+  private inTurn(work: () => Promise<void>): Promise<void> {
+    const done = this.turns.then(work);
+    this.turns = done.catch(() => undefined);
+    return done;
+  }
+
   /** Undoes or redoes. */
-  async turn(direction: "undo" | "redo"): Promise<void> {
+  turn(direction: "undo" | "redo"): Promise<void> {
+    return this.inTurn(() => this.turned(direction));
+  }
+
+  private async turned(direction: "undo" | "redo"): Promise<void> {
     if (this.isProposal && direction === "undo") return;
     await this.attempt(async () => {
       const answer = await this.connection.ask({ do: direction, shown: null });
@@ -174,7 +187,11 @@ export class App {
   }
 
   /** Replaces the step being changed, or appends one. */
-  async choose(deformation: string, args: Record<string, string[]>, append: boolean, variant: string | null = null): Promise<void> {
+  choose(deformation: string, args: Record<string, string[]>, append: boolean, variant: string | null = null): Promise<void> {
+    return this.inTurn(() => this.chosen(deformation, args, append, variant));
+  }
+
+  private async chosen(deformation: string, args: Record<string, string[]>, append: boolean, variant: string | null): Promise<void> {
     const at = append ? this.steps.length : this.selected;
     const before = this.steps.slice(0, at);
     const step = await this.opening(deformation, before, variant);
@@ -184,30 +201,41 @@ export class App {
     if (this.steps.length === 0) this.steps = [step];
     this.selected = Math.min(at, this.steps.length - 1);
     this.tell("steps");
+    this.dropHandles();
     await this.commit();
     this.tell("steps");
   }
 
   /** Changes the list of steps. */
-  async arrange(steps: Step[], selected: number): Promise<void> {
+  arrange(steps: Step[], selected: number): Promise<void> {
+    return this.inTurn(() => this.arranged(steps, selected));
+  }
+
+  private async arranged(steps: Step[], selected: number): Promise<void> {
     this.steps = steps;
     this.selected = Math.max(0, Math.min(selected, steps.length - 1));
     this.tell("steps");
+    this.dropHandles();
     await this.commit();
     if (this.steps.length === 0 && this.state) await this.load(this.state);
     this.tell("steps");
   }
 
-  async select(step: number): Promise<void> {
-    this.selected = step;
-    this.tell("steps");
-    await this.refresh();
+  select(step: number): Promise<void> {
+    return this.inTurn(async () => {
+      this.selected = step;
+      this.tell("steps");
+      await this.refresh();
+    });
   }
 
   /** Sets a parameter of the step being changed. */
   set(name: string, values: string[], isDone: boolean): void {
     const { step } = this;
     if (!step) return;
+    // The adjust values of a shape are not those of another.
+    const { presets } = this.deformation(step.deformation)?.gallery ?? {};
+    if (name === presets) for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step.args[other];
     if (values.length === 0) delete step.args[name];
     else step.args[name] = values;
     if (isDone) void this.commit();
@@ -231,6 +259,13 @@ export class App {
     this.tell("picture");
     if (!this.isDragging) this.takeHandles();
     this.tell("report");
+  }
+
+  /** The handles of a step that is replaced must not be pulled while its successor is on the way. */
+  private dropHandles(): void {
+    this.handles = null;
+    this.grips = [];
+    this.tell("handles");
   }
 
   private takeHandles(): void {

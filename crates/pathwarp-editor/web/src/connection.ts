@@ -17,6 +17,9 @@ export class Connection {
   private waiting = new Map<number, Waiting>();
   private next = 1;
   private isStopped = false;
+  /** The requests that somebody waits for; small pictures come when they come. */
+  private urgent = new Set<number>();
+  onBusy: (isBusy: boolean) => void = () => {};
   /** The length of the last message from the server. */
   size = 0;
 
@@ -42,6 +45,8 @@ export class Connection {
       this.socket = null;
       for (const { reject } of this.waiting.values()) reject(new Gone("pathwarp has ended"));
       this.waiting.clear();
+      this.urgent.clear();
+      this.onBusy(false);
       this.onGone();
       if (!this.isStopped) setTimeout(() => this.connect(), RETRY);
     };
@@ -56,6 +61,7 @@ export class Connection {
     if (answer.id === undefined) return this.onEvent(answer);
     const waiting = this.waiting.get(answer.id);
     this.waiting.delete(answer.id);
+    if (this.urgent.delete(answer.id) && this.urgent.size === 0) this.onBusy(false);
     if (answer.error === undefined) waiting?.resolve(answer);
     else waiting?.reject(new Refused(answer.error));
   }
@@ -65,6 +71,10 @@ export class Connection {
     const { socket } = this;
     if (!socket) return Promise.reject(new Gone("pathwarp has ended"));
     const id = this.next++;
+    if (request.do !== "thumbnail") {
+      this.urgent.add(id);
+      this.onBusy(true);
+    }
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
       socket.send(JSON.stringify({ ...request, id }));

@@ -1,34 +1,10 @@
 // The handles of a step, from the geometry of its parameters.
 
-import type { Deformation, Grip, Net, Param, Step, StepGrips, Subpath, XY } from "./types";
-import { length, node, valuesOf } from "./values";
+import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
+import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
+import { dials, type Dial } from "./dials";
 import { called, words } from "./dom";
 import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
-
-export type Shape = "node" | "control" | "source";
-
-export interface Handle {
-  /** The same for the same handle of another picture. */
-  key: string;
-  param: string;
-  shape: Shape;
-  label: string;
-  /** The row or path it belongs to: symmetry looks for partners there. */
-  group: string;
-  get: () => XY;
-  /** Moves it, and what is tied to it. */
-  set: (to: XY, smooth: boolean) => void;
-  /** Takes it away; only handles of which there may be any number can. */
-  remove?: () => void;
-}
-
-export interface Line {
-  kind: "path" | "arm" | "net";
-  points: XY[];
-  /** Control points of cubics, as in path data. */
-  cubic?: boolean;
-  closed?: boolean;
-}
 
 /** A place on a path of a parameter. */
 interface Near {
@@ -47,6 +23,8 @@ export interface Pull {
 /** Near its ends, a curve would need control points far away to follow a pointer. */
 const MARGIN = 0.15;
 
+/** The notation of a point and its image. */
+const PAIR = "X,Y:X,Y";
 /** Fewest points of a closed path that artwork can be put into. */
 const FEWEST_CLOSED = 3;
 
@@ -54,12 +32,15 @@ const FEWEST_CLOSED = 3;
 export class Handles {
   handles: Handle[] = [];
   private grips: Record<string, Grip>;
+  /** Handles of plain numbers. */
+  private dials: Dial[] = [];
   /** Control points of nets that have been moved. */
   private moved: Record<string, Set<number>> = {};
 
   constructor(private deformation: Deformation, private step: Step, grips: StepGrips) {
     this.frame = grips.frame;
     this.grips = structuredClone(grips.params);
+    for (const [name, { adjust }] of Object.entries(this.grips)) if (adjust) readAdjust(adjust, step.args[name] ?? []);
     this.collect();
   }
 
@@ -78,6 +59,9 @@ export class Handles {
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
       grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isFree(name) ? closed(sub) : sub, `${i}.${j}`)));
     }
+    // A point that turns and scales are about changes nothing by itself.
+    this.dials = this.handles.every(({ param }) => param === "about") ? dials({ deformation: this.deformation, grips: this.grips, frame: this.frame }) : [];
+    this.handles.push(...this.dials.map(({ handle }) => handle));
   }
 
   private points(name: string): "any" | "rows" | undefined {
@@ -286,7 +270,7 @@ export class Handles {
 
   /** The lines to draw under the handles. */
   lines(): Line[] {
-    const out: Line[] = [];
+    const out: Line[] = this.dials.map(({ line }) => line());
     for (const grip of Object.values(this.grips)) {
       for (const pair of grip.pairs ?? []) out.push({ kind: "arm", points: [...pair] });
       if (grip.value !== undefined && grip === this.grips[this.deformation.gallery?.bend ?? ""]) {
@@ -331,6 +315,8 @@ export class Handles {
     const grip = this.grips[name];
     if (!param || !grip) return;
     if (grip.net) this.writeNet(name, grip.net);
+    else if (grip.adjust) this.step.args[name] = writeAdjust(grip.adjust);
+    else if (grip.value !== undefined && param.kind === "angle") this.step.args[name] = [String(Number(grip.value.toFixed(1)))];
     else if (grip.value !== undefined) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];
     else this.step.args[name] = valuesOf(param, grip, this.frame, this.step.args[name] ?? []);
   }
@@ -360,10 +346,12 @@ export class Handles {
     const divided = this.divide(at, reach);
     if (divided) return divided;
     if (!this.grows) return null;
-    for (const { name, repeat, notation } of this.deformation.params) {
+    // A pair can be moved at once; a pin only stays.
+    const params = [...this.deformation.params].sort((a, b) => Number(b.notation === PAIR) - Number(a.notation === PAIR));
+    for (const { name, repeat, notation } of params) {
       const grip = this.grips[name];
       if (!repeat || !grip) continue;
-      if (notation === "X,Y:X,Y" && grip.pairs) {
+      if (notation === PAIR && grip.pairs) {
         grip.pairs.push([[...at], [...at]]);
         this.collect();
         this.write(name);

@@ -3,12 +3,12 @@
 import { App } from "./app";
 import { byId } from "./dom";
 import { Gallery } from "./gallery";
-import type { Handle } from "./handles";
 import { Modes, snapLines } from "./modes";
 import { Saving, toast } from "./saving";
 import { Settings } from "./settings";
 import { Stage } from "./stage";
 import { Steps } from "./steps";
+import type { Handle } from "./types";
 import { short } from "./values";
 
 /** The factor of one step of magnification. */
@@ -22,6 +22,17 @@ const settings = new Settings(app);
 new Steps(app, gallery);
 const saving = new Saving(app);
 modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
+
+// A line runs along the upper edge while an answer takes longer than that.
+const SLOW = 250;
+let slow = 0;
+app.connection.onBusy = (isBusy) => {
+  clearTimeout(slow);
+  const view = byId("view");
+  view.setAttribute("aria-busy", String(isBusy));
+  if (isBusy) slow = window.setTimeout(() => view.classList.add("busy"), SLOW);
+  else view.classList.remove("busy");
+};
 
 function on(id: string, action: () => void): void {
   byId(id).addEventListener("click", action);
@@ -151,9 +162,11 @@ app.listen((change) => {
   const { state, summary } = app;
   if (change === "report" || change === "state") {
     const folds = summary?.folds.length ?? 0;
-    byId("counts").textContent = summary ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
+    // Before anything is done, and where nothing moves, there is nothing to count.
+    const isBent = !app.isProposal && summary !== null && summary.segmentsIn > 0;
+    byId("counts").textContent = isBent ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
     byId("error").title = "The largest distance to the exact image, in units of the drawing";
-    byId("error").textContent = summary && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "";
+    byId("error").textContent = isBent && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "";
     const fold = byId("folds");
     fold.hidden = folds === 0;
     fold.textContent = folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`;
@@ -172,7 +185,7 @@ app.listen((change) => {
     byId<HTMLButtonElement>("start-over").disabled = state.steps.length === 0;
     byId<HTMLButtonElement>("keep-preset").disabled = state.steps.length === 0;
   }
-  if (change === "handles") {
+  if (change === "handles" && app.grips.length > 0) {
     const grows = app.handles?.grows ?? false;
     const has = (app.handles?.handles.length ?? 0) > 0;
     const isCurve = app.handles?.handles.some((h) => /\/(in|out)$/.test(h.key)) ?? false;

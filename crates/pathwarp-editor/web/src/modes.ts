@@ -1,8 +1,8 @@
 // The ways of moving a handle: snapping, symmetry, smooth nodes.
 
 import { byId, s } from "./dom";
-import type { Handle, Handles } from "./handles";
-import type { XY } from "./types";
+import type { Handles } from "./handles";
+import type { Handle, XY } from "./types";
 
 export class Modes {
   snaps = true;

@@ -45,7 +45,7 @@ export class Saving {
     if (!state) return;
     byId("file").textContent = state.file;
     const isEmpty = state.steps.length === 0;
-    byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? `Saved as ${state.savedTo}` : isEmpty ? "" : "Not saved yet";
+    byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? (state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}`) : isEmpty ? "No changes yet" : "Not saved yet";
     const save = byId<HTMLButtonElement>("save");
     // For a program, having removed all steps is a result, too.
     save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;

@@ -2,8 +2,8 @@
 
 import type { App } from "./app";
 import { byId, h, words } from "./dom";
-import type { Param } from "./types";
-import { short } from "./values";
+import type { Adjust, Param } from "./types";
+import { adjustName, adjustUnit, readAdjust, short, writeAdjust } from "./values";
 
 /** The sliders of lengths, in percentages of the artwork; shifts go both ways. */
 const OF_ARTWORK: [number, number] = [0, 100];
@@ -22,20 +22,21 @@ export class Settings {
   constructor(private app: App) {
     app.listen((change) => {
       if (change === "steps" || change === "state") this.build();
-      if (change === "handles") this.refresh();
+      if (change === "handles") this.build();
     });
   }
 
   private build(): void {
     const { step } = this.app;
     const deformation = this.app.deformation(step?.deformation);
-    const signature = `${this.app.selected}:${step?.deformation}:${step?.args ? Object.keys(step.args).join() : ""}`;
+    const signature = `${this.app.selected}:${step?.deformation}:${step?.args ? Object.keys(step.args).join() : ""}:${this.adjusts(deformation?.params ?? []).join()}`;
     if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
     this.shown = signature;
     this.refreshers = [];
     if (!step || !deformation) return this.box.replaceChildren();
-    const main = deformation.params.filter((p) => isMain(p));
-    const more = deformation.params.filter((p) => !isMain(p));
+    const isShown = (p: Param) => isMain(p) || this.app.grip(p.name)?.adjust !== undefined;
+    const main = deformation.params.filter(isShown);
+    const more = deformation.params.filter((p) => !isShown(p));
     const gives = more.some((p) => p.kind === "file" && step.args[p.name]);
     const parts = [
       h("p", { class: "about" }, sentence(deformation.title)),
@@ -61,7 +62,9 @@ export class Settings {
   private control(p: Param): HTMLElement {
     const id = `set-${p.name}`;
     const title = plain(p.help);
-    const label = h("label", { for: id, title }, words(p.name));
+    const label = h("label", { for: id, title }, p.kind === "angle" ? `${words(p.name)} (°)` : words(p.name));
+    const adjust = this.app.grip(p.name)?.adjust;
+    if (adjust) return h("div", {}, ...adjust.map((_, i) => this.adjust(p, adjust, i, title)));
     switch (p.kind) {
       case "flag": return this.flag(p, id, title);
       case "choice": return h("div", { class: "field", title }, label, this.choice(p, id));
@@ -126,6 +129,43 @@ export class Settings {
       input.rows = Math.min(Math.max(values.length, 1), 4);
     });
     return input;
+  }
+
+  /** The names of the adjust values on show. */
+  private adjusts(params: Param[]): string[] {
+    return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
+  }
+
+  /** The slider of an adjust value. */
+  private adjust(p: Param, all: Adjust[], i: number, title: string): HTMLElement {
+    const { least, most, name } = all[i]!;
+    const [unit, size] = adjustUnit(all[i]!);
+    const id = `set-${p.name}-${name}`;
+    const range: [number, number] = [Math.ceil(least / size), Math.floor(most / size)];
+    const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
+    const field = h("input", { type: "text", id, class: "value", spellcheck: false, autocomplete: "off" });
+    const take = (value: number, isDone: boolean) => {
+      const present = structuredClone(all);
+      readAdjust(present, this.values(p));
+      present[i]!.value = Math.min(Math.max(value * size, least), most);
+      this.app.set(p.name, writeAdjust(present), isDone);
+    };
+    slider.addEventListener("input", () => take(Number(slider.value), false));
+    slider.addEventListener("change", () => take(Number(slider.value), true));
+    slider.addEventListener("dblclick", () => take(all[i]!.default / size, true));
+    field.addEventListener("change", () => {
+      const value = Number.parseFloat(field.value.replace(",", "."));
+      take(Number.isFinite(value) ? value : all[i]!.default / size, true);
+    });
+    this.refreshers.push(() => {
+      const present = structuredClone(all);
+      readAdjust(present, this.values(p));
+      const value = Number((present[i]!.value! / size).toFixed(2));
+      if (document.activeElement !== field) field.value = `${value}${unit === "deg" ? "°" : unit}`;
+      if (document.activeElement !== slider || !slider.matches(":active")) slider.value = String(value);
+    });
+    const label = h("label", { for: id, title }, adjustName(all, i));
+    return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
   }
 
   private slider(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {

@@ -5,10 +5,9 @@ import { Camera } from "./camera";
 import { byId, s } from "./dom";
 import { Drawing, parse } from "./drawing";
 import { cells } from "./heat";
-import type { Handle } from "./handles";
 import { Modes } from "./modes";
 import { nodesOf } from "./nodes";
-import type { Answer, XY } from "./types";
+import type { Answer, Handle, XY } from "./types";
 
 /** Space around the drawing when it fits the view, in px. */
 const MARGIN = 56;

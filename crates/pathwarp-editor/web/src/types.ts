@@ -60,7 +60,17 @@ export interface Stretch {
   factors: (number | null)[];
 }
 
+/** An adjust value of a text shape, in 1/100000 of the box or, if it goes beyond a million, 1/60000 of a degree. */
+export interface Adjust {
+  name: string;
+  least: number;
+  most: number;
+  default: number;
+  value?: number;
+}
+
 export interface Grip {
+  adjust?: Adjust[];
   point?: XY;
   points?: XY[];
   pairs?: [XY, XY][];
@@ -122,4 +132,29 @@ export interface Answer {
   stretch?: Stretch | null;
   event?: string;
   done?: boolean;
+}
+
+export type Shape = "node" | "control" | "source";
+
+export interface Handle {
+  /** The same for the same handle of another picture. */
+  key: string;
+  param: string;
+  shape: Shape;
+  label: string;
+  /** The row or path it belongs to: symmetry looks for partners there. */
+  group: string;
+  get: () => XY;
+  /** Moves it, and what is tied to it. */
+  set: (to: XY, smooth: boolean) => void;
+  /** Takes it away; only handles of which there may be any number can. */
+  remove?: () => void;
+}
+
+export interface Line {
+  kind: "path" | "arm" | "net";
+  points: XY[];
+  /** Control points of cubics, as in path data. */
+  cubic?: boolean;
+  closed?: boolean;
 }

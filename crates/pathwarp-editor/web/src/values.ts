@@ -1,6 +1,6 @@
 // Values of parameters as text, from geometry.
 
-import type { Grip, Param, Subpath, XY } from "./types";
+import type { Adjust, Grip, Param, Subpath, XY } from "./types";
 
 type Frame = [number, number, number, number];
 
@@ -58,6 +58,44 @@ function isPolygon(path: Subpath[]): boolean {
 
 function corners({ start, segments }: Subpath, frame: Frame): string {
   return [start, ...segments].map((p) => point([p[0]!, p[1]!], frame)).join(" ");
+}
+
+/** The largest adjust value that is a share of the box; others are angles. */
+const SHARES = 1e6;
+/** One per cent of the box, and one degree, as adjust values. */
+const PER_CENT = 1e3;
+const DEGREE = 6e4;
+
+/** The unit in which an adjust value is shown, and its size. */
+export function adjustUnit(a: Adjust): [string, number] {
+  return a.most > SHARES ? ["deg", DEGREE] : ["%", PER_CENT];
+}
+
+/** The name of an adjust value for people. */
+export function adjustName(all: Adjust[], i: number): string {
+  return all.length === 1 ? "Shape" : `Shape ${i + 1}`;
+}
+
+/** Reads adjust values as typed, `[NAME=]VALUE`; those not given have their defaults. */
+export function readAdjust(all: Adjust[], typed: string[]): void {
+  for (const a of all) a.value = a.default;
+  typed.forEach((text, n) => {
+    const [name, value] = text.includes("=") ? (text.split("=") as [string, string]) : [null, text];
+    const a = name === null ? all[n] : all.find((a) => a.name === name.trim());
+    const number = Number.parseFloat(value);
+    const unit = value.trim().replace(/^[-+.\de]+/, "");
+    if (a && Number.isFinite(number)) a.value = number * (unit === "%" ? PER_CENT : unit === "" ? 1 : DEGREE);
+  });
+}
+
+/** Adjust values as typed, without those that are the defaults. */
+export function writeAdjust(all: Adjust[]): string[] {
+  return all.filter((a) => a.value !== a.default).map((a) => {
+    const [unit, size] = adjustUnit(a);
+    // Rounded towards the inside of the range.
+    const round = a.value! > (a.least + a.most) / 2 ? Math.floor : Math.ceil;
+    return `${a.name}=${short(round((100 * a.value!) / size) / 100)}${unit}`;
+  });
 }
 
 /** The value of a control point of a net, `I,J:X,Y`. */

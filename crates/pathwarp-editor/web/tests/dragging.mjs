@@ -37,6 +37,41 @@ export const corner_of_the_shaper = () => follows(null, (all) => all.find((k) =>
 export const handle_of_the_shaper = () => follows(null, (all) => all.find((k) => k.endsWith("/out")));
 export const corner_of_a_perspective = () => follows("Perspective", (all) => all.find((k) => k === "target/0.0/2"));
 export const side_of_an_envelope = () => follows("Envelope", (all) => all.find((k) => k.startsWith("top") && k.endsWith("/in")));
+export const adjust_value_of_a_text_shape = () => follows("Wave 1", (all) => all.find((k) => k === "adj/0"), [0, -20], "Text shapes");
+export const angle_of_an_adjust_value = () => follows("Arch up pour", (all) => all.find((k) => k === "adj/0"), [0, -14], "Text shapes");
+// Along the circle that a dial moves on.
+export const dial_of_a_ring = () => follows("Ring", (all) => all.find((k) => k === "sweep"), [-26, 15], "Effects");
+export const dial_of_a_transform = () => follows("Transform", (all) => all.find((k) => k === "rotate"), [0, 30], "Effects");
+export const height_of_a_wave = () => follows("Wave", (all) => all.find((k) => k === "height"), [0, -25], "Effects");
+export const pin = () => follows("Pins", (all) => all.find((k) => k === "pair/2/1"));
+
+/** The sliders of a text shape follow the shape, in its units, and a choice while another is on the way wins. */
+export const settings_of_text_shapes = async () => {
+  const { editor, page } = await started();
+  try {
+    await choose(page, "Arch up pour", "Text shapes");
+    const before = await paths(page);
+    await page.fill("#set-adj-adj2", "30");
+    await page.keyboard.press("Enter");
+    await page.locator("#settings").click({ position: { x: 5, y: 5 } });
+    await becomes(page, await paths(page), "");
+    await page.waitForFunction((d) => Array.from(document.querySelectorAll("#stage .art path"), (p) => p.getAttribute("d")).join("|") !== d, before);
+    check((await page.inputValue("#set-adj-adj1")) === "180°", await page.inputValue("#set-adj-adj1"));
+    await page.selectOption("#set-preset", "wave1");
+    await page.waitForFunction(() => document.querySelector("#set-adj-adj1")?.value === "12.5%");
+    check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
+    await page.click("#start-over");
+    await page.locator(".card", { hasText: /^Grid$/ }).click();
+    await page.waitForFunction(() => document.querySelector("#steps").textContent.includes("Grid"));
+    await page.waitForTimeout(1000);
+    check((await page.textContent("#steps")).includes("Grid"), "an earlier answer took the place of a later choice");
+    check(page.problems.length === 0, page.problems.join("; "));
+  } finally {
+    editor.stop();
+    await page.context().close();
+  }
+};
+
 export const skeleton_of_a_bend = () => follows("Bend", (all) => all.find((k) => k.startsWith("along") && k.endsWith("/out")));
 export const node_of_a_net = () => follows("Grid", (all) => all.find((k) => k === "at/5"));
 export const point_of_a_mesh = () => follows("Mesh", (all) => all.find((k) => k === "net/0.1/1"));

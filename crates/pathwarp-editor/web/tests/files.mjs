@@ -1,6 +1,7 @@
 // Saving, opening again, drafts, dropped files, two pages, the end of the server.
 import { existsSync, readFileSync, readdirSync } from "node:fs";
-import { becomes, check, choose, drag, edit, folder, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { execFileSync, spawnSync } from "node:child_process";
+import { becomes, check, choose, drag, edit, folder, middle, open, paths, program, quiet, root, sample } from "./harness.mjs";
 
 async function within(file, test, ...args) {
   const dir = folder({ "logo.svg": file ?? sample("logo.svg") });
@@ -111,6 +112,42 @@ export const a_port_is_chosen_and_ctrl_c_ends = async () => {
   editor.child.kill("SIGINT");
   const code = await Promise.race([editor.ended, new Promise((r) => setTimeout(() => r("still running"), 5000))]);
   check(code === 130, `exit ${code}`);
+};
+
+export const a_program_that_was_stopped_goes_on = () => within(null, async ({ page, editor }) => {
+  await drag(page, "shaper/0.0/2", 20, 30);
+  editor.child.kill("SIGSTOP");
+  // Longer than the program waits for a page to come back.
+  await page.waitForTimeout(6000);
+  editor.child.kill("SIGCONT");
+  await page.waitForTimeout(500);
+  check(!(await page.isVisible("#gone")), "the page has lost the program");
+  const before = await paths(page);
+  await drag(page, "shaper/0.0/2", 20, 30);
+  check((await paths(page)) !== before, "the picture does not follow any more");
+});
+
+/** Two steps, one of them a plug-in's: the copied line gives the file that was saved. */
+export const a_copied_command_line_gives_the_same = () => {
+  if (spawnSync("python3", ["--version"]).status !== 0) return "a_copied_command_line_gives_the_same skipped: python3 is missing";
+  const plugin = `${root}examples/plug-ins/pathwarp-ripple.py`;
+  return within(null, async ({ dir, page }) => {
+    await choose(page, "Ripple");
+    await page.click("#add-step");
+    await choose(page, "Grid");
+    await drag(page, "at/5", 20, 30);
+    await page.click("#save");
+    await page.waitForSelector("#toast.on");
+    await page.evaluate(() => { navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }; });
+    await page.click("#save-as");
+    await page.click("#copy-command");
+    const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
+    const again = line.replace(/^pathwarp /, `'${program}' `).replace("-o logo-bent.svg", "-o again.svg");
+    check(again !== line && line.includes(plugin), line);
+    execFileSync("sh", ["-c", `${again} --quiet`], { cwd: dir });
+    const drawn = (name) => readFileSync(`${dir}/${name}`, "utf8").match(/ d="[^"]*"/g).join();
+    check(drawn("again.svg") === drawn("logo-bent.svg"), `another drawing from ${line}`);
+  }, "--plugin", plugin);
 };
 
 export const a_dropped_file_is_opened = () => within(null, async ({ page, dir }) => {

@@ -98,6 +98,7 @@ export async function quiet(page) {
   await page.waitForTimeout(60);
   await page.waitForFunction(() => !document.querySelector(".knob.held"));
   await page.waitForTimeout(150);
+  await page.waitForFunction(() => document.querySelector("#view").getAttribute("aria-busy") !== "true");
 }
 
 /** Drags a handle by so many px, in steps. */

@@ -24,6 +24,8 @@ pub struct Deformed {
     pub torn: usize,
     /// A place on the first of them, before the map.
     pub torn_at: Option<DVec3>,
+    /// The largest distance between the middles of edges, which stay straight, and their exact images, among a few thousand edges.
+    pub bulge: f64,
 }
 
 /// A vertex at which the map is not defined.
@@ -76,7 +78,23 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
         out.folded_at = folded.first().map(|f| f.1);
     }
     (out.torn, out.torn_at) = tears(mesh, &before, map, &creases);
+    if map.collineation().is_none() {
+        out.bulge = bulge(mesh, &before, map);
+    }
     Ok(out)
+}
+
+/// The largest distance between the middle of an edge and its image, among edges all over the mesh.
+fn bulge(mesh: &Mesh, before: &[DVec3], map: &dyn Map3) -> f64 {
+    /// Polygons that are looked at.
+    const MOST: usize = 10_000;
+    let every = mesh.polygons.len().div_ceil(MOST).max(1);
+    let edges = mesh.polygons().step_by(every).flat_map(|(_, corners)| {
+        (0..corners.len()).map(move |i| (corners[i].vertex as usize, corners[(i + 1) % corners.len()].vertex as usize))
+    });
+    let off = edges
+        .map(|(a, b)| map.point(before[a].midpoint(before[b])).distance(mesh.positions[a].midpoint(mesh.positions[b])));
+    off.filter(|d| d.is_finite()).fold(0.0, f64::max)
 }
 
 /// Counts the edges of polygons that cross a crease at which the map jumps, and finds a place of the first.

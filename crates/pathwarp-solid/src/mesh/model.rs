@@ -59,8 +59,8 @@ pub enum Mark {
 pub struct Mesh {
     /// Vertices.
     pub positions: Vec<DVec3>,
-    /// Colours of the vertices, red, green, blue: none, or one for each vertex.
-    pub colors: Vec<[f64; 3]>,
+    /// Colours of the vertices, red, green, blue and opacity: none, or one for each vertex.
+    pub colors: Vec<[f64; 4]>,
     /// Normals.
     pub normals: Vec<DVec3>,
     /// Texture coordinates; the third is 0 unless the file has it.
@@ -78,6 +78,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Returns `true` if vertices are translucent.
+    #[must_use]
+    pub fn is_translucent(&self) -> bool {
+        self.colors.iter().any(|c| c[3] != 1.0)
+    }
+
     /// The bounding box of the vertices; `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {

@@ -2,7 +2,9 @@
 
 use super::bezier::BezierPatch;
 use super::compose;
-use super::refit::{self, MOST_CELLS};
+use super::crossing;
+use super::cut::Cutter;
+use super::refit::{self, INSIDE, MOST_CELLS};
 use super::surface::Surface;
 use crate::map::{Chain3, Creases3, Map3};
 use glam::DVec3;
@@ -16,12 +18,16 @@ pub struct DeformedPatches {
     pub exact: usize,
     /// Surfaces that were refitted by bicubic patches.
     pub refitted: usize,
+    /// Those of them that a crease crosses: they are replaced by parts, of which some are exact.
+    pub cut: usize,
     /// The largest distance between those and their exact images that was measured.
     pub distance: f64,
     /// Places of a grid on the surfaces at which the map turns space inside out.
     pub folded: usize,
     /// The first of them, before the map.
     pub folded_at: Option<DVec3>,
+    /// A place on a surface at which the map jumps, before the map.
+    pub torn_at: Option<DVec3>,
 }
 
 /// The reason why surfaces have no image.
@@ -41,12 +47,13 @@ pub enum PatchError {
 }
 
 /// Replaces surfaces by their images. Those that are not exact are within `tolerance` of the image at equal parameters, if that
-/// is reached with 64 cells along a patch; [`DeformedPatches::distance`] tells.
+/// is reached with 64 cells along a patch; [`DeformedPatches::distance`] tells. A surface that a crease crosses is replaced by its
+/// parts, cut along the crease.
 ///
 /// # Errors
 /// A place without image on a grid of 8 × 8 points of a patch, or more evaluations than the limit allows.
 pub fn deform_patches(
-    surfaces: &mut [Surface],
+    surfaces: &mut Vec<Surface>,
     map: &Chain3,
     tolerance: f64,
     budget: &Budget,
@@ -54,10 +61,16 @@ pub fn deform_patches(
     let mut out = DeformedPatches::default();
     let mut creases = Creases3::default();
     map.creases(&mut creases);
+    let levels = crossing::levels(&creases);
+    let cutter = Cutter { map, levels: &levels, tolerance, budget };
+    let mut images: Vec<Vec<Surface>> = Vec::with_capacity(surfaces.len());
     let mut left = Vec::new();
-    for (n, surface) in surfaces.iter_mut().enumerate() {
+    for (n, surface) in surfaces.iter().enumerate() {
         let (pieces, breaks) = surface.pieces();
         examine(n, &pieces, map, &creases, &mut out, budget)?;
+        if out.torn_at.is_none() {
+            out.torn_at = pieces.iter().find_map(|p| crossing::tear(p, map, &levels));
+        }
         let mut image = Some(surface.clone());
         for step in map.steps() {
             image = match image {
@@ -65,37 +78,61 @@ pub fn deform_patches(
                 None => None,
             };
         }
-        match image {
-            Some(image) => {
-                *surface = image;
-                out.exact += 1;
-            }
-            None => left.push((n, pieces, breaks)),
+        if let Some(image) = image {
+            out.exact += 1;
+            images.push(vec![image]);
+        } else if let Some(parts) = cutter.image(surface, &pieces)? {
+            out.cut += 1;
+            out.distance = out.distance.max(parts.distance);
+            images.push(parts.surfaces);
+        } else {
+            images.push(Vec::new());
+            left.push((n, pieces, breaks));
         }
     }
-    out.refitted = left.len();
+    out.refitted = left.len() + out.cut;
+    // A crease may lie along sides.
+    let inside = if levels.is_empty() { 0.0 } else { INSIDE };
+    let far = refitted(surfaces, &left, map, (tolerance, inside), &mut images, budget)?;
+    out.distance = out.distance.max(far);
+    *surfaces = images.into_iter().flatten().collect();
+    Ok(out)
+}
+
+/// A surface's index, its pieces, and the parameters between them.
+type Left = (usize, Vec<BezierPatch>, [Vec<f64>; 2]);
+
+/// Fits surfaces alike, with as many cells as the worst of them needs to come within the tolerance. Derivatives at sides are taken
+/// `inside` of them. Returns the largest distance.
+fn refitted(
+    surfaces: &[Surface],
+    left: &[Left],
+    map: &Chain3,
+    (tolerance, inside): (f64, f64),
+    images: &mut [Vec<Surface>],
+    budget: &Budget,
+) -> Result<f64, Exceeded> {
     let mut n = 1;
-    while !left.is_empty() {
+    loop {
         let mut fitted = Vec::with_capacity(left.len());
-        out.distance = 0.0;
-        for (_, pieces, _) in &left {
+        let mut distance = 0.0_f64;
+        for (_, pieces, _) in left {
             let mut cells = Vec::with_capacity(pieces.len());
             for piece in pieces {
-                let fit = refit::fit(piece, map, n, budget)?;
-                out.distance = out.distance.max(fit.distance);
+                let fit = refit::fit(piece, map, n, inside, budget)?;
+                distance = distance.max(fit.distance);
                 cells.push(fit);
             }
             fitted.push(cells);
         }
-        if out.distance <= tolerance || n >= MOST_CELLS {
+        if distance <= tolerance || n >= MOST_CELLS {
             for ((i, _, breaks), cells) in left.iter().zip(&fitted) {
-                surfaces[*i] = refit::joined(&surfaces[*i], breaks, cells);
+                images[*i] = vec![refit::joined(&surfaces[*i], breaks, cells)];
             }
-            break;
+            return Ok(distance);
         }
         n *= 2;
     }
-    Ok(out)
 }
 
 /// Looks for places without image and folds on a grid.

@@ -13,8 +13,10 @@ use pathwarp::budget::{Budget, Exceeded, Limit};
 
 /// Cells along a side of a patch at most; more would mean a crease, at which they converge slowly.
 pub(super) const MOST_CELLS: usize = 64;
+/// Derivatives beside a crease are taken this far from it, in the parameters. A power of two, so that neighbours take the same place.
+pub(super) const INSIDE: f64 = 1.0 / 1_048_576.0;
 /// Places along each side of a cell at which the distance is measured.
-const PLACES: usize = 4;
+pub(super) const PLACES: usize = 4;
 
 /// The image of a patch as n × n bicubic cells.
 pub(super) struct Cells {
@@ -26,7 +28,7 @@ pub(super) struct Cells {
 }
 
 /// The image of a point of the patch, its derivatives, and the mixed one.
-type Corner = [DVec3; 4];
+pub(super) type Corner = [DVec3; 4];
 
 fn tangents(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64) -> [DVec3; 3] {
     let [p, du, dv] = patch.jet(u, v);
@@ -34,56 +36,100 @@ fn tangents(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64) -> [DVec3; 3] {
     [jet.p, jet.d * du, jet.d * dv]
 }
 
-fn corner(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64, n: usize) -> Corner {
+fn corner(patch: &BezierPatch, map: &dyn Map3, [u, v]: [f64; 2], n: usize, inside: f64) -> Corner {
+    let within = |t: f64| t.clamp(inside, 1.0 - inside);
     // The twist by differences of tangents, to about this relative error: it moves one control point of a cell by a ninth.
     let h = 1e-4 / n as f64;
-    let (before, after) = ((v - h).max(0.0), (v + h).min(1.0));
+    let (before, after) = ((v - h).max(inside), (v + h).min(1.0 - inside));
     let [p, du, dv] = tangents(patch, map, u, v);
-    let twist = (tangents(patch, map, u, after)[1] - tangents(patch, map, u, before)[1]) / (after - before);
-    [p, du, dv, twist]
+    let across = |v: f64| tangents(patch, map, within(u), v)[1];
+    let twist = (across(after) - across(before)) / (after - before);
+    if [u, v] == [within(u), within(v)] {
+        return [p, du, dv, twist];
+    }
+    let own = tangents(patch, map, within(u), within(v));
+    if is_torn(p, &own, inside) {
+        return [own[0], own[1], own[2], twist];
+    }
+    // Neighbours agree on the derivative along the side that they share, and each has its own across it.
+    [p, across(v), tangents(patch, map, u, within(v))[2], twist]
 }
 
-/// Fits n × n cells and measures their distance from the image.
+/// Returns `true` if the map moves a place apart from its neighbour inside, given with its derivatives, by far more than those explain.
+pub(super) fn is_torn(at: DVec3, [beside, ds, dt]: &[DVec3; 3], inside: f64) -> bool {
+    const FAR: f64 = 100.0;
+    at.distance(*beside) > FAR * inside * (ds.length() + dt.length())
+}
+
+/// The evaluations that n × n cells take.
+pub(super) fn work(patch: &BezierPatch, n: usize) -> u64 {
+    let samples = (n * PLACES + 1) * (n * PLACES + 1);
+    (patch.work() * (3 * (n + 1) * (n + 1) + samples)) as u64
+}
+
+/// Fits n × n cells and measures their distance from the image. Derivatives at the sides are taken `inside` of them, in the parameters:
+/// 0, or [`INSIDE`] if a crease may lie along a side.
 ///
 /// # Errors
 /// More evaluations than the limit allows.
-pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, budget: &Budget) -> Result<Cells, Exceeded> {
-    let samples = (n * PLACES + 1) * (n * PLACES + 1);
-    budget.spend(Limit::Evaluations, (patch.work() * (3 * (n + 1) * (n + 1) + samples)) as u64)?;
+pub(super) fn fit(
+    patch: &BezierPatch,
+    map: &dyn Map3,
+    n: usize,
+    inside: f64,
+    budget: &Budget,
+) -> Result<Cells, Exceeded> {
+    budget.spend(Limit::Evaluations, work(patch, n))?;
     let at = |i: usize| i as f64 / n as f64;
-    let corners: Vec<Corner> =
-        (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, at(i), at(j), n)).collect();
-    let width = 3 * n + 1;
-    let mut points = vec![DVec3::ZERO; width * width];
-    let step = 1.0 / (3.0 * n as f64);
-    for (k, [p, du, dv, twist]) in corners.into_iter().enumerate() {
-        let (i, j) = (3 * (k % (n + 1)), 3 * (k / (n + 1)));
-        for a in 0..3usize {
-            for b in 0..3usize {
-                // From one before to one after the corner, along u and v.
-                let (x, y) = ((i + a).wrapping_sub(1), (j + b).wrapping_sub(1));
-                if x < width && y < width {
-                    let (s, t) = ((a as f64 - 1.0) * step, (b as f64 - 1.0) * step);
-                    points[y * width + x] = p + du * s + dv * t + twist * (s * t);
-                }
-            }
-        }
-    }
-    let mut out = Cells { n, points, distance: 0.0 };
-    for j in 0..n * PLACES {
-        for i in 0..n * PLACES {
-            let (u, v) = ((i as f64 + 0.5) / (n * PLACES) as f64, (j as f64 + 0.5) / (n * PLACES) as f64);
-            let off = out
-                .cell(i / PLACES, j / PLACES)
-                .point(u * n as f64 - (i / PLACES) as f64, v * n as f64 - (j / PLACES) as f64);
-            let off = off.distance(map.point(patch.point(u, v)));
-            out.distance = if off.is_nan() { f64::INFINITY } else { out.distance.max(off) };
-        }
-    }
+    let corners =
+        (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| corner(patch, map, [at(i), at(j)], n, inside));
+    let mut out = Cells::new(n, corners.collect());
+    out.measure(|_, u, v| map.point(patch.point(u, v)));
     Ok(out)
 }
 
 impl Cells {
+    /// The cells with these corners, u fastest.
+    pub(super) fn new(n: usize, corners: Vec<Corner>) -> Self {
+        let width = 3 * n + 1;
+        let mut points = vec![DVec3::ZERO; width * width];
+        let step = 1.0 / (3.0 * n as f64);
+        for (k, [p, du, dv, twist]) in corners.into_iter().enumerate() {
+            let (i, j) = (3 * (k % (n + 1)), 3 * (k / (n + 1)));
+            for a in 0..3usize {
+                for b in 0..3usize {
+                    // From one before to one after the corner, along u and v.
+                    let (x, y) = ((i + a).wrapping_sub(1), (j + b).wrapping_sub(1));
+                    if x < width && y < width {
+                        let (s, t) = ((a as f64 - 1.0) * step, (b as f64 - 1.0) * step);
+                        points[y * width + x] = p + du * s + dv * t + twist * (s * t);
+                    }
+                }
+            }
+        }
+        Self { n, points, distance: 0.0 }
+    }
+
+    /// Measures the distance from the image of (u, v); the number of the column is passed along.
+    pub(super) fn measure(&mut self, image: impl Fn(usize, f64, f64) -> DVec3) {
+        let n = self.n;
+        for j in 0..n * PLACES {
+            for i in 0..n * PLACES {
+                let (u, v) = ((i as f64 + 0.5) / (n * PLACES) as f64, (j as f64 + 0.5) / (n * PLACES) as f64);
+                let off = self
+                    .cell(i / PLACES, j / PLACES)
+                    .point(u * n as f64 - (i / PLACES) as f64, v * n as f64 - (j / PLACES) as f64);
+                let off = off.distance(image(i, u, v));
+                self.distance = if off.is_nan() { f64::INFINITY } else { self.distance.max(off) };
+            }
+        }
+    }
+
+    /// Rows of control points, u fastest.
+    pub(super) fn rows(&self) -> impl DoubleEndedIterator<Item = &[DVec3]> {
+        self.points.chunks(3 * self.n + 1)
+    }
+
     fn cell(&self, i: usize, j: usize) -> BezierPatch {
         let width = 3 * self.n + 1;
         let points = (0..4).flat_map(|b| (0..4).map(move |a| (3 * j + b) * width + 3 * i + a));

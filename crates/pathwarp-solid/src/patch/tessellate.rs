@@ -2,6 +2,7 @@
 
 use super::bezier::BezierPatch;
 use super::surface::Surface;
+use crate::map::{Chain3, Map3};
 use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -18,6 +19,20 @@ const MOST: usize = 256;
 /// # Errors
 /// More evaluations than the limit allows.
 pub fn tessellate(surfaces: &[Surface], within: Option<f64>, budget: &Budget) -> Result<Mesh, Exceeded> {
+    tessellate_image(surfaces, &Chain3::default(), within, budget)
+}
+
+/// The images of surfaces under a map as a mesh of quads, as [`tessellate`] makes them: every vertex is an exact image, and surfaces
+/// that share an edge still do, which those refitted one by one share within the tolerance only.
+///
+/// # Errors
+/// More evaluations than the limit allows.
+pub fn tessellate_image(
+    surfaces: &[Surface],
+    map: &dyn Map3,
+    within: Option<f64>,
+    budget: &Budget,
+) -> Result<Mesh, Exceeded> {
     let patches: Vec<(usize, BezierPatch)> =
         surfaces.iter().enumerate().flat_map(|(n, s)| s.pieces().0.into_iter().map(move |p| (n, p))).collect();
     let work: usize = patches.iter().map(|(_, p)| p.work()).sum();
@@ -26,7 +41,7 @@ pub fn tessellate(surfaces: &[Surface], within: Option<f64>, budget: &Budget) ->
         // A power of two, so that parameters from both ends of an edge are the same numbers.
         while side < MOST {
             budget.spend(Limit::Evaluations, (work * 4 * side * side) as u64)?;
-            if patches.iter().all(|(_, p)| is_close(p, side, within)) {
+            if patches.iter().all(|(_, p)| is_close(p, map, side, within)) {
                 break;
             }
             side *= 2;
@@ -42,12 +57,12 @@ pub fn tessellate(surfaces: &[Surface], within: Option<f64>, budget: &Budget) ->
             mesh.marks.push((first, Mark::Object(surfaces[*n].name.clone())));
         }
         last = Some(n);
-        quads(&mut mesh, &mut places, patch, side);
+        quads(&mut mesh, &mut places, patch, map, side);
     }
     Ok(mesh)
 }
 
-fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPatch, side: usize) {
+fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPatch, map: &dyn Map3, side: usize) {
     let at = |i: usize| i as f64 / side as f64;
     let mut vertex = |p: DVec3| {
         // Adding 0 makes −0 and 0 the same place.
@@ -58,7 +73,7 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
     };
     let grid: Vec<u32> = (0..=side)
         .flat_map(|j| (0..=side).map(move |i| (i, j)))
-        .map(|(i, j)| vertex(patch.point(at(i), at(j))))
+        .map(|(i, j)| vertex(map.point(patch.point(at(i), at(j)))))
         .collect();
     for j in 0..side {
         for i in 0..side {
@@ -80,8 +95,8 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
 }
 
 /// Returns `true` if the middles of edges and quads are close to the surface.
-fn is_close(patch: &BezierPatch, side: usize, within: f64) -> bool {
-    let at = |i: usize, j: usize| patch.point(i as f64 / (2 * side) as f64, j as f64 / (2 * side) as f64);
+fn is_close(patch: &BezierPatch, map: &dyn Map3, side: usize, within: f64) -> bool {
+    let at = |i: usize, j: usize| map.point(patch.point(i as f64 / (2 * side) as f64, j as f64 / (2 * side) as f64));
     let mean = |p: DVec3, q: DVec3| 0.5 * (p + q);
     (0..side * side).all(|k| {
         let (i, j) = (2 * (k % side), 2 * (k / side));

@@ -102,6 +102,9 @@ impl ModelFormat {
             check(!mesh.colors.is_empty(), "colours");
             check(kinds(PolygonKind::Line) || kinds(PolygonKind::Points), "lines and points");
         }
+        if self == Self::Obj && mesh.is_translucent() {
+            out.push("the opacity of vertices");
+        }
         if self == Self::Obj && mesh.assets.as_deref().is_some_and(|a| !a.is_empty()) {
             out.push("materials, except for their names");
         }

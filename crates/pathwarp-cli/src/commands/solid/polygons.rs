@@ -53,6 +53,9 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
     }
     warnings.extend(work.warnings(&built));
     warnings.extend(shape_warnings(&deformed).into_iter().map(|w| work.flags.in_text(&w)));
+    if work.own.refine.is_none() {
+        warnings.extend(coarse(&deformed, &mesh));
+    }
     let mut files = vec![pending(job.target.as_deref(), mesh_file(&mesh, format, options.precision)?)?];
     files.extend(Work::saves(&built)?);
     let mut report = None;
@@ -76,6 +79,22 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
         files.push(PendingFile::new(file, &preview.file(file, options.quality)?)?);
     }
     Ok(Done { files, warnings, notes: work.notes(&frame, &built), report, partial })
+}
+
+/// Warns of edges that should be curved, where that can be seen.
+fn coarse(deformed: &Deformed, mesh: &Mesh) -> Option<String> {
+    /// Distances below this share of the result's size are hardly seen.
+    const SEEN: f64 = 0.02;
+    /// The distance that is proposed instead, as a share of the size.
+    const FINE: f64 = 1e-3;
+    let size = mesh.bounds()?.diagonal();
+    let fine = 10f64.powf((FINE * size).log10().floor());
+    (deformed.bulge > SEEN * size).then(|| {
+        format!(
+            "edges stay straight, and their middles are up to {:.3} from where the map takes them: --refine {fine} subdivides them",
+            deformed.bulge
+        )
+    })
 }
 
 /// Warns of folds and tears.

@@ -125,6 +125,8 @@ struct SurfacesReport {
     exact: usize,
     /// Surfaces that were refitted.
     refitted: usize,
+    /// Those of them that are replaced by parts, cut along creases.
+    cut: usize,
     /// The largest distance of those from their images that was measured.
     distance: f64,
     /// Places of a grid on the surfaces at which the map turns space inside out.
@@ -186,6 +188,7 @@ impl SurfaceRun<'_> {
             after: SurfaceMeasures::of(self.after),
             exact: self.done.exact,
             refitted: self.done.refitted,
+            cut: self.done.cut,
             distance: self.done.distance,
             folded: self.done.folded,
             warnings: self.warnings.to_vec(),

@@ -14,11 +14,16 @@ use pathwarp::param::Axis;
 use pathwarp_solid::Box3;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::mesh::Mesh;
-use pathwarp_solid::patch::{DeformedPatches, PatchError, Surface, bpt, deform_patches, json, tessellate};
+use pathwarp_solid::patch::{
+    DeformedPatches, PatchError, Surface, bpt, deform_patches, json, tessellate, tessellate_image,
+};
 use std::time::Instant;
 
 /// The largest distance of a refitted surface, as a share of the model's size, unless one is given.
 const TOLERANCE: f64 = 1e-4;
+
+/// The distance of polygons in previews, as a share of the model's size: facets are not seen.
+const SEEN: f64 = 3e-4;
 
 /// Surfaces as read, and the format to write.
 pub(super) struct Source {
@@ -46,9 +51,15 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
         PatchError::Limit(e) => too_much(&name, &e),
     })?;
     let mut warnings = work.warnings(&built);
-    warnings.extend(shape_warnings(&done, tolerance));
-    let polygons = |of: &[Surface], within: Option<f64>| -> Result<Mesh, Failure> {
-        tessellate(of, within, budget).map_err(|e| too_much(&name, &e))
+    let shape = shape_warnings(&done, format.is_curved().then_some(tolerance));
+    warnings.extend(shape.into_iter().map(|w| work.flags.in_text(&w)));
+    // Polygons are those of the source, with the images of its points: surfaces that are closed stay closed.
+    let image = |within: Option<f64>| -> Result<Mesh, Failure> {
+        let mesh = tessellate_image(&before, &built.map, within, budget).map_err(|e| too_much(&name, &e))?;
+        match mesh.positions.iter().all(|p| p.is_finite()) {
+            true => Ok(mesh),
+            false => Err(Failure::Input(format!("{name}: a place of the surfaces has no image"))),
+        }
     };
     let bytes = match format {
         ModelFormat::Bpt => bpt::write(&surfaces).map_err(|e| Failure::usage(format!("{name}: {e}")))?.into_bytes(),
@@ -56,7 +67,7 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
             json::write(&surfaces).map_err(|e| Failure::Output(format!("{name}: {e}")))?.into_bytes()
         }
         _ => {
-            let mesh = polygons(&surfaces, within)?;
+            let mesh = image(within)?;
             let lost = format.lost(&mesh);
             if !lost.is_empty() {
                 warnings.push(format!("the format of the result has no room for {}", lost.join(", ")));
@@ -83,16 +94,23 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
     if let Some(file) = &job.preview {
         let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
         let eye = built.steps.iter().find_map(|s| s.eye);
-        let (before, after) = (polygons(&before, None)?, polygons(&surfaces, None)?);
+        let fine = bounds.map(|b| SEEN * b.diagonal());
+        let before = tessellate(&before, fine, budget).map_err(|e| too_much(&name, &e))?;
+        let after = image(fine)?;
         let preview = Preview { before: &before, after: &after, guides: &guides, eye };
         files.push(PendingFile::new(file, &preview.file(file, options.quality)?)?);
     }
     let mut notes = work.notes(&frame, &built);
     notes.push(match done.refitted {
+        _ if !format.is_curved() => "the corners of all polygons are exact images".into(),
         0 => format!("the images of {} surfaces are exact", done.exact),
         n => format!("the images of {} surfaces are exact, and of {n} within {:.3e}", done.exact, done.distance),
     });
-    let partial = done.refitted > 0 && done.distance > tolerance;
+    if done.cut > 0 && format.is_curved() {
+        let (cut, all) = (done.cut, surfaces.len());
+        notes.push(format!("{cut} of them are cut along a crease of the map; the result has {all} surfaces"));
+    }
+    let partial = format.is_curved() && done.distance > tolerance;
     Ok(Done { files, warnings, notes, report, partial })
 }
 
@@ -100,17 +118,25 @@ fn too_much(name: &str, e: &Exceeded) -> Failure {
     Failure::Input(format!("{name}: the surfaces take {e}; allow a larger --refine, or {}", advice::raise(e)))
 }
 
-fn shape_warnings(done: &DeformedPatches, tolerance: f64) -> Vec<String> {
+/// `tolerance` is that of refitted surfaces, if they are written.
+fn shape_warnings(done: &DeformedPatches, tolerance: Option<f64>) -> Vec<String> {
     let fold = done.folded_at.map(|at| {
         let (count, at) = (done.folded, shown(at));
         format!("the map turns space inside out at {count} places of the surfaces, first at {at}")
     });
-    let far = (done.refitted > 0 && done.distance > tolerance).then(|| {
+    let far = tolerance.filter(|t| done.distance > *t).map(|tolerance| {
         format!(
             "{} refitted surfaces are up to {:.3e} from their images instead of {tolerance:.3e}: the map has a crease there, such as \
              the end of a region; cut the surfaces along it, or allow a larger --refine",
             done.refitted, done.distance
         )
     });
-    fold.into_iter().chain(far).collect()
+    let tear = done.torn_at.map(|at| {
+        format!(
+            "the surfaces are torn apart, for example near {}, where the moved region ends: keep the control points of that face in \
+             place (`freeze` of ffd), or choose another region",
+            shown(at)
+        )
+    });
+    fold.into_iter().chain(tear).chain(far).collect()
 }

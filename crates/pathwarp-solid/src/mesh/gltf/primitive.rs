@@ -37,7 +37,7 @@ pub(super) fn append(
     }
     let [normals, uvs] = attributes(mesh, primitive, to_scene, buffers, lost)?;
     if !mesh.colors.is_empty() {
-        mesh.colors.resize(mesh.positions.len(), [1.0; 3]);
+        mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
     }
     if primitive.morph_targets().next().is_some() {
         lost.insert("morph targets".into());
@@ -97,10 +97,11 @@ fn attributes(
             }
             Semantic::Colors(0) => {
                 same(accessor.count(), "colours")?;
-                mesh.colors.resize(mesh.positions.len() - count, [1.0; 3]);
-                mesh.colors.extend(buffers.floats::<3>(&accessor)?);
+                mesh.colors.resize(mesh.positions.len() - count, [1.0; 4]);
                 if accessor.dimensions() == gltf::accessor::Dimensions::Vec4 {
-                    lost.insert("the opacity of vertices".into());
+                    mesh.colors.extend(buffers.floats::<4>(&accessor)?);
+                } else {
+                    mesh.colors.extend(buffers.floats::<3>(&accessor)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]));
                 }
             }
             Semantic::Tangents => {

@@ -121,7 +121,7 @@ impl Store {
     fn floats<const N: usize>(&mut self, items: impl Iterator<Item = [f64; N]>, bounded: bool) -> usize {
         let single: Vec<[f32; N]> = items.map(|i| i.map(|v| v as f32)).collect();
         let bytes: Vec<u8> = single.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-        let kind = ["SCALAR", "VEC2", "VEC3"][N - 1];
+        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1];
         let mut accessor =
             json!({"bufferView": self.view(&bytes), "componentType": FLOAT, "count": single.len(), "type": kind});
         if bounded {
@@ -159,8 +159,11 @@ fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
         attributes.insert("TEXCOORD_0".into(), json!(store.floats(uvs, false)));
     }
     if !mesh.colors.is_empty() && mesh.colors.len() == mesh.positions.len() {
-        attributes
-            .insert("COLOR_0".into(), json!(store.floats(corners().map(|c| mesh.colors[c.vertex as usize]), false)));
+        let colors = corners().map(|c| mesh.colors[c.vertex as usize]);
+        let opaque = |[r, g, b, _]: [f64; 4]| [r, g, b];
+        let accessor =
+            if mesh.is_translucent() { store.floats(colors, false) } else { store.floats(colors.map(opaque), false) };
+        attributes.insert("COLOR_0".into(), json!(accessor));
     }
     let mode = match part.kind {
         Some(PolygonKind::Points) => 0,

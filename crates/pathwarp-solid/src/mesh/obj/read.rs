@@ -106,8 +106,8 @@ fn statement(line: &[u8], out: &mut Part) -> Result<(), String> {
             mesh.positions.push(vector(&mut rest).ok_or_else(|| damaged("a vertex `v x y z` with finite numbers"))?);
             if let Some(color) = vector(&mut rest) {
                 // Vertices before the first colour are white.
-                mesh.colors.resize(mesh.positions.len() - 1, [1.0; 3]);
-                mesh.colors.push(color.to_array());
+                mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
+                mesh.colors.push(color.extend(1.0).to_array());
             }
         }
         b"vn" => mesh.normals.push(vector(rest).ok_or_else(|| damaged("a normal `vn x y z`"))?),
@@ -185,8 +185,8 @@ fn join(mesh: &mut Mesh, part: Part, skipped: &mut BTreeMap<String, usize>) {
         }
     }
     if !own.colors.is_empty() || !mesh.colors.is_empty() {
-        mesh.colors.resize(base[0], [1.0; 3]);
-        own.colors.resize(own.positions.len(), [1.0; 3]);
+        mesh.colors.resize(base[0], [1.0; 4]);
+        own.colors.resize(own.positions.len(), [1.0; 4]);
         mesh.colors.append(&mut own.colors);
     }
     mesh.positions.append(&mut own.positions);

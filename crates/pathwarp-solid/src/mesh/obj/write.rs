@@ -20,7 +20,7 @@ pub fn write(mesh: &Mesh, decimals: u8) -> Vec<u8> {
         out.push(b'v');
         numbers(out, &mesh.positions[i].to_array(), scale);
         if colored {
-            numbers(out, &mesh.colors[i], COLORS);
+            numbers(out, &mesh.colors[i][..3], COLORS);
         }
     });
     lines(&mut out, mesh.uvs.len(), |i, out| {

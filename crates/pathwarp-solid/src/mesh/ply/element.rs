@@ -3,7 +3,7 @@
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
 /// Numbers that a vertex may have, in the order of [`Element::values`]; several names mean the same.
-const NAMES: [&[&str]; 11] = [
+const NAMES: [&[&str]; 12] = [
     &["x"],
     &["y"],
     &["z"],
@@ -13,13 +13,15 @@ const NAMES: [&[&str]; 11] = [
     &["red", "r", "diffuse_red"],
     &["green", "g", "diffuse_green"],
     &["blue", "b", "diffuse_blue"],
+    &["alpha", "a", "diffuse_alpha"],
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
 ];
-/// The places of normals, colours and texture coordinates among them.
+/// The places of normals, colours, opacity and texture coordinates among them.
 pub(super) const NORMAL: usize = 3;
 pub(super) const COLOR: usize = 6;
-pub(super) const UV: usize = 9;
+pub(super) const ALPHA: usize = 9;
+pub(super) const UV: usize = 10;
 
 /// The names of the lists of a face's vertices.
 pub(super) const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -37,7 +39,7 @@ pub(super) fn place(name: &str) -> Option<usize> {
 #[derive(Debug, Default)]
 pub(super) struct Element {
     /// The numbers of a vertex.
-    pub(super) values: [f64; 11],
+    pub(super) values: [f64; 12],
     /// The vertices of a face or an edge.
     pub(super) indices: Vec<u32>,
     /// u and v for each corner of a face.

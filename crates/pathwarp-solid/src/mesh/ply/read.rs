@@ -1,6 +1,6 @@
 //! Reads PLY.
 
-use super::element::{COLOR, ENDS, Element, INDICES, NORMAL, TEXTURE, UV, place};
+use super::element::{ALPHA, COLOR, ENDS, Element, INDICES, NORMAL, TEXTURE, UV, place};
 use crate::mesh::error::MeshError;
 use crate::mesh::model::{Corner, Mesh, NONE, PolygonKind};
 use glam::DVec3;
@@ -103,7 +103,8 @@ fn vertices(mesh: &mut Mesh, element: &ElementDef, all: &[Element]) -> Result<()
             mesh.normals.push(DVec3::new(v[NORMAL], v[NORMAL + 1], v[NORMAL + 2]));
         }
         if has(COLOR, 3) {
-            mesh.colors.push([v[COLOR], v[COLOR + 1], v[COLOR + 2]]);
+            let alpha = if has(ALPHA, 1) { v[ALPHA] } else { 1.0 };
+            mesh.colors.push([v[COLOR], v[COLOR + 1], v[COLOR + 2], alpha]);
         }
         if has(UV, 2) {
             mesh.uvs.push([v[UV], v[UV + 1], 0.0]);

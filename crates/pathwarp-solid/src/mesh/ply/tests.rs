@@ -1,5 +1,6 @@
 use super::{read, sniff, write};
-use crate::mesh::{Corner, NONE, PolygonKind, obj};
+use crate::mesh::{Corner, NONE, PolygonKind, gltf, obj};
+use pathwarp::budget::{Budget, Limits};
 use std::time::{Duration, Instant};
 
 const TEXT: &str = "ply\nformat ascii 1.0\ncomment a quad and a triangle\nelement vertex 5\nproperty float x\nproperty float y\nproperty double z\n\
@@ -17,11 +18,31 @@ fn quads_colours_normals_and_edges_come_back() {
     mesh.left_out.clear();
     let kinds: Vec<_> = mesh.polygons().map(|(k, c)| (k, c.len())).collect();
     assert_eq!(kinds, [(PolygonKind::Face, 4), (PolygonKind::Face, 3), (PolygonKind::Line, 2)]);
-    assert!((mesh.colors[3], mesh.positions[4].z, mesh.uvs[2]) == ([0.2, 0.0, 0.0], 1.0, [1.0, 1.0, 0.0]));
+    assert!((mesh.colors[3], mesh.positions[4].z, mesh.uvs[2]) == ([0.2, 0.0, 0.0, 1.0], 1.0, [1.0, 1.0, 0.0]));
     let back = read(&write(&mesh).unwrap()).unwrap();
     // The edge has no texture coordinates, and its vertices have.
     assert_eq!((&back.positions, &back.colors, &back.polygons), (&mesh.positions, &mesh.colors, &mesh.polygons));
     assert_eq!(back.corners[..7], mesh.corners[..7]);
+}
+
+#[test]
+fn opacity_stays() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n\
+        property uchar green\nproperty uchar blue\nproperty uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\n\
+        end_header\n0 0 0 255 0 0 255\n1 0 0 0 255 0 51\n1 1 0 0 0 255 0\n3 0 1 2\n";
+    let mesh = read(text.as_bytes()).unwrap();
+    assert!(mesh.left_out.is_empty() && mesh.is_translucent());
+    assert_eq!(
+        read(&write(&mesh).unwrap()).unwrap().colors,
+        [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.2], [0.0, 0.0, 1.0, 0.0]]
+    );
+    let budget = Budget::new(Limits::default());
+    let back = gltf::read(&gltf::write_binary(&mesh).unwrap(), &budget).unwrap();
+    assert!(back.left_out.is_empty());
+    assert!(back.colors.iter().zip(&mesh.colors).all(|(a, b)| (0..4).all(|k| (a[k] - b[k]).abs() < 1e-7)));
+    // Opaque colours need no fourth number.
+    let opaque = read(text.replace(" 51", " 255").replace("255 0\n", "255 255\n").as_bytes()).unwrap();
+    assert!(!opaque.is_translucent() && !String::from_utf8_lossy(&write(&opaque).unwrap()).contains("alpha"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Writes PLY, binary, with coordinates in double precision.
 
-use super::element::{COLOR, ENDS, Element, INDICES, NORMAL, UV};
+use super::element::{ALPHA, COLOR, ENDS, Element, INDICES, NORMAL, UV};
 use crate::mesh::error::MeshError;
 use crate::mesh::model::{Mesh, NONE, PolygonKind};
 use crate::mesh::unify::unify;
@@ -24,7 +24,7 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
             e.values[NORMAL..NORMAL + 3].copy_from_slice(&n.to_array());
         }
         if colored {
-            e.values[COLOR..COLOR + 3].copy_from_slice(&mesh.colors[c.vertex as usize]);
+            e.values[COLOR..=ALPHA].copy_from_slice(&mesh.colors[c.vertex as usize]);
         }
         if let Some(uv) = mesh.uvs.get(c.uv as usize) {
             e.values[UV..UV + 2].copy_from_slice(&uv[..2]);
@@ -59,7 +59,8 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
         properties.extend(scalars(&["s", "t"], ScalarType::Float));
     }
     if colored {
-        properties.extend(scalars(&["red", "green", "blue"], ScalarType::UChar));
+        let opacity: &[&str] = if mesh.is_translucent() { &["alpha"] } else { &[] };
+        properties.extend(scalars(&[&["red", "green", "blue"], opacity].concat(), ScalarType::UChar));
     }
     add(&mut ply, "vertex", properties, vertices);
     add(&mut ply, "face", vec![(INDICES[0], PropertyType::List(count, ScalarType::UInt))], faces);

@@ -9,6 +9,7 @@ use crate::formula::{Calculator, FormulaError};
 use crate::outline::{EllipticArc, Seg};
 use kurbo::{CubicBez, Line, Point, QuadBez, Vec2};
 use serde::Deserialize;
+use std::ops::RangeInclusive;
 use thiserror::Error;
 
 /// A text shape: guides over a box, with adjust values.
@@ -119,6 +120,12 @@ impl TextShape {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Returns the adjust values: the name, the range, and the value unless another is given. Ranges beyond a million are angles in
+    /// 1/60000 degree, others in 1/100000 of the box.
+    pub fn adjust_values(&self) -> impl Iterator<Item = (&str, RangeInclusive<f64>, f64)> {
+        self.adj.iter().map(|a| (a.name.as_str(), a.least..=a.most, a.default))
     }
 
     /// Returns `true` if the shape has this name, or another by which people know it.

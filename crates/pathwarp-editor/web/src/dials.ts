@@ -1,0 +1,95 @@
+// Handles of plain numbers, for steps that have no points: dials for angles, arms for lengths, and tracks for the adjust values of text shapes.
+
+import type { Adjust, Deformation, Grip, Handle, Line, Param, XY } from "./types";
+import { adjustName } from "./values";
+import { words } from "./dom";
+
+type Frame = [number, number, number, number];
+
+/** The radius of the first dial, as a share of the frame's longer side, and how much further the next one is out. */
+const DIAL = 0.3;
+const FURTHER = 1.25;
+
+/** A handle with the line that shows what it moves along. */
+export interface Dial {
+  handle: Handle;
+  line: () => Line;
+}
+
+interface Place {
+  deformation: Deformation;
+  grips: Record<string, Grip>;
+  frame: Frame;
+}
+
+/** The dials of a step whose own handles are not enough to change it. */
+export function dials(place: Place): Dial[] {
+  const out: Dial[] = [];
+  let radius = DIAL * Math.max(place.frame[2], place.frame[3]);
+  for (const param of place.deformation.params) {
+    const grip = place.grips[param.name];
+    if (!grip) continue;
+    grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust!, i, place.frame)));
+    if (grip.value === undefined || param.default === undefined) continue;
+    // A skew turns nothing.
+    if (param.kind === "angle" && !param.name.startsWith("skew")) {
+      out.push(turner(param, grip, place, radius));
+      radius *= FURTHER;
+    } else if (param.kind === "length" && !place.grips.about?.point) {
+      out.push(arm(param, grip, place.frame));
+    }
+  }
+  return out;
+}
+
+function dial(param: Param, key: string, label: string, from: () => XY, get: () => XY, set: (to: XY) => void): Dial {
+  return {
+    handle: { key, param: param.name, shape: "node", label, group: param.name, get, set: (to) => set(to) },
+    line: () => ({ kind: "arm", points: [from(), get()] }),
+  };
+}
+
+/** An angle about a centre, from the right and clockwise. */
+function turner(param: Param, grip: Grip, { grips, frame: [x, y, w, h] }: Place, radius: number): Dial {
+  const centre = (): XY => grips.about?.point ?? [x + w / 2, y + h / 2];
+  const get = (): XY => {
+    const [cx, cy] = centre();
+    const a = (grip.value! * Math.PI) / 180;
+    return [cx + radius * Math.cos(a), cy + radius * Math.sin(a)];
+  };
+  const set = (to: XY): void => {
+    const [cx, cy] = centre();
+    const angle = (Math.atan2(to[1] - cy, to[0] - cx) * 180) / Math.PI;
+    // The turn that is nearest, so that a dial can go round more than once.
+    grip.value = within(angle + 360 * Math.round((grip.value! - angle) / 360), param.least, param.most);
+  };
+  return dial(param, param.name, words(param.name), centre, get, set);
+}
+
+/** A length, to the right from the left edge or upwards from the middle. */
+function arm(param: Param, grip: Grip, [x, y, w, h]: Frame): Dial {
+  const isUp = param.axis === "y";
+  const from: XY = isUp ? [x + w / 2, y + h / 2] : [x, y + h];
+  const get = (): XY => (isUp ? [from[0], from[1] - grip.value!] : [from[0] + grip.value!, from[1]]);
+  const set = (to: XY): void => {
+    grip.value = within(isUp ? from[1] - to[1] : to[0] - from[0], param.least, param.most);
+  };
+  return dial(param, param.name, words(param.name), () => from, get, set);
+}
+
+/** An adjust value: the first on the left edge, from below, the second along the lower edge. */
+function track(param: Param, all: Adjust[], i: number, [x, y, w, h]: Frame): Dial {
+  const a = all[i]!;
+  const share = () => (a.value! - a.least) / (a.most - a.least);
+  const isUp = i === 0;
+  const get = (): XY => (isUp ? [x, y + h - share() * h] : [x + share() * w, y + h]);
+  const set = (to: XY): void => {
+    const t = isUp ? (y + h - to[1]) / Math.max(h, 1e-9) : (to[0] - x) / Math.max(w, 1e-9);
+    a.value = a.least + within(t, 0, 1) * (a.most - a.least);
+  };
+  return dial(param, `${param.name}/${i}`, adjustName(all, i), () => [x, y + h], get, set);
+}
+
+function within(value: number, least = -Infinity, most = Infinity): number {
+  return Math.min(Math.max(value, least), most);
+}

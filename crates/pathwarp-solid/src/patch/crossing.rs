@@ -1,0 +1,215 @@
+//! The curves on a patch along which the derivative of a map jumps, as graphs over u where they are graphs.
+
+use super::bezier::BezierPatch;
+use crate::map::{Creases3, Jet3, Level3, Map3};
+use glam::{DMat3, DVec3};
+use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::map::CreaseKind;
+
+/// Places along u and along v at which the side of a crease is looked at.
+const PLACES: usize = 24;
+/// Half the distance, in the parameters, of two places on either side of a crease.
+const BESIDE: f64 = 1e-6;
+/// A derivative that jumps by a smaller share of its size makes no crease that could be seen.
+const JUMP: f64 = 1e-4;
+/// The steepest curve that is a graph.
+const STEEPEST: f64 = 6.0;
+/// The distance from a side, in the parameters, at which rounding does not decide about the side of a crease.
+const SIDE: f64 = 1e-9;
+/// A patch is not cut this close to its sides.
+const RIM: f64 = 0.02;
+
+/// The i-th place, inside the patch: curves that end on its sides do not cross it there.
+fn place(i: usize) -> f64 {
+    (i as f64 + 0.5) / PLACES as f64
+}
+
+/// The level sets on which the derivative of a map jumps.
+pub(super) fn levels(creases: &Creases3) -> Vec<Level3> {
+    creases.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone()).collect()
+}
+
+/// The level sets that cross the patch where the derivative really jumps.
+///
+/// # Errors
+/// More evaluations than the limit allows.
+pub(super) fn crossing(
+    patch: &BezierPatch,
+    map: &dyn Map3,
+    levels: &[Level3],
+    budget: &Budget,
+) -> Result<Vec<Level3>, Exceeded> {
+    if levels.is_empty() {
+        return Ok(Vec::new());
+    }
+    budget.spend(Limit::Evaluations, (PLACES * PLACES) as u64)?;
+    let grid: Vec<_> = (0..PLACES * PLACES).map(|k| patch.point(place(k % PLACES), place(k / PLACES))).collect();
+    let mut out = Vec::new();
+    for level in levels {
+        let side: Vec<bool> = grid.iter().map(|p| level(*p) > 0.0).collect();
+        let at = |k: usize| [place(k % PLACES), place(k / PLACES)];
+        let right = (0..side.len()).filter(|k| k % PLACES + 1 < PLACES && side[*k] != side[k + 1]).map(|k| (k, k + 1));
+        let up = (0..side.len() - PLACES).filter(|k| side[*k] != side[k + PLACES]).map(|k| (k, k + PLACES));
+        let pairs: Vec<(usize, usize)> = right.chain(up).collect();
+        budget.spend(Limit::Evaluations, 2 * pairs.len() as u64)?;
+        if pairs.iter().any(|(a, b)| jumps(patch, map, level, at(*a), at(*b))) {
+            out.push(level.clone());
+        }
+    }
+    Ok(out)
+}
+
+/// A place at which the map itself jumps across a level set, among places of a coarse grid and its lines.
+pub(super) fn tear(patch: &BezierPatch, map: &dyn Map3, levels: &[Level3]) -> Option<DVec3> {
+    /// Lines of the grid, with the sides.
+    const LINES: usize = 8;
+    let at = |k: usize| [k % LINES, k / LINES].map(|i| i as f64 / (LINES - 1) as f64);
+    let point = |k: usize| patch.point(at(k)[0], at(k)[1]);
+    levels.iter().find_map(|level| {
+        let side: Vec<bool> = (0..LINES * LINES).map(|k| level(point(k)) > 0.0).collect();
+        let right = (0..side.len()).filter(|k| (k + 1) % LINES > 0).map(|k| (k, k + 1));
+        let up = (0..side.len() - LINES).map(|k| (k, k + LINES));
+        let mut crossed = right.chain(up).filter(|(a, b)| side[*a] != side[*b]);
+        crossed.find_map(|(a, b)| {
+            let [p, q] = beside(patch, level, at(a), at(b));
+            let (from, to) = (map.jet(p), map.jet(q));
+            moved_apart(&from, &to, p.distance(q)).then_some(p)
+        })
+    })
+}
+
+/// The places on either side of a level set between two places that it separates.
+fn beside(patch: &BezierPatch, level: &Level3, a: [f64; 2], b: [f64; 2]) -> [DVec3; 2] {
+    let between = |t: f64| patch.point(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
+    let t = bisected(|t| level(between(t)), 0.0, 1.0);
+    let off = BESIDE * PLACES as f64;
+    [between(t - off), between(t + off)]
+}
+
+fn size(d: DMat3) -> f64 {
+    d.to_cols_array().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+}
+
+/// Returns `true` if the images of two places, which are a little apart anyway, are far more so than the derivatives explain.
+fn moved_apart(p: &Jet3, q: &Jet3, apart: f64) -> bool {
+    p.p.distance(q.p) > 10.0 * size(p.d).max(size(q.d)) * apart
+}
+
+/// Returns `true` if value or derivative jump at the level set between two places.
+fn jumps(patch: &BezierPatch, map: &dyn Map3, level: &Level3, a: [f64; 2], b: [f64; 2]) -> bool {
+    let [from, to] = beside(patch, level, a, b);
+    let (p, q) = (map.jet(from), map.jet(to));
+    size(p.d - q.d) > JUMP * size(p.d).max(size(q.d)) || moved_apart(&p, &q, from.distance(to))
+}
+
+/// A zero of a function with different signs at both ends, to the last bits.
+fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+    let rises = f(b) > 0.0;
+    for _ in 0..60 {
+        let m = 0.5 * (a + b);
+        if (f(m) > 0.0) == rises { b = m } else { a = m }
+    }
+    0.5 * (a + b)
+}
+
+/// Curves v = g(u) across a whole patch, one above the other.
+pub(super) struct Graphs<'a> {
+    patch: &'a BezierPatch,
+    /// For each curve its level set, and its heights at the places.
+    curves: Vec<(Level3, Vec<f64>)>,
+}
+
+impl<'a> Graphs<'a> {
+    /// The curves, if every line u = const meets the same ones in the same order and none is steep.
+    pub(super) fn new(patch: &'a BezierPatch, levels: &[Level3]) -> Option<Self> {
+        let mut curves: Vec<(usize, Vec<f64>)> = Vec::new();
+        for i in 0..PLACES {
+            let u = place(i);
+            let found = met(patch, levels, u);
+            if i == 0 {
+                curves = found.iter().map(|(n, _)| (*n, Vec::new())).collect();
+            }
+            if found.is_empty() || !found.iter().map(|f| f.0).eq(curves.iter().map(|c| c.0)) {
+                return None;
+            }
+            curves.iter_mut().zip(found).for_each(|(curve, (_, v))| curve.1.push(v));
+        }
+        let steep = |heights: &[f64]| heights.windows(2).any(|w| (w[1] - w[0]).abs() * PLACES as f64 > STEEPEST);
+        if curves.iter().any(|(_, heights)| steep(heights)) {
+            return None;
+        }
+        Some(Self { patch, curves: curves.into_iter().map(|(n, heights)| (levels[n].clone(), heights)).collect() })
+    }
+
+    /// No curves.
+    pub(super) fn none(patch: &'a BezierPatch) -> Self {
+        Self { patch, curves: Vec::new() }
+    }
+
+    /// The number of curves.
+    pub(super) fn count(&self) -> usize {
+        self.curves.len()
+    }
+
+    /// Height and slope of a curve.
+    pub(super) fn at(&self, curve: usize, u: f64) -> [f64; 2] {
+        /// Step of differences, in the parameters.
+        const H: f64 = 1e-6;
+        let Some((level, heights)) = self.curves.get(curve) else { return [f64::from(curve > 0), 0.0] };
+        let f = |u: f64, v: f64| level(self.patch.point(u, v));
+        let by_v = |v: f64| (f(u, v + H) - f(u, v - H)) / (2.0 * H);
+        // From the line through the neighbouring places, by Newton's method: no curve is steep, so the derivative is not small.
+        let x = u * PLACES as f64 - 0.5;
+        let i = (x.floor().max(0.0) as usize).min(PLACES - 2);
+        let mut v = heights[i] + (x - i as f64) * (heights[i + 1] - heights[i]);
+        for _ in 0..12 {
+            let step = f(u, v) / by_v(v);
+            if step.is_finite() {
+                v -= step.clamp(-0.1, 0.1);
+            }
+        }
+        let slope = -(f(u + H, v) - f(u - H, v)) / (2.0 * H) / by_v(v);
+        [v.clamp(0.0, 1.0), if slope.is_finite() { slope } else { 0.0 }]
+    }
+}
+
+/// The level sets that the line u = const meets, with the places, in order.
+fn met(patch: &BezierPatch, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
+    let mut out = Vec::new();
+    for (n, level) in levels.iter().enumerate() {
+        let f = |v: f64| level(patch.point(u, v));
+        let values: Vec<bool> = (0..PLACES).map(|j| f(place(j)) > 0.0).collect();
+        // Beyond the first and the last place; a level set along the side itself is none that is met.
+        if (f(SIDE) > 0.0) != values[0] {
+            out.push((n, bisected(f, SIDE, place(0))));
+        }
+        for j in 1..PLACES {
+            if values[j] != values[j - 1] {
+                out.push((n, bisected(f, place(j - 1), place(j))));
+            }
+        }
+        if (f(1.0 - SIDE) > 0.0) != values[PLACES - 1] {
+            out.push((n, bisected(f, place(PLACES - 1), 1.0 - SIDE)));
+        }
+    }
+    out.sort_by(|a, b| a.1.total_cmp(&b.1));
+    out
+}
+
+/// A value of u at which a level set meets the sides v = 0 and v = 1, if one does well inside: left and right of it, curves are
+/// likelier to be graphs.
+pub(super) fn cut(patch: &BezierPatch, levels: &[Level3]) -> Option<f64> {
+    let inside = RIM..=1.0 - RIM;
+    for v in [0.0, 1.0] {
+        for level in levels {
+            let f = |u: f64| level(patch.point(u, v));
+            let at = |i: usize| i as f64 / PLACES as f64;
+            let found = (0..PLACES).filter(|i| (f(at(*i)) > 0.0) != (f(at(i + 1)) > 0.0));
+            let mut roots = found.map(|i| bisected(f, at(i), at(i + 1)));
+            if let Some(u) = roots.find(|u| inside.contains(u)) {
+                return Some(u);
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,63 @@
+//! Parts of a Bézier patch, which are Bézier patches again.
+
+use super::bezier::BezierPatch;
+use glam::DVec4;
+
+impl BezierPatch {
+    /// The part over `from[0]`..`to[0]` × `from[1]`..`to[1]`, over 0..1 × 0..1 again.
+    #[must_use]
+    pub(super) fn part(&self, from: [f64; 2], to: [f64; 2]) -> Self {
+        let rows = self.points.chunks(self.degree[0] + 1);
+        let across = Self { degree: self.degree, points: rows.flat_map(|row| section(row, from[0], to[0])).collect() };
+        let turned = across.transposed();
+        let columns = turned.points.chunks(turned.degree[0] + 1);
+        let points = columns.flat_map(|column| section(column, from[1], to[1])).collect();
+        Self { degree: turned.degree, points }.transposed()
+    }
+
+    /// The same patch with u and v exchanged.
+    #[must_use]
+    pub(super) fn transposed(&self) -> Self {
+        let width = self.degree[0] + 1;
+        let points = (0..width).flat_map(|i| self.points.iter().skip(i).step_by(width).copied()).collect();
+        Self { degree: [self.degree[1], self.degree[0]], points }
+    }
+}
+
+/// The control points of a Bézier curve between two parameters: its polar form with every number of both.
+fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
+    let n = points.len().saturating_sub(1);
+    let polar = |k: usize| {
+        let mut row = points.to_vec();
+        for r in 0..n {
+            let t = if r < n - k { from } else { to };
+            for i in 0..n - r {
+                row[i] = row[i] * (1.0 - t) + row[i + 1] * t;
+            }
+        }
+        row[0]
+    };
+    (0..=n).map(polar).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_the_patch_there() {
+        let points = (0..12).map(|k| {
+            let k = f64::from(k);
+            DVec4::new((3.0 * k) % 7.0, (5.0 * k) % 11.0, k, 1.0 + (k % 3.0))
+        });
+        let patch = BezierPatch { degree: [3, 2], points: points.collect() };
+        let part = patch.part([0.2, 0.5], [0.7, 0.9]);
+        for (s, t) in [(0.0, 0.0), (0.3, 0.8), (1.0, 0.4)] {
+            let off = part.homogeneous(s, t)[0] - patch.homogeneous(0.2 + 0.5 * s, 0.5 + 0.4 * t)[0];
+            assert!(off.length() < 1e-12, "{off}");
+            let off = patch.transposed().homogeneous(t, s)[0] - patch.homogeneous(s, t)[0];
+            assert!(off.length() < 1e-12, "{off}");
+        }
+        assert_eq!(patch.part([0.0; 2], [1.0; 2]), patch);
+    }
+}
