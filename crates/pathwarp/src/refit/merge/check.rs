@@ -1,7 +1,7 @@
 //! The check of a cubic over several segments: the error is smooth along each segment, and may have corners at the joints.
 
 use super::cubic::RunCubic;
-use super::limits::{COARSE_CHECK, SHARP_TURN};
+use super::limits::{COARSE_CHECK, SHARP_TURN, SHORT_FACTOR, SHORT_PART};
 use super::run::SegmentRun;
 use crate::refit::gather;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
@@ -107,15 +107,16 @@ impl Distances {
             out.extend((from..to).filter(far).map(|k| (i, [k, k + 1])));
             let errors = &self.errors[from - first..=to - first];
             let end = errors.len() - 1;
-            if predicted_end_peak([errors[0], errors[1], errors[2]], PEAK_FACTOR) > enough {
+            let factor = if end < SHORT_PART { SHORT_FACTOR } else { PEAK_FACTOR };
+            if predicted_end_peak([errors[0], errors[1], errors[2]], factor) > enough {
                 out.push((i, [from, from + 1]));
             }
             for (k, w) in errors.windows(3).enumerate() {
-                if predicted_peak([w[0], w[1], w[2]], PEAK_FACTOR) > enough {
+                if predicted_peak([w[0], w[1], w[2]], factor) > enough {
                     out.push((i, [from + k, from + k + 2]));
                 }
             }
-            if predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], PEAK_FACTOR) > enough {
+            if predicted_end_peak([errors[end], errors[end - 1], errors[end - 2]], factor) > enough {
                 out.push((i, [to - 1, to]));
             }
         }

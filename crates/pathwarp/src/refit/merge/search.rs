@@ -31,10 +31,10 @@ pub(super) fn fewest_legs(reaches: &mut Reaches<'_, '_>) -> Result<Option<Vec<Le
         let Furthest { place: k, leg } = furthest[count];
         let joint = k - k % MERGE_GRID;
         let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
-        if let Some((from, true)) = leg {
-            if let Some(place) = beyond(reaches, [from, joint, k], best.place)? {
-                best = Furthest { place, leg: Some((joint, true)) };
-            }
+        if let Some((from, true)) = leg
+            && let Some(place) = beyond(reaches, [from, joint, k], best.place)?
+        {
+            best = Furthest { place, leg: Some((joint, true)) };
         }
         // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
         let at_joint = best.place <= joint + MERGE_GRID
