@@ -123,6 +123,20 @@ impl Distances {
         out
     }
 
+    /// The highest of the parabolas through three neighbouring errors in a segment: about the largest error between the samples.
+    pub(super) fn highest_parabola(&self, run: &SegmentRun<'_>, c: &RunCubic) -> f64 {
+        let first = c.samples[0];
+        let height = |w: &[f64]| {
+            let (slope, bend) = (w[2] - w[0], w[0] + w[2] - 2.0 * w[1]);
+            let inside = slope.abs() <= 2.0 * bend.abs() && bend != 0.0;
+            if inside { (w[1] - slope * slope / (8.0 * bend)).abs() } else { 0.0 }
+        };
+        parts(run.per_segment, c.samples)
+            .flat_map(|(_, [from, to])| self.errors[from - first..=to - first].windows(3))
+            .map(height)
+            .fold(0.0, larger)
+    }
+
     /// The largest distance of a sample; too large a value if it is above `enough`.
     fn at_samples(&mut self, run: &SegmentRun<'_>, c: &RunCubic, enough: f64) -> f64 {
         let [first, last] = c.samples;

@@ -168,8 +168,11 @@ impl<'r, 'a> Reaches<'r, 'a> {
             }
         }
         let distances = &self.memory.distances;
-        let carried =
-            self.carries.then(|| Carried::new(&self.own.site, self.run.per_segment, leg, cubic, (distances, error)));
+        let carried = self.carries.then(|| {
+            // Elsewhere only differences from here are measured.
+            let error = error.max(distances.highest_parabola(self.run, cubic));
+            Carried::new(&self.own.site, self.run.per_segment, leg, cubic, (distances, error))
+        });
         Ok(Some(Passed { piece: cubic.piece(), error, carried: carried.flatten() }))
     }
 
