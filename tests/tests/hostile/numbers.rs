@@ -7,6 +7,7 @@ fn shapes_out_of_range_stay_and_are_reported() {
     for body in [
         "<path d='M0 0 L1e308 1e308 L50 10 Z'/>",
         "<path d='M19.598 3.4e38h.143c.06 0 .1.01.12.03a.107.107 0 0 1 .034.083z'/>",
+        "<path d='M5 5A1 2 0 0 1 3.4e38 7z'/>",
         "<path d='M0 0L50 10' stroke='red' stroke-width='1e20' stroke-dasharray='1e20 1e20'/>",
         "<path d='M0 0L50 10' style='stroke:red;stroke-width:1e20'/>",
         "<style>path{stroke:red;stroke-width:1e12}</style><path d='M0 0L50 10'/>",

@@ -7,6 +7,7 @@ use super::tags::ElementId;
 use super::text::SourceText;
 use memchr::{memchr, memchr2};
 use pathwarp::Error;
+use std::borrow::Cow;
 use std::ops::Range;
 use usvg::roxmltree;
 
@@ -112,12 +113,22 @@ pub(crate) fn replaced(xml: &roxmltree::Document<'_>, name: &str) -> Result<Opti
     if found.is_empty() {
         return Ok(None);
     }
-    // The replacement has the same length, so that positions stay.
+    Ok(Some(with_instead(text, found)))
+}
+
+/// A number, list or path data with all numbers in range, as usvg is going to see it.
+pub(super) fn in_range(value: &str) -> Cow<'_, str> {
+    let found = if may_be_far(value) { far(value, false) } else { Vec::new() };
+    if found.is_empty() { Cow::Borrowed(value) } else { Cow::Owned(with_instead(value, found)) }
+}
+
+/// Replaces numbers. The replacement has the same length, so that positions stay.
+fn with_instead(text: &str, found: Vec<Range<usize>>) -> String {
     let mut out = text.to_owned();
     for r in found {
         out.replace_range(r.clone(), &format!("{INSTEAD:0>width$}", width = r.len()));
     }
-    Ok(Some(out))
+    out
 }
 
 /// The elements with numbers out of range, each with the first of them. A style sheet may concern any element, so its numbers are
