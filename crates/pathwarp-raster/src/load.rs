@@ -150,10 +150,10 @@ impl Load {
             return Ok(());
         }
         let bounds = p.stroke_bounding_box().transform(transform).filter(is_near).ok_or(Error::TooFar)?;
-        let [w, h] = canvas.seen(bounds);
+        let ([w, h], picture) = (canvas.seen(bounds), [canvas.width, canvas.height]);
+        let edges = Edges::of(p.data(), transform, picture);
         if let Some(fill) = p.fill() {
-            self.add(w * h * paint_work(fill.paint()))?;
-            self.add(Edges::of_fill(p.data(), transform, [canvas.width, canvas.height]).work([w, h]))?;
+            self.add(w * h * paint_work(fill.paint()) + edges.work([w, h]))?;
             self.pattern(fill.paint(), transform, canvas)?;
         }
         if let Some(stroke) = p.stroke() {
@@ -162,8 +162,8 @@ impl Load {
             if width > f64::from(FARTHEST) {
                 return Err(Error::TooFar);
             }
-            self.add(w * h * paint_work(stroke.paint()))?;
-            self.add(Edges::of_stroke(p.data(), stroke, width, transform, [canvas.width, canvas.height]).work([w, h]))?;
+            let edges = edges.stroked(p.data().len(), stroke, width, picture);
+            self.add(w * h * paint_work(stroke.paint()) + edges.work([w, h]))?;
             if let Some(dashes) = stroke.dasharray() {
                 self.add(DASH * dashes_along(p.data(), dashes))?;
             }

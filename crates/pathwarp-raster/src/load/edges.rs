@@ -17,7 +17,8 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    pub(super) fn of_fill(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
+    /// The edges of a path that is filled.
+    pub(super) fn of(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
         let mut edges = Self { count: 0.0, rows: 0.0, columns: 0.0 };
         // Parts outside of the picture are cut off first.
         let within = |v: f32, size: f32| if v > 0.0 { f64::from(v.min(size)) } else { 0.0 };
@@ -56,23 +57,17 @@ impl Edges {
         polygon[N - 1]
     }
 
-    /// The outline of a stroke of `width` pixels: two sides, and a join or a cap at every node, which is as high as the stroke is wide.
-    pub(super) fn of_stroke(
-        path: &tiny_skia::Path,
-        stroke: &Stroke,
-        width: f64,
-        transform: Transform,
-        canvas: [f32; 2],
-    ) -> Self {
-        let line = Self::of_fill(path, transform, canvas);
-        let nodes = path.len() as f64;
+    /// The outline of a stroke of `width` pixels along these edges: two sides, and a join or a cap at every node, which is as high as the
+    /// stroke is wide.
+    pub(super) fn stroked(&self, nodes: usize, stroke: &Stroke, width: f64, picture: [f32; 2]) -> Self {
+        let nodes = nodes as f64;
         let round = stroke.linejoin() == LineJoin::Round || stroke.linecap() == LineCap::Round;
         let (edges, sides) = if round { (8.0, 4.0) } else { (2.0, 2.0) };
         let around = |size: f32| sides * width.min(f64::from(size)) * nodes;
         Self {
-            count: 2.0 * line.count + edges * nodes,
-            rows: 2.0 * line.rows + around(canvas[1]),
-            columns: 2.0 * line.columns + around(canvas[0]),
+            count: 2.0 * self.count + edges * nodes,
+            rows: 2.0 * self.rows + around(picture[1]),
+            columns: 2.0 * self.columns + around(picture[0]),
         }
     }
 

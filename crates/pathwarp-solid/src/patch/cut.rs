@@ -1,7 +1,7 @@
 //! Images of surfaces that are crossed by creases: cut into parts with a smooth image each.
 //!
-//! Where the crease is a graph over u or v, the part is fitted by layers that follow it. Otherwise it is cut where the crease meets
-//! its sides, or else in the middle, and the parts are looked at again. Parts without crease have their exact image if they can.
+//! Layers that follow the crease fit a part if the crease is a graph over u or v. Any other part is cut at a place where the crease
+//! meets its sides, or else in the middle, and the parts are looked at again. A part without crease keeps its exact image if it has one.
 
 use super::bezier::BezierPatch;
 use super::compose;

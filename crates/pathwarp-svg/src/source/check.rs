@@ -88,8 +88,11 @@ fn wide_arcs(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Excee
     const ALLOWED: f64 = 0.1;
     /// Comparisons for an arc, by the square of its cubics.
     const MOVED: f64 = 0.0125;
-    let arcs =
-        |d: &str| memchr2(b'a', b'A', d.as_bytes()).is_some().then(|| Outline::from_svg_lossy(&range::in_range(d)));
+    // Path data is parsed once more only where its numbers may amount to such an arc.
+    let arcs = |d: &str| {
+        let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && range::is_uneven(d);
+        suspected.then(|| Outline::from_svg_lossy(&range::in_range(d)))
+    };
     let radius = |s: &Seg| if let Seg::Arc(a) = s { a.a.hypot().max(a.b.hypot()) } else { 0.0 };
     let widest = |o: Outline| o.segs().map(radius).fold(0.0, f64::max);
     let paths = xml.descendants().filter_map(|n| n.attribute("d")).filter_map(arcs);

@@ -116,6 +116,27 @@ pub(crate) fn replaced(xml: &roxmltree::Document<'_>, name: &str) -> Result<Opti
     Ok(Some(with_instead(text, found)))
 }
 
+/// Returns `false` if all numbers of path data are certainly below 10⁴ and, unless they are zero, at least 10⁻³: no exponent, no five
+/// digits before a point, no three zeros after it.
+pub(super) fn is_uneven(data: &str) -> bool {
+    let (mut digits, mut zeros, mut fraction) = (0, 0, false);
+    for byte in data.bytes() {
+        match byte {
+            b'e' | b'E' => return true,
+            b'.' => (zeros, fraction) = (0, true),
+            b'0' if fraction => zeros += 1,
+            // The digits after the first one that is not zero do not count.
+            b'0'..=b'9' if fraction => zeros = i32::MIN,
+            b'0'..=b'9' => digits += 1,
+            _ => (digits, fraction) = (0, false),
+        }
+        if digits > 4 || fraction && zeros > 2 {
+            return true;
+        }
+    }
+    false
+}
+
 /// A number, list or path data with all numbers in range, as usvg is going to see it.
 pub(super) fn in_range(value: &str) -> Cow<'_, str> {
     let found = if may_be_far(value) { far(value, false) } else { Vec::new() };

@@ -10,9 +10,9 @@
 //! largest residual replaces the one of the reference that leaves the largest |h|, until no residual exceeds |h|.
 
 use super::frame::ChordFrame;
-use super::lanes::{Lane, Lanes, clamp_unit, fma, larger, largest, norm_squared, residual_at};
+use super::lanes::{Lane, Lanes, clamp_unit, fma, larger, largest};
 use super::limits::{MAX_EXCHANGES, MINIMAX_HOPE, MINIMAX_STEPS, TRUST_RADIUS};
-use super::residuals::FitState;
+use super::residuals::{FitState, SampleResidual};
 
 /// Normal residuals at eight samples, with their derivatives.
 struct Normals {
@@ -35,21 +35,11 @@ impl ChordFrame {
     #[inline(never)]
     fn normals(&self, g: &Lanes, z: &FitState, out: &mut Normals) {
         let c = self.power(z.a, z.b);
-        let (t0, t1) = (self.t0, self.t1);
         for i in 0..8 {
-            let s = z.s[i];
-            let u = 1.0 - s;
-            let (rx, ry, dx, dy) = residual_at(&c, s, g.x[i], g.y[i]);
-            let k = 1.0 / norm_squared(dx, dy);
-            let root = k.sqrt();
-            let su = 3.0 * s * u;
-            let (b1, b2) = (su * u, su * s);
-            out.n[i] = fma(rx, dy, -(ry * dx)) * root;
-            out.na[i] = fma(t0.x, dy, -(t0.y * dx)) * (b1 * root);
-            out.nb[i] = fma(t1.y, dx, -(t1.x * dy)) * (b2 * root);
-            out.ds[i] = -fma(rx, dx, ry * dy) * k;
-            out.sa[i] = -fma(t0.x, dx, t0.y * dy) * (b1 * k);
-            out.sb[i] = fma(t1.x, dx, t1.y * dy) * (b2 * k);
+            let r = SampleResidual::new(&c, [self.t0, self.t1], z.s[i], [g.x[i], g.y[i]]);
+            let unit = r.k.sqrt();
+            (out.n[i], out.na[i], out.nb[i]) = (r.n * unit, r.na * unit, r.nb * unit);
+            (out.ds[i], out.sa[i], out.sb[i]) = (r.ds, r.sa, r.sb);
         }
     }
 }

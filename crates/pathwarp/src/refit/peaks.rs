@@ -36,6 +36,13 @@ pub(super) fn highest_peak(errors: &Evenly) -> f64 {
     larger(largest(&first), largest(&second))
 }
 
+/// The height of the extreme of the parabola through three neighbouring errors, with signs, if it lies between them; else 0.
+pub(super) fn extreme([a, b, c]: [f64; 3]) -> f64 {
+    let (slope, bend) = (c - a, a + c - 2.0 * b);
+    let inside = slope.abs() <= 2.0 * bend.abs() && bend != 0.0;
+    if inside { (b - slope * slope / (8.0 * bend)).abs() } else { 0.0 }
+}
+
 /// The height of the parabola through three neighbours of which the middle one is the largest.
 pub(super) fn parabola_peak(a: f64, b: f64, c: f64) -> f64 {
     let bend = 2.0 * b - a - c;

@@ -3,6 +3,7 @@
 use super::frame::ChordFrame;
 use super::lanes::{Lane, Lanes, clamp_unit, fma, largest, norm_squared, residual_at};
 use super::limits::DAMPING;
+use kurbo::Vec2;
 
 /// The unknowns of a fit.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +27,41 @@ pub(super) struct Residuals {
     pub(super) ds: Lane,
     pub(super) sa: Lane,
     pub(super) sb: Lane,
+}
+
+/// One sample's residual ρ = C(s) − g at its foot point, with its derivatives by the handles.
+pub(super) struct SampleResidual {
+    /// 1/|C′|².
+    pub(super) k: f64,
+    /// The normal part times |C′|: ρ×C′.
+    pub(super) n: f64,
+    pub(super) na: f64,
+    pub(super) nb: f64,
+    /// Newton step of the foot point, −ρ·C′/|C′|².
+    pub(super) ds: f64,
+    pub(super) sa: f64,
+    pub(super) sb: f64,
+}
+
+impl SampleResidual {
+    /// For the cubic `c` in the power basis with unit end tangents `t0` and `t1`.
+    #[inline(always)]
+    pub(super) fn new(c: &[Vec2; 3], [t0, t1]: [Vec2; 2], s: f64, [x, y]: [f64; 2]) -> Self {
+        let u = 1.0 - s;
+        let (rx, ry, dx, dy) = residual_at(c, s, x, y);
+        let k = 1.0 / norm_squared(dx, dy);
+        let su = 3.0 * s * u;
+        let (b1, b2) = (su * u, su * s);
+        Self {
+            k,
+            n: fma(rx, dy, -(ry * dx)),
+            na: fma(t0.x, dy, -(t0.y * dx)) * b1,
+            nb: fma(t1.y, dx, -(t1.x * dy)) * b2,
+            ds: -fma(rx, dx, ry * dy) * k,
+            sa: -fma(t0.x, dx, t0.y * dy) * (b1 * k),
+            sb: fma(t1.x, dx, t1.y * dy) * (b2 * k),
+        }
+    }
 }
 
 /// Normal equations `[aa, ab, bb, an, bn]`, the sum of squares, and the square of the largest residual.
@@ -84,24 +120,16 @@ impl ChordFrame {
     #[inline(always)]
     fn measure(&self, g: &Lanes, z: &FitState, out: &mut Residuals) {
         let c = self.power(z.a, z.b);
-        let (t0, t1) = (self.t0, self.t1);
+        let tangents = [self.t0, self.t1];
         let o = [0.0; 8];
         let (mut n, mut na, mut nb, mut kn, mut ka, mut kb) = (o, o, o, o, o, o);
         for i in 0..8 {
-            let s = z.s[i];
-            let u = 1.0 - s;
-            let (rx, ry, dx, dy) = residual_at(&c, s, g.x[i], g.y[i]);
-            let k = 1.0 / norm_squared(dx, dy);
-            let su = 3.0 * s * u;
-            let (b1, b2) = (su * u, su * s);
-            n[i] = fma(rx, dy, -(ry * dx));
-            na[i] = fma(t0.x, dy, -(t0.y * dx)) * b1;
-            nb[i] = fma(t1.y, dx, -(t1.x * dy)) * b2;
+            let r = SampleResidual::new(&c, tangents, z.s[i], [g.x[i], g.y[i]]);
+            let k = r.k;
+            (n[i], na[i], nb[i]) = (r.n, r.na, r.nb);
             (kn[i], ka[i], kb[i]) = (n[i] * k, na[i] * k, nb[i] * k);
             out.squares[i] = n[i] * n[i] * k;
-            out.ds[i] = -fma(rx, dx, ry * dy) * k;
-            out.sa[i] = -fma(t0.x, dx, t0.y * dy) * (b1 * k);
-            out.sb[i] = fma(t1.x, dx, t1.y * dy) * (b2 * k);
+            (out.ds[i], out.sa[i], out.sb[i]) = (r.ds, r.sa, r.sb);
         }
         for i in 0..4 {
             let j = i + 4;

@@ -6,7 +6,7 @@ use super::run::SegmentRun;
 use crate::refit::gather;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
 use crate::refit::limits::{FOOT_ROUNDING, PEAK_FACTOR, PEAK_NEAR};
-use crate::refit::peaks::{parabola_peak, predicted_end_peak, predicted_peak};
+use crate::refit::peaks::{extreme, parabola_peak, predicted_end_peak, predicted_peak};
 use crate::refit::resolution::turns_little;
 use crate::refit::samples::{ALL, Evenly};
 use kurbo::{Line, ParamCurve, ParamCurveNearest, Point, Vec2};
@@ -126,14 +126,9 @@ impl Distances {
     /// The highest of the parabolas through three neighbouring errors in a segment: about the largest error between the samples.
     pub(super) fn highest_parabola(&self, run: &SegmentRun<'_>, c: &RunCubic) -> f64 {
         let first = c.samples[0];
-        let height = |w: &[f64]| {
-            let (slope, bend) = (w[2] - w[0], w[0] + w[2] - 2.0 * w[1]);
-            let inside = slope.abs() <= 2.0 * bend.abs() && bend != 0.0;
-            if inside { (w[1] - slope * slope / (8.0 * bend)).abs() } else { 0.0 }
-        };
         parts(run.per_segment, c.samples)
             .flat_map(|(_, [from, to])| self.errors[from - first..=to - first].windows(3))
-            .map(height)
+            .map(|w| extreme([w[0], w[1], w[2]]))
             .fold(0.0, larger)
     }
 

@@ -8,7 +8,7 @@ use crate::refit::judge::settled;
 use crate::refit::lanes::{Lane, Lanes, larger, largest};
 use crate::refit::limits::{GOOD_ENOUGH, HANDLE_FLOOR, HANDLE_PULL, PEAK_NEAR, RESTART_GAIN};
 use crate::refit::minimax::minimax;
-use crate::refit::peaks::parabola_peak;
+use crate::refit::peaks::extreme;
 use crate::refit::piece::FittedPiece;
 use crate::refit::residuals::FitState;
 use crate::refit::samples::{ALL, Evenly, UNIT, interleaved};
@@ -234,13 +234,11 @@ impl Stretch {
 
 /// The height of the highest parabola through three neighbours whose middle one is an extreme, and nearly as far from zero as `most`.
 fn highest_parabola(errors: &Evenly, most: f64) -> f64 {
-    let tops = errors.windows(3).filter(|w| w[1].abs() >= PEAK_NEAR * most);
-    tops.map(|w| {
+    let is_top = |w: &[f64]| {
         let side = 1.0f64.copysign(w[1]);
-        let [a, b, c] = [w[0] * side, w[1] * side, w[2] * side];
-        if b >= a && b >= c { parabola_peak(a, b, c) } else { b }
-    })
-    .fold(most, larger)
+        w[1].abs() >= PEAK_NEAR * most && w[1] * side >= w[0] * side && w[1] * side >= w[2] * side
+    };
+    errors.windows(3).filter(|w| is_top(w)).map(|w| extreme([w[0], w[1], w[2]])).fold(most, larger)
 }
 
 /// The values at some of the samples.
