@@ -68,7 +68,7 @@ def _read(path: str) -> Union[bytes, OSError]:
 def _row(path: str, result: Union[pathwarp.Warped, Exception], root: str, folder: str) -> Row:
     if isinstance(result, Exception):
         return path, "", 0, f"{type(result).__name__}: {result}"
-    below = os.path.relpath(path, root)
+    below = path[len(root) + 1 :] if path.startswith(root + os.sep) else os.path.relpath(path, root)
     put(result, os.path.join(folder, below))
     return below, hashlib.sha256(result).hexdigest(), len(result.warnings), ""
 
@@ -77,16 +77,20 @@ def put(content: bytes, target: str) -> None:
     """Writes a file, all of it or nothing."""
     parent = os.path.dirname(target)
     temporary = os.path.join(parent, f".pathwarp-{_RANDOM}-{os.getpid()}-{threading.get_ident()}")
+    # Python's own file objects would ask the system three more questions about each file.
+    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0)
     try:
         try:
-            file = open(temporary, "wb", buffering=0)
+            file = os.open(temporary, flags, 0o666)
         except FileNotFoundError:
             os.makedirs(parent, exist_ok=True)
-            file = open(temporary, "wb", buffering=0)
-        with file:
+            file = os.open(temporary, flags, 0o666)
+        try:
             view = memoryview(content)
             while view:
-                view = view[file.write(view) :]
+                view = view[os.write(file, view) :]
+        finally:
+            os.close(file)
         os.replace(temporary, target)
     except BaseException:
         pathlib.Path(temporary).unlink(missing_ok=True)
