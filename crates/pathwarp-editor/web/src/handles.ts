@@ -3,7 +3,7 @@
 import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
-import { called, words } from "./dom";
+import { called, words } from "./names";
 import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
 
 /** A place on a path of a parameter. */

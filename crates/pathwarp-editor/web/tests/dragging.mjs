@@ -36,6 +36,8 @@ async function follows(shape, pick, [dx, dy] = [37, -41], section) {
 export const corner_of_the_shaper = () => follows(null, (all) => all.find((k) => k === "shaper/0.0/2"));
 export const handle_of_the_shaper = () => follows(null, (all) => all.find((k) => k.endsWith("/out")));
 export const corner_of_a_perspective = () => follows("Perspective", (all) => all.find((k) => k === "target/0.0/2"));
+export const one_of_four_corners = () => follows("Four corners", (all) => all.find((k) => k === "target/0.0/1"));
+export const eye_of_an_anamorphosis = () => follows("Anamorphosis", (all) => all.find((k) => k === "eye"));
 export const side_of_an_envelope = () => follows("Envelope", (all) => all.find((k) => k.startsWith("top") && k.endsWith("/in")));
 export const adjust_value_of_a_text_shape = () => follows("Wave 1", (all) => all.find((k) => k === "adj/0"), [0, -20], "Text shapes");
 export const angle_of_an_adjust_value = () => follows("Arch up pour", (all) => all.find((k) => k === "adj/0"), [0, -14], "Text shapes");
