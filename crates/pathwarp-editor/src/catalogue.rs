@@ -53,8 +53,12 @@ const INSTEAD: [Instead; 3] = [
     Instead { deformation: "ffd", param: "lattice", others: &["degree"], with: None },
 ];
 /// Names of parameters for people, where the registry's own could be taken for something else.
-const PARAM_LABELS: [(&str, &str, &str); 2] =
-    [("warp", "horizontal", "Distort horizontally"), ("warp", "vertical", "Distort vertically")];
+const PARAM_LABELS: [(&str, &str, &str); 4] = [
+    ("warp", "horizontal", "Distort horizontally"),
+    ("warp", "vertical", "Distort vertically"),
+    ("mesh", "mesh", "File of points"),
+    ("mesh", "psd", "Photoshop file"),
+];
 /// The deformation whose rows have equally many points, which are control points of one curve each.
 const ROWS: &str = "birational";
 

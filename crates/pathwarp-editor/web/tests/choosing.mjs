@@ -41,7 +41,7 @@ export const files_are_chosen = () => within(async (page, dir, editor) => {
   await choose(page, "Mesh");
   const before = await paths(page);
   await page.click(".more summary");
-  await page.setInputFiles("#settings [aria-label=Mesh]", sample("pinch.json"));
+  await page.setInputFiles("#settings [aria-label='File of points']", sample("pinch.json"));
   await page.waitForFunction(() => document.querySelector("#set-mesh").value === "pinch.json");
   await quiet(page);
   check(readFileSync(`${dir}/pinch.json`, "utf8") === readFileSync(sample("pinch.json"), "utf8"), "the file is not beside the drawing");

@@ -5,7 +5,7 @@ import { basename } from "node:path";
 import { close, curves, edit, folder, middle, open, quiet } from "./harness.mjs";
 
 /** Drags and the pause between two of them, in ms: a mouse reports at least this often. */
-const DRAGS = Number(process.env.DRAGS ?? 300);
+const DRAGS = 300;
 const PAUSE = 8;
 /** Clock ticks of the kernel per second. */
 const TICKS = 100;
