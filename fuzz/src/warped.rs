@@ -122,18 +122,17 @@ fn distance(pieces: &[PathSeg], p: Point, accuracy: f64, enough: f64) -> f64 {
     best
 }
 
-/// Distance by samples and golden sections between them.
+/// Distance by golden sections between samples. Every interval is searched: the nearest sample of a hairpin may be on its other branch.
 fn sampled(c: &CubicBez, p: Point) -> f64 {
     const STEPS: usize = 64;
     let at = |t: f64| c.eval(t).distance(p);
-    let (near, _) = (0..=STEPS)
-        .map(|i| i as f64 / STEPS as f64)
-        .map(|t| (t, at(t)))
-        .fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
-    let (mut low, mut high) = ((near - 1.0 / STEPS as f64).max(0.0), (near + 1.0 / STEPS as f64).min(1.0));
-    for _ in 0..60 {
-        let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);
-        if at(a) < at(b) { high = b } else { low = a }
-    }
-    at(0.5 * (low + high)).min(at(near))
+    let search = |i: usize| {
+        let (mut low, mut high) = (i as f64 / STEPS as f64, (i + 1) as f64 / STEPS as f64);
+        for _ in 0..60 {
+            let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);
+            if at(a) < at(b) { high = b } else { low = a }
+        }
+        at(0.5 * (low + high)).min(at(i as f64 / STEPS as f64))
+    };
+    (0..STEPS).map(search).fold(at(1.0), f64::min)
 }
