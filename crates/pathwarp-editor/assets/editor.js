@@ -547,17 +547,15 @@
       const from = [[...first.get()], [...second.get()]];
       return {
         param: name,
-        move: (to, smooth) => [first, second].forEach((h2, i) => {
-          const [x, y] = from[i];
-          h2.set([x + shares[i] * (to[0] - at[0]), y + shares[i] * (to[1] - at[1])], smooth);
-        })
+        handles: [first, second],
+        targets: (to) => from.map(([x, y], i) => [x + shares[i] * (to[0] - at[0]), y + shares[i] * (to[1] - at[1])])
       };
     }
     pullCircle(at, reach) {
       const radius = this.handles.find((h2) => h2.key === "radius");
       const [grip, centre] = [this.grips.radius, this.grips.center?.point];
       if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
-      return { param: "radius", move: (to, smooth) => radius.set(to, smooth) };
+      return { param: "radius", handles: [radius], targets: (to) => [to] };
     }
     /** Adds a point to the path that passes near a place. Returns the key of its handle. */
     divide(at, reach) {
@@ -1249,17 +1247,34 @@
     /** Shows where the handle has snapped to; the points are in user units. */
     onSnap = () => {
     };
+    /** A function that pulls a line, and its reflection if symmetry is on. */
+    puller(handles, { handles: own, targets }) {
+      const partners = own.map((handle) => this.mirrors ? handles.partner(handle) : null);
+      const mirrored = reflection(handles);
+      return (to) => {
+        const wanted = targets(to);
+        own.forEach((handle, i) => {
+          const partner = partners[i] ?? null;
+          const at = wanted[i];
+          const k = partner ? own.indexOf(partner) : -1;
+          const other = k < 0 ? at : mirrored(wanted[k]);
+          const target = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
+          handle.set(target, this.smooths);
+          if (k < 0) partner?.set(mirrored(target), this.smooths);
+        });
+      };
+    }
     /** A function that moves a handle, and its partner if symmetry is on. */
     mover(handles, handle) {
       const partner = this.mirrors ? handles.partner(handle) : null;
-      const [left, , width] = handles.frame;
+      const mirrored = reflection(handles);
       this.marks = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
       const start = [...handle.get()];
       return (to, e) => {
         const [dx, dy] = [to[0] - start[0], to[1] - start[1]];
         const target = e?.shiftKey ? Math.abs(dx) > Math.abs(dy) ? [to[0], start[1]] : [start[0], to[1]] : to;
         handle.set(target, this.smooths);
-        partner?.set([2 * left + width - target[0], target[1]], this.smooths);
+        partner?.set(mirrored(target), this.smooths);
       };
     }
     /** The place near `to` that lines up with the frame or another handle; Alt turns that off. */
@@ -1279,6 +1294,9 @@
       this.onSnap(null, null);
     }
   };
+  function reflection({ frame: [left, , width] }) {
+    return ([x, y]) => [2 * left + width - x, y];
+  }
   function nearest2(value, among, reach) {
     let best = null;
     for (const candidate of among) {
@@ -1464,6 +1482,7 @@
     "svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight feSpecularLighting feSpotLight feTile feTurbulence use".split(" ")
   );
   var LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
+  var LOADS = /url\(\s*["']?(?!#)/i;
   function copy(from, lines) {
     if (from.namespaceURI !== SVG2 || !ELEMENTS.has(from.localName)) {
       skip(from, lines);
@@ -1492,11 +1511,11 @@
     }
     if (name === "style") {
       for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
-        if (property) element.style.setProperty(property.trim(), rest.join(":").trim());
+        if (property && !LOADS.test(rest.join(":"))) element.style.setProperty(property.trim(), rest.join(":").trim());
       }
       return;
     }
-    if (/url\(\s*["']?(?!#)/i.test(value)) return;
+    if (LOADS.test(value)) return;
     element.setAttribute(name, value);
   }
   function parse(text, lines = null) {
@@ -1644,7 +1663,7 @@
       app2.listen((change) => {
         if (change === "state") this.place();
         if (change === "handles") this.rebuild();
-        if (change === "report" && this.showsStretch && !app2.isDragging) void this.drawStretch();
+        if (change === "report" && this.showsStretch) void this.drawStretch();
       });
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
@@ -1679,6 +1698,9 @@
     isBefore = false;
     showsNodes = false;
     showsStretch = false;
+    /** The stretch has been asked for, and has to be asked for again. */
+    isStretchAsked = false;
+    isStretchWanted = false;
     /** Takes the id of the path that is clicked next, instead of anything else. */
     picks = null;
     onFocus = () => {
@@ -1815,9 +1837,17 @@
     /** Shows the stretch of the visible steps, or hides it. */
     async drawStretch() {
       const { app: app2 } = this;
-      const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
-      const stretch = this.showsStretch ? answer?.stretch : null;
-      this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
+      if (!this.showsStretch) return this.heat.replaceChildren();
+      this.isStretchWanted = true;
+      if (this.isStretchAsked) return;
+      this.isStretchAsked = true;
+      while (this.isStretchWanted) {
+        this.isStretchWanted = false;
+        const answer = await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible }));
+        const stretch = this.showsStretch ? answer?.stretch : null;
+        this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
+      }
+      this.isStretchAsked = false;
     }
     /** Puts everything in its place on the screen. */
     layout() {
@@ -2095,8 +2125,9 @@
       const { handles } = this.app;
       const pull = handles?.pull(stage2.camera.toUser(stage2.point(e)), REACH * stage2.camera.pixel);
       if (!handles || !pull) return false;
+      const puller = modes2.puller(handles, pull);
       this.bend(e, (to, event) => {
-        pull.move(stage2.camera.toUser(to), modes2.smooths);
+        puller(stage2.camera.toUser(to));
         handles.write(pull.param);
         stage2.placeHandles();
         this.app.draft(event.timeStamp);

@@ -144,8 +144,9 @@ export class Pointing {
     const { handles } = this.app;
     const pull = handles?.pull(stage.camera.toUser(stage.point(e)), REACH * stage.camera.pixel);
     if (!handles || !pull) return false;
+    const puller = modes.puller(handles, pull);
     this.bend(e, (to, event) => {
-      pull.move(stage.camera.toUser(to), modes.smooths);
+      puller(stage.camera.toUser(to));
       handles.write(pull.param);
       stage.placeHandles();
       this.app.draft(event.timeStamp);

@@ -46,6 +46,9 @@ export class Stage {
   isBefore = false;
   showsNodes = false;
   showsStretch = false;
+  /** The stretch has been asked for, and has to be asked for again. */
+  private isStretchAsked = false;
+  private isStretchWanted = false;
   /** Takes the id of the path that is clicked next, instead of anything else. */
   picks: ((id: string) => void) | null = null;
   onFocus: (handle: Handle | null) => void = () => {};
@@ -64,7 +67,7 @@ export class Stage {
     app.listen((change) => {
       if (change === "state") this.place();
       if (change === "handles") this.rebuild();
-      if (change === "report" && this.showsStretch && !app.isDragging) void this.drawStretch();
+      if (change === "report" && this.showsStretch) void this.drawStretch();
     });
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
@@ -217,10 +220,17 @@ export class Stage {
   /** Shows the stretch of the visible steps, or hides it. */
   async drawStretch(): Promise<void> {
     const { app } = this;
-    const answer = this.showsStretch
-      ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
-    const stretch = this.showsStretch ? answer?.stretch : null;
-    this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
+    if (!this.showsStretch) return this.heat.replaceChildren();
+    this.isStretchWanted = true;
+    if (this.isStretchAsked) return;
+    this.isStretchAsked = true;
+    while (this.isStretchWanted) {
+      this.isStretchWanted = false;
+      const answer = await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible }));
+      const stretch = this.showsStretch ? answer?.stretch : null;
+      this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
+    }
+    this.isStretchAsked = false;
   }
 
   /** Puts everything in its place on the screen. */

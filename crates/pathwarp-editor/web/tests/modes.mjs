@@ -52,6 +52,32 @@ export const both_sides_move_alike = () => within(async (page) => {
   check(rx2 !== rx && Math.abs(rx2 - rx + (lx2 - lx)) < 0.01 && Math.abs(ry - ly) < 0.01, `${rx2},${ry} and ${lx2},${ly}`);
 });
 
+/** Lines, too: the upper one is its own reflection, the left side is that of the right one. */
+export const lines_are_pulled_alike = () => within(async (page) => {
+  await page.click("#mirror");
+  const pull = async (from, to, share, dx, dy) => {
+    const [[ax, ay], [bx, by]] = [await middle(page, from), await middle(page, to)];
+    await page.mouse.move(ax + share * (bx - ax), ay + share * (by - ay));
+    await page.mouse.down();
+    await page.mouse.move(ax + share * (bx - ax) + dx, ay + share * (by - ay) + dy, { steps: 8 });
+    await page.mouse.up();
+    await quiet(page);
+  };
+  const reflected = async (a, b, what) => {
+    const [[ax, ay], [bx, by], [lx], [rx]] = [await place(page, a), await place(page, b), await place(page, OPPOSITE), await place(page, CORNER)];
+    check(Math.abs(ax - lx - (rx - bx)) < 0.01 && Math.abs(ay - by) < 0.01, `${what}: ${ax},${ay} and ${bx},${by}`);
+    return [ax, ay];
+  };
+  const [, top] = await place(page, CORNER);
+  await pull(OPPOSITE, CORNER, 0.4, 0, -40);
+  const [, y] = await reflected("shaper/0.0/3/in", "shaper/0.0/2/out", "the upper line");
+  check(y < top - 10, "the upper line was not pulled");
+  const [left] = await place(page, OPPOSITE);
+  await pull(OPPOSITE, "shaper/0.0/0", 0.5, -40, 0);
+  const [x] = await reflected("shaper/0.0/3/out", "shaper/0.0/2/in", "the sides");
+  check(x < left - 10, "the side was not pulled");
+});
+
 /** In a skeleton, the handles on both sides of a node stay in line; without *Smooth* they do not. */
 export const nodes_stay_smooth = () => within(async (page) => {
   await choose(page, "Bend");
