@@ -723,6 +723,7 @@
 
   // src/app.ts
   var DRAFT = 0.35;
+  var DRAFTED = "pathwarp-drafted";
   var KEYS = 500;
   var App = class {
     catalogue = [];
@@ -845,9 +846,8 @@
           const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
           const answered = performance.now();
           this.take(answer);
-          const detail = { waited: asked - start, answered: answered - asked, size: this.connection.size };
-          performance.measure("drag to picture", { start, end: performance.now(), detail });
-          performance.mark("pathwarp picture");
+          const detail = { start, asked, answered, shown: performance.now(), size: this.connection.size };
+          window.dispatchEvent(new CustomEvent(DRAFTED, { detail }));
         });
       } while (this.isWanted);
       this.isBusy = false;
@@ -1567,10 +1567,11 @@
     });
   }
   var STRONGEST = 0.8;
+  var STEPS = 16;
   function shade(factor) {
     if (factor < 0) return "#e11d2e/0.85";
     const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));
-    const step2 = Math.round(amount * 8) / 8;
+    const step2 = Math.round(amount * STEPS) / STEPS;
     return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
   }
 
@@ -1651,7 +1652,7 @@
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
+      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.guides, this.marks, this.knobs);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -1681,6 +1682,8 @@
     heat = s("g", { class: "heat" });
     nodes = s("path", { class: "nodes" });
     arms = s("path", { class: "arms" });
+    /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
+    shield = s("rect", { class: "shield", width: "100%", height: "100%" });
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });

@@ -5,7 +5,7 @@ use pathwarp::map::{Jet, Map};
 use serde_json::{Value, json};
 
 /// Cells along the longer side of the box: fine enough to see where a drawing suffers.
-const CELLS: f64 = 48.0;
+const CELLS: f64 = 80.0;
 /// Fewest cells along the shorter side.
 const FEWEST: f64 = 6.0;
 
@@ -82,7 +82,7 @@ mod tests {
     fn factors_and_folds() {
         let out = stretch(&Fold, Rect::new(0.0, 0.0, 120.0, 40.0));
         let (columns, factors) = (out["columns"].as_u64().unwrap() as usize, out["factors"].as_array().unwrap());
-        assert_eq!((columns, factors.len() % columns), (48, 0));
+        assert_eq!((columns, factors.len() % columns), (CELLS as usize, 0));
         let rows = factors.len() / columns;
         assert_eq!(out["points"].as_array().unwrap().len(), (rows + 1) * (columns + 1));
         // The larger part, above, is turned over: so the rest stands out. At the top, heights grow more than widths, which are

@@ -6,6 +6,8 @@ import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } f
 
 /** While something is dragged, curves may be off by this share of a px of the screen. */
 const DRAFT = 0.35;
+/** The event that says when a quick picture was asked for, answered and in the page. */
+const DRAFTED = "pathwarp-drafted";
 /** The pause after which keys count as one change, in ms. */
 const KEYS = 500;
 
@@ -153,9 +155,8 @@ export class App {
         const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
         const answered = performance.now();
         this.take(answer);
-        const detail = { waited: asked - start, answered: answered - asked, size: this.connection.size };
-        performance.measure("drag to picture", { start, end: performance.now(), detail });
-        performance.mark("pathwarp picture");
+        const detail = { start, asked, answered, shown: performance.now(), size: this.connection.size };
+        window.dispatchEvent(new CustomEvent(DRAFTED, { detail }));
       });
     } while (this.isWanted);
     this.isBusy = false;

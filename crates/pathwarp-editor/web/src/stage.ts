@@ -29,6 +29,8 @@ export class Stage {
   private heat = s("g", { class: "heat" });
   private nodes = s("path", { class: "nodes" });
   private arms = s("path", { class: "arms" });
+  /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
+  private shield = s("rect", { class: "shield", width: "100%", height: "100%" });
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
@@ -57,7 +59,7 @@ export class Stage {
   onZoom: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
+    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.guides, this.marks, this.knobs);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),
