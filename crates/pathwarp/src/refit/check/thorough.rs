@@ -78,14 +78,13 @@ fn places(c: &Candidate, slow: &SlowSpots) -> Vec<f64> {
 fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
     let d = |i: usize| (set[i] - p).hypot2();
     let (mut at, mut best) = (from, d(from));
-    loop {
-        if at + 1 < set.len() && d(at + 1) < best {
-            at += 1;
-        } else if at > 0 && d(at - 1) < best {
-            at -= 1;
-        } else {
-            break;
-        }
+    while at + 1 < set.len() && d(at + 1) < best {
+        at += 1;
+        best = d(at);
+    }
+    // After a step ahead, what lies behind is farther.
+    while at <= from && at > 0 && d(at - 1) < best {
+        at -= 1;
         best = d(at);
     }
     if best > enough {
