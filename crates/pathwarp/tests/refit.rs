@@ -137,6 +137,26 @@ fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
     }
 }
 
+/// A merged cubic begins to turn sharply just before the joint of a long line and a short round corner, between the line's last two
+/// samples: errors of 1.27 and 1.02 times the tolerance, in shapes of the icons.
+#[test]
+fn errors_beside_a_joint_at_which_the_cubic_turns_are_seen() {
+    let bookmark = "M125,125 C125,55.96440627115075 180.96440627115075,0 250,0 L750,0 C819.0355937288492,0 875,55.96440627115075 \
+                    875,125 L875,968.75 C874.994050449237,980.2672409539377 868.6536134178767,990.8476449756297 \
+                    858.5000353034068,996.2837949056419 C848.3464571889368,1001.7199448356541 836.025795302976,1001.1305538765175 \
+                    826.4375,994.75 L500,818.8125";
+    let card = "M369.625,0 L781.25,0 C833.026695296637,0 875,41.973304703363056 875,93.75 L875,906.25 \
+                C875,958.026695296637 833.026695296637,1000 781.25,1000 L218.75,1000";
+    let (name, map) = &maps()[0];
+    for shape in [bookmark, card] {
+        let outline = Outline::from_svg(shape).unwrap();
+        let merged = warp_path(&outline, map.as_ref(), &Options::new(1.0).with_merge(true)).unwrap();
+        let e =
+            support::distance_of_run(&outline.subpaths[0].segs, map.as_ref(), &support::cubics(&merged.path), 400, 0.0);
+        assert!(e <= 1.0001, "{name}: {e}");
+    }
+}
+
 #[test]
 fn merged_pieces_are_proven_too() {
     // A wave of many smoothly joined segments, one of them an arc.

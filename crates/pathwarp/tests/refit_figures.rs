@@ -179,7 +179,7 @@ fn proven_pieces_and_work_stay_at_their_figures() {
 #[test]
 fn merged_pieces_and_work_stay_at_their_figures() {
     let found = figures(&runs(), |t| Options::new(t).with_merge(true));
-    stay_at("merged", found, [[250, 3777], [402, 6774], [629, 10619], [888, 13569]]);
+    stay_at("merged", found, [[250, 3769], [402, 6824], [629, 10746], [888, 13634]]);
 }
 
 #[test]
