@@ -51,7 +51,8 @@ def session(workers: int) -> Any:
         "spark.sql.execution.arrow.maxRecordsPerBatch": "1024",
         "spark.sql.execution.arrow.maxBytesPerBatch": str(16 * 1024 * 1024),
         "spark.sql.execution.arrow.pyspark.enabled": "true",
-        # Java only passes names on: its optimizing compiler would take more time than it saves. (`spark.executor.…` on a cluster.)
+        # Java only passes names on: its optimizing compiler and parallel collector would take more time than they save. On a cluster,
+        # these are spark.executor.extraJavaOptions.
         "spark.driver.extraJavaOptions": "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC",
         # Small files: their number decides, not their size.
         "spark.sql.files.openCostInBytes": str(64 * 1024),
