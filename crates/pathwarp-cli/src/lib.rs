@@ -30,6 +30,7 @@ mod options;
 mod output;
 mod pipeline;
 mod plugins;
+mod readable;
 mod recipe_file;
 mod references;
 mod report;

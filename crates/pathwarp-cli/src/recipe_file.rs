@@ -241,6 +241,11 @@ pub(crate) fn write(
     toml::to_string(&file).map_err(|e| Failure::Input(e.to_string()))
 }
 
+/// The path of a file relative to the current folder, as steps name files.
+pub(crate) fn from_here(file: &Path) -> String {
+    std::env::current_dir().map_or_else(|_| file.display().to_string(), |here| relative(&here.join(file), &here))
+}
+
 /// The path of a file relative to a folder, as recipes name files; the absolute path where there is none, on another drive. A
 /// reference `FILE#NAME` keeps its name.
 fn relative(file: &Path, folder: &Path) -> String {

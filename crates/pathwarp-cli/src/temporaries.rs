@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError, RwLock, RwLockReadGuard};
 use tempfile::{Builder, TempPath};
 
@@ -21,6 +21,8 @@ static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 static GATE: RwLock<()> = RwLock::new(());
 /// Number of inputs of a batch whose results are in place.
 static FINISHED: AtomicUsize = AtomicUsize::new(0);
+/// An interruption is the usual end of the command, so it needs no message.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
 /// A temporary file.
 #[derive(Debug)]
@@ -96,6 +98,12 @@ fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Interruptions end the program without a message from now on.
+pub(crate) fn on_interruption_end_quietly() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+    on_interruption_remove_all();
+}
+
 /// Installs the handler, once.
 pub(crate) fn on_interruption_remove_all() {
     static INSTALL: Once = Once::new();
@@ -103,6 +111,9 @@ pub(crate) fn on_interruption_remove_all() {
         // A program around this library may have a handler already; it then answers for interruptions.
         let _ = ctrlc::set_handler(|| {
             remove_all_and(|| {
+                if IS_QUIET.load(Ordering::Relaxed) {
+                    std::process::exit(INTERRUPTED);
+                }
                 terminal::error(&match FINISHED.load(Ordering::Relaxed) {
                     0 => "interrupted; no output was written".to_owned(),
                     1 => "interrupted; the result of 1 input is written".to_owned(),

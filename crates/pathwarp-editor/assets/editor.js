@@ -75,6 +75,7 @@
   };
 
   // src/values.ts
+  var DRAGGED = /* @__PURE__ */ new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
   var FIGURES = 7;
   function short(value) {
     return String(Number(value.toPrecision(FIGURES)));
@@ -144,67 +145,43 @@
     return `${name}:${point(at, frame)}`;
   }
 
-  // src/dom.ts
-  var SVG = "http://www.w3.org/2000/svg";
-  function fill(element, attributes, children) {
-    for (const [name, value] of Object.entries(attributes)) {
-      if (value === void 0 || value === false) continue;
-      if (typeof value === "function") element.addEventListener(name.slice(2), value);
-      else element.setAttribute(name, value === true ? "" : String(value));
-    }
-    for (const child of children) if (child) element.append(child);
-    return element;
+  // src/names.ts
+  function words(name) {
+    const text = name.replaceAll("-", " ").replace(/([a-z])([0-9])/g, "$1 $2");
+    return capital(text);
   }
-  function h(tag, attributes = {}, ...children) {
-    return fill(document.createElement(tag), attributes, children);
-  }
-  function s(tag, attributes = {}, ...children) {
-    return fill(document.createElementNS(SVG, tag), attributes, children);
-  }
-  function byId(id) {
-    const found = document.getElementById(id);
-    if (!found) throw new Error(`the page has no #${id}`);
-    return found;
-  }
-  var ICONS = {
-    undo: "M9 7 4.5 11.5 9 16M5 11.5h9a5 5 0 0 1 0 10h-3",
-    redo: "M15 7l4.5 4.5L15 16M19 11.5h-9a5 5 0 0 0 0 10h3",
-    plus: "M12 5v14M5 12h14",
-    minus: "M5 12h14",
-    fit: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
-    close: "M6 6l12 12M18 6 6 18",
-    up: "M12 19V6M6 11.5 12 5.5l6 6",
-    down: "M12 5v13M6 12.5l6 6 6-6",
-    eye: "M2.5 12S6 5.5 12 5.5 21.5 12 21.5 12 18 18.5 12 18.5 2.5 12 2.5 12ZM12 15a3 3 0 1 0 0-6 3 3 0 0 0 0 6Z",
-    reset: "M4.5 12a7.5 7.5 0 1 0 2.4-5.5M4 4.5v4h4"
-  };
-  function icon(name) {
-    return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] ?? "" }));
+  function capital(text) {
+    return text.charAt(0).toUpperCase() + text.slice(1);
   }
   function called({ name, label }) {
     return label ?? words(name);
   }
-  function words(name) {
-    const text = name.replaceAll("-", " ").replace(/([a-z])([0-9])/g, "$1 $2");
-    return text.charAt(0).toUpperCase() + text.slice(1);
+  function paramName({ name, label }) {
+    return label ?? words(name);
+  }
+  function stepName(step2, deformation) {
+    if (!deformation) return words(step2.deformation);
+    const preset = deformation.gallery ? step2.args[deformation.gallery.presets]?.[0] : void 0;
+    const variant = deformation.variants.find(({ param }) => step2.args[param]);
+    return preset ? words(preset) : variant?.label ?? called(deformation);
   }
 
   // src/dials.ts
   var DIAL = 0.3;
   var FURTHER = 1.25;
-  function dials(place3) {
+  function dials(place2) {
     const out = [];
-    let radius = DIAL * Math.max(place3.frame[2], place3.frame[3]);
-    for (const param of place3.deformation.params) {
-      const grip = place3.grips[param.name];
+    let radius = DIAL * Math.max(place2.frame[2], place2.frame[3]);
+    for (const param of place2.deformation.params) {
+      const grip = place2.grips[param.name];
       if (!grip) continue;
-      grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust, i, place3.frame)));
+      grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust, i, place2.frame)));
       if (grip.value === void 0 || param.default === void 0) continue;
       if (param.kind === "angle" && !param.name.startsWith("skew")) {
-        out.push(turner(param, grip, place3, radius));
+        out.push(turner(param, grip, place2, radius));
         radius *= FURTHER;
-      } else if (param.kind === "length" && !place3.grips.about?.point) {
-        out.push(arm(param, grip, place3.frame));
+      } else if (param.kind === "length" && !place2.grips.about?.point) {
+        out.push(arm(param, grip, place2.frame));
       }
     }
     return out;
@@ -570,17 +547,15 @@
       const from = [[...first.get()], [...second.get()]];
       return {
         param: name,
-        move: (to, smooth) => [first, second].forEach((h2, i) => {
-          const [x, y] = from[i];
-          h2.set([x + shares[i] * (to[0] - at[0]), y + shares[i] * (to[1] - at[1])], smooth);
-        })
+        handles: [first, second],
+        targets: (to) => from.map(([x, y], i) => [x + shares[i] * (to[0] - at[0]), y + shares[i] * (to[1] - at[1])])
       };
     }
     pullCircle(at, reach) {
       const radius = this.handles.find((h2) => h2.key === "radius");
       const [grip, centre] = [this.grips.radius, this.grips.center?.point];
       if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
-      return { param: "radius", move: (to, smooth) => radius.set(to, smooth) };
+      return { param: "radius", handles: [radius], targets: (to) => [to] };
     }
     /** Adds a point to the path that passes near a place. Returns the key of its handle. */
     divide(at, reach) {
@@ -748,6 +723,8 @@
 
   // src/app.ts
   var DRAFT = 0.35;
+  var DRAFTED = "pathwarp-drafted";
+  var KEYS = 500;
   var App = class {
     catalogue = [];
     state = null;
@@ -756,6 +733,10 @@
     selected = 0;
     /** The steps are a first proposal that nothing has been done with. */
     isProposal = false;
+    /** The step being changed is more than a shape that has just been chosen. */
+    isWorkedOn = false;
+    /** The next shape that is chosen becomes a step after the others. */
+    appends = false;
     grips = [];
     handles = null;
     summary = null;
@@ -767,13 +748,16 @@
     /** A handle is being dragged, so the handles stay as they are. */
     isDragging = false;
     screen = { show: () => {
-    }, pixel: 1 };
+    }, pixel: 1, reveal: () => {
+    } };
     listeners = [];
     isBusy = false;
     isWanted = false;
     since = 0;
     /** Changes of the steps, one after another. */
     turns = Promise.resolve();
+    /** Runs while keys move a handle, until the steps are committed. */
+    pause = 0;
     connection;
     constructor() {
       this.connection = new Connection(
@@ -820,6 +804,8 @@
       this.steps = structuredClone(state.steps);
       this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
       this.isProposal = false;
+      this.isWorkedOn = this.steps.length > 0;
+      this.appends = false;
       this.tell("state");
       const first = this.catalogue[0];
       if (this.steps.length === 0 && first) {
@@ -860,9 +846,8 @@
           const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
           const answered = performance.now();
           this.take(answer);
-          const detail = { waited: asked - start, answered: answered - asked, size: this.connection.size };
-          performance.measure("drag to picture", { start, end: performance.now(), detail });
-          performance.mark("pathwarp picture");
+          const detail = { start, asked, answered, shown: performance.now(), size: this.connection.size };
+          window.dispatchEvent(new CustomEvent(DRAFTED, { detail }));
         });
       } while (this.isWanted);
       this.isBusy = false;
@@ -870,9 +855,11 @@
     /** Makes the present steps the ones to undo from and to save. */
     async commit() {
       this.isWanted = false;
+      this.endPause();
       const done = await this.attempt(async () => {
         const answer = await this.connection.ask({ do: "commit", steps: this.steps, shown: this.selected + 1 });
         this.isProposal = false;
+        this.isWorkedOn = true;
         this.take(answer);
         return true;
       });
@@ -881,9 +868,33 @@
       await this.load(this.state);
       this.fail(problem);
     }
+    /** Commits when no other key follows for a while. */
+    commitSoon() {
+      this.isDragging = true;
+      clearTimeout(this.pause);
+      this.pause = window.setTimeout(() => void this.flush(), KEYS);
+    }
+    /** Commits what keys have done so far, if anything. */
+    async flush() {
+      if (this.endPause()) await this.commit();
+    }
+    endPause() {
+      if (this.pause === 0) return false;
+      clearTimeout(this.pause);
+      this.pause = 0;
+      this.isDragging = false;
+      return true;
+    }
+    /** Takes back what has been dragged since the last commit: the step is as it was. */
+    cancel(step2) {
+      this.isDragging = false;
+      this.isWanted = false;
+      this.steps = this.steps.map((s2, i) => i === this.selected ? step2 : s2);
+      void this.refresh();
+    }
     /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
     inTurn(work) {
-      const done = this.turns.then(work);
+      const done = this.turns.then(() => this.flush()).then(work);
       this.turns = done.catch(() => void 0);
       return done;
     }
@@ -899,23 +910,32 @@
         await this.load(answer.state);
       });
     }
-    /** Replaces the step being changed, or appends one. */
-    choose(deformation, args, append, variant = null) {
-      return this.inTurn(() => this.chosen(deformation, args, append, variant));
+    /** Starts or ends the choice of a shape for a further step. */
+    append(appends) {
+      this.appends = appends;
+      this.tell("steps");
     }
-    async chosen(deformation, args, append, variant) {
-      const at = append ? this.steps.length : this.selected;
+    /** Replaces the step being changed, or appends one if that is wanted. */
+    choose(deformation, args, variant = null) {
+      const { appends } = this;
+      this.appends = false;
+      return this.inTurn(() => this.chosen(deformation, args, appends, variant));
+    }
+    async chosen(deformation, args, appends, variant) {
+      const at = appends ? this.steps.length : this.selected;
       const before2 = this.steps.slice(0, at);
       const step2 = await this.opening(deformation, before2, variant);
       if (!step2) return;
       Object.assign(step2.args, args);
-      this.steps = append ? [...this.steps, step2] : this.steps.map((s2, i) => i === at ? step2 : s2);
+      this.steps = appends ? [...this.steps, step2] : this.steps.map((s2, i) => i === at ? step2 : s2);
       if (this.steps.length === 0) this.steps = [step2];
       this.selected = Math.min(at, this.steps.length - 1);
       this.tell("steps");
       this.dropHandles();
       await this.commit();
+      this.isWorkedOn = false;
       this.tell("steps");
+      this.screen.reveal();
     }
     /** Changes the list of steps. */
     arrange(steps, selected) {
@@ -923,6 +943,7 @@
     }
     async arranged(steps, selected) {
       this.steps = steps;
+      this.appends = false;
       this.selected = Math.max(0, Math.min(selected, steps.length - 1));
       this.tell("steps");
       this.dropHandles();
@@ -947,6 +968,11 @@
       }
       if (values.length === 0) delete step2.args[name];
       else step2.args[name] = values;
+      const instead = this.deformation(step2.deformation)?.params.find((p) => p.name === name)?.instead;
+      if (instead && values.length > 0) {
+        for (const other of instead.others) delete step2.args[other];
+        if (instead.with) step2.args[instead.with[0]] ??= [instead.with[1]];
+      }
       if (isDone) void this.commit();
       else this.draft(performance.now());
     }
@@ -963,7 +989,6 @@
       this.summary = answer.summary ?? null;
       if (answer.grips) this.grips = answer.grips;
       this.screen.show(answer);
-      this.tell("picture");
       if (!this.isDragging) this.takeHandles();
       this.tell("report");
     }
@@ -1007,8 +1032,50 @@
     }
   };
 
+  // src/dom.ts
+  var SVG = "http://www.w3.org/2000/svg";
+  function fill(element, attributes, children) {
+    for (const [name, value] of Object.entries(attributes)) {
+      if (value === void 0 || value === false) continue;
+      if (typeof value === "function") element.addEventListener(name.slice(2), value);
+      else element.setAttribute(name, value === true ? "" : String(value));
+    }
+    for (const child of children) if (child) element.append(child);
+    return element;
+  }
+  function h(tag, attributes = {}, ...children) {
+    return fill(document.createElement(tag), attributes, children);
+  }
+  function s(tag, attributes = {}, ...children) {
+    return fill(document.createElementNS(SVG, tag), attributes, children);
+  }
+  function byId(id) {
+    const found = document.getElementById(id);
+    if (!found) throw new Error(`the page has no #${id}`);
+    return found;
+  }
+  var ICONS = {
+    close: "M6 6l12 12M18 6 6 18",
+    up: "M12 19V6M6 11.5 12 5.5l6 6",
+    down: "M12 5v13M6 12.5l6 6 6-6"
+  };
+  function icon(name) {
+    return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] }));
+  }
+
+  // src/toast.ts
+  var SHORTEST = 5e3;
+  var CHARACTER = 60;
+  var fading = 0;
+  function toast(text) {
+    const box = byId("toast");
+    box.textContent = text;
+    box.classList.add("on");
+    clearTimeout(fading);
+    fading = window.setTimeout(() => box.classList.remove("on"), Math.max(SHORTEST, CHARACTER * text.length));
+  }
+
   // src/gallery.ts
-  var DRAGGED = /* @__PURE__ */ new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
   var Gallery = class {
     constructor(app2) {
       this.app = app2;
@@ -1026,8 +1093,6 @@
     isDrawing = false;
     own = h("section", { hidden: true });
     shownFile = "";
-    /** The next choice is put after the other steps. */
-    appends = false;
     seen = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const card = this.cards.find((c) => c.button === entry.target);
@@ -1079,26 +1144,32 @@
         return h("li", {}, use, forget);
       };
       this.own.hidden = names.length === 0;
-      this.own.replaceChildren(h("h3", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+      this.own.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
     }
     section(title, cards) {
       const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
       cards.forEach(({ button }, i) => button.tabIndex = i === 0 ? 0 : -1);
       items.addEventListener("keydown", (e) => walk(e, items));
-      return h("section", {}, h("h3", {}, title), items);
+      return h("section", {}, h("h2", {}, title), items);
     }
     card(deformation, args, steps, text, variant = null) {
       const image = h("img", { alt: "", draggable: "false" });
       const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
       const card = { button, image, steps, deformation, args, variant, words: button.textContent ?? "" };
-      button.addEventListener("click", () => {
-        void this.app.choose(deformation, args, this.appends, variant?.label ?? null);
-        this.appends = false;
-        document.body.classList.remove("shapes-open");
-      });
+      button.addEventListener("click", () => void this.choose(card));
       this.cards.push(card);
       this.seen.observe(button);
       return card;
+    }
+    async choose({ deformation, args, variant }) {
+      const { app: app2 } = this;
+      const { step: step2 } = app2;
+      const isReplaced = app2.isWorkedOn && !app2.appends && step2?.deformation !== deformation;
+      const name = (step3) => step3 ? stepName(step3, app2.deformation(step3.deformation)) : "";
+      const old = name(step2);
+      document.body.classList.remove("shapes-open");
+      await app2.choose(deformation, args, variant?.label ?? null);
+      if (isReplaced) toast(`${name(app2.step)} replaces ${old}. Undo brings it back, “Add step” keeps both`);
     }
     whole(d, variant = null) {
       const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
@@ -1145,8 +1216,8 @@
       for (const { button, words: words2 } of this.cards) button.hidden = !words2.toLowerCase().includes(wanted);
       for (const section of Array.from(this.box.children)) {
         if (section === this.own) continue;
-        const shown = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
-        if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0].tabIndex = 0;
+        const shown2 = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
+        if (shown2.length > 0 && !shown2.some((card) => card.tabIndex === 0)) shown2[0].tabIndex = 0;
         section.hidden = !Array.from(section.querySelectorAll(".card")).some((c) => !c.hidden);
       }
     }
@@ -1166,9 +1237,6 @@
   function isDragged(d) {
     return d.params.some((p) => p.kind === "path" && p.name !== "base" || DRAGGED.has(p.notation ?? ""));
   }
-  function capital(text) {
-    return text.charAt(0).toUpperCase() + text.slice(1);
-  }
 
   // src/modes.ts
   var Modes = class {
@@ -1179,17 +1247,34 @@
     /** Shows where the handle has snapped to; the points are in user units. */
     onSnap = () => {
     };
+    /** A function that pulls a line, and its reflection if symmetry is on. */
+    puller(handles, { handles: own, targets }) {
+      const partners = own.map((handle) => this.mirrors ? handles.partner(handle) : null);
+      const mirrored = reflection(handles);
+      return (to) => {
+        const wanted = targets(to);
+        own.forEach((handle, i) => {
+          const partner = partners[i] ?? null;
+          const at = wanted[i];
+          const k = partner ? own.indexOf(partner) : -1;
+          const other = k < 0 ? at : mirrored(wanted[k]);
+          const target = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
+          handle.set(target, this.smooths);
+          if (k < 0) partner?.set(mirrored(target), this.smooths);
+        });
+      };
+    }
     /** A function that moves a handle, and its partner if symmetry is on. */
     mover(handles, handle) {
       const partner = this.mirrors ? handles.partner(handle) : null;
-      const [left, , width] = handles.frame;
+      const mirrored = reflection(handles);
       this.marks = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
       const start = [...handle.get()];
       return (to, e) => {
         const [dx, dy] = [to[0] - start[0], to[1] - start[1]];
         const target = e?.shiftKey ? Math.abs(dx) > Math.abs(dy) ? [to[0], start[1]] : [start[0], to[1]] : to;
         handle.set(target, this.smooths);
-        partner?.set([2 * left + width - target[0], target[1]], this.smooths);
+        partner?.set(mirrored(target), this.smooths);
       };
     }
     /** The place near `to` that lines up with the frame or another handle; Alt turns that off. */
@@ -1209,6 +1294,9 @@
       this.onSnap(null, null);
     }
   };
+  function reflection({ frame: [left, , width] }) {
+    return ([x, y]) => [2 * left + width - x, y];
+  }
   function nearest2(value, among, reach) {
     let best = null;
     for (const candidate of among) {
@@ -1231,364 +1319,116 @@
     };
   }
 
-  // src/saving.ts
-  var FORMATS = [
-    ["svg", "SVG", "Can be opened here again"],
-    ["pdf", "PDF", "For print"],
-    ["dxf", "DXF", "For cutters and CAD"],
-    ["png", "PNG", "A picture"],
-    ["toml", "Recipe", "For other drawings"]
-  ];
-  var Saving = class {
-    constructor(app2) {
+  // src/opening.ts
+  var PASTED = "pasted.svg";
+  var Opening = class {
+    constructor(app2, stage2) {
       this.app = app2;
-      const formats = byId("save-formats");
-      for (const [extension, title, use] of FORMATS) {
-        const input = h("input", { type: "radio", name: "format", value: extension });
-        input.addEventListener("change", () => this.choose(extension));
-        formats.append(h("label", { class: "format" }, input, h("span", {}, h("b", {}, title), h("small", {}, use))));
-      }
-      byId("save").addEventListener("click", () => void this.quick());
-      byId("save-as").addEventListener("click", () => this.open());
-      byId("save-cancel").addEventListener("click", () => this.dialog.close());
-      this.dialog.querySelector("form").addEventListener("submit", (e) => {
-        e.preventDefault();
-        void this.write(this.name.value, false);
+      this.stage = stage2;
+      const chosen = byId("open-file");
+      byId("open").addEventListener("click", () => chosen.click());
+      chosen.addEventListener("change", () => {
+        const file = chosen.files?.[0];
+        chosen.value = "";
+        if (file) void this.open(file);
       });
-      this.replace.addEventListener("click", () => void this.write(this.name.value, true));
-      this.name.addEventListener("input", () => this.say(""));
-      byId("copy-command").addEventListener("click", () => void this.copyCommand());
-      app2.listen((change) => {
-        if (change === "state") this.show();
+      window.addEventListener("dragover", (e) => {
+        e.preventDefault();
+        if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
+        document.body.classList.add("dropping");
+      });
+      window.addEventListener("dragleave", (e) => {
+        if (!e.relatedTarget) document.body.classList.remove("dropping");
+      });
+      window.addEventListener("drop", (e) => {
+        e.preventDefault();
+        document.body.classList.remove("dropping");
+        this.take(e.dataTransfer);
+      });
+      window.addEventListener("paste", (e) => {
+        if (!isTyping(e.target)) this.take(e.clipboardData);
       });
     }
     app;
-    dialog = byId("save-dialog");
-    name = byId("save-name");
-    extension = "svg";
-    message = byId("save-message");
-    replace = byId("save-replace");
-    show() {
-      const { state } = this.app;
+    stage;
+    /** Opens what was dropped or pasted: a file, or the text of a drawing. */
+    take(data) {
+      const file = data?.files[0];
+      const text = data?.getData("text/plain") ?? "";
+      if (file) void this.open(file);
+      else if (/<svg[\s>]/i.test(text)) void this.open(new File([text], PASTED));
+      else if (data) toast("This is not a drawing: drop or paste an SVG");
+    }
+    async open(file) {
+      const { app: app2 } = this;
+      await app2.flush();
+      const { state } = app2;
       if (!state) return;
-      byId("file").textContent = state.file;
-      const isEmpty = state.steps.length === 0;
-      byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}` : isEmpty ? "No changes yet" : "Not saved yet";
-      const save = byId("save");
-      save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
-      if (state.program) {
-        save.textContent = `Keep in ${state.program}`;
-        save.title = `Give the result to ${state.program} (Ctrl S)`;
-        for (const id of ["save-as", "open"]) byId(id).hidden = true;
-      }
-      document.title = `${this.isUnsaved ? "• " : ""}${state.file} — pathwarp`;
-    }
-    /** Something would be lost without saving. */
-    get isUnsaved() {
-      const { state } = this.app;
-      if (!state) return false;
-      return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved;
-    }
-    /** Gives the steps to the program that waits for them. */
-    async handOver() {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
-      if (!answer?.done) return;
-      this.app.finish();
-      window.close();
-    }
-    /** Saves where it was saved last; the first time, under the usual name. */
-    async quick() {
-      const { state } = this.app;
-      if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
-      if (!state || state.steps.length === 0) return;
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
-      if (answer?.exists) return this.open();
-      if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
-    }
-    open() {
-      const { state } = this.app;
-      if (!state || state.steps.length === 0 || state.program) return;
-      this.name.value = state.target;
-      this.choose("svg");
-      byId("save-folder").textContent = state.folder;
-      this.dialog.showModal();
-      this.name.select();
-    }
-    choose(extension) {
-      this.extension = extension;
-      this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|toml)$/i, "")}.${extension}`;
-      for (const input of Array.from(this.dialog.querySelectorAll("input[type=radio]"))) {
-        input.checked = input.value === this.extension;
-      }
-      this.say("");
-    }
-    say(text, offersReplace = false) {
-      this.message.textContent = text;
-      this.replace.hidden = !offersReplace;
-    }
-    async write(name, replace) {
-      try {
-        const answer = await this.app.connection.ask({ do: "save", name, replace });
-        if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
-        this.dialog.close();
-        this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
-      } catch (e) {
-        this.say(e instanceof Error ? e.message : String(e));
-      }
-    }
-    done(written, state, warnings) {
-      if (state) {
-        this.app.state = state;
-        this.app.tell("state");
-      }
-      const name = written.split(/[\\/]/).pop() ?? written;
-      toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
-    }
-    async copyCommand() {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
-      if (!answer?.text) return;
-      try {
-        await navigator.clipboard.writeText(answer.text);
-        toast("The command line is on the clipboard");
-      } catch {
-        toast(answer.text);
-      }
-      this.dialog.close();
+      if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
+      const isUnsaved = state.steps.length > 0 && !state.saved;
+      if (isUnsaved && !confirm(`The steps of ${state.file} are not saved. Open ${file.name} all the same?`)) return;
+      const answer = await app2.attempt(async () => app2.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
+      if (!answer?.state) return;
+      this.stage.forget();
+      await app2.load(answer.state);
     }
   };
-  var fading = 0;
-  function toast(text) {
-    const box = byId("toast");
-    box.textContent = text;
-    box.classList.add("on");
-    clearTimeout(fading);
-    fading = window.setTimeout(() => box.classList.remove("on"), 5e3);
+  var PIECE = 32768;
+  async function base64(file) {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    let binary = "";
+    for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));
+    return btoa(binary);
+  }
+  function isTyping(target) {
+    return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
   }
 
-  // src/settings.ts
-  var OF_ARTWORK = [0, 100];
-  var BOTH_WAYS = [-100, 100];
-  var SIDE_BY_SIDE = 3;
-  var Settings = class {
-    constructor(app2) {
-      this.app = app2;
+  // src/place.ts
+  var DECIMALS = 3;
+  var Place = class {
+    box = byId("place");
+    fields = [byId("place-x"), byId("place-y")];
+    remove = byId("remove-point");
+    handle = null;
+    constructor(app2, stage2) {
+      stage2.onFocus = (handle) => this.show(handle);
+      stage2.onKeys = (handle) => this.say(handle);
+      this.fields.forEach((field, i) => field.addEventListener("change", () => {
+        const value = Number(field.value.replace(",", "."));
+        if (!this.handle || field.value.trim() === "" || !Number.isFinite(value)) return this.show(this.handle);
+        const at = this.handle.get();
+        stage2.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
+      }));
+      this.remove.addEventListener("click", () => {
+        if (this.handle) stage2.remove(this.handle);
+      });
       app2.listen((change) => {
-        if (change === "steps" || change === "state") this.build();
-        if (change === "handles") this.build();
+        if (change === "handles") this.show(stage2.focusedHandle);
       });
     }
-    app;
-    box = byId("settings");
-    shown = "";
-    refreshers = [];
-    /** Asks for the id of a path that is clicked on the canvas. */
-    onPick = () => {
-    };
-    build() {
-      const { step: step2 } = this.app;
-      const deformation = this.app.deformation(step2?.deformation);
-      const signature = `${this.app.selected}:${step2?.deformation}:${step2?.args ? Object.keys(step2.args).join() : ""}:${this.adjusts(deformation?.params ?? []).join()}`;
-      if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
-      this.shown = signature;
-      this.refreshers = [];
-      if (!step2 || !deformation) return this.box.replaceChildren();
-      const isShown = (p) => isMain(p) || this.app.grip(p.name)?.adjust !== void 0;
-      const main = deformation.params.filter(isShown);
-      const more = deformation.params.filter((p) => !isShown(p));
-      const gives = more.some((p) => p.kind === "file" && step2.args[p.name]);
-      const parts = [
-        h("p", { class: "about" }, sentence(deformation.title)),
-        ...main.map((p) => this.control(p)),
-        more.length > 0 && h("details", { class: "more", open: gives }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p)))
-      ];
-      this.box.replaceChildren(...parts.filter((part) => part !== false));
-      this.refresh();
-    }
-    refresh() {
-      for (const refresh of this.refreshers) refresh();
-    }
-    values(p) {
-      return this.app.step?.args[p.name] ?? [];
-    }
-    current(p) {
-      return this.values(p)[0] ?? p.default ?? "";
-    }
-    control(p) {
-      const id = `set-${p.name}`;
-      const title = plain(p.help);
-      const label = h("label", { for: id, title }, p.kind === "angle" ? `${words(p.name)} (°)` : words(p.name));
-      const adjust = this.app.grip(p.name)?.adjust;
-      if (adjust) return h("div", {}, ...adjust.map((_, i) => this.adjust(p, adjust, i, title)));
-      switch (p.kind) {
-        case "flag":
-          return this.flag(p, id, title);
-        case "choice":
-          return h("div", { class: "field", title }, label, this.choice(p, id));
-        case "name":
-          return h("div", { class: "field", title }, label, this.select(p, id));
-        case "number":
-        case "length":
-        case "angle":
-          return this.slider(p, id, label, title);
-        case "path": {
-          const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
-          pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
-          return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), this.text(p, id));
-        }
-        default:
-          return h("div", { class: "field", title }, label, this.text(p, id));
-      }
-    }
-    flag(p, id, title) {
-      const box = h("input", { type: "checkbox", id, role: "switch" });
-      box.addEventListener("change", () => this.app.set(p.name, box.checked ? ["true"] : [], true));
-      this.refreshers.push(() => box.checked = this.values(p)[0] === "true");
-      return h("label", { class: "field switch", for: id, title }, h("span", {}, words(p.name)), box);
-    }
-    choice(p, id) {
-      if ((p.words ?? []).length > SIDE_BY_SIDE) return this.select(p, id);
-      const buttons = (p.words ?? []).map((word) => {
-        const button = h("button", { type: "button", role: "radio" }, words(word));
-        button.addEventListener("click", () => this.app.set(p.name, [word], true));
-        this.refreshers.push(() => button.setAttribute("aria-checked", String(this.current(p) === word)));
-        return button;
+    show(handle) {
+      this.handle = handle;
+      this.box.classList.toggle("off", handle === null);
+      if (!handle) return;
+      byId("place-name").textContent = handle.label;
+      this.remove.hidden = !handle.remove;
+      const places = shown(handle);
+      this.fields.forEach((field, i) => {
+        if (document.activeElement !== field) field.value = places[i];
       });
-      return h("div", { class: "segments", role: "radiogroup", id, "aria-label": words(p.name) }, ...buttons);
     }
-    select(p, id) {
-      const select = h("select", { id }, ...(p.words ?? []).map((word) => h("option", { value: word }, words(word))));
-      select.addEventListener("change", () => this.app.set(p.name, [select.value], true));
-      this.refreshers.push(() => {
-        const value = this.current(p);
-        if (!(p.words ?? []).includes(value) && select.options[0]?.value !== value) {
-          select.prepend(h("option", { value }, value || "—"));
-        }
-        select.value = value;
-      });
-      return select;
-    }
-    text(p, id) {
-      const input = h("textarea", { id, rows: 1, spellcheck: false, placeholder: p.default ?? p.notation ?? "" });
-      input.addEventListener("change", () => {
-        const text = input.value.trim();
-        this.app.set(p.name, text === "" ? [] : p.repeat ? text.split("\n").map((t) => t.trim()).filter(Boolean) : [text], true);
-      });
-      input.addEventListener("keydown", (e) => {
-        if (e.key === "Enter" && !p.repeat) {
-          e.preventDefault();
-          input.blur();
-        }
-      });
-      this.refreshers.push(() => {
-        if (document.activeElement === input) return;
-        const values = this.values(p);
-        input.value = values.join("\n");
-        input.rows = Math.min(Math.max(values.length, 1), 4);
-      });
-      return input;
-    }
-    /** The names of the adjust values on show. */
-    adjusts(params) {
-      return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
-    }
-    /** The slider of an adjust value. */
-    adjust(p, all, i, title) {
-      const { least, most, name } = all[i];
-      const [unit, size] = adjustUnit(all[i]);
-      const id = `set-${p.name}-${name}`;
-      const range = [Math.ceil(least / size), Math.floor(most / size)];
-      const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
-      const field = h("input", { type: "text", id, class: "value", spellcheck: false, autocomplete: "off" });
-      const take = (value, isDone) => {
-        const present = structuredClone(all);
-        readAdjust(present, this.values(p));
-        present[i].value = Math.min(Math.max(value * size, least), most);
-        this.app.set(p.name, writeAdjust(present), isDone);
-      };
-      slider.addEventListener("input", () => take(Number(slider.value), false));
-      slider.addEventListener("change", () => take(Number(slider.value), true));
-      slider.addEventListener("dblclick", () => take(all[i].default / size, true));
-      field.addEventListener("change", () => {
-        const value = Number.parseFloat(field.value.replace(",", "."));
-        take(Number.isFinite(value) ? value : all[i].default / size, true);
-      });
-      this.refreshers.push(() => {
-        const present = structuredClone(all);
-        readAdjust(present, this.values(p));
-        const value = Number((present[i].value / size).toFixed(2));
-        if (document.activeElement !== field) field.value = `${value}${unit === "deg" ? "°" : unit}`;
-        if (document.activeElement !== slider || !slider.matches(":active")) slider.value = String(value);
-      });
-      const label = h("label", { for: id, title }, adjustName(all, i));
-      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
-    }
-    slider(p, id, label, title) {
-      const [unit, range] = scale(p);
-      const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": words(p.name), tabindex: 0 });
-      const field = h("input", { type: "text", id, class: "value", inputmode: "text", spellcheck: false, autocomplete: "off", placeholder: p.default ?? "auto" });
-      slider.addEventListener("input", () => {
-        field.value = `${short(Number(slider.value))}${unit}`;
-        this.app.set(p.name, [field.value], false);
-      });
-      slider.addEventListener("change", () => this.app.set(p.name, [`${short(Number(slider.value))}${unit}`], true));
-      field.addEventListener("change", () => this.app.set(p.name, field.value.trim() === "" ? [] : [field.value.trim()], true));
-      field.addEventListener("keydown", (e) => {
-        if (e.key === "Enter") field.blur();
-      });
-      this.refreshers.push(() => {
-        const typed = this.current(p);
-        if (document.activeElement !== field) field.value = typed;
-        if (document.activeElement === slider && slider.matches(":active")) return;
-        const value = this.inUnit(p, unit, typed);
-        slider.min = String(Math.min(range[0], value ?? range[0]));
-        slider.max = String(Math.max(range[1], value ?? range[1]));
-        slider.value = String(value ?? range[0]);
-        slider.classList.toggle("unset", value === null);
-      });
-      const reset = () => this.app.set(p.name, [], true);
-      slider.addEventListener("dblclick", reset);
-      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
-    }
-    /** The value of a parameter in the unit of its slider. */
-    inUnit(p, unit, typed) {
-      const plainNumber = Number(typed.replace(unit, ""));
-      if (typed !== "" && Number.isFinite(plainNumber) && (unit === "" || typed.endsWith(unit))) return plainNumber;
-      const value = this.app.grip(p.name)?.value;
-      if (value === void 0) return null;
-      if (p.kind !== "length") return unit === "%" ? 100 * value : value;
-      const [, , w, h2] = this.app.grips[this.app.selected]?.frame ?? [0, 0, 1, 1];
-      const whole = p.axis === "x" ? w : p.axis === "y" ? h2 : Math.hypot(w, h2);
-      return 100 * value / whole;
+    /** Tells screen readers where keys have moved a handle. */
+    say(handle) {
+      byId("spoken").textContent = `${handle.label}: ${shown(handle).join(", ")}`;
     }
   };
-  function isMain(p) {
-    if (p.kind === "number" || p.kind === "angle" || p.kind === "choice") return p.default !== void 0;
-    if (p.kind === "length" || p.kind === "count") return p.default !== void 0;
-    if (p.kind === "name") return true;
-    return p.kind === "text" && (p.needed || p.default !== void 0);
-  }
-  function scale(p) {
-    const [from, to] = p.slider;
-    if (p.kind === "length") return ["%", p.least === void 0 && Number.parseFloat(p.default ?? "1") === 0 ? BOTH_WAYS : OF_ARTWORK];
-    if (p.kind === "number" && p.default?.endsWith("%")) return ["%", [100 * from, 100 * to]];
-    return ["", [from, to]];
-  }
-  function step([from, to]) {
-    const raw = (to - from) / 400;
-    return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
-  }
-  function sentence(title) {
-    return `${capital2(title)}${/[.…]$/.test(title) ? "" : "."}`;
-  }
-  function capital2(text) {
-    return plain(text.charAt(0).toUpperCase() + text.slice(1));
-  }
-  function plain(text) {
-    return text.replace(/--([a-z-]+)/g, (_, name) => `“${words(name)}”`);
+  function shown(handle) {
+    return handle.get().map((v) => short(Number(v.toFixed(DECIMALS))));
   }
 
   // src/camera.ts
-  var RANGE = [0.02, 200];
+  var RANGE = [1e-4, 1e5];
   var Camera = class {
     /** Screen = scale · px + shift. */
     scale = 1;
@@ -1626,14 +1466,8 @@
       this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
       this.scale = scale2;
     }
-    /** Shows a box of the drawing, in user units, in the middle of a view of this size. */
-    fit([x, y, w, h2], [width, height], margin) {
-      this.scale = 1;
-      this.shift = [0, 0];
-      const corners2 = [[x, y], [x + w, y], [x, y + h2], [x + w, y + h2]].map((p) => this.toScreen(p));
-      const xs = corners2.map((p) => p[0]);
-      const ys = corners2.map((p) => p[1]);
-      const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    /** Shows a box of the drawing, two corners in px of it, in the middle of a view of this size. */
+    fit([x0, y0, x1, y1], [width, height], margin) {
       const room = (size) => Math.max(size - 2 * margin, size / 3);
       const scale2 = Math.min(room(width) / Math.max(x1 - x0, 1e-9), room(height) / Math.max(y1 - y0, 1e-9));
       this.scale = Math.min(Math.max(scale2, RANGE[0]), RANGE[1]);
@@ -1648,6 +1482,7 @@
     "svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight feSpecularLighting feSpotLight feTile feTurbulence use".split(" ")
   );
   var LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
+  var LOADS = /url\(\s*["']?(?!#)/i;
   function copy(from, lines) {
     if (from.namespaceURI !== SVG2 || !ELEMENTS.has(from.localName)) {
       skip(from, lines);
@@ -1676,11 +1511,11 @@
     }
     if (name === "style") {
       for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
-        if (property) element.style.setProperty(property.trim(), rest.join(":").trim());
+        if (property && !LOADS.test(rest.join(":"))) element.style.setProperty(property.trim(), rest.join(":").trim());
       }
       return;
     }
-    if (/url\(\s*["']?(?!#)/i.test(value)) return;
+    if (LOADS.test(value)) return;
     element.setAttribute(name, value);
   }
   function parse(text, lines = null) {
@@ -1715,14 +1550,14 @@
 
   // src/heat.ts
   var FULL = Math.log2(2);
-  function cells({ columns, points, factors }, place3) {
+  function cells({ columns, points, factors }, place2) {
     const byColour = /* @__PURE__ */ new Map();
     factors.forEach((factor, k) => {
       const [i, j] = [k % columns, Math.floor(k / columns)];
       const at = (di, dj) => points[(j + dj) * (columns + 1) + i + di];
       const corners2 = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
       if (factor === null || corners2.some((c) => !c)) return;
-      const d = corners2.map((c) => place3(c).map((v) => v.toFixed(2)).join(",")).join("L");
+      const d = corners2.map((c) => place2(c).map((v) => v.toFixed(2)).join(",")).join("L");
       const colour = shade(factor);
       byColour.set(colour, [...byColour.get(colour) ?? [], `M${d}Z`]);
     });
@@ -1732,10 +1567,11 @@
     });
   }
   var STRONGEST = 0.8;
+  var STEPS = 16;
   function shade(factor) {
     if (factor < 0) return "#e11d2e/0.85";
     const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));
-    const step2 = Math.round(amount * 8) / 8;
+    const step2 = Math.round(amount * STEPS) / STEPS;
     return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
   }
 
@@ -1810,25 +1646,26 @@
 
   // src/stage.ts
   var MARGIN2 = 56;
+  var SHEET_MARGIN = 14;
   var REACH = 18;
-  var MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
-  var KEYS = 500;
   var Stage = class {
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
+      this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.guides, this.marks, this.knobs);
       const stage2 = this;
-      app2.screen = { show: (answer) => this.show(answer), get pixel() {
-        return stage2.camera.pixel;
-      } };
+      app2.screen = {
+        show: (answer) => this.show(answer),
+        reveal: () => this.reveal(),
+        get pixel() {
+          return stage2.camera.pixel;
+        }
+      };
       app2.listen((change) => {
         if (change === "state") this.place();
         if (change === "handles") this.rebuild();
-        if (change === "report" && this.showsStretch && !app2.isDragging) void this.drawStretch();
+        if (change === "report" && this.showsStretch) void this.drawStretch();
       });
-      this.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
-      this.svg.addEventListener("pointerdown", (e) => this.press(e));
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
       new ResizeObserver(() => this.resized()).observe(this.svg);
@@ -1837,12 +1674,16 @@
     modes;
     camera = new Camera();
     svg = byId("stage");
+    /** A filter would be drawn anew with every picture, so the shadow is made of lines. */
+    shadows = [s("rect", { class: "shadow wide" }), s("rect", { class: "shadow" })];
     sheet = s("rect", { class: "sheet" });
     art = s("g", { class: "art" });
     beforeArt = s("g", { class: "art", visibility: "hidden" });
     heat = s("g", { class: "heat" });
     nodes = s("path", { class: "nodes" });
     arms = s("path", { class: "arms" });
+    /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
+    shield = s("rect", { class: "shield", width: "100%", height: "100%" });
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
@@ -1852,43 +1693,76 @@
     /** Wide, invisible lines over those that can be pulled, by their index. */
     reaches = [];
     focused = null;
-    touches = /* @__PURE__ */ new Map();
-    keysTimer = 0;
+    /** Nobody has moved the view since it showed the whole page. */
     isFitted = false;
+    /** The first picture of a drawing has not arrived yet. */
+    isFresh = true;
     /** Set while the page shows the drawing as it was. */
     isBefore = false;
     showsNodes = false;
     showsStretch = false;
+    /** The stretch has been asked for, and has to be asked for again. */
+    isStretchAsked = false;
+    isStretchWanted = false;
     /** Takes the id of the path that is clicked next, instead of anything else. */
     picks = null;
     onFocus = () => {
     };
-    onZoom = () => {
+    /** A handle has been moved by keys. */
+    onKeys = () => {
     };
-    /** The view was moved by somebody who took hold of the artwork. */
-    onPan = () => {
+    onZoom = () => {
     };
     get size() {
       return [this.svg.clientWidth, this.svg.clientHeight];
     }
     resized() {
-      if (!this.isFitted) this.fit();
+      if (this.isFitted || this.isFresh) this.fit();
       else this.layout();
     }
-    /** Shows the whole page. */
-    fit() {
-      const { state } = this.app;
-      const [width, whole] = this.size;
+    /** The part of the canvas that no panel of a narrow window covers, and the space around a drawing there. */
+    get view() {
+      const [width, height] = this.size;
       const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
-      const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
-      const height = Math.max(whole - covered, whole / 4);
-      if (!state || width === 0 || height === 0) return;
-      this.camera.fit(state.page, [width, height], Math.min(MARGIN2, width / 10));
+      if (!panel || getComputedStyle(panel).position === "static") return { left: 0, width, height, margin: Math.min(MARGIN2, width / 10) };
+      const margin = SHEET_MARGIN;
+      const { left, width: over } = panel.getBoundingClientRect();
+      if (over >= width) return { left: 0, width, height: Math.max(height - panel.clientHeight, height / 4), margin };
+      return { left: left > 0 ? 0 : over, width: width - over, height, margin };
+    }
+    /** Shows the whole page, as far as it holds the artwork. */
+    fit() {
+      const { left, width, height, margin } = this.view;
+      if (!this.app.state || width === 0 || height === 0) return;
+      this.camera.fit(this.page, [width, height], margin);
+      this.camera.shift[0] += left;
       this.isFitted = true;
       this.layout();
     }
-    zoom(factor, at = [this.size[0] / 2, this.size[1] / 2]) {
-      this.camera.zoom(factor, at);
+    /** Moves the view by px of the screen. */
+    shift([dx, dy]) {
+      const [x, y] = this.camera.shift;
+      this.camera.shift = [x + dx, y + dy];
+      this.isFitted = false;
+      this.layout();
+    }
+    /** The whole page is in view. */
+    get showsAll() {
+      const { left, width, height } = this.view;
+      const { scale: scale2, shift } = this.camera;
+      const [x0, y0, x1, y1] = this.page;
+      const [l, t, r, b] = [scale2 * x0 + shift[0], scale2 * y0 + shift[1], scale2 * x1 + shift[0], scale2 * y1 + shift[1]];
+      return l >= left && t >= 0 && r <= left + width && b <= height;
+    }
+    /** Shows the whole page, unless the user looks at a detail. */
+    reveal() {
+      if (this.isFitted && !this.showsAll) this.fit();
+    }
+    /** Magnifies about a point of the screen, or about the middle of the view. */
+    zoom(factor, at) {
+      const { left, width, height } = this.view;
+      this.camera.zoom(factor, at ?? [left + width / 2, height / 2]);
+      this.isFitted = false;
       this.layout();
     }
     place() {
@@ -1896,30 +1770,43 @@
       if (!state) return;
       const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
       this.camera.toPx = state.toPx;
+      if (isNew || this.isFresh) {
+        this.isFresh = true;
+        this.fit();
+      }
       this.grow();
-      if (isNew || !this.isFitted) this.fit();
     }
     show(answer) {
       if (answer.picture) this.drawing.show(answer.picture);
-      if (answer.summary) this.grow();
+      if (answer.summary) {
+        const { isFresh } = this;
+        this.isFresh = false;
+        this.grow();
+        if (isFresh) this.reveal();
+      }
       if (this.showsNodes) this.drawNodes();
       this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
     }
-    /** The page, as far as it holds the artwork: saving makes it larger where needed. */
-    grow() {
+    /** The page, as far as it holds the artwork, as two corners in px of the drawing: saving makes it larger where needed. */
+    get page() {
       const { state } = this.app;
-      if (!state) return;
+      if (!state) return [0, 0, 0, 0];
       const [x, y, w, h2] = state.page;
-      const [[x0, y0], [x1, y1]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h2])];
-      let box = [Math.min(x0, x1), Math.min(y0, y1), Math.max(x0, x1), Math.max(y0, y1)];
+      const [[ax, ay], [bx, by]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h2])];
+      const page = [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
       const art = this.art.getBBox();
-      if (!state.program && art.width > 0) {
-        box = [Math.min(box[0], art.x), Math.min(box[1], art.y), Math.max(box[2], art.x + art.width), Math.max(box[3], art.y + art.height)];
+      if (state.program || this.isFresh || art.width === 0) return page;
+      return [Math.min(page[0], art.x), Math.min(page[1], art.y), Math.max(page[2], art.x + art.width), Math.max(page[3], art.y + art.height)];
+    }
+    /** Draws the sheet as large as the page. */
+    grow() {
+      const [x0, y0, x1, y1] = this.page;
+      for (const sheet of [...this.shadows, this.sheet]) {
+        sheet.setAttribute("x", String(x0));
+        sheet.setAttribute("y", String(y0));
+        sheet.setAttribute("width", String(x1 - x0));
+        sheet.setAttribute("height", String(y1 - y0));
       }
-      this.sheet.setAttribute("x", String(box[0]));
-      this.sheet.setAttribute("y", String(box[1]));
-      this.sheet.setAttribute("width", String(box[2] - box[0]));
-      this.sheet.setAttribute("height", String(box[3] - box[1]));
     }
     fold(at) {
       const [x, y] = this.camera.toScreen(at);
@@ -1943,7 +1830,7 @@
     /** Another drawing has been opened. */
     forget() {
       this.beforeArt.replaceChildren();
-      this.isFitted = false;
+      this.isFresh = true;
     }
     drawNodes() {
       const { nodes, arms } = this.showsNodes ? nodesOf(this.drawing.paths()) : { nodes: "", arms: "" };
@@ -1953,19 +1840,22 @@
     /** Shows the stretch of the visible steps, or hides it. */
     async drawStretch() {
       const { app: app2 } = this;
-      const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
-      const stretch = this.showsStretch ? answer?.stretch : null;
-      this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
-    }
-    /** The next click on the drawing names a path. */
-    pick(take) {
-      this.picks = take;
-      this.svg.classList.toggle("picking", take !== null);
+      if (!this.showsStretch) return this.heat.replaceChildren();
+      this.isStretchWanted = true;
+      if (this.isStretchAsked) return;
+      this.isStretchAsked = true;
+      while (this.isStretchWanted) {
+        this.isStretchWanted = false;
+        const answer = await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible }));
+        const stretch = this.showsStretch ? answer?.stretch : null;
+        this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
+      }
+      this.isStretchAsked = false;
     }
     /** Puts everything in its place on the screen. */
     layout() {
       const { camera } = this;
-      const layers = [this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+      const layers = [...this.shadows, this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
       for (const layer of layers) layer.setAttribute("transform", camera.transform);
       for (const mark of Array.from(this.marks.children)) {
         const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at));
@@ -1974,6 +1864,7 @@
       this.placeHandles();
       this.onZoom();
     }
+    /** Puts handles and their lines where they are now. */
     placeHandles() {
       const { handles } = this.app;
       if (!handles) return;
@@ -2027,149 +1918,35 @@
       for (const [k, element] of this.elements) element.classList.toggle("selected", k === key);
       this.onFocus(this.handle(key));
     }
+    get focusedHandle() {
+      return this.handle(this.focused);
+    }
     handle(key) {
       return this.app.handles?.handles.find((h2) => h2.key === key) ?? null;
     }
+    /** The place of a pointer on the canvas. */
     point(e) {
       const box = this.svg.getBoundingClientRect();
       return [e.clientX - box.left, e.clientY - box.top];
     }
-    wheel(e) {
-      e.preventDefault();
-      if (e.ctrlKey || e.metaKey || e.deltaX === 0 && Math.abs(e.deltaY) >= 50) {
-        return this.zoom(Math.exp(-e.deltaY * (e.ctrlKey && Math.abs(e.deltaY) < 50 ? 0.01 : 2e-3)), this.point(e));
-      }
-      this.camera.shift = [this.camera.shift[0] - e.deltaX, this.camera.shift[1] - e.deltaY];
-      this.layout();
+    /** The next click on the drawing names a path. */
+    pick(take) {
+      this.picks = take;
+      this.svg.classList.toggle("picking", take !== null);
     }
-    press(e) {
-      if (this.picks) return this.picked(e);
-      const knob = e.target.closest(".knob");
-      this.touches.set(e.pointerId, this.point(e));
-      if (this.touches.size === 2) return this.pinch();
-      if (this.touches.size > 2) return;
-      const isPull = e.target.matches(".pull");
-      if (knob && e.button === 0 && !this.isBefore) this.drag(e, knob);
-      else if (!(isPull && e.button === 0 && !this.isBefore && this.pull(e))) this.pan(e);
-    }
-    /** Follows a line that is pulled. Returns `false` if there is none. */
-    pull(e) {
-      const { handles } = this.app;
-      const pull = handles?.pull(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
-      if (!handles || !pull) return false;
-      let hasMoved = false;
-      this.app.isDragging = true;
-      this.follow(e, (to, event) => {
-        if (this.touches.size > 1) return;
-        hasMoved = true;
-        pull.move(this.camera.toUser(to), this.modes.smooths);
-        handles.write(pull.param);
-        this.placeHandles();
-        this.app.draft(event.timeStamp);
-      }, () => {
-        this.app.isDragging = false;
-        if (hasMoved) void this.app.commit();
-      });
-      return true;
-    }
-    picked(e) {
-      const named = e.target.closest(".art [id]");
+    /** Names the path that was clicked. */
+    picked(target) {
+      const named = target.closest(".art [id]");
       const take = this.picks;
       this.pick(null);
       if (named) take?.(named.id.replace(/^art-/, ""));
     }
-    /** Follows a pointer until it is lifted. */
-    follow(e, move, end2) {
-      const id = e.pointerId;
-      const stop = new AbortController();
-      const { signal } = stop;
-      const done = (event) => {
-        if (event.pointerId !== id) return;
-        this.touches.delete(id);
-        stop.abort();
-        end2();
-      };
-      window.addEventListener(MOVES, (e2) => {
-        const event = e2;
-        if (event.pointerId !== id) return;
-        this.touches.set(id, this.point(event));
-        move(this.point(event), event);
-      }, { signal });
-      window.addEventListener("pointerup", done, { signal });
-      window.addEventListener("pointercancel", done, { signal });
-    }
-    drag(e, knob) {
-      const handle = this.handle(knob.dataset.key);
-      if (!handle) return;
-      e.preventDefault();
-      knob.focus({ preventScroll: true });
-      const grabbed = this.camera.toScreen(handle.get());
-      const [x, y] = this.point(e);
-      const mover = this.modes.mover(this.app.handles, handle);
-      let hasMoved = false;
-      this.app.isDragging = true;
-      knob.classList.add("held");
-      this.follow(e, (to, event) => {
-        if (this.touches.size > 1) return;
-        hasMoved = true;
-        const target = this.camera.toUser([grabbed[0] + to[0] - x, grabbed[1] + to[1] - y]);
-        mover(this.modes.snapped(target, handle, this.app.handles, 7 * this.camera.pixel, event), event);
-        this.changed(handle, event.timeStamp);
-      }, () => {
-        knob.classList.remove("held");
-        this.app.isDragging = false;
-        this.modes.clear();
-        if (hasMoved) void this.app.commit();
-      });
-    }
+    /** Writes the values of a handle that has been moved, and asks for the picture. */
     changed(handle, since) {
       this.app.handles.write(handle.param);
       this.placeHandles();
       this.onFocus(handle);
       this.app.draft(since);
-    }
-    pan(e) {
-      const first = this.point(e);
-      let last = first;
-      const start = this.camera.toUser(first);
-      this.svg.classList.add("panning");
-      this.follow(e, (to) => {
-        if (this.touches.size > 1) return;
-        this.camera.shift = [this.camera.shift[0] + to[0] - last[0], this.camera.shift[1] + to[1] - last[1]];
-        last = to;
-        this.layout();
-      }, () => {
-        this.svg.classList.remove("panning");
-        const [x, y, w, h2] = this.app.handles?.frame ?? [0, 0, 0, 0];
-        const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
-        if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
-      });
-    }
-    /** Two fingers move and magnify the view. */
-    pinch() {
-      const [one, two] = Array.from(this.touches.keys());
-      const stop = new AbortController();
-      const { signal } = stop;
-      const middle2 = () => {
-        const [a, b] = [this.touches.get(one), this.touches.get(two)];
-        return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
-      };
-      let [at, apart] = middle2();
-      window.addEventListener("pointermove", (e) => {
-        if (!this.touches.has(e.pointerId)) return;
-        this.touches.set(e.pointerId, this.point(e));
-        const [to, wide] = middle2();
-        this.camera.shift = [this.camera.shift[0] + to[0] - at[0], this.camera.shift[1] + to[1] - at[1]];
-        if (apart > 0) this.camera.zoom(wide / apart, to);
-        [at, apart] = [to, wide];
-        this.layout();
-      }, { signal });
-      const end2 = (e) => {
-        this.touches.delete(e.pointerId);
-        stop.abort();
-      };
-      window.addEventListener("pointerup", end2, { signal });
-      window.addEventListener("pointercancel", end2, { signal });
     }
     doubleClick(e) {
       if (e.target.closest(".knob")) return;
@@ -2186,6 +1963,7 @@
         const far = e.shiftKey ? 10 : 1;
         const [x, y] = this.camera.toScreen(handle.get());
         this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+        this.onKeys(handle);
       } else if (e.key === "Insert") {
         e.preventDefault();
         const [x, y] = handle.get();
@@ -2208,14 +1986,9 @@
     moveTo(handle, to) {
       const { handles } = this.app;
       if (!handles) return;
-      this.app.isDragging = true;
+      this.app.commitSoon();
       this.modes.mover(handles, handle)(to, null);
       this.changed(handle, performance.now());
-      clearTimeout(this.keysTimer);
-      this.keysTimer = window.setTimeout(() => {
-        this.app.isDragging = false;
-        void this.app.commit();
-      }, KEYS);
     }
   };
   function renamed(root) {
@@ -2229,60 +2002,744 @@
     return root;
   }
 
+  // src/pointing.ts
+  var MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
+  var SNAP = 7;
+  var NOTCH = 50;
+  var PINCH_RATE = 0.01;
+  var WHEEL_RATE = 2e-3;
+  var Pointing = class {
+    constructor(app2, stage2, modes2) {
+      this.app = app2;
+      this.stage = stage2;
+      this.modes = modes2;
+      stage2.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
+      stage2.svg.addEventListener("pointerdown", (e) => this.press(e));
+      window.addEventListener(MOVES, (e) => {
+        const { pointerId } = e;
+        if (this.down.has(pointerId)) this.down.set(pointerId, stage2.point(e));
+      });
+      for (const end2 of ["pointerup", "pointercancel"]) window.addEventListener(end2, (e) => this.down.delete(e.pointerId));
+    }
+    app;
+    stage;
+    modes;
+    /** The pointers that are down, with their places. */
+    down = /* @__PURE__ */ new Map();
+    /** Ends what the first pointer does. */
+    finish = null;
+    /** The view was moved by somebody who took hold of the artwork. */
+    onPan = () => {
+    };
+    wheel(e) {
+      e.preventDefault();
+      const { stage: stage2 } = this;
+      const isPinch = e.ctrlKey && Math.abs(e.deltaY) < NOTCH;
+      if (e.ctrlKey || e.metaKey || e.deltaX === 0 && Math.abs(e.deltaY) >= NOTCH) {
+        return stage2.zoom(Math.exp(-e.deltaY * (isPinch ? PINCH_RATE : WHEEL_RATE)), stage2.point(e));
+      }
+      stage2.shift([-e.deltaX, -e.deltaY]);
+    }
+    press(e) {
+      const { stage: stage2 } = this;
+      const target = e.target;
+      if (stage2.picks) return stage2.picked(target);
+      this.down.set(e.pointerId, stage2.point(e));
+      if (this.down.size > 2) return;
+      if (this.down.size === 2) {
+        this.finish?.();
+        return this.pinch();
+      }
+      const bends = e.button === 0 && !stage2.isBefore;
+      const knob = target.closest(".knob");
+      if (knob && bends) this.drag(e, knob);
+      else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
+    }
+    /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. */
+    follow(e, { move, end: end2, cancel }) {
+      const stop = new AbortController();
+      const { signal } = stop;
+      const finish = (how) => {
+        stop.abort();
+        this.finish = null;
+        how();
+      };
+      this.finish = () => finish(end2);
+      const own = (action) => (event) => {
+        if (event.pointerId === e.pointerId) action(event);
+      };
+      window.addEventListener(MOVES, own((event) => move(this.stage.point(event), event)), { signal });
+      for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, own(() => finish(end2)), { signal });
+      if (cancel) {
+        window.addEventListener("keydown", (event) => {
+          if (event.key === "Escape") finish(cancel);
+        }, { signal });
+      }
+    }
+    /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
+    bend(e, move, done) {
+      const { app: app2 } = this;
+      void app2.flush();
+      const before2 = structuredClone(app2.step);
+      let hasMoved = false;
+      app2.isDragging = true;
+      const stop = () => {
+        app2.isDragging = false;
+        done();
+      };
+      this.follow(e, {
+        move: (to, event) => {
+          hasMoved = true;
+          move(to, event);
+        },
+        end: () => {
+          stop();
+          if (hasMoved) void app2.commit();
+        },
+        cancel: () => {
+          stop();
+          if (hasMoved) app2.cancel(before2);
+        }
+      });
+    }
+    drag(e, knob) {
+      const { stage: stage2, modes: modes2 } = this;
+      const { handles } = this.app;
+      const handle = stage2.handle(knob.dataset.key ?? null);
+      if (!handle || !handles) return;
+      e.preventDefault();
+      knob.focus({ preventScroll: true });
+      const grabbed = stage2.camera.toScreen(handle.get());
+      const [x, y] = stage2.point(e);
+      const mover = modes2.mover(handles, handle);
+      knob.classList.add("held");
+      this.bend(e, (to, event) => {
+        const target = stage2.camera.toUser([grabbed[0] + to[0] - x, grabbed[1] + to[1] - y]);
+        mover(modes2.snapped(target, handle, handles, SNAP * stage2.camera.pixel, event), event);
+        stage2.changed(handle, event.timeStamp);
+      }, () => {
+        knob.classList.remove("held");
+        modes2.clear();
+      });
+    }
+    /** Follows a line that is pulled. Returns `false` if there is none. */
+    pull(e) {
+      const { stage: stage2, modes: modes2 } = this;
+      const { handles } = this.app;
+      const pull = handles?.pull(stage2.camera.toUser(stage2.point(e)), REACH * stage2.camera.pixel);
+      if (!handles || !pull) return false;
+      const puller = modes2.puller(handles, pull);
+      this.bend(e, (to, event) => {
+        puller(stage2.camera.toUser(to));
+        handles.write(pull.param);
+        stage2.placeHandles();
+        this.app.draft(event.timeStamp);
+      }, () => {
+      });
+      return true;
+    }
+    pan(e) {
+      const { stage: stage2 } = this;
+      const first = stage2.point(e);
+      let last = first;
+      const start = stage2.camera.toUser(first);
+      stage2.svg.classList.add("panning");
+      this.follow(e, {
+        move: (to) => {
+          stage2.shift([to[0] - last[0], to[1] - last[1]]);
+          last = to;
+        },
+        end: () => {
+          stage2.svg.classList.remove("panning");
+          const [x, y, w, h2] = this.app.handles?.frame ?? [0, 0, 0, 0];
+          const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h2;
+          if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+        }
+      });
+    }
+    /** Two fingers move and magnify the view. */
+    pinch() {
+      const [one, two] = Array.from(this.down.keys());
+      const stop = new AbortController();
+      const { signal } = stop;
+      const middle2 = () => {
+        const [a, b] = [this.down.get(one), this.down.get(two)];
+        return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
+      };
+      let [at, apart] = middle2();
+      window.addEventListener("pointermove", () => {
+        const [to, wide] = middle2();
+        if (apart > 0) this.stage.zoom(wide / apart, at);
+        this.stage.shift([to[0] - at[0], to[1] - at[1]]);
+        [at, apart] = [to, wide];
+      }, { signal });
+      for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
+    }
+  };
+
+  // src/presets.ts
+  var Presets = class {
+    constructor(app2, gallery) {
+      this.app = app2;
+      this.gallery = gallery;
+      byId("keep-preset").addEventListener("click", () => this.open());
+      byId("preset-cancel").addEventListener("click", () => this.dialog.close());
+      this.name.addEventListener("input", () => this.message.textContent = "");
+      this.dialog.querySelector("form").addEventListener("submit", (e) => {
+        e.preventDefault();
+        void this.keep(this.name.value.trim());
+      });
+    }
+    app;
+    gallery;
+    dialog = byId("preset-dialog");
+    name = byId("preset-name");
+    message = byId("preset-message");
+    open() {
+      this.name.value = "";
+      this.message.textContent = "";
+      this.dialog.showModal();
+    }
+    async keep(name) {
+      try {
+        await this.app.flush();
+        const { presets } = await this.app.connection.ask({ do: "keep-preset", name });
+        this.gallery.showPresets(presets ?? []);
+        this.dialog.close();
+        toast(`${name} is kept among the shapes`);
+      } catch (e) {
+        this.message.textContent = e instanceof Error ? e.message : String(e);
+      }
+    }
+  };
+
+  // src/report.ts
+  var SLOW = 250;
+  var Report = class {
+    constructor(app2) {
+      this.app = app2;
+      app2.listen((change) => {
+        if (change === "report" || change === "state") this.figures();
+        if (change === "state") this.buttons();
+        if (change === "handles" || change === "steps") this.hint();
+        if (change === "link") this.link();
+      });
+      app2.connection.onBusy = (isBusy) => this.busy(isBusy);
+      byId("warnings").addEventListener("click", () => toast(app2.warnings.join(" · ")));
+    }
+    app;
+    /** The steps of a draft have been announced. */
+    isAnnounced = false;
+    slow = 0;
+    busy(isBusy) {
+      clearTimeout(this.slow);
+      const view = byId("view");
+      view.setAttribute("aria-busy", String(isBusy));
+      if (isBusy) this.slow = window.setTimeout(() => view.classList.add("busy"), SLOW);
+      else view.classList.remove("busy");
+    }
+    figures() {
+      const { app: app2 } = this;
+      const { state, summary, warnings } = app2;
+      const isBent = !app2.isProposal && summary !== null && summary.segmentsIn > 0;
+      show("counts", isBent ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "");
+      show("error", isBent && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "");
+      const folds = summary?.folds.length ?? 0;
+      show("folds", folds === 0 ? "" : folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`);
+      show("problem", app2.problem ?? (state?.problem ? `Nothing is kept until you save: ${state.problem}` : ""));
+      const remarks = byId("warnings");
+      remarks.hidden = warnings.length === 0;
+      remarks.textContent = warnings.length === 1 ? "1 remark" : `${warnings.length} remarks`;
+      remarks.title = warnings.join("\n");
+    }
+    buttons() {
+      const { state } = this.app;
+      if (!state) return;
+      const isEmpty = state.steps.length === 0;
+      const disabled = { undo: !state.undo, redo: !state.redo, "start-over": isEmpty, "keep-preset": isEmpty };
+      for (const [id, value] of Object.entries(disabled)) byId(id).disabled = value;
+      if (state.restored && !this.isAnnounced) toast("Your last, unsaved steps are here again");
+      this.isAnnounced ||= state.restored;
+    }
+    /** What can be done with the handles on show. */
+    hint() {
+      const { app: app2 } = this;
+      const { handles } = app2;
+      const has = (handles?.handles.length ?? 0) > 0;
+      byId("smooth").hidden = !handles?.handles.some(({ key }) => /\/(in|out)$/.test(key));
+      byId("mirror").hidden = !has;
+      byId("snap").hidden = !has;
+      if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
+      if (!handles) return;
+      const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
+      const adds = handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
+      const note = !has ? "Change the settings" : handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
+      show("note", app2.isProposal && has ? `${note}, or choose a shape` : note);
+    }
+    /** Somebody has moved the view, and may have meant to bend the artwork. */
+    panned() {
+      if (this.app.isProposal && this.app.handles?.handles.length) show("note", "This moves the view. Pull a blue point or line to bend the artwork");
+    }
+    link() {
+      const { isDone, isConnected, state } = this.app;
+      const gone = byId("gone");
+      gone.hidden = isConnected && !isDone;
+      gone.classList.toggle("done", isDone);
+      show("gone-title", isDone ? `${state?.program} has the result.` : "pathwarp has ended.");
+      show("gone-kept", isDone ? "You can close this page." : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.` : `${state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing."} Run “pathwarp edit” again to go on.`);
+    }
+  };
+  function show(id, text) {
+    const element = byId(id);
+    element.hidden = text === "";
+    if (element.textContent !== text) element.textContent = text;
+  }
+
+  // src/saving.ts
+  var FORMATS = [
+    ["svg", "SVG", "Can be opened here again"],
+    ["pdf", "PDF", "For print"],
+    ["dxf", "DXF", "For cutters and CAD"],
+    ["png", "PNG", "A picture"],
+    ["toml", "Recipe", "For other drawings"]
+  ];
+  var Saving = class {
+    constructor(app2) {
+      this.app = app2;
+      const formats = byId("save-formats");
+      for (const [extension, title, use] of FORMATS) {
+        const input = h("input", { type: "radio", name: "format", value: extension });
+        input.addEventListener("change", () => this.choose(extension));
+        formats.append(h("label", { class: "format" }, input, h("span", {}, h("b", {}, title), h("small", {}, use))));
+      }
+      byId("save").addEventListener("click", () => void this.quick());
+      byId("save-as").addEventListener("click", () => void this.open());
+      byId("save-cancel").addEventListener("click", () => this.dialog.close());
+      this.dialog.querySelector("form").addEventListener("submit", (e) => {
+        e.preventDefault();
+        void this.write(this.name.value, false);
+      });
+      this.replace.addEventListener("click", () => void this.write(this.name.value, true));
+      this.name.addEventListener("input", () => this.say(""));
+      byId("copy-command").addEventListener("click", () => void this.copyCommand());
+      app2.listen((change) => {
+        if (change === "state") this.show();
+      });
+    }
+    app;
+    dialog = byId("save-dialog");
+    name = byId("save-name");
+    extension = "svg";
+    message = byId("save-message");
+    replace = byId("save-replace");
+    show() {
+      const { state } = this.app;
+      if (!state) return;
+      byId("file").textContent = state.file;
+      const isEmpty = state.steps.length === 0;
+      byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}` : isEmpty ? "No changes yet" : "Not saved yet";
+      const save = byId("save");
+      save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
+      if (state.program) {
+        save.textContent = `Keep in ${state.program}`;
+        save.title = `Give the result to ${state.program} (Ctrl S)`;
+        for (const id of ["save-as", "open"]) byId(id).hidden = true;
+      }
+      document.title = `${this.isUnsaved ? "• " : ""}${state.file} — pathwarp`;
+    }
+    /** Something would be lost without saving. */
+    get isUnsaved() {
+      const { state } = this.app;
+      if (!state) return false;
+      return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved;
+    }
+    /** Gives the steps to the program that waits for them. */
+    async handOver() {
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
+      if (!answer?.done) return;
+      this.app.finish();
+      window.close();
+    }
+    /** Saves where it was saved last; the first time, under the usual name. */
+    async quick() {
+      await this.app.flush();
+      const { state } = this.app;
+      if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
+      if (!state || state.steps.length === 0) return;
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
+      if (answer?.exists) return this.open();
+      if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
+    }
+    async open() {
+      await this.app.flush();
+      const { state } = this.app;
+      if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
+      this.name.value = state.target;
+      this.choose("svg");
+      byId("save-folder").textContent = state.folder;
+      this.dialog.showModal();
+      this.name.select();
+    }
+    choose(extension) {
+      this.extension = extension;
+      this.name.value = `${this.name.value.replace(/\.(svgz?|pdf|dxf|png|toml)$/i, "")}.${extension}`;
+      for (const input of Array.from(this.dialog.querySelectorAll("input[type=radio]"))) {
+        input.checked = input.value === this.extension;
+      }
+      this.say("");
+    }
+    say(text, offersReplace = false) {
+      this.message.textContent = text;
+      this.replace.hidden = !offersReplace;
+    }
+    async write(name, replace) {
+      try {
+        const answer = await this.app.connection.ask({ do: "save", name, replace });
+        if (answer.exists) return this.say(`${answer.exists} exists already.`, true);
+        this.dialog.close();
+        this.done(answer.written ?? name, answer.state, answer.warnings ?? []);
+      } catch (e) {
+        this.say(e instanceof Error ? e.message : String(e));
+      }
+    }
+    done(written, state, warnings) {
+      if (state) {
+        this.app.state = state;
+        this.app.tell("state");
+      }
+      const name = written.split(/[\\/]/).pop() ?? written;
+      toast([`Saved ${name} in ${this.app.state?.folder ?? ""}`, ...warnings].join(". "));
+    }
+    async copyCommand() {
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "command-line" }));
+      if (!answer?.text) return;
+      try {
+        await navigator.clipboard.writeText(answer.text);
+        toast("The command line is on the clipboard");
+      } catch {
+        toast(answer.text);
+      }
+      this.dialog.close();
+    }
+  };
+
+  // src/settings.ts
+  var OF_ARTWORK = [0, 100];
+  var BOTH_WAYS = [-100, 100];
+  var SIDE_BY_SIDE = 3;
+  var Settings = class {
+    constructor(app2) {
+      this.app = app2;
+      app2.listen((change) => {
+        if (change === "steps" || change === "state") this.build();
+        if (change === "handles") this.build();
+      });
+    }
+    app;
+    box = byId("settings");
+    shown = "";
+    refreshers = [];
+    /** Asks for the id of a path that is clicked on the canvas. */
+    onPick = () => {
+    };
+    build() {
+      const { step: step2 } = this.app;
+      const deformation = this.app.deformation(step2?.deformation);
+      const params = deformation?.params ?? [];
+      const signature = [this.app.selected, step2?.deformation, ...this.adjusts(params)].join();
+      if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
+      this.shown = signature;
+      this.refreshers = [];
+      if (!step2 || !deformation) return this.box.replaceChildren();
+      const main = params.filter((p) => isMain(p, step2.args[p.name] !== void 0) || this.app.grip(p.name)?.adjust !== void 0);
+      const more = params.filter((p) => !main.includes(p));
+      const focused = this.box.contains(document.activeElement) ? document.activeElement?.id : void 0;
+      this.box.replaceChildren(
+        h("p", { class: "about" }, sentence(deformation.title)),
+        ...main.map((p) => this.control(p)),
+        more.length > 0 ? h("details", { class: "more" }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p))) : ""
+      );
+      this.refresh();
+      if (focused) document.getElementById(focused)?.focus();
+    }
+    refresh() {
+      for (const refresh of this.refreshers) refresh();
+    }
+    values(p) {
+      return this.app.step?.args[p.name] ?? [];
+    }
+    current(p) {
+      return this.values(p)[0] ?? p.default ?? "";
+    }
+    control(p) {
+      const id = `set-${p.name}`;
+      const title = plain(p.help);
+      const label = h("label", { for: id, title }, p.kind === "angle" ? `${paramName(p)} (°)` : paramName(p));
+      const adjust = this.app.grip(p.name)?.adjust;
+      if (adjust) return h("div", {}, ...adjust.map((_, i) => this.adjust(p, adjust, i, title)));
+      switch (p.kind) {
+        case "flag":
+          return this.flag(p, id, title);
+        case "choice":
+          return this.choice(p, id, label, title);
+        case "count":
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.count(p, id)));
+        case "file":
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.text(p, id));
+        case "name":
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.select(p, id));
+        case "number":
+        case "length":
+        case "angle":
+          return this.slider(p, id, label, title);
+        case "path": {
+          const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
+          pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), this.text(p, id));
+        }
+        default:
+          return h("div", { class: "field", title }, label, this.text(p, id));
+      }
+    }
+    flag(p, id, title) {
+      const box = h("input", { type: "checkbox", id, role: "switch" });
+      box.addEventListener("change", () => this.app.set(p.name, box.checked ? ["true"] : [], true));
+      this.refreshers.push(() => box.checked = this.values(p)[0] === "true");
+      return h("label", { class: "field switch", for: id, title }, h("span", {}, paramName(p)), box);
+    }
+    choice(p, id, label, title) {
+      const all = p.words ?? [];
+      if (all.length > SIDE_BY_SIDE) return h("div", { class: "field", title }, label, this.select(p, id));
+      const options = all.map((word, i) => {
+        const input = h("input", { type: "radio", name: id, value: word, id: `${id}-${i}` });
+        input.addEventListener("change", () => this.app.set(p.name, [word], true));
+        this.refreshers.push(() => input.checked = this.current(p) === word);
+        return h("label", {}, input, h("span", {}, words(word)));
+      });
+      return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
+    }
+    count(p, id) {
+      const input = h("input", { type: "number", id, class: "value", step: 1, min: p.least, max: p.most, placeholder: p.default });
+      input.addEventListener("change", () => this.app.set(p.name, input.value === "" ? [] : [input.value], true));
+      this.refreshers.push(() => {
+        if (document.activeElement !== input) input.value = this.current(p);
+      });
+      return input;
+    }
+    /** Chooses a file. Pages do not learn where it is, so a copy goes beside the drawing. */
+    chooseFile(p) {
+      const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
+      input.addEventListener("change", async () => {
+        const file = input.files?.[0];
+        input.value = "";
+        if (!file) return;
+        const bytes = await base64(file);
+        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "bring", name: file.name, bytes }));
+        if (!answer?.written) return;
+        if (answer.copied) toast(`${file.name} was copied beside the drawing`);
+        this.app.set(p.name, [answer.written], true);
+      });
+      const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
+      button.addEventListener("click", () => input.click());
+      return h("span", {}, input, button);
+    }
+    select(p, id) {
+      const select = h("select", { id }, ...(p.words ?? []).map((word) => h("option", { value: word }, words(word))));
+      select.addEventListener("change", () => this.app.set(p.name, [select.value], true));
+      this.refreshers.push(() => {
+        const value = this.current(p);
+        if (!(p.words ?? []).includes(value) && select.options[0]?.value !== value) {
+          select.prepend(h("option", { value }, value || "—"));
+        }
+        select.value = value;
+      });
+      return select;
+    }
+    text(p, id) {
+      const input = h("textarea", { id, rows: 1, spellcheck: false, placeholder: p.default ?? p.notation ?? "" });
+      input.addEventListener("change", () => {
+        const text = input.value.trim();
+        this.app.set(p.name, text === "" ? [] : p.repeat ? text.split("\n").map((t) => t.trim()).filter(Boolean) : [text], true);
+      });
+      input.addEventListener("keydown", (e) => {
+        if (e.key === "Enter" && !p.repeat) {
+          e.preventDefault();
+          input.blur();
+        }
+      });
+      this.refreshers.push(() => {
+        if (document.activeElement === input) return;
+        const values = this.values(p);
+        input.value = values.join("\n");
+        input.rows = Math.min(Math.max(values.length, 1), 4);
+      });
+      return input;
+    }
+    /** The names of the adjust values on show. */
+    adjusts(params) {
+      return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
+    }
+    /** The slider of an adjust value. */
+    adjust(p, all, i, title) {
+      const { least, most, name } = all[i];
+      const [unit, size] = adjustUnit(all[i]);
+      const id = `set-${p.name}-${name}`;
+      const range = [Math.ceil(least / size), Math.floor(most / size)];
+      const slider = h("input", { type: "range", id: `${id}-slider`, min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
+      const field = h("input", { type: "text", id, class: "value", spellcheck: false, autocomplete: "off" });
+      const take = (value, isDone) => {
+        const present = structuredClone(all);
+        readAdjust(present, this.values(p));
+        present[i].value = Math.min(Math.max(value * size, least), most);
+        this.app.set(p.name, writeAdjust(present), isDone);
+      };
+      slider.addEventListener("input", () => take(Number(slider.value), false));
+      slider.addEventListener("change", () => take(Number(slider.value), true));
+      slider.addEventListener("dblclick", () => take(all[i].default / size, true));
+      field.addEventListener("change", () => {
+        const value = Number.parseFloat(field.value.replace(",", "."));
+        take(Number.isFinite(value) ? value : all[i].default / size, true);
+      });
+      this.refreshers.push(() => {
+        const present = structuredClone(all);
+        readAdjust(present, this.values(p));
+        const value = Number((present[i].value / size).toFixed(2));
+        if (document.activeElement !== field) field.value = `${value}${unit === "deg" ? "°" : unit}`;
+        if (document.activeElement !== slider || !slider.matches(":active")) slider.value = String(value);
+      });
+      const label = h("label", { for: id, title }, adjustName(all, i));
+      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
+    }
+    slider(p, id, label, title) {
+      const [unit, range] = scale(p);
+      const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
+      const field = h("input", { type: "text", id, class: "value", inputmode: "text", spellcheck: false, autocomplete: "off", placeholder: p.default ?? "auto" });
+      slider.addEventListener("input", () => {
+        field.value = `${short(Number(slider.value))}${unit}`;
+        this.app.set(p.name, [field.value], false);
+      });
+      slider.addEventListener("change", () => this.app.set(p.name, [`${short(Number(slider.value))}${unit}`], true));
+      field.addEventListener("change", () => this.app.set(p.name, field.value.trim() === "" ? [] : [field.value.trim()], true));
+      field.addEventListener("keydown", (e) => {
+        if (e.key === "Enter") field.blur();
+      });
+      this.refreshers.push(() => {
+        const typed = this.current(p);
+        if (document.activeElement !== field) field.value = typed;
+        if (document.activeElement === slider && slider.matches(":active")) return;
+        const value = this.inUnit(p, unit, typed);
+        slider.min = String(Math.min(range[0], value ?? range[0]));
+        slider.max = String(Math.max(range[1], value ?? range[1]));
+        slider.value = String(value ?? range[0]);
+        slider.classList.toggle("unset", value === null);
+      });
+      const reset = () => this.app.set(p.name, [], true);
+      slider.addEventListener("dblclick", reset);
+      return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, field), slider);
+    }
+    /** The value of a parameter in the unit of its slider. */
+    inUnit(p, unit, typed) {
+      const plainNumber = Number(typed.replace(unit, ""));
+      if (typed !== "" && Number.isFinite(plainNumber) && (unit === "" || typed.endsWith(unit))) return plainNumber;
+      const value = this.app.grip(p.name)?.value;
+      if (value === void 0) return null;
+      if (p.kind !== "length") return unit === "%" ? 100 * value : value;
+      const [, , w, h2] = this.app.grips[this.app.selected]?.frame ?? [0, 0, 1, 1];
+      const whole = p.axis === "x" ? w : p.axis === "y" ? h2 : Math.hypot(w, h2);
+      return 100 * value / whole;
+    }
+  };
+  function isMain(p, isGiven) {
+    switch (p.kind) {
+      case "number":
+      case "angle":
+      case "choice":
+      case "count":
+        return p.default !== void 0 || isGiven;
+      case "length":
+      case "flag":
+      case "file":
+        return isGiven || p.kind === "length" && p.default !== void 0;
+      case "name":
+        return true;
+      case "text":
+        return p.needed || p.default !== void 0 || isGiven && !DRAGGED.has(p.notation ?? "");
+      default:
+        return false;
+    }
+  }
+  function scale(p) {
+    const [from, to] = p.slider;
+    if (p.kind === "length") return ["%", p.least === void 0 && Number.parseFloat(p.default ?? "1") === 0 ? BOTH_WAYS : OF_ARTWORK];
+    if (p.kind === "number" && p.default?.endsWith("%")) return ["%", [100 * from, 100 * to]];
+    return ["", [from, to]];
+  }
+  function step([from, to]) {
+    const raw = (to - from) / 400;
+    return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
+  }
+  function sentence(title) {
+    return `${capital(plain(title))}${/[.…]$/.test(title) ? "" : "."}`;
+  }
+  function plain(text) {
+    return text.replace(/--([a-z-]+)/g, (_, name) => `“${words(name)}”`);
+  }
+
   // src/steps.ts
   var Steps = class {
-    constructor(app2, gallery2) {
+    constructor(app2) {
       this.app = app2;
       app2.listen((change) => {
         if (change === "steps" || change === "state") this.build();
       });
-      const add = byId("add-step");
-      add.addEventListener("click", () => {
-        gallery2.appends = true;
-        document.body.classList.add("shapes-open");
-        byId("note").textContent = "Choose the shape of the next step";
-        byId("gallery").scrollTop = 0;
-        byId("search").focus();
-      });
+      this.add.addEventListener("click", () => this.append());
     }
     app;
     list = byId("steps");
     note = byId("steps-note");
+    add = byId("add-step");
+    /** Asks for the shape of a further step, or no longer does. */
+    append() {
+      this.app.append(!this.app.appends);
+      document.body.classList.toggle("shapes-open", this.app.appends);
+      if (!this.app.appends) return;
+      byId("gallery").scrollTop = 0;
+      byId("search").focus();
+    }
     build() {
       const { app: app2 } = this;
+      const { steps, selected, appends } = app2;
+      this.list.replaceChildren(...steps.map((step2, i) => this.row(step2, i)));
+      if (appends) this.list.append(h("li", { class: "wanted" }, `${steps.length + 1}. Choose a shape`));
+      this.add.setAttribute("aria-pressed", String(appends));
+      this.note.hidden = selected >= steps.length - 1;
+      this.note.textContent = `The picture stops at step ${selected + 1}, so that you see what you drag. Saving uses all steps.`;
+    }
+    row(step2, i) {
+      const { app: app2 } = this;
       const { steps, selected } = app2;
-      const name = (step2) => {
-        const deformation = app2.deformation(step2.deformation);
-        const preset = deformation?.gallery ? step2.args[deformation.gallery.presets]?.[0] : void 0;
-        const variant = deformation?.variants.find(({ param }) => step2.args[param]);
-        return preset ? words(preset) : variant?.label ?? (deformation ? called(deformation) : words(step2.deformation));
+      const title = stepName(step2, app2.deformation(step2.deformation));
+      const choose = h("button", { type: "button", class: "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`);
+      choose.addEventListener("click", () => void app2.select(i));
+      const moved = (to) => {
+        const others = steps.filter((_, k) => k !== i);
+        others.splice(to, 0, step2);
+        void app2.arrange(others, to);
       };
-      const button = (name2, label, action, disabled = false) => {
-        const b = h("button", { type: "button", class: "small", "aria-label": label, title: label, disabled }, icon(name2));
+      const button = (name, label, action, disabled = false) => {
+        const b = h("button", { type: "button", class: "small", "aria-label": label, title: label, disabled }, icon(name));
         b.addEventListener("click", action);
         return b;
       };
-      this.list.replaceChildren(...steps.map((step2, i) => {
-        const title = name(step2);
-        const choose = h("button", { type: "button", class: "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`);
-        choose.addEventListener("click", () => void app2.select(i));
-        const moved = (to) => {
-          const others = steps.filter((_, k) => k !== i);
-          others.splice(to, 0, step2);
-          void app2.arrange(others, to);
-        };
-        const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), Math.max(0, i - 1));
-        return h(
-          "li",
-          { class: i === selected ? "chosen" : "" },
-          choose,
-          steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i === 0),
-          steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i === steps.length - 1),
-          !app2.isProposal && button("close", `Remove ${title}`, remove)
-        );
-      }));
-      this.note.hidden = selected >= steps.length - 1;
-      this.note.textContent = `The picture stops at step ${selected + 1}, so that you see what you drag. Saving uses all steps.`;
+      const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), Math.max(0, i - 1));
+      return h(
+        "li",
+        { class: i === selected ? "chosen" : "" },
+        choose,
+        steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i === 0),
+        steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i === steps.length - 1),
+        !app2.isProposal && button("close", `Remove ${title}`, remove)
+      );
     }
   };
 
@@ -2291,19 +2748,21 @@
   var app = new App();
   var modes = new Modes();
   var stage = new Stage(app, modes);
-  var gallery = new Gallery(app);
-  var settings = new Settings(app);
-  new Steps(app, gallery);
+  var report = new Report(app);
   var saving = new Saving(app);
+  var settings = new Settings(app);
+  new Presets(app, new Gallery(app));
+  new Steps(app);
+  new Place(app, stage);
+  new Opening(app, stage);
+  new Pointing(app, stage, modes).onPan = () => report.panned();
   modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
-  var SLOW = 250;
-  var slow = 0;
-  app.connection.onBusy = (isBusy) => {
-    clearTimeout(slow);
-    const view = byId("view");
-    view.setAttribute("aria-busy", String(isBusy));
-    if (isBusy) slow = window.setTimeout(() => view.classList.add("busy"), SLOW);
-    else view.classList.remove("busy");
+  stage.onZoom = () => {
+    byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
+  };
+  settings.onPick = (take) => {
+    toast("Click a path of the drawing");
+    stage.pick(take);
   };
   function on(id, action) {
     byId(id).addEventListener("click", action);
@@ -2314,204 +2773,85 @@
   on("zoom-out", () => stage.zoom(1 / ZOOM));
   on("fit", () => stage.fit());
   on("start-over", () => void app.arrange([], 0));
-  function sheet(name) {
-    const { classList } = document.body;
-    const opens = name !== null && !classList.contains(name);
-    if (!opens && !classList.contains("shapes-open") && !classList.contains("settings-open")) return;
-    classList.remove("shapes-open", "settings-open");
-    if (opens) classList.add(name);
-    stage.fit();
-  }
-  on("open-shapes", () => sheet("shapes-open"));
-  on("open-settings", () => sheet("settings-open"));
-  stage.onPan = () => {
-    if (app.isProposal && app.handles?.handles.length) byId("note").textContent = "This moves the view. Pull a blue point or line to bend the artwork";
-  };
-  stage.onZoom = () => {
-    byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
-  };
   function toggle(id, get, set2) {
     const button = byId(id);
-    const show = () => button.setAttribute("aria-pressed", String(get()));
+    const show2 = () => button.setAttribute("aria-pressed", String(get()));
     button.addEventListener("click", () => {
       set2(!get());
-      show();
+      show2();
     });
-    show();
+    show2();
   }
   toggle("snap", () => modes.snaps, (v) => modes.snaps = v);
   toggle("mirror", () => modes.mirrors, (v) => modes.mirrors = v);
   toggle("smooth", () => modes.smooths, (v) => modes.smooths = v);
-  toggle("stretch", () => stage.showsStretch, (v) => {
-    stage.showsStretch = v;
-    void stage.drawStretch();
-  });
-  settings.onPick = (take) => {
-    toast("Click a path of the drawing");
-    stage.pick(take);
-  };
   toggle("nodes", () => stage.showsNodes, (v) => {
     stage.showsNodes = v;
     stage.drawNodes();
   });
+  toggle("stretch", () => stage.showsStretch, (v) => {
+    stage.showsStretch = v;
+    byId("legend").hidden = !v;
+    void stage.drawStretch();
+  });
+  var SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" };
+  var { classList } = document.body;
+  for (const [sheet, button] of Object.entries(SHEETS)) {
+    on(button, () => {
+      const opens = !classList.contains(sheet);
+      classList.remove(...Object.keys(SHEETS));
+      classList.toggle(sheet, opens);
+    });
+  }
+  byId("stage").addEventListener("pointerdown", (e) => {
+    if (!e.target.closest(".knob")) classList.remove(...Object.keys(SHEETS));
+  });
+  var opened = "";
+  new MutationObserver(() => {
+    const now = Object.keys(SHEETS).find((sheet) => classList.contains(sheet)) ?? "";
+    if (now === opened) return;
+    opened = now;
+    for (const [sheet, button] of Object.entries(SHEETS)) byId(button).setAttribute("aria-expanded", String(sheet === now));
+    stage.fit();
+  }).observe(document.body, { attributeFilter: ["class"] });
   var before = byId("before");
+  var hide = () => void stage.before(false);
   before.addEventListener("pointerdown", () => void stage.before(true));
-  for (const end2 of ["pointerup", "pointerleave", "pointercancel", "blur"]) before.addEventListener(end2, () => void stage.before(false));
+  for (const end2 of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) before.addEventListener(end2, hide);
   before.addEventListener("keydown", (e) => {
     if (e.key === " " || e.key === "Enter") void stage.before(true);
   });
-  before.addEventListener("keyup", () => void stage.before(false));
-  function isTyping(target) {
-    return target instanceof HTMLElement && target.matches("input:not([type=range]):not([type=checkbox]), textarea, select");
+  function escape() {
+    stage.pick(null);
+    if (app.appends) app.append(false);
   }
+  var KEYS2 = {
+    "+": () => stage.zoom(ZOOM),
+    "=": () => stage.zoom(ZOOM),
+    "-": () => stage.zoom(1 / ZOOM),
+    "0": () => stage.fit(),
+    b: () => void stage.before(true)
+  };
+  var COMMANDS2 = {
+    s: (shift) => void (shift ? saving.open() : saving.quick()),
+    z: (shift) => void app.turn(shift ? "redo" : "undo"),
+    y: () => void app.turn("redo")
+  };
   window.addEventListener("keydown", (e) => {
-    const command = e.ctrlKey || e.metaKey;
     const key = e.key.toLowerCase();
-    if (command && key === "s") {
-      e.preventDefault();
-      if (e.shiftKey) saving.open();
-      else void saving.quick();
-    } else if (command && key === "z" && !isTyping(e.target)) {
-      e.preventDefault();
-      void app.turn(e.shiftKey ? "redo" : "undo");
-    } else if (command && key === "y" && !isTyping(e.target)) {
-      e.preventDefault();
-      void app.turn("redo");
-    } else if (!command && !e.altKey && !isTyping(e.target)) {
-      const action = { "+": () => stage.zoom(ZOOM), "=": () => stage.zoom(ZOOM), "-": () => stage.zoom(1 / ZOOM), "0": () => stage.fit(), b: () => void stage.before(true) }[key];
-      if (action && !e.repeat) action();
-      if (key === "escape") stage.pick(null);
-    }
-  });
-  byId("stage").addEventListener("pointerdown", (e) => {
-    if (!e.target.closest(".knob")) sheet(null);
+    if (key === "escape") return escape();
+    if (e.altKey || isTyping(e.target) && key !== "s") return;
+    const isCommand = e.ctrlKey || e.metaKey;
+    const action = isCommand ? COMMANDS2[key] : isTyping(e.target) ? void 0 : KEYS2[key];
+    if (!action) return;
+    if (isCommand) e.preventDefault();
+    if (!e.repeat || key !== "b") action(e.shiftKey);
   });
   window.addEventListener("keyup", (e) => {
-    if (e.key.toLowerCase() === "b") void stage.before(false);
+    if (e.key.toLowerCase() === "b") hide();
   });
-  var place2 = byId("place");
-  var fields = [byId("place-x"), byId("place-y")];
-  var focused = null;
-  stage.onFocus = (handle) => {
-    focused = handle;
-    place2.classList.toggle("off", handle === null);
-    if (!handle) return;
-    byId("place-name").textContent = handle.label;
-    byId("remove-point").hidden = !handle.remove;
-    const at = handle.get();
-    fields.forEach((field, i) => {
-      if (document.activeElement !== field) field.value = short(Number(at[i].toFixed(3)));
-    });
-  };
-  fields.forEach((field, i) => field.addEventListener("change", () => {
-    const value = Number(field.value.replace(",", "."));
-    if (!focused || !Number.isFinite(value)) return;
-    const at = focused.get();
-    stage.moveTo(focused, i === 0 ? [value, at[1]] : [at[0], value]);
-  }));
-  on("remove-point", () => {
-    if (focused) stage.remove(focused);
-  });
-  app.listen((change) => {
-    const { state, summary } = app;
-    if (change === "report" || change === "state") {
-      const folds = summary?.folds.length ?? 0;
-      const isBent = !app.isProposal && summary !== null && summary.segmentsIn > 0;
-      byId("counts").textContent = isBent ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "";
-      byId("error").title = "The largest distance to the exact image, in units of the drawing";
-      byId("error").textContent = isBent && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "";
-      const fold = byId("folds");
-      fold.hidden = folds === 0;
-      fold.textContent = folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`;
-      const problem = byId("problem");
-      const text = app.problem ?? (state?.problem ? `Nothing is kept until you save: ${state.problem}` : "");
-      problem.hidden = text === "";
-      problem.textContent = text;
-      const warnings = byId("warnings");
-      warnings.hidden = app.warnings.length === 0;
-      warnings.title = app.warnings.join("\n");
-      warnings.textContent = app.warnings.length === 1 ? "1 remark" : `${app.warnings.length} remarks`;
-    }
-    if (change === "state" && state) {
-      byId("undo").disabled = !state.undo;
-      byId("redo").disabled = !state.redo;
-      byId("start-over").disabled = state.steps.length === 0;
-      byId("keep-preset").disabled = state.steps.length === 0;
-    }
-    if (change === "handles" && app.grips.length > 0) {
-      const grows = app.handles?.grows ?? false;
-      const has = (app.handles?.handles.length ?? 0) > 0;
-      const isCurve = app.handles?.handles.some((h2) => /\/(in|out)$/.test(h2.key)) ?? false;
-      byId("smooth").hidden = !isCurve;
-      byId("mirror").hidden = !has;
-      byId("snap").hidden = !has;
-      const pulls = app.handles?.lines().some((line) => line.kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
-      const adds = grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
-      const note = !has ? "Change the settings" : grows || app.handles?.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
-      byId("note").textContent = app.isProposal && has ? `${note}, or choose a shape` : note;
-    }
-    if (change === "link") {
-      byId("gone").hidden = app.isConnected && !app.isDone;
-      byId("gone").classList.toggle("done", app.isDone);
-      byId("gone-title").textContent = app.isDone ? `${state?.program} has the result.` : "pathwarp has ended.";
-      byId("gone-kept").textContent = app.isDone ? "You can close this page." : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.` : `${state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing."} Run “pathwarp edit” again to go on.`;
-    }
-    if (change === "state" && state?.restored && !announced) {
-      announced = true;
-      toast("Your last, unsaved steps are here again");
-    }
-  });
-  var announced = false;
-  byId("warnings").addEventListener("click", () => toast(app.warnings.join(" · ")));
-  var presetDialog = byId("preset-dialog");
-  var presetName = byId("preset-name");
-  on("keep-preset", () => {
-    presetName.value = "";
-    presetDialog.showModal();
-  });
-  on("preset-cancel", () => presetDialog.close());
-  presetDialog.querySelector("form").addEventListener("submit", (e) => {
-    e.preventDefault();
-    void app.attempt(async () => {
-      const { presets } = await app.connection.ask({ do: "keep-preset", name: presetName.value });
-      gallery.showPresets(presets ?? []);
-      presetDialog.close();
-      toast(`${presetName.value} is kept among the shapes`);
-    });
-  });
-  window.addEventListener("dragover", (e) => {
-    e.preventDefault();
-    document.body.classList.add("dropping");
-  });
-  window.addEventListener("dragleave", (e) => {
-    if (!e.relatedTarget) document.body.classList.remove("dropping");
-  });
-  window.addEventListener("drop", (e) => {
-    e.preventDefault();
-    document.body.classList.remove("dropping");
-    const file = e.dataTransfer?.files[0];
-    if (file && !app.state?.program) void openFile(file);
-  });
+  window.addEventListener("blur", hide);
   window.addEventListener("beforeunload", (e) => {
     if (app.state?.program && saving.isUnsaved && app.isConnected) e.preventDefault();
   });
-  var chosen = byId("open-file");
-  on("open", () => chosen.click());
-  chosen.addEventListener("change", () => {
-    const file = chosen.files?.[0];
-    chosen.value = "";
-    if (file) void openFile(file);
-  });
-  async function openFile(file) {
-    const { state } = app;
-    const isUnsaved = state !== null && state.steps.length > 0 && !state.saved;
-    if (isUnsaved && !confirm(`The steps of ${state.file} are not saved. Open ${file.name} all the same?`)) return;
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    let binary = "";
-    for (let i = 0; i < bytes.length; i += 32768) binary += String.fromCharCode(...bytes.subarray(i, i + 32768));
-    const answer = await app.attempt(() => app.connection.ask({ do: "open", name: file.name, bytes: btoa(binary) }));
-    if (!answer?.state) return;
-    stage.forget();
-    await app.load(answer.state);
-  }
 })();

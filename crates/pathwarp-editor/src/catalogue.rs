@@ -36,6 +36,29 @@ const FIXED: [(&str, &str); 9] = [
     ("projective", "base"),
     ("similitude", "target"),
 ];
+/// A parameter that takes the place of others.
+struct Instead {
+    deformation: &'static str,
+    param: &'static str,
+    /// Those that cannot go with it.
+    others: &'static [&'static str],
+    /// The value of another one that goes with it, unless the user gives one.
+    with: Option<(&'static str, &'static str)>,
+}
+
+const INSTEAD: [Instead; 3] = [
+    // A file's own region is in the units of the drawing that it was made for.
+    Instead { deformation: "mesh", param: "mesh", others: &["net", "psd"], with: Some(("region", "artwork")) },
+    Instead { deformation: "mesh", param: "psd", others: &["net", "mesh"], with: None },
+    Instead { deformation: "ffd", param: "lattice", others: &["degree"], with: None },
+];
+/// Names of parameters for people, where the registry's own could be taken for something else.
+const PARAM_LABELS: [(&str, &str, &str); 4] = [
+    ("warp", "horizontal", "Distort horizontally"),
+    ("warp", "vertical", "Distort vertically"),
+    ("mesh", "mesh", "File of points"),
+    ("mesh", "psd", "Photoshop file"),
+];
 /// The deformation whose rows have equally many points, which are control points of one curve each.
 const ROWS: &str = "birational";
 
@@ -76,6 +99,12 @@ fn param(info: &Info, p: &Param) -> Value {
         Kind::Path if info.name == ROWS => out["points"] = json!("rows"),
         Kind::Path if !FIXED.contains(&(info.name, p.name)) => out["points"] = json!("any"),
         _ => {}
+    }
+    if let Some((.., label)) = PARAM_LABELS.iter().find(|(d, name, _)| (*d, *name) == (info.name, p.name)) {
+        out["label"] = json!(label);
+    }
+    if let Some(i) = INSTEAD.iter().find(|i| (i.deformation, i.param) == (info.name, p.name)) {
+        out["instead"] = json!({ "others": i.others, "with": i.with });
     }
     if let Some(default) = p.default {
         out["default"] = json!(default);
@@ -124,6 +153,14 @@ mod tests {
         for (name, param) in FIXED {
             let params = registry.get(name).map(|e| e.info().params).unwrap_or_default();
             assert!(params.iter().any(|p| p.name == param && p.kind == Kind::Path), "{name} {param}");
+        }
+        let named = PARAM_LABELS.iter().map(|(name, param, _)| (*name, *param)).chain(INSTEAD.iter().flat_map(|i| {
+            let others = i.others.iter().copied().chain([i.param]).chain(i.with.map(|(param, _)| param));
+            others.map(|param| (i.deformation, param))
+        }));
+        for (name, param) in named {
+            let params = registry.get(name).map(|e| e.info().params).unwrap_or_default();
+            assert!(params.iter().any(|p| p.name == param), "{name} {param}");
         }
         assert!(registry.get(ROWS).is_some());
         for (name, _) in LABELS {

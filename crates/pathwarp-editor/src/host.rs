@@ -24,6 +24,9 @@ pub trait Host: Send + Sync {
     /// A step names such a file.
     fn admits(&self, recipe: &Recipe) -> Result<(), String>;
 
+    /// The text that names a file in a step.
+    fn reference(&self, file: &Path) -> String;
+
     /// Converts a finished drawing into the format that the extension of `to` names. Returns the bytes and what the format cannot
     /// hold.
     ///

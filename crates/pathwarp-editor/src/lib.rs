@@ -33,4 +33,4 @@ mod stretch;
 
 pub use host::{Artwork, Bent, Fineness, Host, Opened, Summary};
 pub use purpose::Purpose;
-pub use server::{Options, serve};
+pub use server::{News, Options, serve};

@@ -70,6 +70,11 @@ pub(crate) enum Request {
         name: String,
         bytes: String,
     },
+    /// Puts a file that a step is to read, as base64, beside the drawing.
+    Bring {
+        name: String,
+        bytes: String,
+    },
     /// Writes the result to a file; without a name to the usual one.
     Save {
         name: Option<String>,

@@ -39,34 +39,54 @@ pub struct Options {
     pub open: bool,
 }
 
-/// Opens the drawing, calls `announce` with the address of the page, and answers it until it is closed. Returns the steps that the
+/// News for the user while the server starts.
+#[derive(Debug)]
+pub enum News<'a> {
+    /// The address of the page.
+    Address(&'a str),
+    /// No browser could be started to show it.
+    NoBrowser(&'a io::Error),
+}
+
+/// Opens the drawing, announces the address of the page, and answers it until it is closed. Returns the steps that the
 /// user has kept, if a program waits for them.
 ///
 /// # Errors
 /// The drawing cannot be opened, the port is taken, or a program waits and no page opens. Errors are sentences for the user.
-pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl FnOnce(&str)) -> Result<Option<Recipe>, String> {
+pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>)) -> Result<Option<Recipe>, String> {
     let bytes = std::fs::read(&options.file).map_err(|e| format!("{}: cannot be read: {e}", options.file.display()))?;
     // Without a result, the program that waits has its drawing as it was.
     let draft = if options.purpose.program().is_some() { Draft::default() } else { Draft::of(&options.file) };
     let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), draft)?;
     let port = options.port.unwrap_or(0);
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|e| format!("port {port}: {e}"))?;
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|e| unusable(port, &e))?;
     let failed = |e: io::Error| format!("the server cannot run: {e}");
     let guard = Guard::new(listener.local_addr().map_err(failed)?.port()).map_err(failed)?;
     let address = guard.address();
-    announce(&address);
+    announce(&News::Address(&address));
     let waits = options.purpose.program().is_some();
     if options.open && (waits || has_display()) {
-        let opened = open_browser(&address);
-        // Otherwise the address is printed, and a browser that cannot be started is no error.
-        if let (Err(e), true) = (opened, waits) {
-            return Err(format!("no browser can be started: {e}"));
+        match open_browser(&address) {
+            Err(e) if waits => return Err(format!("no browser can be started: {e}")),
+            // The user has the address.
+            Err(e) => announce(&News::NoBrowser(&e)),
+            Ok(()) => {}
         }
     }
     listener.set_nonblocking(true).map_err(failed)?;
     let shared = Arc::new(Shared::new(session));
     accept(&listener, &guard, &shared, waits.then_some(FIRST_PAGE))?;
     Ok(shared.with_session(|s| s.result()))
+}
+
+/// The reason why nothing can listen at a port.
+fn unusable(port: u16, e: &io::Error) -> String {
+    match e.kind() {
+        io::ErrorKind::AddrInUse => {
+            format!("port {port} is in use by another program; choose another one, or none for a free one")
+        }
+        _ => format!("port {port}: {e}"),
+    }
 }
 
 /// Opens the browser that the user names in the usual variable, or else the system's.

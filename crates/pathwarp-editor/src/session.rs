@@ -17,6 +17,7 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::Map as _;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use serde_json::{Value, json};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -114,6 +115,24 @@ impl Session {
         (self.saved, self.restored) = (None, false);
         self.keep();
         Ok(())
+    }
+
+    /// Copies a file that a step is to read beside the drawing, and answers with the text that names it in a step. A file that is
+    /// there already is left as it is.
+    pub(crate) fn bring(&self, name: &str, bytes: &str) -> Result<Value, String> {
+        self.refuse_for_program("a file cannot be put beside the drawing")?;
+        let to = saving::named(name, &self.file)?;
+        let content = STANDARD.decode(bytes).map_err(|e| format!("{name}: {e}"))?;
+        let copied = match std::fs::read(&to) {
+            Ok(old) if old == content => false,
+            Ok(_) => return Err(format!("another file called {name} is beside the drawing; rename one of them")),
+            Err(e) if e.kind() == ErrorKind::NotFound => {
+                self.host.write(&to, &content)?;
+                true
+            }
+            Err(e) => return Err(format!("{}: {e}", to.display())),
+        };
+        Ok(json!({ "written": self.host.reference(&to), "copied": copied }))
     }
 
     /// What a page shows about the session.

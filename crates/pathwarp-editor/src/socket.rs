@@ -124,6 +124,7 @@ impl Page {
                 self.count_change();
                 Ok(json!({ "state": session.state() }))
             }
+            Request::Bring { name, bytes } => session.bring(&name, &bytes),
             Request::Save { name, replace } => {
                 let mut answer = session.save(name.as_deref(), replace)?;
                 self.count_change();

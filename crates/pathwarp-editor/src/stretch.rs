@@ -5,12 +5,15 @@ use pathwarp::map::{Jet, Map};
 use serde_json::{Value, json};
 
 /// Cells along the longer side of the box: fine enough to see where a drawing suffers.
-const CELLS: f64 = 48.0;
+const CELLS: f64 = 80.0;
 /// Fewest cells along the shorter side.
 const FEWEST: f64 = 6.0;
 
-/// The images of the grid's points, row by row (`null` outside of the map's domain), and for each cell the factor of lengths
-/// √|det J| at its middle, negative where the map turns the drawing over against the rest.
+/// Areas that shrink by less than this have not changed: maps that keep areas are computed in floating point.
+const SAME_AREA: f64 = 1e-6;
+
+/// The images of the grid's points, row by row (`null` outside of the map's domain), and for each cell the factor of lengths at its
+/// middle in the direction that changes most, negative where the map turns the drawing over against the rest.
 pub(crate) fn stretch(map: &dyn Map, frame: Rect) -> Value {
     let longer = frame.width().max(frame.height());
     let cells = |side: f64| (CELLS * side / longer).round().max(FEWEST) as usize;
@@ -25,18 +28,22 @@ pub(crate) fn stretch(map: &dyn Map, frame: Rect) -> Value {
     let grid = (0..=rows).flat_map(|j| (0..=columns).map(move |i| at(i as f64, j as f64)));
     let points: Vec<Value> = grid.map(|p| map.point(p)).map(shown).collect();
     let middles = (0..rows).flat_map(|j| (0..columns).map(move |i| at(i as f64 + 0.5, j as f64 + 0.5)));
-    let areas: Vec<f64> = middles.map(|p| area(&map.jet(p))).collect();
+    let factors: Vec<f64> = middles.map(|p| factor(&map.jet(p))).collect();
     // A map may mirror the whole drawing on purpose.
-    let mirrored = areas.iter().filter(|a| **a < 0.0).count() * 2 > areas.len();
-    let factor = |a: &f64| {
-        let length = a.abs().sqrt().copysign(if mirrored { -a } else { *a });
-        if length.is_finite() { json!(length) } else { Value::Null }
-    };
-    json!({ "columns": columns, "points": points, "factors": areas.iter().map(factor).collect::<Vec<_>>() })
+    let mirrored = factors.iter().filter(|f| **f < 0.0).count() * 2 > factors.len();
+    let sign = if mirrored { -1.0 } else { 1.0 };
+    let shown = |f: &f64| if f.is_finite() { json!(sign * f) } else { Value::Null };
+    json!({ "columns": columns, "points": points, "factors": factors.iter().map(shown).collect::<Vec<_>>() })
 }
 
-fn area(jet: &Jet) -> f64 {
-    jet.dx.cross(jet.dy)
+/// The singular value of the derivative that is farther from 1 by its logarithm, with the sign of the determinant. If areas stay the
+/// same, as under a wave or a swirl, both are equally far, and the larger one is shown.
+fn factor(jet: &Jet) -> f64 {
+    let (a, b, c) = (jet.dx.hypot2(), jet.dy.hypot2(), jet.dx.dot(jet.dy));
+    let area = jet.dx.cross(jet.dy);
+    let longest = (0.5 * (a + b) + (0.5 * (a - b)).hypot(c)).sqrt();
+    let grows = area.abs() >= 1.0 - SAME_AREA;
+    (if grows || longest == 0.0 { longest } else { area.abs() / longest }).copysign(area)
 }
 
 fn shown(p: Point) -> Value {
@@ -56,17 +63,34 @@ mod tests {
         }
     }
 
+    struct Shear;
+    impl Formula for Shear {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            (x, y + x * 1.5)
+        }
+    }
+
+    /// A shear by k keeps areas, and stretches one direction by (k + √(k² + 4))/2, which is 2 for k = 3/2.
+    #[test]
+    fn maps_that_keep_areas_stretch_lengths() {
+        let out = stretch(&Shear, Rect::new(0.0, 0.0, 10.0, 10.0));
+        let factors = out["factors"].as_array().unwrap();
+        assert!(factors.iter().all(|f| (f.as_f64().unwrap() - 2.0).abs() < 1e-9), "{factors:?}");
+    }
+
     #[test]
     fn factors_and_folds() {
         let out = stretch(&Fold, Rect::new(0.0, 0.0, 120.0, 40.0));
         let (columns, factors) = (out["columns"].as_u64().unwrap() as usize, out["factors"].as_array().unwrap());
-        assert_eq!((columns, factors.len() % columns), (48, 0));
+        assert_eq!((columns, factors.len() % columns), (CELLS as usize, 0));
         let rows = factors.len() / columns;
         assert_eq!(out["points"].as_array().unwrap().len(), (rows + 1) * (columns + 1));
-        // The larger part, above, is turned over: so the rest stands out.
-        let y = 40.0 * 0.5 / rows as f64;
-        let expected = (2.0 * 0.1 * (30.0 - y)).sqrt();
-        assert!((factors[0].as_f64().unwrap() - expected).abs() < 1e-9);
+        // The larger part, above, is turned over: so the rest stands out. At the top, heights grow more than widths, which are
+        // doubled; beside the fold, they shrink to almost nothing.
+        let height = |row: usize| 0.1 * (30.0 - 40.0 * (row as f64 + 0.5) / rows as f64);
+        assert!((factors[0].as_f64().unwrap() - height(0)).abs() < 1e-9);
+        let last = (0..rows).rfind(|&row| height(row) > 0.0).unwrap();
+        assert!((factors[last * columns].as_f64().unwrap() - height(last)).abs() < 1e-9);
         assert!(factors.last().unwrap().as_f64().unwrap() < 0.0);
     }
 }

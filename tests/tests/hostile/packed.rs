@@ -11,8 +11,13 @@ fn words(words: &[u32]) -> Vec<u8> {
 
 /// `PROP_VECTORS` with one path of two anchors.
 fn path() -> Vec<u8> {
-    let mut content = words(&[1, 0, 1, 2]);
-    content.extend(b"p\0");
+    path_named("p")
+}
+
+fn path_named(name: &str) -> Vec<u8> {
+    let mut content = words(&[1, 0, 1, u32::try_from(name.len()).unwrap() + 1]);
+    content.extend(name.as_bytes());
+    content.push(0);
     content.extend(words(&[1, 1, 0, 0, 1, 1, 0, 2, 6]));
     for (i, [x, y]) in
         [[1.0, 2.0], [1.0, 2.0], [3.0, 9.0], [40.0, 5.0], [50.0, 60.0], [50.0, 60.0_f32]].iter().enumerate()
@@ -76,4 +81,24 @@ fn overlapping_layers_are_damage() {
         assert_eq!(code != 0, rewrites, "{command:?}: {code} {said}");
     }
     assert!(!folder.path().join("o.xcf").exists());
+}
+
+/// A name that turns the terminal red and sets its title, and one as long as the file.
+#[test]
+fn names_are_fit_for_a_terminal() {
+    let file = |name: &str| xcf("v003", &[path_named(name), words(&[0; 8])].concat());
+    let (red, long) = ("\x1b[31mred\x1b]0;title\x07", "a".repeat(500_000));
+    let folder = Folder::with(&[("red.xcf", &file(red)), ("long.xcf", &file(&long))]);
+    let list = std::process::Command::new(crate::support::pathwarp_program())
+        .args(["paths", "red.xcf"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let listed = String::from_utf8(list.stdout).unwrap();
+    assert!(list.status.success() && listed.contains("\\u{1b}[31mred\\u{1b}]0;title\\u{7}"), "{listed}");
+    for file in ["red.xcf", "long.xcf"] {
+        let (code, said) = folder.run(&["bend", file, "--along", &format!("{file}#q"), "-o", "o.svg"]);
+        assert_eq!((code, said.contains("there is no path of this name")), (3, true), "{said}");
+        assert!(said.len() < 3000 && !said.contains('\x1b'), "{file}: {said}");
+    }
 }

@@ -4,7 +4,7 @@ use super::file_args;
 use crate::failure::Failure;
 use crate::options::{Given, reading_args};
 use crate::status::Status;
-use crate::{input, output};
+use crate::{input, output, readable};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::budget::Exceeded;
 use pathwarp::distance;
@@ -174,15 +174,17 @@ fn counterparts(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
 
 fn table(c: &Comparison) -> String {
     let mut out = String::new();
-    let width = output::column(c.paths.iter().map(|p| p.id.as_str()));
+    let ids: Vec<_> = c.paths.iter().map(|p| readable::name(&p.id)).collect();
+    let width = output::column(ids.iter().map(AsRef::as_ref));
     let _ = writeln!(out, "{:width$}  segments      distance", "id");
-    for p in &c.paths {
+    for (p, id) in c.paths.iter().zip(ids) {
         let d = p.distance.map_or_else(|| "empty".to_owned(), |d| format!("{d:.6}"));
-        let _ = writeln!(out, "{:width$}  {:>4} {:>4}  {d:>12}", p.id, p.segments_a, p.segments_b);
+        let _ = writeln!(out, "{id:width$}  {:>4} {:>4}  {d:>12}", p.segments_a, p.segments_b);
     }
     for (name, ids) in [("first", &c.only_in_a), ("second", &c.only_in_b)] {
         if !ids.is_empty() {
-            let _ = writeln!(out, "only in the {name}: {}", ids.join(", "));
+            let ids = ids.join(", ");
+            let _ = writeln!(out, "only in the {name}: {}", readable::name(&ids));
         }
     }
     let _ = writeln!(out, "largest distance: {:.6}", c.max_distance);

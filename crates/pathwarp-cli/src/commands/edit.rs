@@ -7,16 +7,13 @@ use crate::options::{self, Given};
 use crate::output;
 use crate::plugins::Plugins;
 use crate::status::Status;
-use crate::temporaries;
+use crate::{temporaries, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
-use pathwarp_editor::{Options, Purpose};
+use pathwarp_editor::{News, Options, Purpose};
 use std::sync::Arc;
 
 pub(super) const NAME: &str = "edit";
-
-/// The exit code after Ctrl-C: a shell's for SIGINT.
-const INTERRUPTED: i32 = 130;
 
 pub(super) fn command() -> Command {
     Command::new(NAME)
@@ -52,13 +49,16 @@ pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Res
         port: m.get_one::<u16>("port").copied(),
         open: !m.get_flag("no-open"),
     };
-    // Ctrl-C is the usual end of this command, so it needs no message.
-    let _ = ctrlc::set_handler(|| temporaries::remove_all_and(|| std::process::exit(INTERRUPTED)));
+    // Ctrl-C is the usual end of this command.
+    temporaries::on_interruption_end_quietly();
     // A point dragged past the page takes artwork there, which is to be kept.
     let mut usual = Given::default();
     usual.set("fit", "grow").map_err(Failure::Usage)?;
     let host = Arc::new(EditorHost::new(registry.clone(), usual, Given::options(m)).with_plugins(&plugins.given));
-    let announce = |address: &str| drop(output::to_stdout(format!("{address}\n").as_bytes()));
+    let announce = |news: &News<'_>| match news {
+        News::Address(address) => drop(output::to_stdout(format!("{address}\n").as_bytes())),
+        News::NoBrowser(e) => terminal::warning(&format!("no browser can be started ({e}); open the address in one")),
+    };
     pathwarp_editor::serve(host, &options, announce).map_err(Failure::Input)?;
     Ok(Status::Complete)
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::input::{self, GimpFile};
 use crate::options::{Given, reading_args};
 use crate::status::Status;
-use crate::{output, terminal};
+use crate::{output, readable, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::decimal::trimmed;
 use serde::Serialize;
@@ -119,10 +119,11 @@ fn stroke(s: &pathwarp_gimp::Stroke) -> ListedStroke {
 
 fn table(paths: &[ListedPath]) -> String {
     let mut out = String::new();
-    let width = output::column(paths.iter().map(|p| p.name.as_str()));
+    let names: Vec<_> = paths.iter().map(|p| readable::name(&p.name)).collect();
+    let width = output::column(names.iter().map(AsRef::as_ref));
     let what = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
     let _ = writeln!(out, "{:width$}  {what:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
-    for p in paths {
+    for (p, name) in paths.iter().zip(names) {
         let closed: Vec<&str> = p.strokes.iter().map(|s| if s.closed { "closed" } else { "open" }).collect();
         let all_same = closed.windows(2).all(|w| w[0] == w[1]);
         let closed = if closed.is_empty() {
@@ -140,9 +141,9 @@ fn table(paths: &[ListedPath]) -> String {
         };
         let bounds = p.bounds.map_or(String::new(), |b| b.map(|v| trimmed(v, 6)).join(" "));
         let what = p.visible.map(|v| if v { "visible" } else { "hidden" }).or(p.element.as_deref()).unwrap_or_default();
-        let _ = write!(out, "{:width$}  {what:8}  {closed:7}  {anchors:>7}  {bounds}", p.name);
+        let _ = write!(out, "{name:width$}  {what:8}  {closed:7}  {anchors:>7}  {bounds}");
         if let Some(l) = p.label.as_ref().or(p.title.as_ref()) {
-            let _ = write!(out, "  ({l})");
+            let _ = write!(out, "  ({})", readable::name(l));
         }
         out.push('\n');
     }

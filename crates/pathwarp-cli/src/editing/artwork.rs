@@ -12,7 +12,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_editor::{Artwork, Bent, Fineness, Summary};
 use pathwarp_svg::{Document, PageFit};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A drawing in the editor.
@@ -26,6 +26,8 @@ pub(super) struct EditedArtwork {
     flags: Arc<Flags>,
     /// The files of plug-ins that a command line has to name.
     plugins: Vec<String>,
+    /// The folder of the drawing, where its results go.
+    folder: PathBuf,
     /// The frame for the guides and the baseline of the last picture.
     framed: Option<Framed>,
 }
@@ -63,12 +65,17 @@ impl EditedArtwork {
             shown,
             flags: Arc::clone(flags),
             plugins: Vec::new(),
+            folder: PathBuf::new(),
             framed: None,
         }
     }
 
     pub(super) fn with_plugins(self, files: &[String]) -> Self {
         Self { plugins: files.to_vec(), ..self }
+    }
+
+    pub(super) fn in_folder(self, folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), ..self }
     }
 
     /// Looks up references, chooses the frame and builds the steps.
@@ -102,7 +109,7 @@ impl EditedArtwork {
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
         let Ready { resolved, built, bounds, tolerance } = self.ready(recipe)?;
-        let text = || recipe_file::write(&*self.registry, recipe, &self.given, Path::new(""));
+        let text = || recipe_file::write(&*self.registry, recipe, &self.given, &self.folder);
         let embedded_recipe = (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?;
         let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
         let options = if let Fineness::Finished { .. } = fineness { &self.options } else { &self.shown };
@@ -176,6 +183,6 @@ impl Artwork for EditedArtwork {
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        self.said(recipe_file::write(&*self.registry, recipe, &self.given, Path::new("")))
+        self.said(recipe_file::write(&*self.registry, recipe, &self.given, &self.folder))
     }
 }

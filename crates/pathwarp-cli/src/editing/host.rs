@@ -66,7 +66,8 @@ impl EditorHost {
         };
         let options = given.read()?;
         let svg = SvgArtwork::read(source, file, &options, None)?;
-        let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags).with_plugins(&self.plugins);
+        let artwork = EditedArtwork::new(svg, &self.registry, given, options, &self.flags);
+        let artwork = artwork.with_plugins(&self.plugins).in_folder(folder);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
@@ -103,6 +104,10 @@ impl Host for EditorHost {
     fn admits(&self, recipe: &Recipe) -> Result<(), String> {
         let external = self.said(self.given.read())?.reading.external;
         recipe_file::check_files(&*self.registry, recipe, external)
+    }
+
+    fn reference(&self, file: &Path) -> String {
+        recipe_file::from_here(file)
     }
 
     fn export(&self, svg: String, to: &Path) -> Result<(Vec<u8>, Vec<String>), String> {

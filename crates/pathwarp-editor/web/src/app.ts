@@ -6,13 +6,20 @@ import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } f
 
 /** While something is dragged, curves may be off by this share of a px of the screen. */
 const DRAFT = 0.35;
+/** The event that says when a quick picture was asked for, answered and in the page. */
+const DRAFTED = "pathwarp-drafted";
+/** The pause after which keys count as one change, in ms. */
+const KEYS = 500;
 
-export type Change = "state" | "steps" | "picture" | "handles" | "report" | "link";
+export type Change = "state" | "steps" | "handles" | "report" | "link";
 
 /** Where a picture goes. */
 export interface Screen {
   show(answer: Answer): void;
+  /** The length of a px, in user units. */
   readonly pixel: number;
+  /** Shows the whole page, unless the user looks at a detail. */
+  reveal(): void;
 }
 
 export class App {
@@ -23,6 +30,10 @@ export class App {
   selected = 0;
   /** The steps are a first proposal that nothing has been done with. */
   isProposal = false;
+  /** The step being changed is more than a shape that has just been chosen. */
+  isWorkedOn = false;
+  /** The next shape that is chosen becomes a step after the others. */
+  appends = false;
   grips: StepGrips[] = [];
   handles: Handles | null = null;
   summary: Summary | null = null;
@@ -33,7 +44,7 @@ export class App {
   isDone = false;
   /** A handle is being dragged, so the handles stay as they are. */
   isDragging = false;
-  screen: Screen = { show: () => {}, pixel: 1 };
+  screen: Screen = { show: () => {}, pixel: 1, reveal: () => {} };
 
   private listeners: ((change: Change) => void)[] = [];
   private isBusy = false;
@@ -41,6 +52,8 @@ export class App {
   private since = 0;
   /** Changes of the steps, one after another. */
   private turns: Promise<unknown> = Promise.resolve();
+  /** Runs while keys move a handle, until the steps are committed. */
+  private pause = 0;
   readonly connection: Connection;
 
   constructor() {
@@ -96,6 +109,8 @@ export class App {
     this.steps = structuredClone(state.steps);
     this.selected = Math.max(0, Math.min(this.steps.length - 1, Math.max(this.selected, this.steps.length - 1)));
     this.isProposal = false;
+    this.isWorkedOn = this.steps.length > 0;
+    this.appends = false;
     this.tell("state");
     const first = this.catalogue[0];
     if (this.steps.length === 0 && first) {
@@ -140,9 +155,8 @@ export class App {
         const answer = await this.connection.ask({ do: "bend", steps: this.visible, draft: DRAFT * this.screen.pixel });
         const answered = performance.now();
         this.take(answer);
-        const detail = { waited: asked - start, answered: answered - asked, size: this.connection.size };
-        performance.measure("drag to picture", { start, end: performance.now(), detail });
-        performance.mark("pathwarp picture");
+        const detail = { start, asked, answered, shown: performance.now(), size: this.connection.size };
+        window.dispatchEvent(new CustomEvent(DRAFTED, { detail }));
       });
     } while (this.isWanted);
     this.isBusy = false;
@@ -151,9 +165,11 @@ export class App {
   /** Makes the present steps the ones to undo from and to save. */
   async commit(): Promise<void> {
     this.isWanted = false;
+    this.endPause();
     const done = await this.attempt(async () => {
       const answer = await this.connection.ask({ do: "commit", steps: this.steps, shown: this.selected + 1 });
       this.isProposal = false;
+      this.isWorkedOn = true;
       this.take(answer);
       return true;
     });
@@ -164,9 +180,37 @@ export class App {
     this.fail(problem);
   }
 
+  /** Commits when no other key follows for a while. */
+  commitSoon(): void {
+    this.isDragging = true;
+    clearTimeout(this.pause);
+    this.pause = window.setTimeout(() => void this.flush(), KEYS);
+  }
+
+  /** Commits what keys have done so far, if anything. */
+  async flush(): Promise<void> {
+    if (this.endPause()) await this.commit();
+  }
+
+  private endPause(): boolean {
+    if (this.pause === 0) return false;
+    clearTimeout(this.pause);
+    this.pause = 0;
+    this.isDragging = false;
+    return true;
+  }
+
+  /** Takes back what has been dragged since the last commit: the step is as it was. */
+  cancel(step: Step): void {
+    this.isDragging = false;
+    this.isWanted = false;
+    this.steps = this.steps.map((s, i) => (i === this.selected ? step : s));
+    void this.refresh();
+  }
+
   /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
   private inTurn(work: () => Promise<void>): Promise<void> {
-    const done = this.turns.then(work);
+    const done = this.turns.then(() => this.flush()).then(work);
     this.turns = done.catch(() => undefined);
     return done;
   }
@@ -186,24 +230,35 @@ export class App {
     });
   }
 
-  /** Replaces the step being changed, or appends one. */
-  choose(deformation: string, args: Record<string, string[]>, append: boolean, variant: string | null = null): Promise<void> {
-    return this.inTurn(() => this.chosen(deformation, args, append, variant));
+  /** Starts or ends the choice of a shape for a further step. */
+  append(appends: boolean): void {
+    this.appends = appends;
+    this.tell("steps");
   }
 
-  private async chosen(deformation: string, args: Record<string, string[]>, append: boolean, variant: string | null): Promise<void> {
-    const at = append ? this.steps.length : this.selected;
+  /** Replaces the step being changed, or appends one if that is wanted. */
+  choose(deformation: string, args: Record<string, string[]>, variant: string | null = null): Promise<void> {
+    const { appends } = this;
+    this.appends = false;
+    return this.inTurn(() => this.chosen(deformation, args, appends, variant));
+  }
+
+  private async chosen(deformation: string, args: Record<string, string[]>, appends: boolean, variant: string | null): Promise<void> {
+    const at = appends ? this.steps.length : this.selected;
     const before = this.steps.slice(0, at);
     const step = await this.opening(deformation, before, variant);
     if (!step) return;
     Object.assign(step.args, args);
-    this.steps = append ? [...this.steps, step] : this.steps.map((s, i) => (i === at ? step : s));
+    this.steps = appends ? [...this.steps, step] : this.steps.map((s, i) => (i === at ? step : s));
     if (this.steps.length === 0) this.steps = [step];
     this.selected = Math.min(at, this.steps.length - 1);
     this.tell("steps");
     this.dropHandles();
     await this.commit();
+    this.isWorkedOn = false;
     this.tell("steps");
+    // A shape may need more room than the last one.
+    this.screen.reveal();
   }
 
   /** Changes the list of steps. */
@@ -213,6 +268,7 @@ export class App {
 
   private async arranged(steps: Step[], selected: number): Promise<void> {
     this.steps = steps;
+    this.appends = false;
     this.selected = Math.max(0, Math.min(selected, steps.length - 1));
     this.tell("steps");
     this.dropHandles();
@@ -238,6 +294,11 @@ export class App {
     if (name === presets) for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step.args[other];
     if (values.length === 0) delete step.args[name];
     else step.args[name] = values;
+    const instead = this.deformation(step.deformation)?.params.find((p) => p.name === name)?.instead;
+    if (instead && values.length > 0) {
+      for (const other of instead.others) delete step.args[other];
+      if (instead.with) step.args[instead.with[0]] ??= [instead.with[1]];
+    }
     if (isDone) void this.commit();
     else this.draft(performance.now());
   }
@@ -256,7 +317,6 @@ export class App {
     this.summary = answer.summary ?? null;
     if (answer.grips) this.grips = answer.grips;
     this.screen.show(answer);
-    this.tell("picture");
     if (!this.isDragging) this.takeHandles();
     this.tell("report");
   }

@@ -5,7 +5,7 @@ import type { XY } from "./types";
 type Affine = [number, number, number, number, number, number];
 
 /** The smallest and largest magnification. */
-const RANGE: XY = [0.02, 200];
+const RANGE: XY = [1e-4, 1e5];
 
 export class Camera {
   /** Screen = scale · px + shift. */
@@ -51,14 +51,8 @@ export class Camera {
     this.scale = scale;
   }
 
-  /** Shows a box of the drawing, in user units, in the middle of a view of this size. */
-  fit([x, y, w, h]: [number, number, number, number], [width, height]: XY, margin: number): void {
-    this.scale = 1;
-    this.shift = [0, 0];
-    const corners = ([[x, y], [x + w, y], [x, y + h], [x + w, y + h]] as XY[]).map((p) => this.toScreen(p));
-    const xs = corners.map((p) => p[0]);
-    const ys = corners.map((p) => p[1]);
-    const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  /** Shows a box of the drawing, two corners in px of it, in the middle of a view of this size. */
+  fit([x0, y0, x1, y1]: [number, number, number, number], [width, height]: XY, margin: number): void {
     const room = (size: number) => Math.max(size - 2 * margin, size / 3);
     const scale = Math.min(room(width) / Math.max(x1 - x0, 1e-9), room(height) / Math.max(y1 - y0, 1e-9));
     this.scale = Math.min(Math.max(scale, RANGE[0]), RANGE[1]);

@@ -2,7 +2,7 @@
 
 import type { Adjust, Deformation, Grip, Handle, Line, Param, XY } from "./types";
 import { adjustName } from "./values";
-import { words } from "./dom";
+import { words } from "./names";
 
 type Frame = [number, number, number, number];
 

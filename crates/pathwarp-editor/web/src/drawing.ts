@@ -16,6 +16,9 @@ const ELEMENTS = new Set(
 /** Links lead into the drawing or hold a picture. */
 const LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
 
+/** A paint or an effect from elsewhere. */
+const LOADS = /url\(\s*["']?(?!#)/i;
+
 /** Copies an element with what is allowed of it. */
 function copy(from: Element, lines: (Element | null)[] | null): Element | null {
   if (from.namespaceURI !== SVG || !ELEMENTS.has(from.localName)) {
@@ -51,11 +54,11 @@ function set(element: Element, name: string, value: string): void {
   if (name === "style") {
     // The page's policy forbids style attributes; properties can be set one by one.
     for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
-      if (property) (element as SVGElement).style.setProperty(property.trim(), rest.join(":").trim());
+      if (property && !LOADS.test(rest.join(":"))) (element as SVGElement).style.setProperty(property.trim(), rest.join(":").trim());
     }
     return;
   }
-  if (/url\(\s*["']?(?!#)/i.test(value)) return;
+  if (LOADS.test(value)) return;
   element.setAttribute(name, value);
 }
 

@@ -1,7 +1,10 @@
 // The choice of shapes: every deformation and every preset, each with a small picture of this very artwork.
 
 import type { App } from "./app";
-import { byId, called, h, icon, words } from "./dom";
+import { byId, h, icon } from "./dom";
+import { called, capital, stepName, words } from "./names";
+import { toast } from "./toast";
+import { DRAGGED } from "./values";
 import type { Deformation, Step } from "./types";
 
 interface Card {
@@ -16,9 +19,6 @@ interface Card {
   words: string;
 }
 
-/** Parameters of these kinds and notations are dragged on the canvas. */
-const DRAGGED = new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
-
 export class Gallery {
   private box = byId("gallery");
   private search = byId<HTMLInputElement>("search");
@@ -27,8 +27,6 @@ export class Gallery {
   private isDrawing = false;
   private own = h("section", { hidden: true });
   private shownFile = "";
-  /** The next choice is put after the other steps. */
-  appends = false;
   private seen = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       const card = this.cards.find((c) => c.button === entry.target);
@@ -91,28 +89,36 @@ export class Gallery {
       return h("li", {}, use, forget);
     };
     this.own.hidden = names.length === 0;
-    this.own.replaceChildren(h("h3", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
+    this.own.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
   }
 
   private section(title: string, cards: Card[]): HTMLElement {
     const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
     cards.forEach(({ button }, i) => (button.tabIndex = i === 0 ? 0 : -1));
     items.addEventListener("keydown", (e) => walk(e, items));
-    return h("section", {}, h("h3", {}, title), items);
+    return h("section", {}, h("h2", {}, title), items);
   }
 
   private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
     const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
     const card: Card = { button, image, steps, deformation, args, variant, words: button.textContent ?? "" };
-    button.addEventListener("click", () => {
-      void this.app.choose(deformation, args, this.appends, variant?.label ?? null);
-      this.appends = false;
-      document.body.classList.remove("shapes-open");
-    });
+    button.addEventListener("click", () => void this.choose(card));
     this.cards.push(card);
     this.seen.observe(button);
     return card;
+  }
+
+  private async choose({ deformation, args, variant }: Card): Promise<void> {
+    const { app } = this;
+    const { step } = app;
+    // Styles are tried one after another, but nobody should wonder what has become of work by hand.
+    const isReplaced = app.isWorkedOn && !app.appends && step?.deformation !== deformation;
+    const name = (step: Step | undefined) => (step ? stepName(step, app.deformation(step.deformation)) : "");
+    const old = name(step);
+    document.body.classList.remove("shapes-open");
+    await app.choose(deformation, args, variant?.label ?? null);
+    if (isReplaced) toast(`${name(app.step)} replaces ${old}. Undo brings it back, “Add step” keeps both`);
   }
 
   private whole(d: Deformation, variant: Card["variant"] = null): Card {
@@ -190,8 +196,4 @@ function walk(e: KeyboardEvent, items: HTMLElement): void {
 
 function isDragged(d: Deformation): boolean {
   return d.params.some((p) => (p.kind === "path" && p.name !== "base") || DRAGGED.has(p.notation ?? ""));
-}
-
-function capital(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
 }

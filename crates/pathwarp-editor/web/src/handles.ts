@@ -3,7 +3,7 @@
 import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
-import { called, words } from "./dom";
+import { called, words } from "./names";
 import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
 
 /** A place on a path of a parameter. */
@@ -17,7 +17,9 @@ interface Near {
 /** A line that is held. */
 export interface Pull {
   param: string;
-  move: (to: XY, smooth: boolean) => void;
+  handles: Handle[];
+  /** The places of the handles when the line is pulled to a place. */
+  targets: (to: XY) => XY[];
 }
 
 /** Near its ends, a curve would need control points far away to follow a pointer. */
@@ -234,10 +236,8 @@ export class Handles {
     const from = [[...first.get()], [...second.get()]] as [XY, XY];
     return {
       param: name,
-      move: (to, smooth) => [first, second].forEach((h, i) => {
-        const [x, y] = from[i]!;
-        h.set([x + shares[i]! * (to[0] - at[0]), y + shares[i]! * (to[1] - at[1])], smooth);
-      }),
+      handles: [first, second],
+      targets: (to) => from.map(([x, y], i) => [x + shares[i]! * (to[0] - at[0]), y + shares[i]! * (to[1] - at[1])]),
     };
   }
 
@@ -245,7 +245,7 @@ export class Handles {
     const radius = this.handles.find((h) => h.key === "radius");
     const [grip, centre] = [this.grips.radius, this.grips.center?.point];
     if (!radius || !centre || Math.abs(Math.hypot(at[0] - centre[0], at[1] - centre[1]) - (grip?.value ?? 0)) > reach) return null;
-    return { param: "radius", move: (to, smooth) => radius.set(to, smooth) };
+    return { param: "radius", handles: [radius], targets: (to) => [to] };
   }
 
   /** Adds a point to the path that passes near a place. Returns the key of its handle. */

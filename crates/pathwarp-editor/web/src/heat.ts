@@ -27,10 +27,13 @@ export function cells({ columns, points, factors }: Stretch, place: (p: XY) => X
 /** The opacity of a full colour; the drawing shows through. */
 const STRONGEST = 0.8;
 
+/** Steps from no colour to a full one. */
+const STEPS = 16;
+
 /** The colour and opacity of a factor, in few steps, so that equal cells are one shape. */
 function shade(factor: number): string {
   if (factor < 0) return "#e11d2e/0.85";
   const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));
-  const step = Math.round(amount * 8) / 8;
+  const step = Math.round(amount * STEPS) / STEPS;
   return `${step < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step)).toFixed(3)}`;
 }

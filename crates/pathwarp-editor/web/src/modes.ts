@@ -1,7 +1,7 @@
 // The ways of moving a handle: snapping, symmetry, smooth nodes.
 
 import { byId, s } from "./dom";
-import type { Handles } from "./handles";
+import type { Handles, Pull } from "./handles";
 import type { Handle, XY } from "./types";
 
 export class Modes {
@@ -12,10 +12,29 @@ export class Modes {
   /** Shows where the handle has snapped to; the points are in user units. */
   onSnap: (x: number | null, y: number | null) => void = () => {};
 
+  /** A function that pulls a line, and its reflection if symmetry is on. */
+  puller(handles: Handles, { handles: own, targets }: Pull): (to: XY) => void {
+    const partners = own.map((handle) => (this.mirrors ? handles.partner(handle) : null));
+    const mirrored = reflection(handles);
+    return (to) => {
+      const wanted = targets(to);
+      own.forEach((handle, i) => {
+        const partner = partners[i] ?? null;
+        const at = wanted[i]!;
+        // Of a line that is its own reflection, each end takes half of what both are to do.
+        const k = partner ? own.indexOf(partner) : -1;
+        const other = k < 0 ? at : mirrored(wanted[k]!);
+        const target: XY = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
+        handle.set(target, this.smooths);
+        if (k < 0) partner?.set(mirrored(target), this.smooths);
+      });
+    };
+  }
+
   /** A function that moves a handle, and its partner if symmetry is on. */
   mover(handles: Handles, handle: Handle): (to: XY, e: PointerEvent | null) => void {
     const partner = this.mirrors ? handles.partner(handle) : null;
-    const [left, , width] = handles.frame;
+    const mirrored = reflection(handles);
     // Others keep still while one is moved, so what it snaps to is looked up once.
     this.marks = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
     const start: XY = [...handle.get()];
@@ -24,7 +43,7 @@ export class Modes {
       const [dx, dy] = [to[0] - start[0], to[1] - start[1]];
       const target: XY = e?.shiftKey ? (Math.abs(dx) > Math.abs(dy) ? [to[0], start[1]] : [start[0], to[1]]) : to;
       handle.set(target, this.smooths);
-      partner?.set([2 * left + width - target[0], target[1]], this.smooths);
+      partner?.set(mirrored(target), this.smooths);
     };
   }
 
@@ -45,6 +64,11 @@ export class Modes {
   clear(): void {
     this.onSnap(null, null);
   }
+}
+
+/** The reflection in the vertical through the middle of the frame. */
+function reflection({ frame: [left, , width] }: Handles): (p: XY) => XY {
+  return ([x, y]) => [2 * left + width - x, y];
 }
 
 function nearest(value: number, among: number[], reach: number): number | null {

@@ -2,6 +2,7 @@
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
+import { toast } from "./toast";
 
 const FORMATS: [string, string, string][] = [
   ["svg", "SVG", "Can be opened here again"],
@@ -26,7 +27,7 @@ export class Saving {
       formats.append(h("label", { class: "format" }, input, h("span", {}, h("b", {}, title), h("small", {}, use))));
     }
     byId("save").addEventListener("click", () => void this.quick());
-    byId("save-as").addEventListener("click", () => this.open());
+    byId("save-as").addEventListener("click", () => void this.open());
     byId("save-cancel").addEventListener("click", () => this.dialog.close());
     this.dialog.querySelector("form")!.addEventListener("submit", (e) => {
       e.preventDefault();
@@ -75,6 +76,7 @@ export class Saving {
 
   /** Saves where it was saved last; the first time, under the usual name. */
   async quick(): Promise<void> {
+    await this.app.flush();
     const { state } = this.app;
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
     if (!state || state.steps.length === 0) return;
@@ -83,9 +85,10 @@ export class Saving {
     if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
   }
 
-  open(): void {
+  async open(): Promise<void> {
+    await this.app.flush();
     const { state } = this.app;
-    if (!state || state.steps.length === 0 || state.program) return;
+    if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
     this.name.value = state.target;
     this.choose("svg");
     byId("save-folder").textContent = state.folder;
@@ -138,15 +141,4 @@ export class Saving {
     }
     this.dialog.close();
   }
-}
-
-let fading = 0;
-
-/** Shows a short message. */
-export function toast(text: string): void {
-  const box = byId("toast");
-  box.textContent = text;
-  box.classList.add("on");
-  clearTimeout(fading);
-  fading = window.setTimeout(() => box.classList.remove("on"), 5000);
 }

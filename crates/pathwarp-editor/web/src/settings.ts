@@ -1,9 +1,12 @@
 // The settings of a step: one control for every parameter, made from the registry's table.
 
 import type { App } from "./app";
-import { byId, h, words } from "./dom";
+import { byId, h } from "./dom";
+import { capital, paramName, words } from "./names";
+import { base64 } from "./opening";
+import { toast } from "./toast";
 import type { Adjust, Param } from "./types";
-import { adjustName, adjustUnit, readAdjust, short, writeAdjust } from "./values";
+import { adjustName, adjustUnit, DRAGGED, readAdjust, short, writeAdjust } from "./values";
 
 /** The sliders of lengths, in percentages of the artwork; shifts go both ways. */
 const OF_ARTWORK: [number, number] = [0, 100];
@@ -29,22 +32,22 @@ export class Settings {
   private build(): void {
     const { step } = this.app;
     const deformation = this.app.deformation(step?.deformation);
-    const signature = `${this.app.selected}:${step?.deformation}:${step?.args ? Object.keys(step.args).join() : ""}:${this.adjusts(deformation?.params ?? []).join()}`;
+    const params = deformation?.params ?? [];
+    const signature = [this.app.selected, step?.deformation, ...this.adjusts(params)].join();
     if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
     this.shown = signature;
     this.refreshers = [];
     if (!step || !deformation) return this.box.replaceChildren();
-    const isShown = (p: Param) => isMain(p) || this.app.grip(p.name)?.adjust !== undefined;
-    const main = deformation.params.filter(isShown);
-    const more = deformation.params.filter((p) => !isShown(p));
-    const gives = more.some((p) => p.kind === "file" && step.args[p.name]);
-    const parts = [
+    const main = params.filter((p) => isMain(p, step.args[p.name] !== undefined) || this.app.grip(p.name)?.adjust !== undefined);
+    const more = params.filter((p) => !main.includes(p));
+    const focused = this.box.contains(document.activeElement) ? document.activeElement?.id : undefined;
+    this.box.replaceChildren(
       h("p", { class: "about" }, sentence(deformation.title)),
       ...main.map((p) => this.control(p)),
-      more.length > 0 && h("details", { class: "more", open: gives }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p))),
-    ];
-    this.box.replaceChildren(...parts.filter((part) => part !== false));
+      more.length > 0 ? h("details", { class: "more" }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p))) : "",
+    );
     this.refresh();
+    if (focused) document.getElementById(focused)?.focus();
   }
 
   private refresh(): void {
@@ -62,13 +65,15 @@ export class Settings {
   private control(p: Param): HTMLElement {
     const id = `set-${p.name}`;
     const title = plain(p.help);
-    const label = h("label", { for: id, title }, p.kind === "angle" ? `${words(p.name)} (°)` : words(p.name));
+    const label = h("label", { for: id, title }, p.kind === "angle" ? `${paramName(p)} (°)` : paramName(p));
     const adjust = this.app.grip(p.name)?.adjust;
     if (adjust) return h("div", {}, ...adjust.map((_, i) => this.adjust(p, adjust, i, title)));
     switch (p.kind) {
       case "flag": return this.flag(p, id, title);
-      case "choice": return h("div", { class: "field", title }, label, this.choice(p, id));
-      case "name": return h("div", { class: "field", title }, label, this.select(p, id));
+      case "choice": return this.choice(p, id, label, title);
+      case "count": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.count(p, id)));
+      case "file": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.text(p, id));
+      case "name": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.select(p, id));
       case "number": case "length": case "angle": return this.slider(p, id, label, title);
       case "path": {
         const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
@@ -83,18 +88,46 @@ export class Settings {
     const box = h("input", { type: "checkbox", id, role: "switch" });
     box.addEventListener("change", () => this.app.set(p.name, box.checked ? ["true"] : [], true));
     this.refreshers.push(() => (box.checked = this.values(p)[0] === "true"));
-    return h("label", { class: "field switch", for: id, title }, h("span", {}, words(p.name)), box);
+    return h("label", { class: "field switch", for: id, title }, h("span", {}, paramName(p)), box);
   }
 
-  private choice(p: Param, id: string): HTMLElement {
-    if ((p.words ?? []).length > SIDE_BY_SIDE) return this.select(p, id);
-    const buttons = (p.words ?? []).map((word) => {
-      const button = h("button", { type: "button", role: "radio" }, words(word));
-      button.addEventListener("click", () => this.app.set(p.name, [word], true));
-      this.refreshers.push(() => button.setAttribute("aria-checked", String(this.current(p) === word)));
-      return button;
+  private choice(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {
+    const all = p.words ?? [];
+    if (all.length > SIDE_BY_SIDE) return h("div", { class: "field", title }, label, this.select(p, id));
+    const options = all.map((word, i) => {
+      const input = h("input", { type: "radio", name: id, value: word, id: `${id}-${i}` });
+      input.addEventListener("change", () => this.app.set(p.name, [word], true));
+      this.refreshers.push(() => (input.checked = this.current(p) === word));
+      return h("label", {}, input, h("span", {}, words(word)));
     });
-    return h("div", { class: "segments", role: "radiogroup", id, "aria-label": words(p.name) }, ...buttons);
+    return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
+  }
+
+  private count(p: Param, id: string): HTMLInputElement {
+    const input = h("input", { type: "number", id, class: "value", step: 1, min: p.least, max: p.most, placeholder: p.default });
+    input.addEventListener("change", () => this.app.set(p.name, input.value === "" ? [] : [input.value], true));
+    this.refreshers.push(() => {
+      if (document.activeElement !== input) input.value = this.current(p);
+    });
+    return input;
+  }
+
+  /** Chooses a file. Pages do not learn where it is, so a copy goes beside the drawing. */
+  private chooseFile(p: Param): HTMLElement {
+    const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
+    input.addEventListener("change", async () => {
+      const file = input.files?.[0];
+      input.value = "";
+      if (!file) return;
+      const bytes = await base64(file);
+      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "bring", name: file.name, bytes }));
+      if (!answer?.written) return;
+      if (answer.copied) toast(`${file.name} was copied beside the drawing`);
+      this.app.set(p.name, [answer.written], true);
+    });
+    const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
+    button.addEventListener("click", () => input.click());
+    return h("span", {}, input, button);
   }
 
   private select(p: Param, id: string): HTMLSelectElement {
@@ -102,6 +135,7 @@ export class Settings {
     select.addEventListener("change", () => this.app.set(p.name, [select.value], true));
     this.refreshers.push(() => {
       const value = this.current(p);
+      // A file stands before the names.
       if (!(p.words ?? []).includes(value) && select.options[0]?.value !== value) {
         select.prepend(h("option", { value }, value || "—"));
       }
@@ -142,7 +176,7 @@ export class Settings {
     const [unit, size] = adjustUnit(all[i]!);
     const id = `set-${p.name}-${name}`;
     const range: [number, number] = [Math.ceil(least / size), Math.floor(most / size)];
-    const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
+    const slider = h("input", { type: "range", id: `${id}-slider`, min: range[0], max: range[1], step: step(range), "aria-label": adjustName(all, i) });
     const field = h("input", { type: "text", id, class: "value", spellcheck: false, autocomplete: "off" });
     const take = (value: number, isDone: boolean) => {
       const present = structuredClone(all);
@@ -170,7 +204,7 @@ export class Settings {
 
   private slider(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {
     const [unit, range] = scale(p);
-    const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": words(p.name), tabindex: 0 });
+    const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
     const field = h("input", { type: "text", id, class: "value", inputmode: "text", spellcheck: false, autocomplete: "off", placeholder: p.default ?? "auto" });
     slider.addEventListener("input", () => {
       field.value = `${short(Number(slider.value))}${unit}`;
@@ -210,12 +244,15 @@ export class Settings {
   }
 }
 
-/** The settings that are looked at first; paths and points are dragged, and the rest has its place below. */
-function isMain(p: Param): boolean {
-  if (p.kind === "number" || p.kind === "angle" || p.kind === "choice") return p.default !== undefined;
-  if (p.kind === "length" || p.kind === "count") return p.default !== undefined;
-  if (p.kind === "name") return true;
-  return p.kind === "text" && (p.needed || p.default !== undefined);
+/** The settings that are looked at first: those that do something. Paths and points are dragged, and the rest has its place below. */
+function isMain(p: Param, isGiven: boolean): boolean {
+  switch (p.kind) {
+    case "number": case "angle": case "choice": case "count": return p.default !== undefined || isGiven;
+    case "length": case "flag": case "file": return isGiven || (p.kind === "length" && p.default !== undefined);
+    case "name": return true;
+    case "text": return p.needed || p.default !== undefined || (isGiven && !DRAGGED.has(p.notation ?? ""));
+    default: return false;
+  }
 }
 
 /** The unit and range of a slider. */
@@ -234,11 +271,7 @@ function step([from, to]: [number, number]): number {
 
 /** A title as a sentence. */
 function sentence(title: string): string {
-  return `${capital(title)}${/[.…]$/.test(title) ? "" : "."}`;
-}
-
-function capital(text: string): string {
-  return plain(text.charAt(0).toUpperCase() + text.slice(1));
+  return `${capital(plain(title))}${/[.…]$/.test(title) ? "" : "."}`;
 }
 
 function plain(text: string): string {

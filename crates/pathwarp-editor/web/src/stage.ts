@@ -11,22 +11,26 @@ import type { Answer, Handle, XY } from "./types";
 
 /** Space around the drawing when it fits the view, in px. */
 const MARGIN = 56;
+const SHEET_MARGIN = 14;
 /** The radius in which a finger finds a handle, in px. */
-const REACH = 18;
-/** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
-const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
-/** The pause after which keys count as one change, in ms. */
-const KEYS = 500;
+export const REACH = 18;
+
+/** Two corners. */
+type Box = [number, number, number, number];
 
 export class Stage {
   readonly camera = new Camera();
-  private svg = byId<SVGSVGElement>("stage");
+  readonly svg = byId<SVGSVGElement>("stage");
+  /** A filter would be drawn anew with every picture, so the shadow is made of lines. */
+  private shadows = [s("rect", { class: "shadow wide" }), s("rect", { class: "shadow" })];
   private sheet = s("rect", { class: "sheet" });
   private art = s("g", { class: "art" });
   private beforeArt = s("g", { class: "art", visibility: "hidden" });
   private heat = s("g", { class: "heat" });
   private nodes = s("path", { class: "nodes" });
   private arms = s("path", { class: "arms" });
+  /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
+  private shield = s("rect", { class: "shield", width: "100%", height: "100%" });
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
@@ -36,31 +40,37 @@ export class Stage {
   /** Wide, invisible lines over those that can be pulled, by their index. */
   private reaches: (SVGPathElement | null)[] = [];
   private focused: string | null = null;
-  private touches = new Map<number, XY>();
-  private keysTimer = 0;
+  /** Nobody has moved the view since it showed the whole page. */
   private isFitted = false;
+  /** The first picture of a drawing has not arrived yet. */
+  private isFresh = true;
   /** Set while the page shows the drawing as it was. */
   isBefore = false;
   showsNodes = false;
   showsStretch = false;
+  /** The stretch has been asked for, and has to be asked for again. */
+  private isStretchAsked = false;
+  private isStretchWanted = false;
   /** Takes the id of the path that is clicked next, instead of anything else. */
   picks: ((id: string) => void) | null = null;
   onFocus: (handle: Handle | null) => void = () => {};
+  /** A handle has been moved by keys. */
+  onKeys: (handle: Handle) => void = () => {};
   onZoom: () => void = () => {};
-  /** The view was moved by somebody who took hold of the artwork. */
-  onPan: () => void = () => {};
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.guides, this.marks, this.knobs);
+    this.svg.append(...this.shadows, this.sheet, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.guides, this.marks, this.knobs);
     const stage = this;
-    app.screen = { show: (answer) => this.show(answer), get pixel() { return stage.camera.pixel; } };
+    app.screen = {
+      show: (answer) => this.show(answer),
+      reveal: () => this.reveal(),
+      get pixel() { return stage.camera.pixel; },
+    };
     app.listen((change) => {
       if (change === "state") this.place();
       if (change === "handles") this.rebuild();
-      if (change === "report" && this.showsStretch && !app.isDragging) void this.drawStretch();
+      if (change === "report" && this.showsStretch) void this.drawStretch();
     });
-    this.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
-    this.svg.addEventListener("pointerdown", (e) => this.press(e));
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
     new ResizeObserver(() => this.resized()).observe(this.svg);
@@ -71,26 +81,59 @@ export class Stage {
   }
 
   private resized(): void {
-    if (!this.isFitted) this.fit();
+    if (this.isFitted || this.isFresh) this.fit();
     else this.layout();
   }
 
-  /** Shows the whole page. */
-  fit(): void {
-    const { state } = this.app;
-    const [width, whole] = this.size;
-    // In a narrow window, a panel covers the lower part.
+  /** The part of the canvas that no panel of a narrow window covers, and the space around a drawing there. */
+  private get view(): { left: number; width: number; height: number; margin: number } {
+    const [width, height] = this.size;
     const panel = document.querySelector("body.shapes-open nav, body.settings-open aside");
-    const covered = panel && getComputedStyle(panel).position === "fixed" ? panel.clientHeight : 0;
-    const height = Math.max(whole - covered, whole / 4);
-    if (!state || width === 0 || height === 0) return;
-    this.camera.fit(state.page, [width, height], Math.min(MARGIN, width / 10));
+    if (!panel || getComputedStyle(panel).position === "static") return { left: 0, width, height, margin: Math.min(MARGIN, width / 10) };
+    // Hints and tools are hidden meanwhile.
+    const margin = SHEET_MARGIN;
+    const { left, width: over } = panel.getBoundingClientRect();
+    if (over >= width) return { left: 0, width, height: Math.max(height - panel.clientHeight, height / 4), margin };
+    return { left: left > 0 ? 0 : over, width: width - over, height, margin };
+  }
+
+  /** Shows the whole page, as far as it holds the artwork. */
+  fit(): void {
+    const { left, width, height, margin } = this.view;
+    if (!this.app.state || width === 0 || height === 0) return;
+    this.camera.fit(this.page, [width, height], margin);
+    this.camera.shift[0] += left;
     this.isFitted = true;
     this.layout();
   }
 
-  zoom(factor: number, at: XY = [this.size[0] / 2, this.size[1] / 2]): void {
-    this.camera.zoom(factor, at);
+  /** Moves the view by px of the screen. */
+  shift([dx, dy]: XY): void {
+    const [x, y] = this.camera.shift;
+    this.camera.shift = [x + dx, y + dy];
+    this.isFitted = false;
+    this.layout();
+  }
+
+  /** The whole page is in view. */
+  private get showsAll(): boolean {
+    const { left, width, height } = this.view;
+    const { scale, shift } = this.camera;
+    const [x0, y0, x1, y1] = this.page;
+    const [l, t, r, b] = [scale * x0 + shift[0], scale * y0 + shift[1], scale * x1 + shift[0], scale * y1 + shift[1]];
+    return l >= left && t >= 0 && r <= left + width && b <= height;
+  }
+
+  /** Shows the whole page, unless the user looks at a detail. */
+  private reveal(): void {
+    if (this.isFitted && !this.showsAll) this.fit();
+  }
+
+  /** Magnifies about a point of the screen, or about the middle of the view. */
+  zoom(factor: number, at?: XY): void {
+    const { left, width, height } = this.view;
+    this.camera.zoom(factor, at ?? [left + width / 2, height / 2]);
+    this.isFitted = false;
     this.layout();
   }
 
@@ -99,32 +142,47 @@ export class Stage {
     if (!state) return;
     const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
     this.camera.toPx = state.toPx;
+    if (isNew || this.isFresh) {
+      // The picture that is still there may be of another drawing.
+      this.isFresh = true;
+      this.fit();
+    }
     this.grow();
-    if (isNew || !this.isFitted) this.fit();
   }
 
   private show(answer: Answer): void {
     if (answer.picture) this.drawing.show(answer.picture);
-    if (answer.summary) this.grow();
+    if (answer.summary) {
+      const { isFresh } = this;
+      this.isFresh = false;
+      this.grow();
+      if (isFresh) this.reveal();
+    }
     if (this.showsNodes) this.drawNodes();
     this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
   }
 
-  /** The page, as far as it holds the artwork: saving makes it larger where needed. */
-  private grow(): void {
+  /** The page, as far as it holds the artwork, as two corners in px of the drawing: saving makes it larger where needed. */
+  private get page(): Box {
     const { state } = this.app;
-    if (!state) return;
+    if (!state) return [0, 0, 0, 0];
     const [x, y, w, h] = state.page;
-    const [[x0, y0], [x1, y1]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h])];
-    let box = [Math.min(x0, x1), Math.min(y0, y1), Math.max(x0, x1), Math.max(y0, y1)] as const;
+    const [[ax, ay], [bx, by]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h])];
+    const page: Box = [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
     const art = this.art.getBBox();
-    if (!state.program && art.width > 0) {
-      box = [Math.min(box[0], art.x), Math.min(box[1], art.y), Math.max(box[2], art.x + art.width), Math.max(box[3], art.y + art.height)];
+    if (state.program || this.isFresh || art.width === 0) return page;
+    return [Math.min(page[0], art.x), Math.min(page[1], art.y), Math.max(page[2], art.x + art.width), Math.max(page[3], art.y + art.height)];
+  }
+
+  /** Draws the sheet as large as the page. */
+  private grow(): void {
+    const [x0, y0, x1, y1] = this.page;
+    for (const sheet of [...this.shadows, this.sheet]) {
+      sheet.setAttribute("x", String(x0));
+      sheet.setAttribute("y", String(y0));
+      sheet.setAttribute("width", String(x1 - x0));
+      sheet.setAttribute("height", String(y1 - y0));
     }
-    this.sheet.setAttribute("x", String(box[0]));
-    this.sheet.setAttribute("y", String(box[1]));
-    this.sheet.setAttribute("width", String(box[2] - box[0]));
-    this.sheet.setAttribute("height", String(box[3] - box[1]));
   }
 
   private fold(at: XY): SVGGElement {
@@ -152,7 +210,7 @@ export class Stage {
   /** Another drawing has been opened. */
   forget(): void {
     this.beforeArt.replaceChildren();
-    this.isFitted = false;
+    this.isFresh = true;
   }
 
   drawNodes(): void {
@@ -164,22 +222,23 @@ export class Stage {
   /** Shows the stretch of the visible steps, or hides it. */
   async drawStretch(): Promise<void> {
     const { app } = this;
-    const answer = this.showsStretch
-      ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
-    const stretch = this.showsStretch ? answer?.stretch : null;
-    this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
-  }
-
-  /** The next click on the drawing names a path. */
-  pick(take: ((id: string) => void) | null): void {
-    this.picks = take;
-    this.svg.classList.toggle("picking", take !== null);
+    if (!this.showsStretch) return this.heat.replaceChildren();
+    this.isStretchWanted = true;
+    if (this.isStretchAsked) return;
+    this.isStretchAsked = true;
+    while (this.isStretchWanted) {
+      this.isStretchWanted = false;
+      const answer = await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible }));
+      const stretch = this.showsStretch ? answer?.stretch : null;
+      this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
+    }
+    this.isStretchAsked = false;
   }
 
   /** Puts everything in its place on the screen. */
   layout(): void {
     const { camera } = this;
-    const layers = [this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+    const layers = [...this.shadows, this.sheet, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
     for (const layer of layers) layer.setAttribute("transform", camera.transform);
     for (const mark of Array.from(this.marks.children) as SVGGElement[]) {
       const [x, y] = camera.toScreen(JSON.parse(mark.dataset.at!) as XY);
@@ -189,7 +248,8 @@ export class Stage {
     this.onZoom();
   }
 
-  private placeHandles(): void {
+  /** Puts handles and their lines where they are now. */
+  placeHandles(): void {
     const { handles } = this.app;
     if (!handles) return;
     const at = (p: XY) => this.camera.toScreen(p).map((v) => v.toFixed(2)).join(",");
@@ -245,161 +305,41 @@ export class Stage {
     this.onFocus(this.handle(key));
   }
 
-  private handle(key: string | null): Handle | null {
+  get focusedHandle(): Handle | null {
+    return this.handle(this.focused);
+  }
+
+  handle(key: string | null): Handle | null {
     return this.app.handles?.handles.find((h) => h.key === key) ?? null;
   }
 
-  private point(e: MouseEvent): XY {
+  /** The place of a pointer on the canvas. */
+  point(e: MouseEvent): XY {
     const box = this.svg.getBoundingClientRect();
     return [e.clientX - box.left, e.clientY - box.top];
   }
 
-  private wheel(e: WheelEvent): void {
-    e.preventDefault();
-    // A trackpad's pinch arrives with Ctrl; a wheel turns in whole notches.
-    if (e.ctrlKey || e.metaKey || (e.deltaX === 0 && Math.abs(e.deltaY) >= 50)) {
-      return this.zoom(Math.exp(-e.deltaY * (e.ctrlKey && Math.abs(e.deltaY) < 50 ? 0.01 : 0.002)), this.point(e));
-    }
-    this.camera.shift = [this.camera.shift[0] - e.deltaX, this.camera.shift[1] - e.deltaY];
-    this.layout();
+  /** The next click on the drawing names a path. */
+  pick(take: ((id: string) => void) | null): void {
+    this.picks = take;
+    this.svg.classList.toggle("picking", take !== null);
   }
 
-  private press(e: PointerEvent): void {
-    if (this.picks) return this.picked(e);
-    const knob = (e.target as Element).closest<SVGGElement>(".knob");
-    this.touches.set(e.pointerId, this.point(e));
-    if (this.touches.size === 2) return this.pinch();
-    if (this.touches.size > 2) return;
-    const isPull = (e.target as Element).matches(".pull");
-    if (knob && e.button === 0 && !this.isBefore) this.drag(e, knob);
-    else if (!(isPull && e.button === 0 && !this.isBefore && this.pull(e))) this.pan(e);
-  }
-
-  /** Follows a line that is pulled. Returns `false` if there is none. */
-  private pull(e: PointerEvent): boolean {
-    const { handles } = this.app;
-    const pull = handles?.pull(this.camera.toUser(this.point(e)), REACH * this.camera.pixel);
-    if (!handles || !pull) return false;
-    let hasMoved = false;
-    this.app.isDragging = true;
-    this.follow(e, (to, event) => {
-      if (this.touches.size > 1) return;
-      hasMoved = true;
-      pull.move(this.camera.toUser(to), this.modes.smooths);
-      handles.write(pull.param);
-      this.placeHandles();
-      this.app.draft(event.timeStamp);
-    }, () => {
-      this.app.isDragging = false;
-      if (hasMoved) void this.app.commit();
-    });
-    return true;
-  }
-
-  private picked(e: PointerEvent): void {
-    const named = (e.target as Element).closest(".art [id]");
+  /** Names the path that was clicked. */
+  picked(target: Element): void {
+    const named = target.closest(".art [id]");
     const take = this.picks;
     this.pick(null);
     // The ids of the drawing stand behind a prefix.
     if (named) take?.(named.id.replace(/^art-/, ""));
   }
 
-  /** Follows a pointer until it is lifted. */
-  private follow(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, end: () => void): void {
-    const id = e.pointerId;
-    const stop = new AbortController();
-    const { signal } = stop;
-    const done = (event: PointerEvent) => {
-      if (event.pointerId !== id) return;
-      this.touches.delete(id);
-      stop.abort();
-      end();
-    };
-    window.addEventListener(MOVES, (e) => {
-      const event = e as PointerEvent;
-      if (event.pointerId !== id) return;
-      this.touches.set(id, this.point(event));
-      move(this.point(event), event);
-    }, { signal });
-    window.addEventListener("pointerup", done, { signal });
-    window.addEventListener("pointercancel", done, { signal });
-  }
-
-  private drag(e: PointerEvent, knob: SVGGElement): void {
-    const handle = this.handle(knob.dataset.key!);
-    if (!handle) return;
-    e.preventDefault();
-    knob.focus({ preventScroll: true });
-    const grabbed = this.camera.toScreen(handle.get());
-    const [x, y] = this.point(e);
-    const mover = this.modes.mover(this.app.handles!, handle);
-    let hasMoved = false;
-    this.app.isDragging = true;
-    knob.classList.add("held");
-    this.follow(e, (to, event) => {
-      if (this.touches.size > 1) return;
-      hasMoved = true;
-      const target = this.camera.toUser([grabbed[0] + to[0] - x, grabbed[1] + to[1] - y]);
-      mover(this.modes.snapped(target, handle, this.app.handles!, 7 * this.camera.pixel, event), event);
-      this.changed(handle, event.timeStamp);
-    }, () => {
-      knob.classList.remove("held");
-      this.app.isDragging = false;
-      this.modes.clear();
-      if (hasMoved) void this.app.commit();
-    });
-  }
-
-  private changed(handle: Handle, since: number): void {
+  /** Writes the values of a handle that has been moved, and asks for the picture. */
+  changed(handle: Handle, since: number): void {
     this.app.handles!.write(handle.param);
     this.placeHandles();
     this.onFocus(handle);
     this.app.draft(since);
-  }
-
-  private pan(e: PointerEvent): void {
-    const first = this.point(e);
-    let last = first;
-    const start = this.camera.toUser(first);
-    this.svg.classList.add("panning");
-    this.follow(e, (to) => {
-      if (this.touches.size > 1) return;
-      this.camera.shift = [this.camera.shift[0] + to[0] - last[0], this.camera.shift[1] + to[1] - last[1]];
-      last = to;
-      this.layout();
-    }, () => {
-      this.svg.classList.remove("panning");
-      const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
-      const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
-      if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
-    });
-  }
-
-  /** Two fingers move and magnify the view. */
-  private pinch(): void {
-    const [one, two] = Array.from(this.touches.keys());
-    const stop = new AbortController();
-    const { signal } = stop;
-    const middle = (): [XY, number] => {
-      const [a, b] = [this.touches.get(one!)!, this.touches.get(two!)!];
-      return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
-    };
-    let [at, apart] = middle();
-    window.addEventListener("pointermove", (e) => {
-      if (!this.touches.has(e.pointerId)) return;
-      this.touches.set(e.pointerId, this.point(e));
-      const [to, wide] = middle();
-      this.camera.shift = [this.camera.shift[0] + to[0] - at[0], this.camera.shift[1] + to[1] - at[1]];
-      if (apart > 0) this.camera.zoom(wide / apart, to);
-      [at, apart] = [to, wide];
-      this.layout();
-    }, { signal });
-    const end = (e: PointerEvent) => {
-      this.touches.delete(e.pointerId);
-      stop.abort();
-    };
-    window.addEventListener("pointerup", end, { signal });
-    window.addEventListener("pointercancel", end, { signal });
   }
 
   private doubleClick(e: MouseEvent): void {
@@ -418,6 +358,7 @@ export class Stage {
       const far = e.shiftKey ? 10 : 1;
       const [x, y] = this.camera.toScreen(handle.get());
       this.moveTo(handle, this.camera.toUser([x + far * by[0], y + far * by[1]]));
+      this.onKeys(handle);
     } else if (e.key === "Insert") {
       e.preventDefault();
       const [x, y] = handle.get();
@@ -443,14 +384,9 @@ export class Stage {
   moveTo(handle: Handle, to: XY): void {
     const { handles } = this.app;
     if (!handles) return;
-    this.app.isDragging = true;
+    this.app.commitSoon();
     this.modes.mover(handles, handle)(to, null);
     this.changed(handle, performance.now());
-    clearTimeout(this.keysTimer);
-    this.keysTimer = window.setTimeout(() => {
-      this.app.isDragging = false;
-      void this.app.commit();
-    }, KEYS);
   }
 }
 

@@ -13,6 +13,8 @@ export type Kind =
 
 export interface Param {
   name: string;
+  /** A name for people, if the registry's own is not one. */
+  label?: string;
   kind: Kind;
   needed: boolean;
   repeat: boolean;
@@ -20,6 +22,8 @@ export interface Param {
   slider: [number, number];
   words?: string[];
   notation?: string;
+  /** Parameters that cannot go with this one, and a value of another that does. */
+  instead?: { others: string[]; with: [string, string] | null };
   axis?: "x" | "y" | "diagonal";
   /** Paths that may have any number of points, or rows with equally many. */
   points?: "any" | "rows";
@@ -127,6 +131,7 @@ export interface Answer {
   text?: string;
   written?: string;
   exists?: string;
+  copied?: boolean;
   presets?: string[];
   steps?: Step[];
   stretch?: Stretch | null;

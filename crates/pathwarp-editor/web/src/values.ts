@@ -4,6 +4,9 @@ import type { Adjust, Grip, Param, Subpath, XY } from "./types";
 
 type Frame = [number, number, number, number];
 
+/** Values in these notations are dragged on the canvas. */
+export const DRAGGED = new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
+
 /** Figures of numbers in values: far more than a hand can place. */
 const FIGURES = 7;
 

@@ -1,5 +1,5 @@
 // Keyboard alone, names for screen readers, small and large screens, dark and light.
-import { becomes, check, choose, edit, folder, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { AXE, becomes, check, choose, edit, folder, middle, open, paths, quiet, sample } from "./harness.mjs";
 
 async function within(test, options) {
   const dir = folder({ "logo.svg": sample("logo.svg") });
@@ -89,6 +89,43 @@ export const styles_and_steps_by_keyboard = () => within(async (page) => {
   await page.waitForSelector("#toast.on");
   check((await page.textContent("#toast")).includes("logo-bent.svg"), await page.textContent("#toast"));
 });
+
+/** Keys say where they have moved a handle to. */
+export const moves_are_spoken = () => within(async (page) => {
+  await page.locator('.knob[data-key="shaper/0.0/2"]').focus();
+  await page.keyboard.press("ArrowUp");
+  check(/^Cage, point 3: [-\d.]+, [-\d.]+$/.test(await page.textContent("#spoken")), await page.textContent("#spoken"));
+});
+
+/** The rules of axe-core, in every look of the page. */
+export async function axe_finds_nothing() {
+  const looks = [["light", 1280, 800], ["dark", 1280, 800], ["light", 320, 568], ["dark", 390, 844], ["light", 640, 400], ["dark", 3840, 2160]];
+  for (const [colorScheme, width, height] of looks) {
+    await within(async (page) => {
+      const judge = async (what) => {
+        const found = await page.evaluate(AXE);
+        check(found.length === 0, `${what}, ${colorScheme}, ${width} × ${height}: ${found.join("\n")}`);
+      };
+      await judge("at the start");
+      const isNarrow = await page.isVisible("#open-shapes");
+      if (isNarrow) await page.click("#open-shapes");
+      await choose(page, "Swirl");
+      await page.click("#stretch");
+      await page.click("#nodes");
+      if (isNarrow) await page.click("#open-settings");
+      await page.click(".more summary");
+      await page.click("#add-step");
+      await judge("with settings and a step to come");
+      await page.keyboard.press("Escape");
+      await page.keyboard.press("Control+s");
+      await page.waitForSelector("#toast.on");
+      await page.waitForTimeout(300);
+      await judge("with a message");
+      await page.keyboard.press("Control+Shift+s");
+      await judge("with the dialog for saving");
+    }, { colorScheme, viewport: { width, height } });
+  }
+}
 
 /** Nothing moves by itself where the user does not want it. */
 export const reduced_motion = () => within(async (page) => {

@@ -45,7 +45,7 @@ export async function firefox(program, address) {
 
   /** The value of an expression in the page: text, a number or an array of them. */
   async function evaluate(expression) {
-    const { result, exceptionDetails } = await send("script.evaluate", { expression: `JSON.stringify(${expression})`, target: { context }, awaitPromise: true });
+    const { result, exceptionDetails } = await send("script.evaluate", { expression: `(async () => JSON.stringify(${expression}))()`, target: { context }, awaitPromise: true });
     if (exceptionDetails) throw new Error(exceptionDetails.text);
     return JSON.parse(result.value ?? "null");
   }

@@ -1,7 +1,7 @@
 // Firefox: the page opens, handles are dragged, and the result is saved. Everything else is tested in Chromium.
 import { existsSync } from "node:fs";
 import { firefox } from "./bidi.mjs";
-import { check, edit, folder, sample } from "./harness.mjs";
+import { AXE, check, edit, folder, sample } from "./harness.mjs";
 
 const program = ["/usr/bin/firefox-esr", "/usr/bin/firefox"].find((p) => existsSync(p));
 const PATHS = 'Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"), (p) => p.getAttribute("d")).join("|")';
@@ -26,6 +26,8 @@ export async function firefox_opens_drags_and_saves() {
     await page.click("#save");
     await page.until("document.querySelector('#toast').classList.contains('on')", "nothing was saved");
     check(existsSync(`${dir}/logo-bent.svg`), "there is no file");
+    const found = await page.evaluate(`await ${AXE}`);
+    check(found.length === 0, found.join("\n"));
     check(page.problems.length === 0, page.problems.join("; "));
   } finally {
     editor.stop();

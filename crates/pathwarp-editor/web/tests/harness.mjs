@@ -1,6 +1,7 @@
 // Runs `pathwarp edit` and a headless Chromium for the tests.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, copyFileSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, copyFileSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join, basename } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -25,6 +26,13 @@ export function folder(files) {
   }
   return dir;
 }
+
+/** An expression for the page: what axe-core finds wrong with it, one line each. */
+export const AXE = `(async () => {
+  ${readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8")};
+  const { violations } = await axe.run(document);
+  return violations.flatMap(({ id, nodes }) => nodes.map((n) => id + ": " + n.html.slice(0, 160) + " " + (n.any[0]?.message ?? "")));
+})()`;
 
 export const sample = (name) => join(root, "samples", name);
 

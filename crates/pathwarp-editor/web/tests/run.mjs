@@ -1,4 +1,4 @@
-// Runs all tests of the page, or those whose names contain a word given.
+// Runs all tests of the page, or those whose names contain one of the words given.
 import { close } from "./harness.mjs";
 import * as dragging from "./dragging.mjs";
 import * as files from "./files.mjs";
@@ -7,11 +7,13 @@ import * as access from "./access.mjs";
 import * as firefox from "./firefox.mjs";
 import * as inkscape from "./inkscape.mjs";
 import * as points from "./points.mjs";
+import * as modes from "./modes.mjs";
+import * as choosing from "./choosing.mjs";
 
-const wanted = process.argv[2] ?? "";
+const wanted = process.argv.slice(2);
 let failed = 0;
-for (const [name, test] of Object.entries({ ...dragging, ...files, ...points, ...safety, ...access, ...inkscape, ...firefox })) {
-  if (!name.includes(wanted)) continue;
+for (const [name, test] of Object.entries({ ...dragging, ...files, ...points, ...modes, ...choosing, ...safety, ...access, ...inkscape, ...firefox })) {
+  if (wanted.length > 0 && !wanted.some((word) => name.includes(word))) continue;
   const start = performance.now();
   try {
     const remark = await test();

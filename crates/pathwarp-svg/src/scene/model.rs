@@ -44,6 +44,7 @@ pub(crate) struct Part {
     pub(crate) fixed_width: bool,
     pub(crate) slot: Option<usize>,
     /// Address of usvg's path (which the document keeps alive); 0 if there is none.
+    #[cfg_attr(not(feature = "usvg"), expect(dead_code, reason = "for the module of that feature"))]
     pub(crate) path: usize,
     /// `true` for parts of laid-out pattern tiles. If such a part has a stroke, `local` is the outline of that stroke.
     pub(crate) in_tile: bool,

@@ -1,0 +1,63 @@
+//! Text that came from files, made fit for a terminal: without control characters, which could move the cursor or rename the window,
+//! and not as long as a file.
+
+use std::borrow::Cow;
+
+/// Most characters of a message that are shown. An id or a name in it can be as long as its file.
+const LONGEST: usize = 2000;
+/// The part of them before the gap; the end of a message says what to do.
+const HEAD: usize = 1400;
+
+/// A name for a table: control characters are written as escapes.
+pub(crate) fn name(name: &str) -> Cow<'_, str> {
+    escaped(name, char::is_control)
+}
+
+/// A message, whose lines and tabs are kept, and which has a gap in its middle if it is very long.
+pub(crate) fn message(message: &str) -> Cow<'_, str> {
+    let length = message.chars().count();
+    if length <= LONGEST {
+        return escaped(message, is_unsafe);
+    }
+    let head: String = message.chars().take(HEAD).collect();
+    let tail: String = message.chars().skip(length - (LONGEST - HEAD)).collect();
+    let left_out = length - LONGEST;
+    Cow::Owned(format!("{} … ({left_out} characters) … {}", escaped(&head, is_unsafe), escaped(&tail, is_unsafe)))
+}
+
+fn is_unsafe(c: char) -> bool {
+    c.is_control() && c != '\n' && c != '\t'
+}
+
+fn escaped(text: &str, is_escaped: fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(is_escaped) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_escaped(c) { out.extend(c.escape_default()) } else { out.push(c) }
+    }
+    Cow::Owned(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_shown_and_do_nothing() {
+        assert_eq!(name("plain “ünï” name"), "plain “ünï” name");
+        assert_eq!(name("\x1b[31mred\nline\u{9b}2J"), "\\u{1b}[31mred\\nline\\u{9b}2J");
+        assert_eq!(message("a\nb\tc\x07"), "a\nb\tc\\u{7}");
+    }
+
+    #[test]
+    fn long_messages_keep_both_ends() {
+        let long = format!("error in {}: do this", "ä".repeat(500_000));
+        let shown = message(&long);
+        assert!(shown.starts_with("error in ä") && shown.ends_with("ä: do this"), "{shown}");
+        assert!(shown.chars().count() < LONGEST + 50, "{shown}");
+        let short = "x".repeat(LONGEST);
+        assert_eq!(message(&short), short);
+    }
+}

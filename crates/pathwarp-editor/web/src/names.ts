@@ -1,0 +1,31 @@
+// Names for people.
+
+import type { Deformation, Param, Step } from "./types";
+
+/** A name in kebab case as words: `reverse-shaper` is “Reverse shaper”. */
+export function words(name: string): string {
+  const text = name.replaceAll("-", " ").replace(/([a-z])([0-9])/g, "$1 $2");
+  return capital(text);
+}
+
+export function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** The name of a deformation. */
+export function called({ name, label }: { name: string; label: string | null }): string {
+  return label ?? words(name);
+}
+
+/** The name of a parameter. */
+export function paramName({ name, label }: Param): string {
+  return label ?? words(name);
+}
+
+/** The name of a step: its preset, the way in which it began, or its deformation. */
+export function stepName(step: Step, deformation: Deformation | undefined): string {
+  if (!deformation) return words(step.deformation);
+  const preset = deformation.gallery ? step.args[deformation.gallery.presets]?.[0] : undefined;
+  const variant = deformation.variants.find(({ param }) => step.args[param]);
+  return preset ? words(preset) : variant?.label ?? called(deformation);
+}

@@ -1,0 +1,76 @@
+// Other drawings: chosen, dropped anywhere on the page, or pasted.
+
+import type { App } from "./app";
+import { byId } from "./dom";
+import type { Stage } from "./stage";
+import { toast } from "./toast";
+
+/** The name of a drawing that comes as text. */
+const PASTED = "pasted.svg";
+
+export class Opening {
+  constructor(private app: App, private stage: Stage) {
+    const chosen = byId<HTMLInputElement>("open-file");
+    byId("open").addEventListener("click", () => chosen.click());
+    chosen.addEventListener("change", () => {
+      const file = chosen.files?.[0];
+      chosen.value = "";
+      if (file) void this.open(file);
+    });
+    window.addEventListener("dragover", (e) => {
+      e.preventDefault();
+      if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
+      document.body.classList.add("dropping");
+    });
+    window.addEventListener("dragleave", (e) => {
+      if (!e.relatedTarget) document.body.classList.remove("dropping");
+    });
+    window.addEventListener("drop", (e) => {
+      e.preventDefault();
+      document.body.classList.remove("dropping");
+      this.take(e.dataTransfer);
+    });
+    window.addEventListener("paste", (e) => {
+      if (!isTyping(e.target)) this.take(e.clipboardData);
+    });
+  }
+
+  /** Opens what was dropped or pasted: a file, or the text of a drawing. */
+  private take(data: DataTransfer | null): void {
+    const file = data?.files[0];
+    const text = data?.getData("text/plain") ?? "";
+    if (file) void this.open(file);
+    else if (/<svg[\s>]/i.test(text)) void this.open(new File([text], PASTED));
+    else if (data) toast("This is not a drawing: drop or paste an SVG");
+  }
+
+  private async open(file: File): Promise<void> {
+    const { app } = this;
+    await app.flush();
+    const { state } = app;
+    if (!state) return;
+    if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
+    const isUnsaved = state.steps.length > 0 && !state.saved;
+    if (isUnsaved && !confirm(`The steps of ${state.file} are not saved. Open ${file.name} all the same?`)) return;
+    const answer = await app.attempt(async () => app.connection.ask({ do: "open", name: file.name, bytes: await base64(file) }));
+    if (!answer?.state) return;
+    this.stage.forget();
+    await app.load(answer.state);
+  }
+}
+
+/** Characters that are made of bytes at a time: more are too many arguments. */
+const PIECE = 0x8000;
+
+/** The content of a file in base64. */
+export async function base64(file: File): Promise<string> {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  let binary = "";
+  for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));
+  return btoa(binary);
+}
+
+/** Typing goes into this element. */
+export function isTyping(target: EventTarget | null): boolean {
+  return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
+}

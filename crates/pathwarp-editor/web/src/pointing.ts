@@ -1,0 +1,195 @@
+// Mouse, pen and fingers on the canvas: they drag handles and lines, move the view, and magnify it.
+
+import type { App } from "./app";
+import type { Modes } from "./modes";
+import { REACH, type Stage } from "./stage";
+import type { XY } from "./types";
+
+/** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
+const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
+/** The distance from which a handle jumps to a line, in px. */
+const SNAP = 7;
+/** A wheel turns in notches of at least this many px; a trackpad reports less at a time. */
+const NOTCH = 50;
+/** Magnification for each px of a trackpad's pinch and of a wheel, as exponents. */
+const PINCH_RATE = 0.01;
+const WHEEL_RATE = 0.002;
+
+/** What happens while a pointer is down. */
+interface Way {
+  move: (to: XY, e: PointerEvent) => void;
+  end: () => void;
+  /** Escape was pressed. */
+  cancel?: () => void;
+}
+
+export class Pointing {
+  /** The pointers that are down, with their places. */
+  private down = new Map<number, XY>();
+  /** Ends what the first pointer does. */
+  private finish: (() => void) | null = null;
+  /** The view was moved by somebody who took hold of the artwork. */
+  onPan: () => void = () => {};
+
+  constructor(private app: App, private stage: Stage, private modes: Modes) {
+    stage.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
+    stage.svg.addEventListener("pointerdown", (e) => this.press(e));
+    window.addEventListener(MOVES, (e) => {
+      const { pointerId } = e as PointerEvent;
+      if (this.down.has(pointerId)) this.down.set(pointerId, stage.point(e as PointerEvent));
+    });
+    for (const end of ["pointerup", "pointercancel"] as const) window.addEventListener(end, (e) => this.down.delete(e.pointerId));
+  }
+
+  private wheel(e: WheelEvent): void {
+    e.preventDefault();
+    const { stage } = this;
+    // A trackpad's pinch arrives with Ctrl.
+    const isPinch = e.ctrlKey && Math.abs(e.deltaY) < NOTCH;
+    if (e.ctrlKey || e.metaKey || (e.deltaX === 0 && Math.abs(e.deltaY) >= NOTCH)) {
+      return stage.zoom(Math.exp(-e.deltaY * (isPinch ? PINCH_RATE : WHEEL_RATE)), stage.point(e));
+    }
+    stage.shift([-e.deltaX, -e.deltaY]);
+  }
+
+  private press(e: PointerEvent): void {
+    const { stage } = this;
+    const target = e.target as Element;
+    if (stage.picks) return stage.picked(target);
+    this.down.set(e.pointerId, stage.point(e));
+    if (this.down.size > 2) return;
+    if (this.down.size === 2) {
+      this.finish?.();
+      return this.pinch();
+    }
+    const bends = e.button === 0 && !stage.isBefore;
+    const knob = target.closest<SVGGElement>(".knob");
+    if (knob && bends) this.drag(e, knob);
+    else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e);
+  }
+
+  /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. */
+  private follow(e: PointerEvent, { move, end, cancel }: Way): void {
+    const stop = new AbortController();
+    const { signal } = stop;
+    const finish = (how: () => void) => {
+      stop.abort();
+      this.finish = null;
+      how();
+    };
+    this.finish = () => finish(end);
+    const own = (action: (event: PointerEvent) => void) => (event: Event) => {
+      if ((event as PointerEvent).pointerId === e.pointerId) action(event as PointerEvent);
+    };
+    window.addEventListener(MOVES, own((event) => move(this.stage.point(event), event)), { signal });
+    for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, own(() => finish(end)), { signal });
+    if (cancel) {
+      window.addEventListener("keydown", (event) => {
+        if (event.key === "Escape") finish(cancel);
+      }, { signal });
+    }
+  }
+
+  /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
+  private bend(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, done: () => void): void {
+    const { app } = this;
+    void app.flush();
+    const before = structuredClone(app.step!);
+    let hasMoved = false;
+    app.isDragging = true;
+    const stop = () => {
+      app.isDragging = false;
+      done();
+    };
+    this.follow(e, {
+      move: (to, event) => {
+        hasMoved = true;
+        move(to, event);
+      },
+      end: () => {
+        stop();
+        if (hasMoved) void app.commit();
+      },
+      cancel: () => {
+        stop();
+        if (hasMoved) app.cancel(before);
+      },
+    });
+  }
+
+  private drag(e: PointerEvent, knob: SVGGElement): void {
+    const { stage, modes } = this;
+    const { handles } = this.app;
+    const handle = stage.handle(knob.dataset.key ?? null);
+    if (!handle || !handles) return;
+    e.preventDefault();
+    knob.focus({ preventScroll: true });
+    const grabbed = stage.camera.toScreen(handle.get());
+    const [x, y] = stage.point(e);
+    const mover = modes.mover(handles, handle);
+    knob.classList.add("held");
+    this.bend(e, (to, event) => {
+      const target = stage.camera.toUser([grabbed[0] + to[0] - x, grabbed[1] + to[1] - y]);
+      mover(modes.snapped(target, handle, handles, SNAP * stage.camera.pixel, event), event);
+      stage.changed(handle, event.timeStamp);
+    }, () => {
+      knob.classList.remove("held");
+      modes.clear();
+    });
+  }
+
+  /** Follows a line that is pulled. Returns `false` if there is none. */
+  private pull(e: PointerEvent): boolean {
+    const { stage, modes } = this;
+    const { handles } = this.app;
+    const pull = handles?.pull(stage.camera.toUser(stage.point(e)), REACH * stage.camera.pixel);
+    if (!handles || !pull) return false;
+    const puller = modes.puller(handles, pull);
+    this.bend(e, (to, event) => {
+      puller(stage.camera.toUser(to));
+      handles.write(pull.param);
+      stage.placeHandles();
+      this.app.draft(event.timeStamp);
+    }, () => {});
+    return true;
+  }
+
+  private pan(e: PointerEvent): void {
+    const { stage } = this;
+    const first = stage.point(e);
+    let last = first;
+    const start = stage.camera.toUser(first);
+    stage.svg.classList.add("panning");
+    this.follow(e, {
+      move: (to) => {
+        stage.shift([to[0] - last[0], to[1] - last[1]]);
+        last = to;
+      },
+      end: () => {
+        stage.svg.classList.remove("panning");
+        const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
+        const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
+        if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
+      },
+    });
+  }
+
+  /** Two fingers move and magnify the view. */
+  private pinch(): void {
+    const [one, two] = Array.from(this.down.keys());
+    const stop = new AbortController();
+    const { signal } = stop;
+    const middle = (): [XY, number] => {
+      const [a, b] = [this.down.get(one!)!, this.down.get(two!)!];
+      return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
+    };
+    let [at, apart] = middle();
+    window.addEventListener("pointermove", () => {
+      const [to, wide] = middle();
+      if (apart > 0) this.stage.zoom(wide / apart, at);
+      this.stage.shift([to[0] - at[0], to[1] - at[1]]);
+      [at, apart] = [to, wide];
+    }, { signal });
+    for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
+  }
+}

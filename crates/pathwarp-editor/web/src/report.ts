@@ -1,0 +1,99 @@
+// The state of things in words: hints over the canvas, figures and problems at the foot, and the end of the program.
+
+import type { App } from "./app";
+import { byId } from "./dom";
+import { toast } from "./toast";
+
+/** An answer that takes longer than this shows a line along the upper edge, in ms. */
+const SLOW = 250;
+
+export class Report {
+  /** The steps of a draft have been announced. */
+  private isAnnounced = false;
+  private slow = 0;
+
+  constructor(private app: App) {
+    app.listen((change) => {
+      if (change === "report" || change === "state") this.figures();
+      if (change === "state") this.buttons();
+      if (change === "handles" || change === "steps") this.hint();
+      if (change === "link") this.link();
+    });
+    app.connection.onBusy = (isBusy) => this.busy(isBusy);
+    byId("warnings").addEventListener("click", () => toast(app.warnings.join(" · ")));
+  }
+
+  private busy(isBusy: boolean): void {
+    clearTimeout(this.slow);
+    const view = byId("view");
+    view.setAttribute("aria-busy", String(isBusy));
+    if (isBusy) this.slow = window.setTimeout(() => view.classList.add("busy"), SLOW);
+    else view.classList.remove("busy");
+  }
+
+  private figures(): void {
+    const { app } = this;
+    const { state, summary, warnings } = app;
+    // Before anything is done, and where nothing moves, there is nothing to count.
+    const isBent = !app.isProposal && summary !== null && summary.segmentsIn > 0;
+    show("counts", isBent ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "");
+    show("error", isBent && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "");
+    const folds = summary?.folds.length ?? 0;
+    show("folds", folds === 0 ? "" : folds === 1 ? "Folds over at 1 place" : `Folds over at ${folds} places`);
+    show("problem", app.problem ?? (state?.problem ? `Nothing is kept until you save: ${state.problem}` : ""));
+    const remarks = byId("warnings");
+    remarks.hidden = warnings.length === 0;
+    remarks.textContent = warnings.length === 1 ? "1 remark" : `${warnings.length} remarks`;
+    remarks.title = warnings.join("\n");
+  }
+
+  private buttons(): void {
+    const { state } = this.app;
+    if (!state) return;
+    const isEmpty = state.steps.length === 0;
+    const disabled = { undo: !state.undo, redo: !state.redo, "start-over": isEmpty, "keep-preset": isEmpty };
+    for (const [id, value] of Object.entries(disabled)) byId<HTMLButtonElement>(id).disabled = value;
+    if (state.restored && !this.isAnnounced) toast("Your last, unsaved steps are here again");
+    this.isAnnounced ||= state.restored;
+  }
+
+  /** What can be done with the handles on show. */
+  private hint(): void {
+    const { app } = this;
+    const { handles } = app;
+    const has = (handles?.handles.length ?? 0) > 0;
+    byId("smooth").hidden = !handles?.handles.some(({ key }) => /\/(in|out)$/.test(key));
+    byId("mirror").hidden = !has;
+    byId("snap").hidden = !has;
+    if (app.appends) return show("note", "Choose the shape of the next step, or press Escape");
+    // Handles are on the way.
+    if (!handles) return;
+    const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
+    const adds = handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
+    const note = !has ? "Change the settings" : handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
+    show("note", app.isProposal && has ? `${note}, or choose a shape` : note);
+  }
+
+  /** Somebody has moved the view, and may have meant to bend the artwork. */
+  panned(): void {
+    if (this.app.isProposal && this.app.handles?.handles.length) show("note", "This moves the view. Pull a blue point or line to bend the artwork");
+  }
+
+  private link(): void {
+    const { isDone, isConnected, state } = this.app;
+    const gone = byId("gone");
+    gone.hidden = isConnected && !isDone;
+    gone.classList.toggle("done", isDone);
+    show("gone-title", isDone ? `${state?.program} has the result.` : "pathwarp has ended.");
+    show("gone-kept", isDone ? "You can close this page."
+      : state?.program ? `${state.program} has stopped waiting. Choose “Bend by hand” there to begin again.`
+      : `${state?.saved ? "Everything is saved." : "Your steps are kept beside the drawing."} Run “pathwarp edit” again to go on.`);
+  }
+}
+
+/** Shows a text, or hides its element if there is none. */
+function show(id: string, text: string): void {
+  const element = byId(id);
+  element.hidden = text === "";
+  if (element.textContent !== text) element.textContent = text;
+}
