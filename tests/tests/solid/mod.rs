@@ -380,6 +380,32 @@ fn strokes_are_solids() {
     assert!((dashes["volume"].as_f64().unwrap() / (5.0 * ink * px * 2.0 * px) - 1.0).abs() < 1e-4, "{dashes}");
 }
 
+/// Logos with strokes, shapes that touch, and outlines that touch themselves: closed solids, also as read back in single precision.
+#[test]
+fn logos_for_a_printer() {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["logo", "badge", "icon", "tiles", "lineart"] {
+        fs::copy(sample(&format!("{name}.svg")), dir.path().join("in.svg")).unwrap();
+        let args = [
+            "wrap",
+            "in.svg",
+            "--extrude",
+            "5mm",
+            "--radius",
+            "41mm",
+            "--refine",
+            "0.05mm",
+            "-o",
+            "mug.stl",
+            "--quiet",
+        ];
+        let mug = report(dir.path(), &args);
+        let again = report(dir.path(), &["ffd", "mug.stl", "-o", "again.stl"]);
+        assert!(mug["after"]["closed"] == true && again["before"]["closed"] == true, "{name}: {mug} {again}");
+        assert_eq!(mug["after"]["euler"], again["before"]["euler"], "{name}");
+    }
+}
+
 #[test]
 fn a_preview_shows_both_sides_of_both() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,36 +1,46 @@
 //! Flat shapes as solids: a front, a back, and walls along the edges between them.
 
-use super::flat::FlatShape;
+use super::flat::{FlatShape, sides};
 use super::model::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// Appends a shape as an object: flat at z = 0 if `depth` is 0, otherwise a closed solid from there to z = `depth` above it.
-pub fn extrude(mesh: &mut Mesh, shape: &FlatShape, depth: f64) {
-    let turned = shape.turned();
-    let shape = if depth == 0.0 { turned } else { turned.unpinched().separated() };
-    let count = u32::try_from(shape.points.len()).unwrap_or(NONE);
+/// Appends shapes as objects: flat at z = 0 if `depth` is 0, otherwise closed solids from there to z = `depth` above it. Solids that would
+/// touch, also themselves, in an edge or at a corner are drawn apart by a hundred-thousandth of the largest coordinate.
+pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
+    let mut all = FlatShape::default();
+    let mut ends = Vec::with_capacity(shapes.len());
+    for shape in shapes {
+        all.append(&shape.turned());
+        ends.push(all.triangles.len());
+    }
+    let all = if depth == 0.0 { all } else { all.unpinched().separated() };
+    let count = u32::try_from(all.points.len()).unwrap_or(NONE);
     let back = u32::try_from(mesh.positions.len()).unwrap_or(NONE);
-    mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), Mark::Object(shape.name.clone())));
-    let layer = |z: f64| shape.points.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
-    mesh.positions.extend(layer(0.0));
-    let corner = |first: u32, i: u32| Corner { vertex: first.saturating_add(i), uv: NONE, normal: NONE };
-    if depth == 0.0 {
-        for t in &shape.triangles {
-            mesh.push(PolygonKind::Face, t.map(|i| corner(back, i)));
-        }
-        return;
-    }
-    mesh.positions.extend(layer(depth));
     let front = back.saturating_add(count);
-    for [a, b, c] in &shape.triangles {
-        mesh.push(PolygonKind::Face, [*a, *b, *c].map(|i| corner(front, i)));
-        mesh.push(PolygonKind::Face, [*a, *c, *b].map(|i| corner(back, i)));
+    let layer = |z: f64| all.points.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
+    mesh.positions.extend(layer(0.0));
+    if depth != 0.0 {
+        mesh.positions.extend(layer(depth));
     }
-    let all: HashSet<(u32, u32)> = shape.sides().collect();
-    // An edge without an opposite one is on the outline, with the shape to its left.
-    for (a, b) in shape.sides().filter(|(a, b)| !all.contains(&(*b, *a))) {
-        mesh.push(PolygonKind::Face, [corner(back, a), corner(back, b), corner(front, b), corner(front, a)]);
+    let corner = |first: u32, i: u32| Corner { vertex: first.saturating_add(i), uv: NONE, normal: NONE };
+    let mut from = 0;
+    for (shape, to) in shapes.iter().zip(ends) {
+        let triangles = &all.triangles[std::mem::replace(&mut from, to)..to];
+        mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), Mark::Object(shape.name.clone())));
+        if depth == 0.0 {
+            triangles.iter().for_each(|t| mesh.push(PolygonKind::Face, t.map(|i| corner(back, i))));
+            continue;
+        }
+        for [a, b, c] in triangles {
+            mesh.push(PolygonKind::Face, [*a, *b, *c].map(|i| corner(front, i)));
+            mesh.push(PolygonKind::Face, [*a, *c, *b].map(|i| corner(back, i)));
+        }
+        let own: HashSet<(u32, u32)> = sides(triangles).collect();
+        // An edge without an opposite one is on the outline, with the shape to its left.
+        for (a, b) in sides(triangles).filter(|(a, b)| !own.contains(&(*b, *a))) {
+            mesh.push(PolygonKind::Face, [corner(back, a), corner(back, b), corner(front, b), corner(front, a)]);
+        }
     }
 }
 
@@ -52,11 +62,11 @@ mod tests {
             .collect();
         let shape = FlatShape { name: "frame".into(), points, triangles };
         let mut mesh = Mesh::default();
-        extrude(&mut mesh, &shape, 0.5);
+        extrude(&mut mesh, std::slice::from_ref(&shape), 0.5);
         let t = topology(&mesh);
         assert!(t.is_closed() && t.euler() == 0 && (t.volume - 6.0).abs() < 1e-12, "{t:?}");
         let mut flat = Mesh::default();
-        extrude(&mut flat, &shape, 0.0);
+        extrude(&mut flat, &[shape], 0.0);
         let t = topology(&flat);
         assert!((t.open_edges, t.faces) == (8, 8) && (t.area - 12.0).abs() < 1e-12, "{t:?}");
     }

@@ -38,9 +38,11 @@ impl FlatShape {
         self.points.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()))
     }
 
-    /// The sides of the triangles.
-    pub(super) fn sides(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
+    /// Adds the vertices and triangles of another shape.
+    pub(super) fn append(&mut self, other: &Self) {
+        let first = u32::try_from(self.points.len()).unwrap_or(u32::MAX);
+        self.points.extend_from_slice(&other.points);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| first.saturating_add(i))));
     }
 
     /// The same shape, counter-clockwise, without triangles of fewer than three vertices. Those without area stay, as they keep the
@@ -58,29 +60,33 @@ impl FlatShape {
         let step = SAME * self.reach();
         let cell = |p: &[f64; 2]| p.map(|v| (v / step).floor() as i64);
         let mut first: HashMap<[i64; 2], u32> = HashMap::new();
-        let mut crowded: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        // Vertices in one place with their numbers there, and their triangles.
+        let mut crowded: BTreeMap<u32, (u32, Vec<usize>)> = BTreeMap::new();
+        let mut counts: HashMap<u32, u32> = HashMap::new();
         for (i, p) in (0u32..).zip(&self.points) {
             let [x, y] = cell(p);
             let near = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [x.saturating_add(a), y.saturating_add(b)]));
             let other = near.filter_map(|c| first.get(&c).copied()).next();
             if let Some(other) = other {
+                let count = counts.entry(other).or_default();
+                *count += 1;
                 crowded.entry(other).or_default();
-                crowded.entry(i).or_default();
+                crowded.entry(i).or_default().0 = *count;
             } else {
                 first.insert([x, y], i);
             }
         }
         for (n, t) in self.triangles.iter().enumerate() {
             for i in t {
-                if let Some(fan) = crowded.get_mut(i) {
+                if let Some((_, fan)) = crowded.get_mut(i) {
                     fan.push(n);
                 }
             }
         }
         let (old, by) = (self.clone(), APART * self.reach());
-        for (k, (vertex, fan)) in crowded.into_iter().enumerate() {
+        for (vertex, (number, fan)) in crowded {
             // By different lengths, as their triangles may lie on one side.
-            let by = by * (1.0 + 0.25 * (k % 4) as f64);
+            let by = by * (1.0 + 0.5 * f64::from(number % 32));
             self.points[vertex as usize] = drawn_back(&old, vertex, &fan, by);
         }
         self
@@ -88,9 +94,9 @@ impl FlatShape {
 
     /// The same shape with a vertex for each of the parts that meet in one only, drawn apart.
     pub(super) fn unpinched(mut self) -> Self {
-        let all: HashSet<(u32, u32)> = self.sides().collect();
+        let all: HashSet<(u32, u32)> = sides(&self.triangles).collect();
         let mut starts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (a, b) in self.sides().filter(|(a, b)| !all.contains(&(*b, *a))) {
+        for (a, b) in sides(&self.triangles).filter(|(a, b)| !all.contains(&(*b, *a))) {
             starts.entry(a).or_default().push(b);
         }
         starts.retain(|_, next| next.len() > 1);
@@ -120,6 +126,11 @@ impl FlatShape {
         }
         self
     }
+}
+
+/// The sides of triangles.
+pub(super) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
+    triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
 }
 
 /// The triangles round a vertex from the side to `next` to the next side of the outline.
@@ -166,15 +177,25 @@ mod tests {
             let triangles = vec![[0, 1, 2], [0, 2, 3], [corner, 4, 5], [corner, 5, 6]];
             let shape = FlatShape { name: "corners".into(), points: points.clone(), triangles };
             let mut mesh = Mesh::default();
-            extrude(&mut mesh, &shape, 1.0);
+            extrude(&mut mesh, &[shape], 1.0);
             let t = topology(&mesh);
             assert!(t.is_closed() && t.euler() == 4 && (t.volume - 2.0).abs() < 1e-4, "{t:?}");
         }
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 0.5]];
         let shape = FlatShape { name: "slit".into(), points, triangles: vec![[0, 1, 2], [0, 2, 3], [4, 6, 5]] };
         let mut mesh = Mesh::default();
-        extrude(&mut mesh, &shape, 1.0);
+        extrude(&mut mesh, &[shape], 1.0);
         let t = topology(&mesh);
         assert!(t.is_closed() && t.euler() == 4 && (t.volume - 1.5).abs() < 1e-4, "{t:?}");
+        // Two shapes with a common side.
+        let square = |x: f64| FlatShape {
+            name: "square".into(),
+            points: vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        };
+        let mut mesh = Mesh::default();
+        extrude(&mut mesh, &[square(3.0), square(4.0)], 1.0);
+        let t = topology(&mesh);
+        assert!(t.is_closed() && t.euler() == 4 && (t.volume - 2.0).abs() < 1e-3 && mesh.marks.len() == 2, "{t:?}");
     }
 }

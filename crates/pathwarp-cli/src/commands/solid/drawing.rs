@@ -22,7 +22,7 @@ pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, F
     let to_mm =
         Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
     let unit = to_mm.determinant().abs().sqrt();
-    let mut mesh = Mesh::default();
+    let mut shapes = Vec::new();
     let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
         let named = NamedShape { name, outline, even_odd };
         let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit, doc.budget())
@@ -33,7 +33,7 @@ pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, F
         });
         let flat = FlatShape { name: name.to_owned(), points: points.collect(), triangles: flat.triangles };
         if !flat.triangles.is_empty() {
-            extrude(&mut mesh, &flat, depth);
+            shapes.push(flat);
         }
         Ok(())
     };
@@ -51,8 +51,10 @@ pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, F
             add(&name, &stroke, false)?;
         }
     }
-    if mesh.positions.is_empty() {
+    if shapes.is_empty() {
         return Err(Failure::file(file, "the drawing has no shapes with an area"));
     }
+    let mut mesh = Mesh::default();
+    extrude(&mut mesh, &shapes, depth);
     Ok(mesh)
 }
