@@ -26,8 +26,7 @@ BLOCKS_PER_WORKER = 8
 def warp(batch: Dict[str, np.ndarray], **how: Any) -> Dict[str, Any]:
     """Warps the files of a batch, and returns a line of the list for each."""
     files.one_thread_per_worker()
-    rows = files.warp(list(batch["path"]), batch.get("bytes"), **how)
-    return {key: [row[key] for row in rows] for key in files.COLUMNS}
+    return files.warp(list(batch["path"]), batch.get("bytes"), **how)
 
 
 def run(

@@ -30,7 +30,7 @@ def warper(**how: Any) -> Any:
         files.one_thread_per_worker()
         for batch in batches:
             paths = [files.local(path) for path in batch["path"]]
-            yield pd.DataFrame(files.warp(paths, batch.get("content"), **how), columns=list(files.COLUMNS))
+            yield pd.DataFrame(files.warp(paths, batch.get("content"), **how))
 
     return warp
 
@@ -47,7 +47,12 @@ def session(workers: int) -> Any:
         "spark.driver.bindAddress": "127.0.0.1",
         "spark.ui.enabled": "false",
         "spark.ui.showConsoleProgress": "false",
-        "spark.sql.execution.arrow.maxRecordsPerBatch": "128",
+        # A batch costs Python as much as ten small drawings. It holds names, or at most these bytes of contents.
+        "spark.sql.execution.arrow.maxRecordsPerBatch": "1024",
+        "spark.sql.execution.arrow.maxBytesPerBatch": str(16 * 1024 * 1024),
+        "spark.sql.execution.arrow.pyspark.enabled": "true",
+        # Java only passes names on: its optimizing compiler would take more time than it saves. (`spark.executor.…` on a cluster.)
+        "spark.driver.extraJavaOptions": "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC",
         # Small files: their number decides, not their size.
         "spark.sql.files.openCostInBytes": str(64 * 1024),
         "spark.sql.files.maxPartitionBytes": str(32 * 1024 * 1024),

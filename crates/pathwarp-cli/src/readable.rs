@@ -10,7 +10,7 @@ const HEAD: usize = 1400;
 
 /// A name for a table: control characters are written as escapes.
 pub(crate) fn name(name: &str) -> Cow<'_, str> {
-    escaped(name, |c| c.is_control())
+    escaped(name, char::is_control)
 }
 
 /// A message, whose lines and tabs are kept, and which has a gap in its middle if it is very long.

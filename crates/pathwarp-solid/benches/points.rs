@@ -38,7 +38,7 @@ fn show(name: &str, seconds: f64) {
 }
 
 /// Name, deformation and parameters.
-const CASES: [(&str, &str, Pairs); 9] = [
+const CASES: [(&str, &str, Pairs); 11] = [
     (
         "collineation",
         "anamorph",
@@ -48,6 +48,8 @@ const CASES: [(&str, &str, Pairs); 9] = [
     ("lattice 2x2x2", "ffd", &[("degree", "1"), ("move", "1,1,1:5,5,5")]),
     ("lattice 3x3x3", "ffd", &[("degree", "2"), ("move", "1,1,1:5,5,5")]),
     ("lattice 4x4x4", "ffd", &[("degree", "3"), ("move", "1,2,1:5,5,5")]),
+    ("lattice 3x2x2", "ffd", &[("degree", "2x1x1"), ("move", "1,1,1:5,5,5")]),
+    ("lattice 4x2x2", "ffd", &[("degree", "3x1x1"), ("move", "1,1,1:5,5,5")]),
     ("rational lattice 4x4x4", "ffd", &[("degree", "3"), ("move", "1,2,1:5,5,5"), ("weight", "1,2,1:2")]),
     ("bend of degree 1", "bend", &[("skeleton", "0,50,50 100,70,40")]),
     ("bend of degree 2", "bend", &[("skeleton", "0,50,50 50,50,50 100,70,40")]),

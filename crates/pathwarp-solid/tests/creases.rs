@@ -8,7 +8,7 @@ use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::map::Chain3;
 use pathwarp_solid::mesh::topology;
-use pathwarp_solid::patch::{Surface, deform_patches, tessellate_image};
+use pathwarp_solid::patch::{Surface, TrimCurve, bpt, deform_patches, tessellate_image};
 use pathwarp_solid::{Box3, Frame3};
 
 const EYE: DVec3 = DVec3::new(32.0, 32.0, 400.0);
@@ -187,5 +187,173 @@ fn tears_are_found() {
         map.push(Registry3::builtin().get("ffd").unwrap().build_from(&args, &frame).unwrap().map);
         let done = deform_patches(&mut vec![hills()], &map, 1e-2, &Budget::new(Limits::default())).unwrap();
         assert!(done.torn_at.is_some() == torn && done.distance <= 1e-2, "{done:?}");
+    }
+}
+
+/// The map of `ffd` in a frame of 64.
+fn lattice(pairs: &[(&str, &str)]) -> Chain3 {
+    let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
+    let mut map = Chain3::default();
+    map.push(Registry3::builtin().get("ffd").unwrap().build_from(&Args::from_pairs(pairs), &frame).unwrap().map);
+    map
+}
+
+/// The map jumps at the plane x = 0, in which patches of the teapot meet, also at the tip of its lid: each follows its own side.
+#[test]
+fn a_jump_at_joints() {
+    let teapot = bpt::read(include_bytes!("../../../samples/solid/newell.bpt")).unwrap();
+    // The corner at 0,5,5 of a box from 0,0,−5 to 5,5,5, and the same with its degrees raised.
+    let raised = "0,2,1:0,0.1333333333333333,0 0,3,1:0,0.2,0 0,2,2:0,0.2666666666666667,0 0,3,2:0,0.4,0 \
+                  0,1,1:0,0.0666666666666667,0 0,1,2:0,0.1333333333333333,0 0,1,3:0,0.2,0 0,2,3:0,0.4,0 0,3,3:0,0.6,0";
+    for (degree, change) in [("1", "0,1,1:0,0.6,0"), ("1x3x3", raised)] {
+        let map = lattice(&[("region", "0,0,-5,5,5,10"), ("degree", degree), ("move", change)]);
+        let mut images = teapot.clone();
+        let done = deform_patches(&mut images, &map, 1e-3, &Budget::new(Limits::default())).unwrap();
+        assert!(images.len() == 32 && done.distance <= 1e-3 && done.torn_at.is_some(), "{done:?}");
+        for (n, (from, to)) in teapot.iter().zip(&images).enumerate() {
+            let moves = from.bounds().unwrap().max.x > 0.0;
+            let (from, cells) = (&from.pieces().0[0], to.pieces().0);
+            let across = cells.len().isqrt();
+            for k in 0..17 * 17 {
+                let [u, v] = [k % 17, k / 17].map(|i| f64::from(i) / 16.0);
+                let p = from.point(u, v);
+                let influence = (1.0 - p.x / 5.0) * p.y / 5.0 * (p.z + 5.0) / 10.0;
+                let truth = p + DVec3::Y * if moves { 0.6 * influence } else { 0.0 };
+                let [i, j] = [u, v].map(|t| ((t * across as f64) as usize).min(across - 1));
+                let own = [u * across as f64 - i as f64, v * across as f64 - j as f64];
+                let off = cells[j * across + i].point(own[0], own[1]).distance(truth);
+                assert!(off <= 1e-3, "degree {degree}, surface {n} at {u},{v}: {off}");
+            }
+        }
+    }
+}
+
+/// A surface whose own joint lies where the map jumps falls apart there, into exact halves.
+#[test]
+fn a_jump_at_a_joint_of_one_surface() {
+    let row = |y: f64| (0..5).map(move |i| DVec3::new(8.0 + 12.0 * f64::from(i), y, 30.0 + f64::from(i * i)));
+    let mut surface = Surface::bezier("", [4, 1], row(10.0).chain(row(50.0)).collect());
+    surface.degree = [2, 1];
+    surface.knots[0] = vec![0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 1.0];
+    let map = lattice(&[("region", "32,0,0,32,64,64"), ("degree", "1"), ("move", "0,1,1:0,16,0")]);
+    let halves = surface.pieces().0;
+    let mut images = vec![surface];
+    let done = deform_patches(&mut images, &map, 1e-3, &Budget::new(Limits::default())).unwrap();
+    assert!(images.len() == 2 && done.distance == 0.0 && done.torn_at.is_some(), "{done:?}");
+    for (n, image) in images.iter().enumerate() {
+        for (u, v) in [(0.0, 0.0), (0.0, 1.0), (0.3, 0.6), (1.0, 0.4)] {
+            let p = halves[n].point(u, v);
+            let influence = (2.0 - p.x / 32.0) * p.y / 64.0 * p.z / 64.0;
+            let truth = p + DVec3::Y * if n == 1 { 16.0 * influence } else { 0.0 };
+            let off = image.pieces().0[0].point(u, v).distance(truth);
+            assert!(off < 1e-12, "half {n} at {u},{v}: {off}");
+        }
+    }
+}
+
+/// Circles of four rational quadratics.
+fn circle(r: f64) -> Vec<TrimCurve> {
+    let corners = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)];
+    let curve = |c: &[(i32, i32)]| TrimCurve {
+        degree: 2,
+        knots: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+        points: c.iter().map(|(x, y)| [0.5 + r * f64::from(*x), 0.5 + r * f64::from(*y)]).collect(),
+        weights: vec![1.0, 0.5f64.sqrt(), 1.0],
+    };
+    [0, 2, 4, 6].map(|k| curve(&corners[k..k + 3])).to_vec()
+}
+
+/// Points of a trimming curve with one span, by its definition.
+fn on_curve(c: &TrimCurve, t: f64) -> [f64; 2] {
+    let n = i32::try_from(c.degree).unwrap();
+    let binomial = |i: i32| (0..i).fold(1.0, |b, k| b * f64::from(n - k) / f64::from(k + 1));
+    let b = |i: usize| {
+        let i = i32::try_from(i).unwrap();
+        binomial(i) * t.powi(i) * (1.0 - t).powi(n - i)
+    };
+    let sum = |f: &dyn Fn(usize) -> f64| (0..c.points.len()).map(|i| b(i) * c.weights[i] * f(i)).sum::<f64>();
+    [sum(&|i| c.points[i][0]) / sum(&|_| 1.0), sum(&|i| c.points[i][1]) / sum(&|_| 1.0)]
+}
+
+/// Returns `true` if an odd number of loops surrounds a place.
+fn surrounded(loops: &[Vec<[f64; 2]>], [u, v]: [f64; 2]) -> bool {
+    let crosses =
+        |p: &[f64; 2], q: &[f64; 2]| (p[1] > v) != (q[1] > v) && u < p[0] + (v - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
+    let count = |l: &Vec<[f64; 2]>| l.iter().zip(l.iter().cycle().skip(1)).filter(|(p, q)| crosses(p, q)).count();
+    loops.iter().map(count).sum::<usize>() % 2 == 1
+}
+
+/// A ring is cut out of the hills: the parts' loops leave the same ring, whatever the crease does.
+#[test]
+fn trimmed_surfaces_are_cut() {
+    let mut ring = hills();
+    ring.trims = vec![circle(0.4), circle(0.15)];
+    for (name, at, normal) in [
+        ("along u = const", DVec3::new(30.0, 0.0, 20.0), DVec3::X),
+        ("along v = const", DVec3::new(0.0, 24.0, 20.0), DVec3::NEG_Y),
+        ("oblique", DVec3::new(30.0, 30.0, 20.0), DVec3::new(1.0, 0.4, 0.2)),
+        ("a corner", DVec3::new(20.0, 16.0, 20.0), DVec3::new(-1.0, -1.0, 0.1)),
+        ("loops round the tops", DVec3::new(30.0, 30.0, 34.0), DVec3::new(0.02, 0.01, 1.0)),
+    ] {
+        let corners = beyond(at, normal);
+        let tolerance = 0.01;
+        let mut parts = vec![ring.clone()];
+        let done = deform_patches(&mut parts, &local(corners), tolerance, &Budget::new(Limits::default())).unwrap();
+        assert!(
+            done.cut == 1 && done.distance <= tolerance && parts.iter().all(|s| s.fault().is_none()),
+            "{name}: {done:?}"
+        );
+        // A tolerance in space, in the parameters of the source: 40 and 44 wide.
+        let near = 4.0 * tolerance / 40.0;
+        let from_middle = |q: DVec3| {
+            let p = source(q, corners);
+            assert!((p.z - height(&hills(), p.x, p.y)).abs() <= 4.0 * tolerance, "{name}: {p}");
+            ([(p.x - 8.0) / 40.0, (p.y - 6.0) / 44.0], ((p.x - 8.0) / 40.0 - 0.5).hypot((p.y - 6.0) / 44.0 - 0.5))
+        };
+        let mut seen = vec![false; 20 * 20];
+        for part in &parts {
+            let (cells, breaks) = part.pieces();
+            let across = breaks[0].len() - 1;
+            let image = |s: f64, t: f64| {
+                let [i, j] = [0, 1].map(|a| {
+                    let inner = &breaks[a][1..breaks[a].len() - 1];
+                    inner.partition_point(|b| *b <= [s, t][a])
+                });
+                let own = |a: usize, k: usize| ([s, t][a] - breaks[a][k]) / (breaks[a][k + 1] - breaks[a][k]);
+                cells[j * across + i].point(own(0, i), own(1, j))
+            };
+            let polygon =
+                |l: &Vec<TrimCurve>| l.iter().flat_map(|c| (0..40).map(|i| on_curve(c, f64::from(i) / 40.0))).collect();
+            let loops: Vec<Vec<[f64; 2]>> = part.trims.iter().map(polygon).collect();
+            for [s, t] in loops.iter().flatten().copied() {
+                let (_, r) = from_middle(image(s, t));
+                // Parts are less than 50 wide.
+                let on_side = [s, t].iter().any(|v| v.abs().min((v - 1.0).abs()) < tolerance / 50.0);
+                assert!(
+                    on_side || (r - 0.4).abs() < near || (r - 0.15).abs() < near,
+                    "{name}: {s},{t} is {r} from the middle"
+                );
+            }
+            let side = if parts.len() > 20 { 24 } else { 80 };
+            for k in 0..side * side {
+                let [s, t] = [k % side, k / side].map(|i| (f64::from(i) + 0.4) / f64::from(side));
+                let inside = loops.is_empty() || surrounded(&loops, [s, t]);
+                let (at, r) = from_middle(image(s, t));
+                // Polygons of 40 corners for a quarter of a circle or less.
+                let margin = near + 1e-3;
+                if inside {
+                    assert!(r > 0.15 - margin && r < 0.4 + margin, "{name}: {at:?} is not on the ring");
+                    let cell = at.map(|t| ((t * 20.0) as usize).min(19));
+                    seen[cell[1] * 20 + cell[0]] = true;
+                } else {
+                    assert!(r < 0.15 + margin || r > 0.4 - margin, "{name}: {at:?} is missing");
+                }
+            }
+        }
+        let missing = (0..400).filter(|k| {
+            let r = ((f64::from(k % 20) + 0.5) / 20.0 - 0.5).hypot((f64::from(k / 20) + 0.5) / 20.0 - 0.5);
+            r > 0.2 && r < 0.35 && !seen[*k as usize]
+        });
+        assert_eq!(missing.count(), 0, "{name}");
     }
 }

@@ -10,13 +10,14 @@ use crate::scene::lettering::selected::{Lettering, lettering};
 use crate::scene::plot::{self, Plot};
 use crate::scene::seen;
 use crate::scene::shape::{NamedPath, Shape, named_path};
+use crate::scene::stroked::stroked;
 use crate::scene::unread::UnreadImages;
 use crate::source::read::ReadOptions;
 use crate::source::select::{Selection, candidates, is_named, matches_any};
 use crate::source::tags::{ElementId, is_shape};
 use crate::write;
 use crate::write::input::WriteInput;
-use pathwarp::budget::Budget;
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::Map;
 use pathwarp::{Error, Outline, refit};
@@ -180,6 +181,18 @@ impl Document {
     #[must_use]
     pub fn lettering(&self, selection: &Selection) -> Lettering {
         lettering(&self.drawing, selection)
+    }
+
+    /// For each shape of [`Document::selected`], the area that its stroke covers in root user space, to be filled by the nonzero rule,
+    /// within `tolerance` there; `None` if it has no stroke.
+    ///
+    /// # Errors
+    /// More segments than the limit allows.
+    pub fn strokes(&self, selection: &Selection, tolerance: f64) -> Result<Vec<Option<Outline>>, Exceeded> {
+        let (scene, selected) = (self.drawing.scene(), self.drawing.selected_parts(selection));
+        let all = scene.parts.iter().zip(self.shapes()).zip(selected);
+        let chosen = all.filter(|((_, s), selected)| *selected && s.painted);
+        chosen.map(|((p, _), _)| stroked(p, scene.to_px, tolerance, self.budget())).collect()
     }
 
     /// For each shape of [`Document::selected`], its outline after letters have been placed one by one; `None` if it has no

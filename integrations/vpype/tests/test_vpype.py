@@ -124,4 +124,8 @@ def test_messages():
     assert wrong.returncode == 1 and "not read from a file" in wrong.stderr
     wrong = run("read", str(LOGO), "pathwarp", "arc", "--bend", "much")
     assert wrong.returncode != 0 and "bend" in wrong.stderr and "Traceback" not in wrong.stderr
+    cut = run("read", str(LOGO), "pathwarp", "arc", "--bend", "40%")
+    assert cut.returncode == 0 and "past the page by 69" in cut.stderr and "`layout tight`" in cut.stderr, cut
+    small = run("read", str(LOGO), "scale", "0.2", "0.2", "pathwarp", "arc", "--bend", "40%", "--curves", "lines", "layout", "tight")
+    assert small.returncode == 0 and "past the page" not in small.stderr, small
     assert "--bend" in run("pathwarp", "arc", "--help").stdout and "DEFORMATION" in run("pathwarp", "--help").stdout

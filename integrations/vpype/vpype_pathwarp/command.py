@@ -124,9 +124,33 @@ def _error(failing: Any) -> Exception:
     return pw.UsageError("")
 
 
+VISIBLE = 1e-3
+"""Smallest overhang that counts, as a fraction of the page: one pixel in a thousand."""
+
+
+def overhang(document: vp.Document) -> float:
+    """How far the drawing extends past its page, in px; 0 if that is not to be seen."""
+    size, bounds = document.page_size, document.bounds()
+    if not size or bounds is None:
+        return 0.0
+    x0, y0, x1, y1 = bounds
+    most = max(-x0, -y0, x1 - size[0], y1 - size[1])
+    return most if most > VISIBLE * max(size) else 0.0
+
+
 @click.command("pathwarp", cls=PathwarpCommand, help=HELP)
 @vpype_cli.global_processor
 def pathwarp(document: vp.Document, call: Call, quantization: float) -> vp.Document:
+    before = overhang(document)
+    bent = warped(document, call, quantization)
+    after = overhang(bent)
+    if after > before:
+        advice = "`layout tight` fits the page to it"
+        logging.warning("pathwarp: the drawing extends past the page by %.1f px; %s", after, advice)
+    return bent
+
+
+def warped(document: vp.Document, call: Call, quantization: float) -> vp.Document:
     try:
         if call.curves != "lines":
             bent, reason = from_source(document, call.deformation, quantization)

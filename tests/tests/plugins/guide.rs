@@ -2,26 +2,20 @@
 
 use super::common::{Scratch, python, text};
 use crate::support::{pathwarp_program, root, sample};
-use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Formula, Map, Real};
+use pathwarp::kurbo::Point;
 use std::f64::consts::PI;
 use std::fs;
 use std::process::Command;
 
-// As in the guide's section about crates, from here …
-struct Swell {
-    frame: Rect,
-    amount: f64,
-}
+/// The guide's crate, as a module whose test runs with these.
+#[path = "swell.rs"]
+#[allow(dead_code, reason = "nobody calls its `main` here")]
+mod swell;
 
-impl Formula for Swell {
-    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let wave = ((x - self.frame.x0) * (PI / self.frame.width())).sin();
-        let middle = self.frame.center().y;
-        (x, (y - middle) * (wave * wave * self.amount + 1.0) + middle)
-    }
+/// The formula of all roads, in the box 0,0,80,40 and with an amount of 80 %.
+fn swollen(p: Point) -> Point {
+    Point::new(p.x, 20.0 + (p.y - 20.0) * (1.0 + 0.8 * (PI * p.x / 80.0).sin().powi(2)))
 }
-// … to here.
 
 /// A code block: its language, the paragraph before it, and its text.
 struct Block {
@@ -98,7 +92,6 @@ fn with_logo() -> Scratch {
 
 /// The plug-in of a file maps points as the formula does.
 fn assert_swells(scratch: &Scratch, name: &str, file: &str) {
-    let swell = Swell { frame: Rect::new(0.0, 0.0, 80.0, 40.0), amount: 0.8 };
     let points: Vec<Point> = (0..40).map(|i| Point::new(2.0 * f64::from(i), 35.0 - f64::from(i))).collect();
     let list: String = points.iter().map(|p| format!("{} {}\n", p.x, p.y)).collect();
     fs::write(scratch.file("points.txt"), list).unwrap();
@@ -108,7 +101,7 @@ fn assert_swells(scratch: &Scratch, name: &str, file: &str) {
     for (p, line) in points.iter().zip(mapped.lines()) {
         let (x, y) = line.split_once(' ').unwrap();
         let q = Point::new(x.parse().unwrap(), y.parse().unwrap());
-        assert!(q.distance(swell.point(*p)) < 1e-11, "{name}: {p} to {q}");
+        assert!(q.distance(swollen(*p)) < 1e-11, "{name}: {p} to {q}");
     }
 }
 
@@ -149,14 +142,16 @@ fn the_road_in_shell() {
     assert_swells(&scratch, "swell-sh", "./pathwarp-swell-sh.sh");
 }
 
-/// The map of the road by a crate is the one above; its commands are those of the workspace, whose tests run them.
+/// The program of the road by a crate is the module above, which is compiled and tested here; its other commands are those of the workspace, whose
+/// tests run them.
 #[test]
 fn the_road_by_a_crate() {
-    let own = include_str!("guide.rs");
-    let (_, own) = own.split_once("from here …\n").unwrap();
-    let (own, _) = own.split_once("// … to here.").unwrap();
     let blocks = blocks("A crate");
-    assert_eq!(blocks.iter().find(|b| b.language == "rust").unwrap().text, own);
+    assert_eq!(blocks.iter().find(|b| b.language == "rust").unwrap().text, include_str!("swell.rs"));
+    let own = &blocks.iter().find(|b| b.language == "toml").unwrap().text;
+    for path in own.split("path = \"../pathwarp/").skip(1) {
+        assert!(root().join(path.split('"').next().unwrap()).join("Cargo.toml").exists(), "{path}");
+    }
     let commands = &blocks.iter().find(|b| b.language.is_empty()).unwrap().text;
     let manifest = fs::read_to_string(root().join("examples/plugin-crate/Cargo.toml")).unwrap();
     assert!(commands.contains("-p pathwarp-ripple") && manifest.contains("name = \"pathwarp-ripple\""));

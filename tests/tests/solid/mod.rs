@@ -209,6 +209,18 @@ fn reports_recipes_explanations_and_saved_lattices() {
     let (back, source) = (Model::read(&read("back.obj")), Model::read(&read("in.obj")));
     let off = back.vertices.iter().zip(&source.vertices).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
     assert!(off.fold(0.0, f64::max) < 1e-6);
+    // The same with a second step, whose box is that of the model by then.
+    let twist = ["+", "bend", "--preset", "twist", "--along", "y", "--angle", "60", "--through", "40%,0,30%"];
+    ok(
+        dir.path(),
+        &[&["ffd", "in.obj", "--move", "1,2,1:0,30%,0"], &twist[..], &["--write-recipe", "two.toml", "-o", "two.obj"]]
+            .concat(),
+        "",
+    );
+    ok(dir.path(), &["run", "two.toml", "two.obj", "--inverse", "--box", &size.join(","), "-o", "back.obj"], "");
+    let back = Model::read(&read("back.obj"));
+    let off = back.vertices.iter().zip(&source.vertices).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
+    assert!(off.fold(0.0, f64::max) < 1e-6);
     // A recipe for solids is not one for drawings.
     let out = pathwarp_in(dir.path(), &["run", "r.toml", "in.obj"], b"");
     assert!(out.status.code() == Some(3) && text(&out.stderr).contains("pathwarp solid run"), "{}", text(&out.stderr));
@@ -328,6 +340,44 @@ fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     assert!(fails(dir.path(), &["ffd", "back.stl", "--extrude", "3"], "", 2).contains("model already"));
     fs::write(dir.path().join("cut.stl"), &fs::read(dir.path().join("back.stl")).unwrap()[..500]).unwrap();
     assert!(fails(dir.path(), &["ffd", "cut.stl", "-o", "x.stl"], "", 3).contains("wrong length"));
+}
+
+/// A ring that is drawn by a stroke, a filled square with one, and dashes: every fill and every stroke is a closed solid.
+#[test]
+fn strokes_are_solids() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |shapes: &str| {
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' height='60mm' viewBox='0 0 120 120'>{shapes}</svg>"
+        );
+        fs::write(dir.path().join("s.svg"), svg).unwrap();
+        report(dir.path(), &["bend", "s.svg", "--extrude", "5mm", "--preset", "twist", "--angle", "0", "-o", "s.obj"])["after"].clone()
+    };
+    // A unit is half a millimetre. The stroke of the circle is 2 mm wide, with its middle at a radius of 20 mm.
+    let ring = write("<circle cx='60' cy='60' r='40' fill='none' stroke='black' stroke-width='4'/>");
+    let truth = 5.0 * std::f64::consts::PI * (21.0 * 21.0 - 19.0 * 19.0);
+    assert!(ring["closed"] == true && ring["euler"] == 0, "{ring}");
+    assert!((ring["volume"].as_f64().unwrap() / truth - 1.0).abs() < 1e-3, "{ring}, not {truth}");
+    // 10 × 10 mm, and a frame from 12 × 12 to 8 × 8 that overlaps it.
+    let framed = write("<rect id='r' x='20' y='20' width='20' height='20' stroke='red' stroke-width='4'/>");
+    assert!(framed["closed"] == true && framed["euler"] == 2, "{framed}");
+    assert!((framed["volume"].as_f64().unwrap() - 5.0 * (100.0 + 144.0 - 64.0)).abs() < 1e-3, "{framed}");
+    let names: Vec<String> = fs::read_to_string(dir.path().join("s.obj"))
+        .unwrap()
+        .lines()
+        .filter(|l| l.starts_with("o "))
+        .map(str::to_owned)
+        .collect();
+    assert_eq!(names, ["o r", "o r stroke"]);
+    // A stroke whose width and dashes are in px whatever the scale: nine dashes of 8 px and the start of a tenth.
+    let dashes = write(
+        "<g transform='scale(2)'><path d='M0,20 H39' stroke='red' stroke-width='2' stroke-dasharray='8' \
+         vector-effect='non-scaling-stroke'/></g>",
+    );
+    let px = 25.4 / 96.0;
+    let ink = 39.0 / px - 9.0 * 8.0;
+    assert!(dashes["closed"] == true && dashes["euler"] == 20, "{dashes}");
+    assert!((dashes["volume"].as_f64().unwrap() / (5.0 * ink * px * 2.0 * px) - 1.0).abs() < 1e-4, "{dashes}");
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use super::grid::{Lattice3, Piece};
 use crate::box3::Box3;
-use crate::map::{Chart, Creases3, Displaced, Fraction3, Jet3, Local, Map3, NewtonInverse3, Poly3, Quotient, for_all};
+use crate::map::{
+    Chart, Collineation, Creases3, Displaced, Fraction3, Jet3, Local, Map3, NewtonInverse3, Poly3, Quotient, for_all,
+};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -64,6 +66,21 @@ impl LatticeMap3 {
         self.pieces.get((at(2) * self.cells[1] + at(1)) * self.cells[0] + at(0))
     }
 
+    /// The piece for a whole box, or `Some(None)` where nothing moves; `None` if a crease may cross the box.
+    fn piece_on(&self, on: &Box3) -> Option<Option<&(Local, Piece)>> {
+        let slack = 4.0 * (self.inside.max - self.region.max);
+        let within = self.extended || self.inside.contains(on.min) && self.inside.contains(on.max);
+        if !within {
+            let beside = on.max.cmple(self.region.min + slack).any() || on.min.cmpge(self.region.max - slack).any();
+            return beside.then_some(None);
+        }
+        // Between the same knots along every axis. A flat box may lie in a crease.
+        let middle = on.center();
+        let cell = |p: DVec3| self.piece(p).map(std::ptr::from_ref);
+        let same = cell((on.min + slack).min(middle))? == cell((on.max - slack).max(middle))?;
+        same.then(|| self.piece(middle))
+    }
+
     /// The common denominator at `p`, positive where the map is defined.
     fn denominator(&self, p: DVec3) -> f64 {
         match self.piece(p) {
@@ -123,19 +140,10 @@ impl Map3 for LatticeMap3 {
     }
 
     fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
-        let (chart, region) = (Chart::on(on), self.inside);
-        let outside = on.max.cmplt(region.min).any() || on.min.cmpgt(region.max).any();
-        if outside && !self.extended {
+        let chart = Chart::on(on);
+        let Some((local, piece)) = self.piece_on(on)? else {
             return Some(Fraction3::identity(chart));
-        }
-        let known = self.extended || region.contains(on.min) && region.contains(on.max);
-        // One smooth piece for the whole box: between the same knots along every axis.
-        let cell = |p: DVec3| self.piece(p).map(std::ptr::from_ref);
-        let inner = on.inflate(-4.0 * (region.max - self.region.max));
-        if !known || cell(inner.min)? != cell(inner.max)? {
-            return None;
-        }
-        let (local, piece) = self.piece(on.center())?;
+        };
         let t = chart.local(local);
         let degree = match piece {
             Piece::Displacement(tensor) => tensor.total_degree(),
@@ -152,6 +160,15 @@ impl Map3 for LatticeMap3 {
             Piece::Quotient(tensor) => tensor.in_terms_of(&t),
         };
         Some(Fraction3 { chart, parts })
+    }
+
+    fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        Some(match self.piece_on(on)? {
+            None => Arc::new(Collineation::IDENTITY),
+            Some(piece) => {
+                Arc::new(Self { cells: [1; 3], pieces: [piece.clone()].into(), extended: true, ..self.clone() })
+            }
+        })
     }
 
     fn creases(&self, out: &mut Creases3) {

@@ -14,6 +14,9 @@ pub struct Collineation {
 }
 
 impl Collineation {
+    /// The collineation that moves nothing.
+    pub const IDENTITY: Self = Self { matrix: DMat4::IDENTITY, positive: Vec::new() };
+
     /// The collineation with this matrix, defined where the last coordinate is positive.
     #[must_use]
     pub fn new(matrix: DMat4) -> Self {

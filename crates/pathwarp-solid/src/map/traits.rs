@@ -46,6 +46,12 @@ pub trait Map3: Send + Sync {
         None
     }
 
+    /// The smooth map that this one is on a box, if it is one there; it goes on beyond the box. A box that a crease only touches lies on
+    /// its own side of it, where the map itself may take the points of the crease to the other.
+    fn branch(&self, _on: &Box3) -> Option<Arc<dyn Map3>> {
+        None
+    }
+
     /// Adds the surfaces on which the map is not smooth, and the boundary of its domain.
     fn creases(&self, _out: &mut Creases3) {}
 
@@ -74,6 +80,9 @@ impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     }
     fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
         (**self).fraction(on, most)
+    }
+    fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        (**self).branch(on)
     }
     fn creases(&self, out: &mut Creases3) {
         (**self).creases(out);

@@ -1,26 +1,14 @@
 //! Flat shapes as solids: a front, a back, and walls along the edges between them.
 
+use super::flat::FlatShape;
 use super::model::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// A shape in the plane, filled with triangles.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct FlatShape {
-    /// Its name.
-    pub name: String,
-    /// Vertices, y up.
-    pub points: Vec<[f64; 2]>,
-    /// Triangles, all counter-clockwise or all clockwise.
-    pub triangles: Vec<[u32; 3]>,
-}
-
 /// Appends a shape as an object: flat at z = 0 if `depth` is 0, otherwise a closed solid from there to z = `depth` above it.
 pub fn extrude(mesh: &mut Mesh, shape: &FlatShape, depth: f64) {
-    let area: f64 = shape.triangles.iter().map(|t| area(shape, *t)).sum();
-    // Triangles without area whose corners are apart keep the surface closed; those with equal corners add nothing.
-    let kept = shape.triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a);
-    let triangles: Vec<[u32; 3]> = kept.map(|[a, b, c]| if area < 0.0 { [*a, *c, *b] } else { [*a, *b, *c] }).collect();
+    let turned = shape.turned();
+    let shape = if depth == 0.0 { turned } else { turned.unpinched().separated() };
     let count = u32::try_from(shape.points.len()).unwrap_or(NONE);
     let back = u32::try_from(mesh.positions.len()).unwrap_or(NONE);
     mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), Mark::Object(shape.name.clone())));
@@ -28,28 +16,22 @@ pub fn extrude(mesh: &mut Mesh, shape: &FlatShape, depth: f64) {
     mesh.positions.extend(layer(0.0));
     let corner = |first: u32, i: u32| Corner { vertex: first.saturating_add(i), uv: NONE, normal: NONE };
     if depth == 0.0 {
-        for t in triangles {
+        for t in &shape.triangles {
             mesh.push(PolygonKind::Face, t.map(|i| corner(back, i)));
         }
         return;
     }
     mesh.positions.extend(layer(depth));
     let front = back.saturating_add(count);
-    for [a, b, c] in &triangles {
+    for [a, b, c] in &shape.triangles {
         mesh.push(PolygonKind::Face, [*a, *b, *c].map(|i| corner(front, i)));
         mesh.push(PolygonKind::Face, [*a, *c, *b].map(|i| corner(back, i)));
     }
-    let edges = || triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
-    let all: HashSet<(u32, u32)> = edges().collect();
+    let all: HashSet<(u32, u32)> = shape.sides().collect();
     // An edge without an opposite one is on the outline, with the shape to its left.
-    for (a, b) in edges().filter(|(a, b)| !all.contains(&(*b, *a))) {
+    for (a, b) in shape.sides().filter(|(a, b)| !all.contains(&(*b, *a))) {
         mesh.push(PolygonKind::Face, [corner(back, a), corner(back, b), corner(front, b), corner(front, a)]);
     }
-}
-
-fn area(shape: &FlatShape, t: [u32; 3]) -> f64 {
-    let [a, b, c] = t.map(|i| shape.points.get(i as usize).copied().unwrap_or_default());
-    0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 }
 
 #[cfg(test)]

@@ -28,7 +28,8 @@ fn announced(bytes: &[u8]) -> Option<usize> {
 
 fn is_text(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(1024)];
-    start.trim_ascii_start().starts_with(b"solid") && !start.contains(&0)
+    let word = start.trim_ascii_start().get(..5);
+    word.is_some_and(|w| w.eq_ignore_ascii_case(b"solid")) && !start.contains(&0)
 }
 
 /// Reads a mesh.
@@ -51,6 +52,10 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         // Some programs begin the header of binary files like a text file's.
         own = bytes.to_vec();
         own[0] = b'S';
+        bytes = &own[..];
+    } else if !binary {
+        // stl_io knows keywords in small letters only.
+        own = bytes.to_ascii_lowercase();
         bytes = &own[..];
     }
     let read = stl_io::read_stl(&mut Cursor::new(bytes))
@@ -108,7 +113,10 @@ mod tests {
         let mut like_text = bytes.clone();
         like_text[..5].copy_from_slice(b"solid");
         let text = "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 2 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid t\n";
-        for (file, faces, points) in [(&bytes[..], 4, 4), (&like_text[..], 4, 4), (text.as_bytes(), 1, 3)] {
+        let upper = text.to_ascii_uppercase();
+        for (file, faces, points) in
+            [(&bytes[..], 4, 4), (&like_text[..], 4, 4), (text.as_bytes(), 1, 3), (upper.as_bytes(), 1, 3)]
+        {
             let back = read(file).unwrap();
             assert_eq!((back.polygons.len(), back.positions.len()), (faces, points));
         }

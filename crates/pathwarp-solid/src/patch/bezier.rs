@@ -58,7 +58,7 @@ impl BezierPatch {
 
 /// A Bézier curve and its derivative. The same arithmetic runs from both ends, so that patches with a common edge agree on it to
 /// the last bit at parameters t and 1 − t.
-fn curve(points: impl Iterator<Item = DVec4>, t: f64) -> (DVec4, DVec4) {
+pub(super) fn curve(points: impl Iterator<Item = DVec4>, t: f64) -> (DVec4, DVec4) {
     let mut row = [DVec4::ZERO; MAX_DEGREE + 1];
     let mut n = 0;
     for (slot, p) in row.iter_mut().zip(points) {

@@ -151,8 +151,18 @@ impl<'a> Graphs<'a> {
         self.curves.len()
     }
 
+    /// Height and slope of the lower and the upper side of a layer.
+    pub(super) fn sides(&self, layer: usize, u: f64) -> [[f64; 2]; 2] {
+        let low = if layer == 0 { [0.0, 0.0] } else { self.at(layer - 1, u) };
+        if layer == self.count() {
+            return [low, [1.0, 0.0]];
+        }
+        let high = self.at(layer, u);
+        [low, [high[0].max(low[0]), high[1]]]
+    }
+
     /// Height and slope of a curve.
-    pub(super) fn at(&self, curve: usize, u: f64) -> [f64; 2] {
+    fn at(&self, curve: usize, u: f64) -> [f64; 2] {
         /// Step of differences, in the parameters.
         const H: f64 = 1e-6;
         let Some((level, heights)) = self.curves.get(curve) else { return [f64::from(curve > 0), 0.0] };

@@ -2,6 +2,7 @@
 //!
 //! Layers that follow the crease fit a part if the crease is a graph over u or v. Any other part is cut at a place where the crease
 //! meets its sides, or else in the middle, and the parts are looked at again. A part without crease keeps its exact image if it has one.
+//! Trimming loops are cut with the parts, and parts outside them are left out.
 
 use super::bezier::BezierPatch;
 use super::compose;
@@ -9,10 +10,12 @@ use super::crossing::{self, Graphs};
 use super::knots;
 use super::layers::Layers;
 use super::refit::{Cells, MOST_CELLS};
+use super::side::Sided;
 use super::surface::Surface;
-use crate::map::{Chain3, Level3};
+use super::trims::Trims;
+use crate::map::{Chain3, Level3, Map3};
 use glam::{DVec3, Vec4Swizzles as _};
-use pathwarp::budget::{Budget, Exceeded};
+use pathwarp::budget::{Budget, Exceeded, Limit};
 
 /// Cuts in the middle after which a part is fitted as it is.
 const DEEPEST: usize = 6;
@@ -38,24 +41,34 @@ pub(super) struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    /// The image of a surface in parts, if a crease crosses it. A trimmed surface is not cut: its loops go over all parts.
+    /// The image of a surface, given with its patches and the parameters between them, in parts, if a crease crosses it or the map
+    /// tears it apart along a joint.
     ///
     /// # Errors
     /// More evaluations than the limit allows.
-    pub(super) fn image(&self, surface: &Surface, pieces: &[BezierPatch]) -> Result<Option<Parts>, Exceeded> {
-        if !surface.trims.is_empty() || self.levels.is_empty() {
+    pub(super) fn image(
+        &self,
+        surface: &Surface,
+        pieces: &[BezierPatch],
+        breaks: &[Vec<f64>; 2],
+    ) -> Result<Option<Parts>, Exceeded> {
+        if self.levels.is_empty() {
             return Ok(None);
         }
+        let across = breaks[0].len() - 1;
         let mut crossed = Vec::with_capacity(pieces.len());
         for piece in pieces {
             crossed.push(crossing::crossing(piece, self.map, self.levels, self.budget)?);
         }
-        if crossed.iter().all(Vec::is_empty) {
+        if crossed.iter().all(Vec::is_empty) && !self.is_torn(pieces, across)? {
             return Ok(None);
         }
         let mut out = Parts::default();
-        for (piece, levels) in pieces.iter().zip(crossed) {
-            self.part(piece, &levels, [0, 0], &mut out)?;
+        let trims = Trims::of(surface);
+        for (n, (piece, levels)) in pieces.iter().zip(crossed).enumerate() {
+            let at = |k: usize| [breaks[0][n % across + k], breaks[1][n / across + k]];
+            let trims = self.trims_of(trims.as_ref(), at(0), at(1))?;
+            self.part(&Part { patch: piece.clone(), trims }, &levels, [0, 0], &mut out)?;
         }
         for part in &mut out.surfaces {
             part.name.clone_from(&surface.name);
@@ -63,19 +76,51 @@ impl Cutter<'_> {
         Ok(Some(out))
     }
 
+    /// Returns `true` if the images of two neighbouring patches do not join.
+    fn is_torn(&self, pieces: &[BezierPatch], across: usize) -> Result<bool, Exceeded> {
+        const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+        if pieces.len() == 1 {
+            return Ok(false);
+        }
+        self.budget.spend(Limit::Evaluations, (4 * PLACES.len() * pieces.len()) as u64)?;
+        let sides: Vec<Sided> = pieces.iter().map(|p| Sided::new(p, self.map)).collect();
+        let image = |k: usize, u: f64, v: f64| sides[k].map.point(pieces[k].point(u, v));
+        let apart = |p: DVec3, q: DVec3| p.distance(q) > self.tolerance;
+        Ok((0..pieces.len()).any(|k| {
+            let (right, up) = ((k + 1) % across > 0, k + across < pieces.len());
+            PLACES.into_iter().any(|t| {
+                right && apart(image(k, 1.0, t), image(k + 1, 0.0, t))
+                    || up && apart(image(k, t, 1.0), image(k + across, t, 0.0))
+            })
+        }))
+    }
+
+    /// The loops of a part.
+    fn trims_of(&self, trims: Option<&Trims>, from: [f64; 2], to: [f64; 2]) -> Result<Option<Trims>, Exceeded> {
+        /// Clipping a curve takes about as long as so many evaluations of a map.
+        const WORK: usize = 16;
+        let Some(trims) = trims else { return Ok(None) };
+        self.budget.spend(Limit::Evaluations, (WORK * trims.count()) as u64)?;
+        Ok(trims.part(from, to))
+    }
+
     /// Adds the image of a part that these creases may cross, after so many cuts in the middle and of all kinds.
-    fn part(&self, patch: &BezierPatch, levels: &[Level3], cuts: [usize; 2], out: &mut Parts) -> Result<(), Exceeded> {
+    fn part(&self, part: &Part, levels: &[Level3], cuts: [usize; 2], out: &mut Parts) -> Result<(), Exceeded> {
+        if part.trims.as_ref().is_some_and(Trims::is_empty) {
+            return Ok(());
+        }
+        let patch = &part.patch;
         let crossing = crossing::crossing(patch, self.map, levels, self.budget)?;
         let most = if cuts[0] < DEEPEST && cuts[1] < MOST_CUTS { ENOUGH } else { MOST_CELLS };
-        let turned = patch.transposed();
-        if let Some((surfaces, off)) = self.whole(patch, &turned, &crossing, most)?
+        let turned = part.transposed();
+        if let Some((surfaces, off)) = self.whole(part, &turned, &crossing, most)?
             && (off <= self.tolerance || most == MOST_CELLS)
         {
             out.distance = out.distance.max(off);
             out.surfaces.extend(surfaces);
             return Ok(());
         }
-        let (u, v) = (crossing::cut(patch, &crossing), crossing::cut(&turned, &crossing));
+        let (u, v) = (crossing::cut(patch, &crossing), crossing::cut(&turned.patch, &crossing));
         let parts = match (u, v) {
             (Some(u), _) => vec![([0.0, 0.0], [u, 1.0]), ([u, 0.0], [1.0, 1.0])],
             (None, Some(v)) => vec![([0.0, 0.0], [1.0, v]), ([0.0, v], [1.0, 1.0])],
@@ -86,7 +131,8 @@ impl Cutter<'_> {
         };
         let cuts = [cuts[0] + usize::from(parts.len() == 4), cuts[1] + 1];
         for (from, to) in parts {
-            self.part(&patch.part(from, to), levels, cuts, out)?;
+            let trims = self.trims_of(part.trims.as_ref(), from, to)?;
+            self.part(&Part { patch: patch.part(from, to), trims }, levels, cuts, out)?;
         }
         Ok(())
     }
@@ -95,24 +141,24 @@ impl Cutter<'_> {
     /// and is no graph, unless this is the end.
     fn whole(
         &self,
-        patch: &BezierPatch,
-        turned: &BezierPatch,
+        part: &Part,
+        turned: &Part,
         crossing: &[Level3],
         most: usize,
     ) -> Result<Option<(Vec<Surface>, f64)>, Exceeded> {
         if !crossing.is_empty() {
-            if let Some(graphs) = Graphs::new(patch, crossing) {
-                return self.layers(patch, &graphs, most).map(Some);
+            if let Some(graphs) = Graphs::new(&part.patch, crossing) {
+                return self.layers(part, &graphs, self.map, most).map(Some);
             }
-            if let Some(graphs) = Graphs::new(turned, crossing) {
-                let (images, off) = self.layers(turned, &graphs, most)?;
+            if let Some(graphs) = Graphs::new(&turned.patch, crossing) {
+                let (images, off) = self.layers(turned, &graphs, self.map, most)?;
                 return Ok(Some((images.into_iter().map(transposed).collect(), off)));
             }
             if most < MOST_CELLS {
                 return Ok(None);
             }
         }
-        let mut image = Some(of_patch(patch));
+        let mut image = Some(part.surface());
         for step in self.map.steps() {
             image = match image {
                 Some(s) => compose::image(&s, step, self.budget)?,
@@ -121,29 +167,80 @@ impl Cutter<'_> {
         }
         match image {
             Some(image) => Ok(Some((vec![image], 0.0))),
-            None => self.layers(patch, &Graphs::none(patch), most).map(Some),
+            None => {
+                let side = Sided::new(&part.patch, self.map);
+                self.layers(part, &Graphs::none(&part.patch), &side.map, most).map(Some)
+            }
         }
     }
 
+    /// Layers as surfaces with their loops. They are not stacked: each has loops of its own.
+    fn trimmed(&self, fits: &[Cells], n: usize, trims: &Trims, graphs: &Graphs<'_>) -> Result<Vec<Surface>, Exceeded> {
+        /// The share of the tolerance for the loops, which are fitted again where a layer's sides are curved.
+        const SHARE: f64 = 0.1;
+        /// Fitting a curve takes about as long as so many evaluations of a map.
+        const WORK: usize = 4096;
+        let mut out = Vec::with_capacity(fits.len());
+        for (k, cells) in fits.iter().enumerate() {
+            let Some(mut surface) = stacked(std::slice::from_ref(cells), n, self.tolerance).pop() else { continue };
+            let own = if graphs.count() == 0 {
+                Some(trims.clone())
+            } else {
+                self.budget.spend(Limit::Evaluations, (WORK * trims.count()) as u64)?;
+                trims.layer(graphs, k, SHARE * self.tolerance / steepest(&surface, n))
+            };
+            if own.as_ref().is_some_and(Trims::is_empty) {
+                continue;
+            }
+            surface.trims = own.as_ref().map(Trims::curves).unwrap_or_default();
+            out.push(surface);
+        }
+        Ok(out)
+    }
+
     /// The images of the layers of a part, fitted within the tolerance if that is reached, and their distance.
-    fn layers(&self, patch: &BezierPatch, graphs: &Graphs<'_>, most: usize) -> Result<(Vec<Surface>, f64), Exceeded> {
-        let layers = Layers { patch, graphs, map: self.map };
+    fn layers(
+        &self,
+        part: &Part,
+        graphs: &Graphs<'_>,
+        map: &dyn Map3,
+        most: usize,
+    ) -> Result<(Vec<Surface>, f64), Exceeded> {
+        let layers = Layers { patch: &part.patch, graphs, map };
         let mut n = 1;
         loop {
             let fits = (0..=graphs.count()).map(|k| layers.fit(k, n, self.budget)).collect::<Result<Vec<_>, _>>()?;
             let off = fits.iter().fold(0.0, |d: f64, c| d.max(c.distance));
             if off <= self.tolerance || n >= most {
-                return Ok((stacked(&fits, n, self.tolerance), off));
+                let surfaces = match &part.trims {
+                    None => stacked(&fits, n, self.tolerance),
+                    Some(trims) => self.trimmed(&fits, n, trims, graphs)?,
+                };
+                return Ok((surfaces, off));
             }
             n *= 2;
         }
     }
 }
 
-fn of_patch(patch: &BezierPatch) -> Surface {
-    let mut out = Surface::bezier("", patch.degree, patch.points.iter().map(|p| p.xyz() / p.w).collect());
-    out.weights = patch.points.iter().map(|p| p.w).collect();
-    out
+/// A part of a surface over 0..1 × 0..1 of its own, with its loops if it is trimmed.
+struct Part {
+    patch: BezierPatch,
+    trims: Option<Trims>,
+}
+
+impl Part {
+    fn transposed(&self) -> Self {
+        Self { patch: self.patch.transposed(), trims: self.trims.as_ref().map(Trims::transposed) }
+    }
+
+    fn surface(&self) -> Surface {
+        let points = &self.patch.points;
+        let mut out = Surface::bezier("", self.patch.degree, points.iter().map(|p| p.xyz() / p.w).collect());
+        out.weights = points.iter().map(|p| p.w).collect();
+        out.trims = self.trims.as_ref().map(Trims::curves).unwrap_or_default();
+        out
+    }
 }
 
 /// Layers one above the other as one surface, or as several if the map tears them apart.
@@ -171,10 +268,19 @@ fn stacked(layers: &[Cells], n: usize, tolerance: f64) -> Vec<Surface> {
     stacks.into_iter().map(surface).collect()
 }
 
-fn transposed(surface: Surface) -> Surface {
+/// The largest derivative of a bicubic surface of n × n cells, at most.
+fn steepest(surface: &Surface, n: usize) -> f64 {
+    let width = 3 * n + 1;
+    let across = surface.points.chunks(width).flat_map(|row| row.windows(2).map(|w| w[0].distance(w[1])));
+    let up = surface.points.iter().zip(surface.points.iter().skip(width)).map(|(p, q)| p.distance(*q));
+    across.chain(up).fold(0.0, f64::max) * (3 * n) as f64
+}
+
+fn transposed(mut surface: Surface) -> Surface {
     let [width, _] = surface.size();
     let turn = |i: usize| surface.points.iter().skip(i).step_by(width).copied();
-    let points = (0..width).flat_map(turn).collect();
-    let [u, v] = surface.knots;
-    Surface { points, knots: [v, u], ..surface }
+    surface.points = (0..width).flat_map(turn).collect();
+    surface.knots.swap(0, 1);
+    surface.trims.iter_mut().flatten().flat_map(|t| &mut t.points).for_each(|p| p.swap(0, 1));
+    surface
 }

@@ -5,6 +5,7 @@ use super::compose;
 use super::crossing;
 use super::cut::Cutter;
 use super::refit::{self, INSIDE, MOST_CELLS};
+use super::side::Sided;
 use super::surface::Surface;
 use crate::map::{Chain3, Creases3, Map3};
 use glam::DVec3;
@@ -81,45 +82,45 @@ pub fn deform_patches(
         if let Some(image) = image {
             out.exact += 1;
             images.push(vec![image]);
-        } else if let Some(parts) = cutter.image(surface, &pieces)? {
+        } else if let Some(parts) = cutter.image(surface, &pieces, &breaks)? {
             out.cut += 1;
             out.distance = out.distance.max(parts.distance);
             images.push(parts.surfaces);
         } else {
             images.push(Vec::new());
+            let pieces = pieces.into_iter().map(|p| (Sided::new(&p, map), p)).collect();
             left.push((n, pieces, breaks));
         }
     }
     out.refitted = left.len() + out.cut;
-    // A crease may lie along sides.
-    let inside = if levels.is_empty() { 0.0 } else { INSIDE };
-    let far = refitted(surfaces, &left, map, (tolerance, inside), &mut images, budget)?;
+    let far = refitted(surfaces, &left, tolerance, &mut images, budget)?;
     out.distance = out.distance.max(far);
     *surfaces = images.into_iter().flatten().collect();
     Ok(out)
 }
 
-/// A surface's index, its pieces, and the parameters between them.
-type Left = (usize, Vec<BezierPatch>, [Vec<f64>; 2]);
+/// A surface's index, its pieces with the map on each, and the parameters between them.
+type Left = (usize, Vec<(Sided, BezierPatch)>, [Vec<f64>; 2]);
 
-/// Fits surfaces alike, with as many cells as the worst of them needs to come within the tolerance. Derivatives at sides are taken
-/// `inside` of them. Returns the largest distance.
+/// Fits surfaces alike, with as many cells as the worst of them needs to come within the tolerance. Returns the largest distance.
 fn refitted(
     surfaces: &[Surface],
     left: &[Left],
-    map: &Chain3,
-    (tolerance, inside): (f64, f64),
+    tolerance: f64,
     images: &mut [Vec<Surface>],
     budget: &Budget,
 ) -> Result<f64, Exceeded> {
+    // A crease may lie along sides. Neighbours take derivatives at the same places.
+    let smooth = left.iter().flat_map(|(_, pieces, _)| pieces).all(|(side, _)| side.smooth);
+    let inside = if smooth { 0.0 } else { INSIDE };
     let mut n = 1;
     loop {
         let mut fitted = Vec::with_capacity(left.len());
         let mut distance = 0.0_f64;
         for (_, pieces, _) in left {
             let mut cells = Vec::with_capacity(pieces.len());
-            for piece in pieces {
-                let fit = refit::fit(piece, map, n, inside, budget)?;
+            for (side, piece) in pieces {
+                let fit = refit::fit(piece, &side.map, n, inside, budget)?;
                 distance = distance.max(fit.distance);
                 cells.push(fit);
             }

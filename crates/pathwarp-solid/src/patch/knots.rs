@@ -45,7 +45,7 @@ fn breaks(knots: &[f64]) -> Vec<f64> {
 }
 
 /// The control points of all Bézier spans of a curve, which share their ends.
-fn bezier_row(degree: usize, knots: &[f64], points: &[DVec4]) -> Vec<DVec4> {
+pub(super) fn bezier_row(degree: usize, knots: &[f64], points: &[DVec4]) -> Vec<DVec4> {
     let mut out = points[..1].to_vec();
     for span in degree..points.len() {
         let (from, to) = (knots[span], knots[span + 1]);

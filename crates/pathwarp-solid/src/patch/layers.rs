@@ -46,9 +46,7 @@ impl Layers<'_> {
     }
 
     fn rung(&self, layer: usize, s: f64) -> Rung {
-        let low = if layer == 0 { [0.0, 0.0] } else { self.graphs.at(layer - 1, s) };
-        let high = self.graphs.at(layer, s);
-        let high = if layer == self.graphs.count() { [1.0, 0.0] } else { [high[0].max(low[0]), high[1]] };
+        let [low, high] = self.graphs.sides(layer, s);
         Rung { s, low, high }
     }
 

@@ -13,8 +13,10 @@ mod knots;
 mod layers;
 mod part;
 mod refit;
+mod side;
 mod surface;
 mod tessellate;
+mod trims;
 
 pub use bezier::{BezierPatch, MAX_DEGREE};
 pub use deform::{DeformedPatches, PatchError, deform_patches};

@@ -25,7 +25,7 @@ impl BezierPatch {
 }
 
 /// The control points of a Bézier curve between two parameters: its polar form with every number of both.
-fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
+pub(super) fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
     let n = points.len().saturating_sub(1);
     let polar = |k: usize| {
         let mut row = points.to_vec();

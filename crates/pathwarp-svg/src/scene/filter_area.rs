@@ -3,17 +3,19 @@
 use super::seen::overlap;
 use pathwarp::kurbo::{Rect, Vec2};
 use std::collections::HashMap;
-use usvg::filter::{ColorMatrixKind, CompositeOperator, Filter, Input, Kind, MorphologyOperator, TransferFunction};
+use usvg::filter::{
+    ColorMatrixKind, CompositeOperator, Filter, Input, Kind, MorphologyOperator, Primitive, TransferFunction,
+};
 
 /// Extent of a Gaussian in standard deviations; a renderer's three box blurs end there as well (Filter Effects Module Level 1, §9.14).
 const BLUR_REACH: f64 = 3.0;
 
-/// Bounds what `filter` paints from `content`, both in the filter's user space. `None`: nothing.
-pub(crate) fn painted(filter: &Filter, content: Rect) -> Option<Rect> {
+/// Bounds what `filter` paints from `content` with `region` in place of its own, all in the filter's user space. `None`: nothing.
+pub(crate) fn painted(filter: &Filter, region: Rect, content: Rect) -> Option<Rect> {
     let mut results: HashMap<&str, Option<Rect>> = HashMap::new();
-    let mut last = overlap(content, rect(filter.rect()));
+    let mut last = overlap(content, region);
     for p in filter.primitives() {
-        let region = rect(p.rect());
+        let region = part(filter, p, region);
         let of = |input: &Input| match input {
             Input::SourceGraphic | Input::SourceAlpha => Some(content),
             Input::Reference(name) => results.get(name.as_str()).copied().unwrap_or(Some(region)),
@@ -82,6 +84,11 @@ fn keeps_transparent(alpha: &TransferFunction) -> bool {
     }
 }
 
-fn rect(r: usvg::NonZeroRect) -> Rect {
+/// The region of a primitive, which is the filter's unless it has one itself, if the filter's is `region`.
+pub(crate) fn part(filter: &Filter, p: &Primitive, region: Rect) -> Rect {
+    if p.rect() == filter.rect() { region } else { rect(p.rect()) }
+}
+
+pub(crate) fn rect(r: usvg::NonZeroRect) -> Rect {
     Rect::new(r.left().into(), r.top().into(), r.right().into(), r.bottom().into())
 }

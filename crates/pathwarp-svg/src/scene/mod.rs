@@ -15,6 +15,7 @@ pub(crate) mod regular;
 pub(crate) mod resolve;
 pub(crate) mod seen;
 pub(crate) mod shape;
+pub(crate) mod stroked;
 mod tidy;
 pub(crate) mod unread;
 pub(crate) mod usvg_path;

@@ -1,7 +1,8 @@
 //! Artwork that lay off the page before the warp and shows on it afterwards, such as notes beside a drawing.
 
+use super::boxes::{bound, painted_box};
 use super::input::WriteInput;
-use super::page::{bound, painted_box, shown};
+use super::page::shown;
 use crate::bend::outcome::Notes;
 use crate::scene::model::{Group, Node, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};

@@ -1,15 +1,21 @@
 //! Definitions written so far, with their ids.
 
+use crate::scene::filter_area;
 use crate::scene::model::Scene;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::xml::escape;
-use pathwarp::kurbo::Affine;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use pathwarp::kurbo::{Affine, Rect};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;
+use std::sync::Arc;
+use usvg::filter::Filter;
 
 /// Key of a gradient or pattern: its address and the fit applied to it.
 pub(super) type ServerKey = (usize, [u64; 6]);
+
+/// Key of a filter: its address and its region.
+pub(super) type FilterKey = (usize, [u64; 4]);
 
 /// Definitions written so far. Each is written once, when it is first referred to.
 pub(super) struct Definitions {
@@ -22,8 +28,10 @@ pub(super) struct Definitions {
     pub(super) mask_ids: Vec<Option<String>>,
     /// Ids of gradients and patterns.
     pub(super) servers: HashMap<ServerKey, String>,
-    /// Ids of filters by address.
-    pub(super) filters: HashMap<usize, String>,
+    /// Ids of filters.
+    pub(super) filters: HashMap<FilterKey, String>,
+    /// Regions of the source's filters, by their ids, that are to grow.
+    pub(super) regions: BTreeMap<String, Rect>,
     /// Definitions are added to the source.
     in_source: bool,
     /// The element of the source that is being replaced.
@@ -52,6 +60,7 @@ impl Definitions {
             mask_ids: vec![None; scene.masks.len()],
             servers: HashMap::new(),
             filters: HashMap::new(),
+            regions: BTreeMap::new(),
             in_source,
             replaced: None,
         }
@@ -78,10 +87,23 @@ impl Definitions {
         if free { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
     }
 
+    /// Lets the region of a filter of the source grow to hold `region`.
+    pub(super) fn grow(&mut self, f: &Filter, region: Rect) {
+        let own = filter_area::rect(f.rect());
+        if region != own {
+            let all = self.regions.entry(f.id().to_owned()).or_insert(own);
+            *all = all.union(region);
+        }
+    }
+
     pub(super) fn push(&mut self, text: &str) {
         self.text.push_str(text);
         self.text.push('\n');
     }
+}
+
+pub(super) fn filter_key(f: &Arc<Filter>, region: Rect) -> FilterKey {
+    (Arc::as_ptr(f) as usize, [region.x0, region.y0, region.x1, region.y1].map(f64::to_bits))
 }
 
 pub(super) fn server_key(address: usize, fit: Affine) -> ServerKey {

@@ -2,8 +2,10 @@
 
 use super::markup::Markup;
 use super::values;
+use crate::scene::filter_area;
 use crate::source::number::short;
 use crate::source::xml::escape;
+use pathwarp::kurbo::Rect;
 use std::fmt::Write as _;
 use usvg::filter::{
     ColorChannel, ColorInterpolation, ColorMatrix, ColorMatrixKind, ComponentTransfer, Composite, CompositeOperator,
@@ -11,14 +13,12 @@ use usvg::filter::{
     Morphology, MorphologyOperator, SpecularLighting, TransferFunction, Turbulence, TurbulenceKind,
 };
 
-/// Writes a `<filter>`. `head` holds its id, `pictures` the link attributes of its `feImage`s in order.
-pub(super) fn element(markup: &Markup<'_>, f: &Filter, head: &str, pictures: Vec<String>) -> String {
+/// Writes a `<filter>` with the region `all`. `head` holds its id, `pictures` the link attributes of its `feImage`s in order.
+pub(super) fn element(markup: &Markup<'_>, f: &Filter, all: Rect, head: &str, pictures: Vec<String>) -> String {
     let mut pictures = pictures.into_iter();
-    let region = |r: usvg::NonZeroRect| {
-        number("x", r.x()) + &number("y", r.y()) + &number("width", r.width()) + &number("height", r.height())
-    };
+    let region = |r: Rect| region(r).map(|(name, value)| word(name, &value)).concat();
     let filter = markup.tag("filter");
-    let mut out = format!("<{filter}{head} filterUnits=\"userSpaceOnUse\"{}>", region(f.rect()));
+    let mut out = format!("<{filter}{head} filterUnits=\"userSpaceOnUse\"{}>", region(all));
     for p in f.primitives() {
         let Primitive { tag, attributes, content } = primitive(markup, p.kind(), &mut pictures);
         let space = match p.color_interpolation() {
@@ -29,7 +29,7 @@ pub(super) fn element(markup: &Markup<'_>, f: &Filter, head: &str, pictures: Vec
         let _ = write!(
             out,
             "<{tag}{}{}{attributes}{}",
-            region(p.rect()),
+            region(filter_area::part(f, p, all)),
             word("color-interpolation-filters", space),
             word("result", &escape(p.result()))
         );
@@ -41,6 +41,11 @@ pub(super) fn element(markup: &Markup<'_>, f: &Filter, head: &str, pictures: Vec
     }
     let _ = write!(out, "</{filter}>");
     out
+}
+
+/// The attributes of a region in user space.
+pub(super) fn region(r: Rect) -> [(&'static str, String); 4] {
+    [("x", short(r.x0)), ("y", short(r.y0)), ("width", short(r.width())), ("height", short(r.height()))]
 }
 
 /// A filter primitive.

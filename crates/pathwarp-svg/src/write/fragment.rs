@@ -4,17 +4,17 @@
 //! servers keep their frames. Groups refer to definitions, which hold groups in turn; this is the one file of that recursion.
 
 use super::bitmaps;
-use super::defs::{Definitions, server_key};
+use super::defs::{Definitions, filter_key, server_key};
 use super::input::WriteInput;
 use super::markup::{Markup, Properties, push_all};
 use super::style::{self, CssPaints};
 use super::values::{color, part_data, stroke_scale};
-use super::{filter, gradients, masks, patterns};
+use super::{filter, filter_region, gradients, masks, patterns};
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::scene::model::{Group, Node, Part};
 use crate::source::number::{matrix, path_data, short};
 use crate::source::xml::escape;
-use pathwarp::kurbo::Affine;
+use pathwarp::kurbo::{Affine, Rect};
 use std::fmt::Write as _;
 use std::sync::Arc;
 use usvg::filter::Filter;
@@ -123,8 +123,7 @@ impl<'a> Writer<'a> {
             properties.push(("mask", format!("url(#{id})")));
         }
         if !g.filters.is_empty() {
-            let list: Vec<String> = g.filters.iter().map(|f| self.filter(f)).collect();
-            properties.push(("filter", list.join(" ")));
+            properties.push(("filter", self.filters(g)));
         }
         if g.blend != BlendMode::Normal {
             properties.push(("mix-blend-mode", g.blend.to_string()));
@@ -419,21 +418,33 @@ impl<'a> Writer<'a> {
         format!("<{0}{head}{attrs}{1}>{inner}</{0}>", self.markup.tag("mask"), self.markup.attributes(&properties))
     }
 
-    /// Refers to a filter: the source's, or one that is written if necessary.
-    pub(super) fn filter(&mut self, f: &Arc<Filter>) -> String {
-        let source = self.input.source;
-        self.notes.add(FILTERS, f.id());
-        let own = source.by_id().get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
-        let foreign = self.input.scene.foreign.contains(&(Arc::as_ptr(f) as usize));
-        if self.markup.in_source && own && !foreign && !self.input.shows_warped(f) {
-            return format!("url(#{})", f.id());
-        }
-        format!("url(#{})", self.filter_id(f))
+    /// Refers to the filters of a group: the source's, or ones that are written if necessary.
+    pub(super) fn filters(&mut self, g: &Group) -> String {
+        let growth = filter_region::growth(&self.input, g);
+        let list: Vec<String> = g.filters.iter().map(|f| self.filter(f, filter_region::grown(f, growth))).collect();
+        list.join(" ")
     }
 
-    /// The id of a filter in user space, which is written if necessary.
-    pub(super) fn filter_id(&mut self, f: &Arc<Filter>) -> String {
-        let key = Arc::as_ptr(f) as usize;
+    fn filter(&mut self, f: &Arc<Filter>, region: Rect) -> String {
+        self.notes.add(FILTERS, f.id());
+        if self.keeps_filter(f) {
+            self.defs.grow(f, region);
+            return format!("url(#{})", f.id());
+        }
+        format!("url(#{})", self.filter_id(f, region))
+    }
+
+    /// Returns `true` if a filter is one of the source and stays there.
+    pub(super) fn keeps_filter(&self, f: &Arc<Filter>) -> bool {
+        let source = self.input.source;
+        let own = source.by_id().get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
+        let foreign = self.input.scene.foreign.contains(&(Arc::as_ptr(f) as usize));
+        self.markup.in_source && own && !foreign && !self.input.shows_warped(f)
+    }
+
+    /// The id of a filter in user space with the given region, which is written if necessary.
+    pub(super) fn filter_id(&mut self, f: &Arc<Filter>, region: Rect) -> String {
+        let key = filter_key(f, region);
         if let Some(id) = self.defs.filters.get(&key) {
             return id.clone();
         }
@@ -445,7 +456,7 @@ impl<'a> Writer<'a> {
             _ => None,
         });
         let pictures: Vec<String> = pictures.collect();
-        let text = filter::element(&self.markup, f, &head, pictures);
+        let text = filter::element(&self.markup, f, region, &head, pictures);
         self.defs.push(&text);
         id
     }

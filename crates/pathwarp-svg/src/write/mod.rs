@@ -2,9 +2,11 @@
 
 mod arrivals;
 mod bitmaps;
+mod boxes;
 mod defs;
 pub(crate) mod document;
 mod filter;
+mod filter_region;
 mod flat;
 mod fragment;
 mod gradients;

@@ -1,25 +1,21 @@
 //! The page and the warped artwork: overhang, and the root's viewBox, width and height to fit it.
 
+use super::boxes::{bound, box_under, painted_box, path};
+use super::filter_region;
 use super::input::WriteInput;
-use super::values::stroke_scale;
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::options::PageFit;
-use crate::bend::outcome::{Overhang, PartOutcome, StrokeOutcome, WarpedPart};
+use crate::bend::outcome::{Overhang, PartOutcome};
 use crate::scene::affine::stretch;
-use crate::scene::expand::stroke_outline;
 use crate::scene::filter_area;
 use crate::scene::model::{Group, Node, Part, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};
 use crate::source::number::short;
 use crate::source::select::Selection;
-use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
-use pathwarp::{Outline, Seg};
-use std::borrow::Cow;
+use pathwarp::kurbo::{Affine, Point, Rect};
 use std::str::FromStr;
 use svgtypes::{Length, LengthUnit};
 
-/// Relative tolerance of outlines that are measured.
-const FINE: f64 = 1e-4;
 /// Smallest visible overhang as a fraction of the page: one pixel in a thousand.
 const VISIBLE: f64 = 1e-3;
 
@@ -211,10 +207,12 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         }
     }
     let mut all = all?;
+    let growth = filter_region::growth(input, g);
     for f in &g.filters {
         if let Some(s) = g.slot {
             let frame = input.written(g.slot, scene.slots[s].frame);
-            all = frame.transform_rect_bbox(filter_area::painted(f, frame.inverse().transform_rect_bbox(all))?);
+            let region = filter_region::grown(f, growth);
+            all = frame.transform_rect_bbox(filter_area::painted(f, region, frame.inverse().transform_rect_bbox(all))?);
         }
     }
     if let Some(i) = g.clip {
@@ -234,64 +232,6 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         all = overlap(all, if input.changes(m.parts.clone()) { image_box(input, region)? } else { region })?;
     }
     (all.width() >= 0.0 && all.height() >= 0.0).then_some(all)
-}
-
-/// Approximates the path that is written for a part.
-fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezPath> {
-    if let Some(d) = warped {
-        return Cow::Borrowed(&d.path);
-    }
-    let size = p.local.bounding_box().map_or(1.0, |b| b.width().max(b.height()));
-    Cow::Owned(p.local.to_bez_path((size * FINE).max(1e-12)))
-}
-
-/// Bounding box of a path; empty if it draws nothing.
-fn extent(path: &BezPath) -> Rect {
-    let segs = || path.segments().map(Seg::from);
-    let ends = segs().map(|s| Rect::from_points(s.start(), s.end())).reduce(|a, b| a.union(b));
-    ends.map_or(Rect::ZERO, |ends| segs().fold(ends, |all, s| s.extend(all)))
-}
-
-/// Bounding box of a path's image under `frame`.
-fn box_under(frame: Affine, path: &BezPath) -> Rect {
-    if frame == Affine::IDENTITY { extent(path) } else { extent(&(frame * path)) }
-}
-
-/// A cheap bounding box of everything a part paints; it may be too large.
-pub(super) fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
-    let path = match warped {
-        Some(d) => d.path.control_box(),
-        None => p.local.bounding_box().unwrap_or(Rect::ZERO),
-    };
-    let all = match (&p.stroke, warped.map(|d| &d.stroke)) {
-        (None, _) => path,
-        (Some(_), Some(StrokeOutcome::Outlined(o))) => path.union(o.control_box()),
-        (Some(s), _) => {
-            // The longest extent is that of miters or of square caps.
-            let reach = f64::from(s.miterlimit().get()).max(std::f64::consts::SQRT_2);
-            let reach = 0.5 * f64::from(s.width().get()) * stroke_scale(warped) * reach;
-            path.inflate(reach, reach)
-        }
-    };
-    frame.transform_rect_bbox(all)
-}
-
-pub(super) fn painted_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
-    let path = path(p, warped);
-    let inside = box_under(frame, &path);
-    match (&p.stroke, warped.map(|d| &d.stroke)) {
-        (None, _) => inside,
-        (Some(_), Some(StrokeOutcome::Outlined(o))) => inside.union(box_under(frame, o)),
-        (Some(s), _) => {
-            // Expansion is linear in the width: scale the path down instead of the width up.
-            let scale = stroke_scale(warped);
-            let size = path.bounding_box();
-            let size = size.width().max(size.height()) / scale;
-            let back = Outline::from(&*path).transformed(Affine::scale(1.0 / scale));
-            let outline = stroke_outline(&back, s, (FINE * size).max(1e-9)).transformed(frame * Affine::scale(scale));
-            outline.bounding_box().map_or(inside, |b| inside.union(b))
-        }
-    }
 }
 
 fn unit(unit: LengthUnit) -> &'static str {

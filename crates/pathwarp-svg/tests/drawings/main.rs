@@ -5,6 +5,7 @@ mod arcs;
 mod common;
 mod degenerate_strokes;
 mod features;
+mod filters;
 mod keeping;
 mod lettering;
 mod live;

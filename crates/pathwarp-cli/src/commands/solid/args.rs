@@ -37,8 +37,7 @@ pub(super) fn all() -> Vec<Arg> {
         .value_name("MODEL")
         .value_parser(value_parser!(PathBuf))
         .help(
-            "Models: OBJ, STL, PLY or glTF files, curved surfaces (.bpt, .json), or the filled shapes of SVG files; - or none reads \
-             standard input",
+            "Models: OBJ, STL, PLY or glTF files, curved surfaces (.bpt, .json), or SVG drawings; - or none reads standard input",
         );
     let own = |name: &'static str, value: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name(value).help_heading("Common options").help(help)
@@ -53,7 +52,7 @@ pub(super) fn all() -> Vec<Arg> {
     let extrude = own(
         "extrude",
         "DEPTH",
-        "Make a drawing's filled shapes a solid of this depth, such as 5mm; without it they are flat",
+        "Make a drawing's fills and strokes solids of this depth, such as 5mm; without it they are flat",
     );
     std::iter::once(model).chain(options()).chain([frame_arg(), refine, extrude]).collect()
 }
@@ -66,6 +65,8 @@ pub(super) struct Own {
     pub(super) refine: Option<Length>,
     /// Millimetres by which a drawing is extruded.
     pub(super) depth: Option<f64>,
+    /// The recipe undoes another one.
+    pub(super) undo: bool,
 }
 
 impl Own {
@@ -73,7 +74,7 @@ impl Own {
     pub(super) fn read(m: &ArgMatches) -> Result<Self, Failure> {
         let depth = length(m, "extrude")?
             .map(|l| l.in_units(Axis::X, &Frame::new(Rect::ZERO).with_units_per_px([MM_PER_PX; 2])));
-        Ok(Self { frame: frame(m)?, refine: length(m, "refine")?, depth })
+        Ok(Self { frame: frame(m)?, refine: length(m, "refine")?, depth, undo: false })
     }
 }
 

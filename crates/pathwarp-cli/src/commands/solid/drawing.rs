@@ -1,10 +1,11 @@
-//! Drawings as models: the filled shapes of an SVG, flat or extruded, true to size in millimetres.
+//! Drawings as models: fills and strokes of an SVG, flat or extruded, true to size in millimetres.
 
 use crate::advice;
 use crate::failure::Failure;
 use crate::input;
 use crate::options::Reading;
 use crate::units::MM_PER_PX;
+use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point};
 use pathwarp_mesh::NamedShape;
 use pathwarp_solid::mesh::{FlatShape, Mesh, extrude};
@@ -22,27 +23,36 @@ pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, F
         Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
     let unit = to_mm.determinant().abs().sqrt();
     let mut mesh = Mesh::default();
-    let mut unfilled = 0;
-    for shape in doc.selected(&Selection::default()) {
-        if !shape.filled {
-            unfilled += 1;
-            continue;
-        }
-        let named = NamedShape { name: &shape.id, outline: &shape.outline, even_odd: shape.even_odd };
+    let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
+        let named = NamedShape { name, outline, even_odd };
         let flat = pathwarp_mesh::flat(&named, TOLERANCE / unit, doc.budget())
             .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface(&e))))?;
         let points = flat.points.iter().map(|p| {
             let p: Point = to_mm * *p;
             [p.x, p.y]
         });
-        let flat = FlatShape { name: shape.id.clone(), points: points.collect(), triangles: flat.triangles };
-        extrude(&mut mesh, &flat, depth);
-    }
-    if unfilled > 0 {
-        mesh.left_out.push(format!("{unfilled} shapes that are not filled (convert their strokes to paths first)"));
+        let flat = FlatShape { name: name.to_owned(), points: points.collect(), triangles: flat.triangles };
+        if !flat.triangles.is_empty() {
+            extrude(&mut mesh, &flat, depth);
+        }
+        Ok(())
+    };
+    let all = Selection::default();
+    let strokes = doc.strokes(&all, TOLERANCE / unit);
+    let strokes = strokes.map_err(|e| {
+        Failure::Input(format!("{}: the strokes take {e}; {}", input::display(file), advice::raise(&e)))
+    })?;
+    for (shape, stroke) in doc.selected(&all).zip(strokes) {
+        if shape.filled {
+            add(&shape.id, &shape.outline, shape.even_odd)?;
+        }
+        if let Some(stroke) = stroke {
+            let name = if shape.filled { format!("{} stroke", shape.id) } else { shape.id.clone() };
+            add(&name, &stroke, false)?;
+        }
     }
     if mesh.positions.is_empty() {
-        return Err(Failure::file(file, "the drawing has no filled shapes"));
+        return Err(Failure::file(file, "the drawing has no shapes with an area"));
     }
     Ok(mesh)
 }

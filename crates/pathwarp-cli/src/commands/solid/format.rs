@@ -20,6 +20,9 @@ pub(super) enum ModelFormat {
     Surfaces,
 }
 
+/// Names, among the properties that a format has no room for.
+pub(super) const NAMES: &str = "names";
+
 /// Extensions and their formats.
 const EXTENSIONS: [(&str, ModelFormat); 7] = [
     ("obj", ModelFormat::Obj),
@@ -93,7 +96,7 @@ impl ModelFormat {
             }
         };
         if matches!(self, Self::Stl | Self::Ply) {
-            check(marked(|m| matches!(m, Mark::Object(t) | Mark::Group(t) if !t.is_empty())), "names");
+            check(marked(|m| matches!(m, Mark::Object(t) | Mark::Group(t) if !t.is_empty())), NAMES);
             check(mesh.marks.iter().any(|(_, m)| matches!(m, Mark::Material(t) if named(t))), "materials");
         }
         if self == Self::Stl {

@@ -20,6 +20,8 @@ pub(super) struct Model {
     /// Counts the work that the file causes.
     pub(super) budget: Budget,
     pub(super) format: ModelFormat,
+    /// A drawing, the names of whose objects are those of shapes.
+    pub(super) drawn: bool,
 }
 
 /// Polygons or curved surfaces.
@@ -39,7 +41,7 @@ impl Model {
                 return Err(Failure::Input(format!("{name}: a drawing must be a file; name it instead")));
             }
             let mesh = drawing::read(file, reading, depth.unwrap_or(0.0))?;
-            return Ok(Self { name, content: Content::Mesh(mesh), budget, format: ModelFormat::Obj });
+            return Ok(Self { name, content: Content::Mesh(mesh), budget, format: ModelFormat::Obj, drawn: true });
         }
         if depth.is_some() {
             return Err(Failure::usage(format!("--extrude is for drawings (SVG); {name} is a model already")));
@@ -54,7 +56,7 @@ impl Model {
             ModelFormat::Ply => Content::Mesh(ply::read(&bytes).map_err(about)?),
             ModelFormat::Glb | ModelFormat::Gltf => Content::Mesh(gltf::read(&bytes, &budget).map_err(about)?),
         };
-        Ok(Self { name, content, budget, format })
+        Ok(Self { name, content, budget, format, drawn: false })
     }
 }
 

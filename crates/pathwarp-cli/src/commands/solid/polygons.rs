@@ -1,6 +1,6 @@
 //! A mesh on its way through a run.
 
-use super::format::ModelFormat;
+use super::format::{ModelFormat, NAMES};
 use super::model::{mesh_file, pending, unread};
 use super::preview::Preview;
 use super::report::Run;
@@ -19,13 +19,15 @@ pub(super) struct Source {
     pub(super) name: String,
     pub(super) mesh: Mesh,
     pub(super) format: ModelFormat,
+    /// It was a drawing.
+    pub(super) drawn: bool,
 }
 
 /// Deforms a mesh.
 pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -> Result<Done, Failure> {
     let started = Instant::now();
     let options = work.options;
-    let Source { name, mut mesh, format } = source;
+    let Source { name, mut mesh, format, drawn } = source;
     if format.is_curved() {
         // Says so before the work.
         mesh_file(&mesh, format, None)?;
@@ -47,7 +49,9 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
 
     let mut warnings: Vec<String> = mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
     let partial = !warnings.is_empty();
-    let lost = format.lost(&mesh);
+    let mut lost = format.lost(&mesh);
+    // Nobody misses the names of a drawing's shapes in a file for a printer.
+    lost.retain(|what| !(drawn && *what == NAMES));
     if !lost.is_empty() {
         warnings.push(format!("the format of the result has no room for {}; .obj and .glb have", lost.join(", ")));
     }

@@ -132,10 +132,11 @@ impl Work<'_> {
     }
 
     fn one(&self, job: &Job) -> Result<Done, Failure> {
-        let Model { name, content, budget, format } = Model::read(&job.input, &self.options.reading, self.own.depth)?;
+        let Model { name, content, budget, format, drawn } =
+            Model::read(&job.input, &self.options.reading, self.own.depth)?;
         let format = ModelFormat::of_output(job.target.as_deref(), format)?;
         match content {
-            Content::Mesh(mesh) => polygons::run(self, job, polygons::Source { name, mesh, format }, &budget),
+            Content::Mesh(mesh) => polygons::run(self, job, polygons::Source { name, mesh, format, drawn }, &budget),
             Content::Surfaces(all) => {
                 surfaces::run(self, job, surfaces::Source { name, surfaces: all, format }, &budget)
             }

@@ -2,9 +2,19 @@
 
 use super::dilation::Dilation3;
 use crate::box3::Box3;
-use crate::map::{Chart, Creases3, Fraction3, Jet3, Map3, Radial, for_all};
+use crate::map::{Chart, Collineation, Creases3, Fraction3, Jet3, Map3, Radial, for_all};
 use glam::{DMat3, DVec3, DVec4};
 use std::sync::Arc;
+
+/// Points this close to a side of the moved region, relative to the coordinates, are on it.
+const ROUNDING: f64 = 1e-12;
+
+/// A form in (x, y, z, 1) at a point, 0 on a side of the moved region.
+fn beyond(form: &DVec4, p: DVec3) -> f64 {
+    let q = p.extend(1.0);
+    let v = form.dot(q);
+    if v.abs() <= ROUNDING * form.abs().dot(q.abs()) { 0.0 } else { v }
+}
 
 /// Every point moves along its ray through the eye.
 #[derive(Debug, Clone)]
@@ -20,13 +30,18 @@ pub(super) struct RadialMap {
 impl RadialMap {
     /// Returns `true` if the point may move.
     fn moves(&self, p: DVec3) -> bool {
-        /// Points this close to a side, relative to the coordinates, belong to the inside.
-        const ROUNDING: f64 = 1e-12;
-        let inside = |f: &DVec4| {
-            let q = p.extend(1.0);
-            f.dot(q) >= -ROUNDING * (f.abs().dot(q.abs()))
-        };
-        self.within.as_deref().is_none_or(|forms| forms.iter().all(inside))
+        self.within.as_deref().is_none_or(|forms| forms.iter().all(|f| beyond(f, p) >= 0.0))
+    }
+
+    /// Returns whether a box moves or stays; `None` if the end of the moved region may cross it.
+    fn moves_on(&self, on: &Box3) -> Option<bool> {
+        let corners = on.corners();
+        // The moved region is convex: a box is inside if its corners are, and outside if one side has all of them behind it.
+        if corners.iter().all(|p| self.moves(*p)) {
+            return Some(true);
+        }
+        let behind = |f: &DVec4| corners.iter().all(|p| beyond(f, *p) <= 0.0);
+        self.within.as_deref().is_some_and(|forms| forms.iter().any(behind)).then_some(false)
     }
 }
 
@@ -58,22 +73,21 @@ impl Map3 for RadialMap {
 
     fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
         let chart = Chart::on(on);
-        let corners = on.corners();
-        if let Some(forms) = &self.within {
-            // The moved region is convex: a box is inside if its corners are, and outside if one side has all of them behind it.
-            let behind = |f: &DVec4| corners.iter().all(|p| f.dot(p.extend(1.0)) <= 0.0);
-            if forms.iter().any(behind) {
-                return Some(Fraction3::identity(chart));
-            }
-            if !corners.iter().all(|p| self.moves(*p)) {
-                return None;
-            }
+        if !self.moves_on(on)? {
+            return Some(Fraction3::identity(chart));
         }
         if self.dilation.degree() > most {
             return None;
         }
         let (divisor, common) = self.dilation.fraction(&chart);
         Some(Fraction3::radial(chart, self.eye, divisor, &common))
+    }
+
+    fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        Some(match self.moves_on(on)? {
+            true => Arc::new(Self { within: None, ..self.clone() }),
+            false => Arc::new(Collineation::IDENTITY),
+        })
     }
 
     fn creases(&self, out: &mut Creases3) {

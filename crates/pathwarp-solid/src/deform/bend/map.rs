@@ -31,6 +31,18 @@ impl BendMap3 {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
     }
 
+    /// The piece for a whole box, if it is one.
+    fn piece_on(&self, on: &Box3) -> Option<usize> {
+        let last = self.pieces.len() - 1;
+        let place = |at: f64| (at - self.start) * self.pieces.len() as f64 / self.length;
+        // Rounding may put a joint on either side of the box's end.
+        let slack = 1e-9 * (1.0 + place(on.max[self.axis]).abs());
+        let from = ((place(on.min[self.axis]) + slack) as usize).min(last);
+        let to = ((place(on.max[self.axis]) - slack) as usize).min(last);
+        // A flat box may lie in a joint, where both pieces agree.
+        (from >= to).then_some(from)
+    }
+
     /// The curves at a point, v, w, and the pieces per unit along the axis. The first and the last piece continue outside.
     fn stand(&self, p: DVec3) -> (Stand, f64, f64, f64) {
         let n = self.pieces.len();
@@ -71,23 +83,20 @@ impl Map3 for BendMap3 {
     }
 
     fn fraction(&self, on: &Box3, _most: usize) -> Option<Fraction3> {
-        let chart = Chart::on(on);
-        let last = self.pieces.len() - 1;
+        let (chart, from) = (Chart::on(on), self.piece_on(on)?);
         let rate = self.pieces.len() as f64 / self.length;
-        let place = |at: f64| (at - self.start) * rate;
-        // Rounding may put a joint on either side of the box's end.
-        let slack = 1e-9 * (1.0 + place(on.max[self.axis]).abs());
-        let from = ((place(on.min[self.axis]) + slack) as usize).min(last);
-        let to = ((place(on.max[self.axis]) - slack) as usize).min(last);
-        if from != to {
-            return None;
-        }
         let axis = DVec3::AXES[self.axis];
         let u = chart.linear((axis * rate).extend(-self.start * rate - from as f64));
         let [v, w] = self.sides().map(|a| chart.linear(DVec3::AXES[a].extend(-self.through[a])));
         let curves = self.pieces[from].polynomials(&u)?;
         let part = |k: usize| curves[0][k].plus(1.0, &curves[1][k].times(&v)).plus(1.0, &curves[2][k].times(&w));
         Some(Fraction3 { chart, parts: [part(0), part(1), part(2), Poly3::constant(1.0)] })
+    }
+
+    fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        let (piece, length) = (self.piece_on(on)?, self.length / self.pieces.len() as f64);
+        let (pieces, start) = ([self.pieces[piece].clone()].into(), self.start + length * piece as f64);
+        Some(Arc::new(Self::new(pieces, self.axis, start, length, self.through)))
     }
 
     fn creases(&self, out: &mut Creases3) {

@@ -11,6 +11,7 @@ mod text;
 mod walk;
 mod warped;
 
+use super::filter;
 use super::fragment::Writer;
 use super::input::WriteInput;
 use super::page;
@@ -18,6 +19,7 @@ use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
 use crate::source::live::is_live;
 use crate::source::number::matrix;
+use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
 use keeper::Keeper;
@@ -36,6 +38,7 @@ pub(super) fn write(
     clips::masks(&mut k)?;
     walk::group(&mut k, &input.scene.root);
     slots(&mut k);
+    regions(&mut k);
     let warped = Warped::new(input);
     live::let_go(&mut k, &warped);
     animations::remove_unfit(&mut k, &warped);
@@ -59,6 +62,26 @@ fn slots(k: &mut Keeper<'_, '_>) {
             k.edits.remove_attrs(e, |a| is_live(a, &k.source.text));
         }
     }
+}
+
+/// Lets the regions of filters grow. Those in box units follow the boxes of what they filter.
+fn regions(k: &mut Keeper<'_, '_>) {
+    for (id, region) in std::mem::take(&mut k.writer.defs.regions) {
+        if let Some(e) = k.definition(&id, "filter").filter(|&e| in_user_space(k.source, e)) {
+            for (name, value) in filter::region(region) {
+                k.edits.set_attr(e, name, value);
+            }
+        }
+    }
+}
+
+/// Returns `true` if the region of a filter is in user space. The units may be those of a filter that it refers to.
+fn in_user_space(source: &SourceText, filter: ElementId) -> bool {
+    /// Longest chain of references followed.
+    const LINKS: usize = 16;
+    let next = |&e: &ElementId| source.by_id().get(&source.href(e)?)?.last().copied();
+    let units = std::iter::successors(Some(filter), next).take(LINKS).find_map(|e| source.attr(e, "filterUnits"));
+    units.is_some_and(|units| units.trim() == "userSpaceOnUse")
 }
 
 /// Adds the new definitions to the file's `<defs>`, or else at its end, so that the title stays the first child.

@@ -4,6 +4,7 @@ use super::keeper::Keeper;
 use super::{copies, shape, text};
 use crate::scene::model::{Group, Node};
 use crate::source::tags::{ElementId, is_shape};
+use crate::write::filter_region;
 use crate::write::fragment::FILTERS;
 use std::collections::BTreeMap;
 
@@ -40,18 +41,29 @@ pub(super) fn group(k: &mut Keeper<'_, '_>, g: &Group) {
 
 /// Patches the filters of a group.
 fn filters(k: &mut Keeper<'_, '_>, g: &Group) {
-    if let ([n @ Node::Text { element: Some(e), .. }], false) = (g.children.as_slice(), g.filters.is_empty())
+    if g.filters.is_empty() {
+        return;
+    }
+    let growth = filter_region::growth(&k.input, g);
+    let slot = g.slot.map(|s| &k.input.scene.slots[s]);
+    if let [n @ Node::Text { element: Some(e), .. }] = g.children.as_slice()
         && k.changed(n)
     {
         // Box units refer to the text's layout box, which outlines do not have. Write the filter in user space.
-        let list: Vec<String> = g.filters.iter().map(|f| format!("url(#{})", k.writer.filter_id(f))).collect();
+        let new = |f| format!("url(#{})", k.writer.filter_id(f, filter_region::grown(f, growth)));
+        let list: Vec<String> = g.filters.iter().map(new).collect();
         k.edits.set_property(*e, "filter", list.join(" "));
     } else if g.filters.iter().any(|f| k.input.shows_warped(f))
-        && let Some(slot) = g.slot.map(|s| &k.input.scene.slots[s])
-        && let (None, Some(e)) = (slot.owner, slot.element)
+        && let Some((None, Some(e))) = slot.map(|s| (s.owner, s.element))
     {
-        let list: Vec<String> = g.filters.iter().map(|f| k.writer.filter(f)).collect();
-        k.edits.set_property(e, "filter", list.join(" "));
+        let list = k.writer.filters(g);
+        k.edits.set_property(e, "filter", list);
+    } else {
+        for f in &g.filters {
+            if k.writer.keeps_filter(f) {
+                k.writer.defs.grow(f, filter_region::grown(f, growth));
+            }
+        }
     }
     for f in &g.filters {
         k.writer.notes.add(FILTERS, f.id());

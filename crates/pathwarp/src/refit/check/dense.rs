@@ -27,16 +27,17 @@ pub(in crate::refit) fn dense(
 ) -> Result<(f64, bool), Point> {
     let last = FootPoint { tau: 0.0, s: 0.0, slope: c.frame.t0 };
     let mut walk = Walk { source, c, feet, worst: 0.0, last, closer: MAX_CLOSER };
-    let mut sound = true;
+    let by_search = || Ok((thorough(source, c, slow, tolerance)?, true));
     let mut even = [[0.0; 8]; DENSE_BATCHES];
     let tau = |k: usize| -> Lane { std::array::from_fn(|i| ((k * 8 + i) as f64 + 0.5) / (DENSE_BATCHES * 8) as f64) };
     gather::announce(source, &(0..DENSE_BATCHES).map(|k| tau(k).map(|t| c.param(t))), &std::iter::empty());
     for (k, squares) in even.iter_mut().enumerate() {
-        let (advances, d) = walk.advance(&tau(k))?;
-        sound &= advances;
+        let Some(d) = walk.advance(&tau(k))? else { return by_search() };
         *squares = d;
     }
-    sound &= turns_little(walk.last.slope, c.frame.t1) || walk.closer(1.0)?;
+    if !turns_little(walk.last.slope, c.frame.t1) && !walk.closer(1.0)? {
+        return by_search();
+    }
     let mut worst = walk.worst;
     let peaks = walk.zoom_on_peaks(even.as_flattened())?;
     for t in slow.all() {
@@ -50,8 +51,7 @@ pub(in crate::refit) fn dense(
             }
         }
     }
-    let worst = worst.sqrt().max(peaks);
-    if sound { Ok((worst, false)) } else { Ok((thorough(source, c, slow, tolerance)?, true)) }
+    Ok((worst.sqrt().max(peaks), false))
 }
 
 /// A sample's foot point on the cubic.
@@ -76,9 +76,9 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     /// Measures the next eight samples. Where two consecutive foot points see the cubic turn by more than 60°, samples
-    /// eight more places in between. Returns `false` if the foot points do not advance or the cubic between them remains
-    /// unknown; and the eight squared distances.
-    fn advance(&mut self, tau: &Lane) -> Result<(bool, Lane), Point> {
+    /// eight more places in between. Returns the eight squared distances; `None` if the foot points do not advance or the cubic
+    /// between them remains unknown.
+    fn advance(&mut self, tau: &Lane) -> Result<Option<Lane>, Point> {
         let c = self.c;
         // Newton steps left out would only make distances larger.
         let Probe { s, squares, .. } = probe(self.source, c, self.feet, tau, 2)?;
@@ -91,27 +91,26 @@ impl Walk<'_> {
         }
         if advances_smoothly(self.last, &s, &dx, &dy) {
             self.last = FootPoint { tau: tau[7], s: s[7], slope: Vec2::new(dx[7], dy[7]) };
-            return Ok((true, squares));
+            return Ok(Some(squares));
         }
-        let mut sound = true;
         for i in 0..8 {
             let next = FootPoint { tau: tau[i], s: s[i], slope: Vec2::new(dx[i], dy[i]) };
             if next.s < self.last.s - FOOT_ROUNDING {
-                return Ok((false, squares));
+                return Ok(None);
             }
-            if !turns_little(self.last.slope, next.slope) {
-                sound &= self.closer(next.tau)?;
+            if !turns_little(self.last.slope, next.slope) && !self.closer(next.tau)? {
+                return Ok(None);
             }
             self.last = next;
         }
-        Ok((sound, squares))
+        Ok(Some(squares))
     }
 
     /// Measures eight more samples up to `tau`. Returns `false` if the cubic remains unknown.
     fn closer(&mut self, tau: f64) -> Result<bool, Point> {
         let Some(left) = self.closer.checked_sub(1) else { return Ok(false) };
         self.closer = left;
-        Ok(self.advance(&spread(self.last.tau, tau))?.0)
+        Ok(self.advance(&spread(self.last.tau, tau))?.is_some())
     }
 
     /// Eight more samples between the neighbours of every local maximum that is nearly the largest: where the cubic nearly

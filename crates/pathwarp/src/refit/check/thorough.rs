@@ -11,10 +11,13 @@ use kurbo::{Point, Vec2};
 /// The check's work in evaluations of the map: its own, and its search.
 pub(in crate::refit) const THOROUGH_WORK: usize = 800;
 
-/// Newton steps from the nearest sample.
-const NEWTON_STEPS: usize = 4;
+/// Newton steps from the nearest place on the chords through the samples,
+const STEPS: usize = 2;
+/// and where those leave an error above the tolerance.
+const MORE_STEPS: usize = 4;
 
-/// The Hausdorff distance between candidate and image, by sampling: the nearest sample by search, then Newton steps.
+/// The Hausdorff distance between candidate and image, by sampling: the nearest sample by search, the place on the
+/// chords beside it, then Newton steps. Steps left out would only make distances larger.
 #[cold]
 pub(in crate::refit) fn thorough(
     source: &SourceCurve<'_>,
@@ -36,7 +39,8 @@ pub(in crate::refit) fn thorough(
     let enough = tolerance * tolerance;
     let worst = from_image(c, &images, &curve, enough);
     let images: Vec<Vec2> = images.iter().flat_map(|g| (0..8).map(|i| Vec2::new(g.x[i], g.y[i]))).collect();
-    Ok(from_cubic(source, c, [&curve, &images], &taus, enough, worst).sqrt())
+    let images = Sampled { at: &taus, points: &images };
+    Ok(from_cubic(source, c, &curve, &images, enough, worst)?.sqrt())
 }
 
 /// Evenly spaced places, and geometrically denser ones around slow spots, in order; a multiple of eight.
@@ -74,14 +78,13 @@ fn places(c: &Candidate, slow: &SlowSpots) -> Vec<f64> {
 fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
     let d = |i: usize| (set[i] - p).hypot2();
     let (mut at, mut best) = (from, d(from));
-    loop {
-        if at + 1 < set.len() && d(at + 1) < best {
-            at += 1;
-        } else if at > 0 && d(at - 1) < best {
-            at -= 1;
-        } else {
-            break;
-        }
+    while at + 1 < set.len() && d(at + 1) < best {
+        at += 1;
+        best = d(at);
+    }
+    // After a step ahead, what lies behind is farther.
+    while at <= from && at > 0 && d(at - 1) < best {
+        at -= 1;
         best = d(at);
     }
     if best > enough {
@@ -95,17 +98,43 @@ fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
     (at, best)
 }
 
+/// A curve by its samples.
+struct Sampled<'a> {
+    at: &'a [f64],
+    points: &'a [Vec2],
+}
+
+impl Sampled<'_> {
+    /// The parameter of the place nearest to `p` on the chords at sample `i`, and the derivative along the chord that has it.
+    fn beside(&self, i: usize, p: Vec2) -> (f64, Vec2) {
+        let r = p - self.points[i];
+        let along = |j: usize| (j, r.dot(self.points[j] - self.points[i]));
+        let ahead = along((i + 1).min(self.points.len() - 1));
+        let (j, dot) = if ahead.1 > 0.0 { ahead } else { along(i.saturating_sub(1)) };
+        let (v, h) = (self.points[j] - self.points[i], self.at[j] - self.at[i]);
+        let share = (dot / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (self.at[i] + share * h, if h == 0.0 { Vec2::ZERO } else { v / h })
+    }
+}
+
 /// The largest squared distance of an image from the cubic.
 fn from_image(c: &Candidate, images: &[Lanes], curve: &[Vec2], enough: f64) -> f64 {
+    let at: [f64; THOROUGH_SAMPLES + 1] = std::array::from_fn(|i| i as f64 / THOROUGH_SAMPLES as f64);
+    let sampled = Sampled { at: &at, points: curve };
     let mut from = 0;
     let mut worst = 0.0;
     for g in images {
         let mut s = [0.0; 8];
         for i in 0..8 {
-            from = nearest(curve, from, Vec2::new(g.x[i], g.y[i]), enough).0;
-            s[i] = from as f64 / THOROUGH_SAMPLES as f64;
+            let p = Vec2::new(g.x[i], g.y[i]);
+            from = nearest(curve, from, p, enough).0;
+            s[i] = sampled.beside(from, p).0;
         }
-        worst = larger(worst, largest(&c.frame.distances(g, c.a, c.b, &mut s, NEWTON_STEPS)));
+        let mut squares = c.frame.distances(g, c.a, c.b, &mut s, STEPS);
+        if largest(&squares) > enough {
+            squares = c.frame.distances(g, c.a, c.b, &mut s, MORE_STEPS);
+        }
+        worst = larger(worst, largest(&squares));
     }
     worst
 }
@@ -114,29 +143,73 @@ fn from_image(c: &Candidate, images: &[Lanes], curve: &[Vec2], enough: f64) -> f
 fn from_cubic(
     source: &SourceCurve<'_>,
     c: &Candidate,
-    [curve, images]: [&[Vec2]; 2],
-    taus: &[f64],
+    curve: &[Vec2],
+    images: &Sampled<'_>,
     enough: f64,
     mut worst: f64,
-) -> f64 {
-    let origin = c.p0.to_vec2();
-    let h = c.t1 - c.t0;
+) -> Result<f64, Point> {
     let mut from = 0;
+    let mut waiting = Vec::with_capacity(8);
     for q in curve {
-        let (i, mut best) = nearest(images, from, *q, enough);
+        let (i, square) = nearest(images.points, from, *q, enough);
         from = i;
-        let mut tau = taus[i];
-        for _ in 0..NEWTON_STEPS {
-            // A distance below the known error need not be refined.
-            if best <= worst {
+        // A distance below the known error need not be refined.
+        if square > worst {
+            let (tau, slope) = images.beside(i, *q);
+            waiting.push(Foot { q: *q, square, tau, slope });
+        }
+        if waiting.len() == 8 {
+            worst = refined(source, c, &mut waiting, enough, worst)?;
+            waiting.clear();
+        }
+    }
+    if waiting.is_empty() { Ok(worst) } else { refined(source, c, &mut waiting, enough, worst) }
+}
+
+/// A point of the cubic, its squared distance from the image, and the place to look next.
+#[derive(Debug, Clone, Copy)]
+struct Foot {
+    q: Vec2,
+    square: f64,
+    tau: f64,
+    /// Derivative of the image, nearly.
+    slope: Vec2,
+}
+
+/// Measures the distances of up to eight points together. Returns the largest square, or `worst` if that is larger.
+fn refined(
+    source: &SourceCurve<'_>,
+    c: &Candidate,
+    feet: &mut [Foot],
+    enough: f64,
+    mut worst: f64,
+) -> Result<f64, Point> {
+    let origin = c.p0.to_vec2();
+    for _ in 0..=STEPS {
+        let last = feet.len() - 1;
+        let g = c.images(source, &std::array::from_fn(|i| feet[i.min(last)].tau))?;
+        for (i, foot) in feet.iter_mut().enumerate() {
+            let r = Vec2::new(g.x[i], g.y[i]) - foot.q;
+            foot.square = foot.square.min(r.hypot2());
+            foot.tau = (foot.tau - r.dot(foot.slope) / (foot.slope.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        }
+        if feet.iter().all(|f| f.square <= worst) {
+            return Ok(worst);
+        }
+    }
+    for foot in feet {
+        // Where chords are no guide, Newton steps with the derivative itself.
+        let (mut tau, mut best) = (foot.tau, foot.square);
+        for _ in 0..MORE_STEPS {
+            if best <= larger(worst, enough) {
                 break;
             }
             let (p, d) = source.image(c.param(tau));
-            let (r, v) = (p.to_vec2() - origin - *q, d * h);
+            let (r, v) = (p.to_vec2() - origin - foot.q, d * (c.t1 - c.t0));
             best = best.min(r.hypot2());
             tau = (tau - r.dot(v) / (v.hypot2() + f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         }
         worst = worst.max(best);
     }
-    worst
+    Ok(worst)
 }

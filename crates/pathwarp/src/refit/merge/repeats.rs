@@ -47,25 +47,44 @@ struct Shape {
     known: Option<(usize, f64)>,
 }
 
+/// What tells most shapes apart at a glance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Glance {
+    /// Number and kinds of the segments.
+    kinds: u64,
+    /// The first of the control points.
+    first: Vec2,
+}
+
+impl Glance {
+    fn of(segs: &[Seg]) -> Self {
+        Self { kinds: kinds(segs), first: points(segs).next().unwrap_or_default() }
+    }
+
+    fn is_near(&self, other: &Self, near: f64) -> bool {
+        self.kinds == other.kinds && apart(self.first, other.first) <= near
+    }
+}
+
 /// Shapes that were searched.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::refit) struct Shapes {
-    /// Number and kinds of the segments of each shape.
-    kinds: Vec<u64>,
+    /// One for each shape.
+    glances: Vec<Glance>,
     all: Vec<Shape>,
 }
 
 impl Shapes {
     /// The index of a shape whose control points are at most `near` from those of `segs`, and their largest distance.
-    fn find(&self, kinds: u64, segs: &[Seg], near: f64) -> Option<(usize, f64)> {
+    fn find(&self, glance: &Glance, segs: &[Seg], near: f64) -> Option<(usize, f64)> {
         let off = |s: &Shape| {
             points(segs).zip(&s.points).try_fold(0.0f64, |off, (p, q)| {
-                let d = (p.x - q.x).abs().max((p.y - q.y).abs());
+                let d = apart(p, *q);
                 (d <= near).then(|| off.max(d))
             })
         };
-        let alike = self.kinds.iter().zip(&self.all).enumerate().filter(|(_, (k, _))| **k == kinds);
-        alike.filter_map(|(i, (_, s))| Some((i, off(s)?))).next()
+        let alike = self.glances.iter().enumerate().filter(|(_, g)| g.is_near(glance, near));
+        alike.filter_map(|(i, _)| Some((i, off(&self.all[i])?))).next()
     }
 }
 
@@ -85,20 +104,20 @@ impl Repeats {
 
     /// The index of the shape of a run, which is entered if it is new, and the distance between their control points.
     pub(super) fn shape(&mut self, segs: &[Seg], tolerance: f64) -> (usize, f64) {
-        let (kinds, near) = (kinds(segs), SAME_SHAPE * tolerance);
+        let (glance, near) = (Glance::of(segs), SAME_SHAPE * tolerance);
         let entered = |i: usize| (i, 0.0);
-        self.own.find(kinds, segs, near).unwrap_or_else(|| {
-            let known = self.known.find(kinds, segs, near);
+        self.own.find(&glance, segs, near).unwrap_or_else(|| {
+            let known = self.known.find(&glance, segs, near);
             let ways = known.map_or(Vec::new(), |(i, _)| self.known.all[i].ways.clone());
             let new = Shape { points: points(segs).collect(), ways, carried: Vec::new(), uses: 0, known };
-            let Shapes { kinds: all_kinds, all } = &mut self.own;
+            let Shapes { glances, all } = &mut self.own;
             if all.len() < MAX_SHAPES {
-                all_kinds.push(kinds);
+                glances.push(glance);
                 all.push(new);
                 return entered(all.len() - 1);
             }
             let i = self.oldest;
-            (all_kinds[i], all[i]) = (kinds, new);
+            (glances[i], all[i]) = (glance, new);
             self.oldest = (i + 1) % MAX_SHAPES;
             entered(i)
         })
@@ -147,6 +166,11 @@ impl Repeats {
             ways.truncate(MAX_WAYS);
         }
     }
+}
+
+/// The larger of the distances in x and in y.
+fn apart(p: Vec2, q: Vec2) -> f64 {
+    (p.x - q.x).abs().max((p.y - q.y).abs())
 }
 
 /// A number that nearly tells the number and kinds of segments.

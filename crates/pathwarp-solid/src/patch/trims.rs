@@ -1,0 +1,411 @@
+//! Trimming loops of the parts of a surface: cut at the part's sides, in the coordinates of the part.
+//!
+//! A loop is clipped as a polygon is (I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, CACM 17, 1974): what lies beyond a
+//! side is left out, and the ends are joined along the side. Clipped loops may run along a side to and fro, which does not change the
+//! points that an odd number of loops surrounds.
+
+use super::bezier;
+use super::crossing::Graphs;
+use super::knots;
+use super::part::section;
+use super::surface::{Surface, TrimCurve};
+use glam::DVec4;
+
+/// A Bézier curve in homogeneous coordinates (u·w, v·w, 0, w).
+type Curve = Vec<DVec4>;
+
+/// Parameters this close to a side are on it; a loop around less area is none.
+const ROUNDING: f64 = 1e-12;
+/// Parts of a curve at whose ends the sides of a layer are looked at.
+const LOOKS: usize = 48;
+/// Most halvings of a curve that is fitted.
+const DEEPEST: usize = 8;
+
+/// The loops of a part over 0..1 × 0..1. A point belongs to it if an odd number of them surrounds it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Trims(Vec<Vec<Curve>>);
+
+impl Trims {
+    /// The loops of a surface in its own parameters; `None` if it is not trimmed.
+    pub(super) fn of(surface: &Surface) -> Option<Self> {
+        let curves = |t: &TrimCurve| {
+            let points = t.points.iter().zip(&t.weights).map(|([u, v], w)| DVec4::new(u * w, v * w, 0.0, *w));
+            let row = knots::bezier_row(t.degree, &t.knots, &points.collect::<Vec<_>>());
+            (0..(row.len() - 1) / t.degree).map(|i| row[i * t.degree..=(i + 1) * t.degree].to_vec()).collect::<Vec<_>>()
+        };
+        let loops: Vec<Vec<Curve>> = surface.trims.iter().map(|l| l.iter().flat_map(curves).collect()).collect();
+        (!loops.is_empty()).then_some(Self(loops))
+    }
+
+    /// Returns `true` if nothing is left of the part.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The number of curves.
+    pub(super) fn count(&self) -> usize {
+        self.0.iter().map(Vec::len).sum()
+    }
+
+    /// The loops of the part over `from[0]`..`to[0]` × `from[1]`..`to[1]`; `None` if all of it belongs to the surface.
+    pub(super) fn part(&self, from: [f64; 2], to: [f64; 2]) -> Option<Self> {
+        let moved = |p: &DVec4| {
+            let at = |a: usize| (p[a] - from[a] * p.w) / (to[a] - from[a]);
+            DVec4::new(at(0), at(1), 0.0, p.w)
+        };
+        let sides = [DVec4::X, DVec4::W - DVec4::X, DVec4::Y, DVec4::W - DVec4::Y];
+        let own = |curves: &Vec<Curve>| {
+            let curves = curves.iter().map(|c| c.iter().map(moved).collect()).collect();
+            sides.iter().fold(curves, |curves: Vec<Curve>, side| clipped(&curves, *side))
+        };
+        Self(self.0.iter().map(own).collect()).reduced()
+    }
+
+    /// The same loops with u and v exchanged.
+    pub(super) fn transposed(&self) -> Self {
+        let turn = |c: &Curve| c.iter().map(|p| DVec4::new(p.y, p.x, 0.0, p.w)).collect();
+        Self(self.0.iter().map(|l| l.iter().map(turn).collect()).collect())
+    }
+
+    /// The loops of a layer between two graphs, in whose coordinates the graphs are t = 0 and t = 1, by cubics within `off` of them;
+    /// `None` if all of it belongs to the surface.
+    pub(super) fn layer(&self, graphs: &Graphs<'_>, layer: usize, off: f64) -> Option<Self> {
+        let place = |p: [f64; 2]| {
+            let [low, high] = graphs.sides(layer, p[0]).map(|side| side[0]);
+            // Where the sides meet, a place is below or above both.
+            [p[0], (p[1] - low) / (high - low).max(ROUNDING)]
+        };
+        let own = |curves: &Vec<Curve>| {
+            let mut layer = InLayer { off, ..InLayer::default() };
+            layer.beyond = curves.last().and_then(|c| side_of(place(point(c, 1.0 - SAME))[1]));
+            for curve in curves {
+                let at = |t: f64| place(point(curve, t));
+                spans(&at).into_iter().for_each(|span| layer.follow(&at, span));
+            }
+            layer.kept.closed()
+        };
+        Self(self.0.iter().map(own).collect()).reduced()
+    }
+
+    /// The loops as curves of a surface.
+    pub(super) fn curves(&self) -> Vec<Vec<TrimCurve>> {
+        let curve = |c: &Curve| TrimCurve {
+            degree: c.len() - 1,
+            knots: knots::single(c.len() - 1, [0.0, 1.0]),
+            points: c.iter().map(|p| [p.x / p.w, p.y / p.w]).collect(),
+            weights: c.iter().map(|p| p.w).collect(),
+        };
+        self.0.iter().map(|l| l.iter().map(curve).collect()).collect()
+    }
+
+    /// Without loops around nothing, and without pairs of loops around all of it. `None` if one of those is all that is left.
+    fn reduced(self) -> Option<Self> {
+        /// As a share of the part.
+        const ALL: f64 = 1.0 - 1e-9;
+        let with_area = self.0.into_iter().map(|l| (area(&l), l)).filter(|(a, _)| *a > ROUNDING);
+        let (mut whole, some): (Vec<_>, Vec<_>) = with_area.partition(|(a, _)| *a >= ALL);
+        if whole.len() % 2 == 1 && some.is_empty() {
+            return None;
+        }
+        whole.truncate(whole.len() % 2);
+        Some(Self(whole.into_iter().chain(some).map(|(_, l)| l).collect()))
+    }
+}
+
+/// Parameters of a fitted loop this close to a side are on it.
+const SAME: f64 = 1e-9;
+
+/// The side beyond which a place of a layer is; `None` inside.
+fn side_of(t: f64) -> Option<bool> {
+    if (-SAME..=1.0 + SAME).contains(&t) { None } else { Some(t > 0.5) }
+}
+
+fn on_sides([s, t]: [f64; 2]) -> [f64; 2] {
+    let t = t.clamp(0.0, 1.0);
+    [
+        s,
+        if t < SAME {
+            0.0
+        } else if t > 1.0 - SAME {
+            1.0
+        } else {
+            t
+        },
+    ]
+}
+
+fn point(curve: &Curve, t: f64) -> [f64; 2] {
+    let (p, _) = bezier::curve(curve.iter().copied(), t);
+    [p.x / p.w, p.y / p.w]
+}
+
+fn line([a, b]: [[f64; 2]; 2]) -> Curve {
+    [a, b].map(|[u, v]| DVec4::new(u, v, 0.0, 1.0)).to_vec()
+}
+
+/// The area inside a loop, by a polygon with many corners on each curve; exact if all curves are straight.
+fn area(curves: &[Curve]) -> f64 {
+    const CORNERS: usize = 16;
+    let on = |c: &Curve| (0..CORNERS).map(|i| point(c, i as f64 / CORNERS as f64)).collect::<Vec<_>>();
+    let corners: Vec<[f64; 2]> = curves.iter().flat_map(on).collect();
+    let next = corners.iter().cycle().skip(1);
+    0.5 * corners.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>().abs()
+}
+
+/// The curves of a loop that are left, joined by straight lines where some are left out between them.
+#[derive(Default)]
+struct Kept {
+    curves: Vec<Curve>,
+    gap: bool,
+    gap_first: bool,
+}
+
+impl Kept {
+    fn leave_out(&mut self) {
+        self.gap = true;
+        self.gap_first |= self.curves.is_empty();
+    }
+
+    fn add(&mut self, curve: Curve) {
+        if std::mem::take(&mut self.gap)
+            && let Some(last) = self.curves.last()
+        {
+            self.join(point(last, 1.0), point(&curve, 0.0));
+        }
+        self.curves.push(curve);
+    }
+
+    fn closed(mut self) -> Vec<Curve> {
+        if let (true, Some(first), Some(last)) = (self.gap || self.gap_first, self.curves.first(), self.curves.last()) {
+            self.join(point(last, 1.0), point(first, 0.0));
+        }
+        self.curves
+    }
+
+    fn join(&mut self, a: [f64; 2], b: [f64; 2]) {
+        if (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > ROUNDING {
+            self.curves.push(line([a, b]));
+        }
+    }
+}
+
+/// A loop on its way through a layer.
+///
+/// Where the sides of the layer meet, all heights t are one place, and the loop may pass them at once. In the coordinates of the layer it
+/// runs along a line across it there.
+#[derive(Default)]
+struct InLayer {
+    kept: Kept,
+    /// The side beyond which the loop is; `None` inside.
+    beyond: Option<bool>,
+    /// Where it was last.
+    last: [f64; 2],
+    off: f64,
+}
+
+impl InLayer {
+    /// Follows a curve between two of its parameters, all of it inside the layer or beyond one side.
+    fn follow(&mut self, at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2]) {
+        let height = |side: bool| f64::from(u8::from(side));
+        let (start, side) = (on_sides(at(from)), side_of(at(0.5 * (from + to))[1]));
+        match (self.beyond, side) {
+            (Some(old), Some(new)) if old != new => self.across(start[0], height(old), height(new)),
+            (Some(old), None) => self.across(start[0], height(old), start[1]),
+            (None, Some(new)) if !self.kept.curves.is_empty() => self.across(self.last[0], self.last[1], height(new)),
+            _ => {}
+        }
+        if side.is_some() {
+            self.kept.leave_out();
+        } else {
+            let curves = fitted(&|t| on_sides(at(t)), [from, to], self.off, DEEPEST);
+            curves.into_iter().for_each(|c| self.kept.add(c));
+        }
+        (self.beyond, self.last) = (side, on_sides(at(to)));
+    }
+
+    fn across(&mut self, s: f64, from: f64, to: f64) {
+        if (from - to).abs() > SAME {
+            self.kept.add(line([[s, from], [s, to]]));
+        }
+    }
+}
+
+/// A loop without its parts at which a linear form in (u, v, 0, 1) is negative.
+fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
+    let mut kept = Kept::default();
+    for curve in curves {
+        let values: Vec<f64> = curve.iter().map(|p| above(side, *p)).collect();
+        let mut cuts = vec![0.0];
+        roots(&values, 0.0, 1.0, &mut cuts);
+        cuts.push(1.0);
+        for w in cuts.windows(2).filter(|w| w[0] < w[1]) {
+            let piece = if cuts.len() == 2 { curve.clone() } else { section(curve, w[0], w[1]) };
+            if above(side, bezier::curve(piece.iter().copied(), 0.5).0) >= 0.0 {
+                kept.add(piece);
+            } else {
+                kept.leave_out();
+            }
+        }
+    }
+    kept.closed()
+}
+
+/// A form at a point, 0 if it is on the side.
+fn above(side: DVec4, p: DVec4) -> f64 {
+    let v = side.dot(p);
+    if v.abs() <= ROUNDING * p.w { 0.0 } else { v }
+}
+
+/// Appends the places inside an interval at which a polynomial with these Bernstein coefficients changes its sign, in order.
+fn roots(c: &[f64], from: f64, to: f64, out: &mut Vec<f64>) {
+    /// Rounding of a parameter.
+    const NARROW: f64 = 1e-15;
+    let mut signs = c.iter().filter(|v| **v != 0.0).map(|v| *v > 0.0);
+    let first = signs.next();
+    if signs.all(|s| Some(s) == first) {
+        return;
+    }
+    let middle = 0.5 * (from + to);
+    if to - from <= NARROW {
+        out.push(middle);
+        return;
+    }
+    let (mut left, mut right) = (Vec::with_capacity(c.len()), c.to_vec());
+    for last in (0..c.len()).rev() {
+        left.push(right[0]);
+        (0..last).for_each(|i| right[i] = 0.5 * (right[i] + right[i + 1]));
+    }
+    roots(&left, from, middle, out);
+    if left.last() == Some(&0.0) {
+        out.push(middle);
+    }
+    roots(&right, middle, to, out);
+}
+
+/// The parts of 0..1 between the places at which the second coordinate passes 0 or 1.
+fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
+    let place = |i: usize| i as f64 / LOOKS as f64;
+    let values: Vec<f64> = (0..=LOOKS).map(|i| at(place(i))[1]).collect();
+    let mut cuts = vec![0.0, 1.0];
+    for level in [0.0, 1.0] {
+        let beyond = |t: f64| at(t)[1] > level;
+        let mut pass = |mut a: f64, mut b: f64| {
+            let from = beyond(a);
+            for _ in 0..48 {
+                let m = 0.5 * (a + b);
+                if beyond(m) == from { a = m } else { b = m }
+            }
+            cuts.push(b);
+        };
+        for i in 0..LOOKS {
+            if (values[i] > level) != (values[i + 1] > level) {
+                pass(place(i), place(i + 1));
+            } else if i > 0 && (values[i - 1] > level) == (values[i] > level) {
+                // It may pass the level twice, where it is nearest to it.
+                let off = |k: usize| (values[k] - level).abs();
+                if off(i) <= off(i - 1).min(off(i + 1)) {
+                    let sign = if values[i] > level { 1.0 } else { -1.0 };
+                    let turn = least(&|t| sign * (at(t)[1] - level), place(i - 1), place(i + 1));
+                    if beyond(turn) != (values[i] > level) {
+                        pass(place(i - 1), turn);
+                        pass(turn, place(i + 1));
+                    }
+                }
+            }
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    cuts.windows(2).filter(|w| w[1] - w[0] > ROUNDING).map(|w| [w[0], w[1]]).collect()
+}
+
+/// The place in an interval at which a function with one minimum is least, by sections in thirds.
+fn least(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+    for _ in 0..40 {
+        let third = (b - a) / 3.0;
+        if f(a + third) < f(b - third) { b -= third } else { a += third }
+    }
+    0.5 * (a + b)
+}
+
+/// Cubics through four places each of a curve, within `off` of it at three others.
+fn fitted(at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2], off: f64, depth: usize) -> Vec<Curve> {
+    let place = |t: f64| at(from + t * (to - from));
+    let [a, p, q, d] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(place);
+    let inner = |a: f64, p: f64, q: f64, d: f64| (-5.0 * a + 18.0 * p - 9.0 * q + 2.0 * d) / 6.0;
+    let [b, c] = [[a, p, q, d], [d, q, p, a]].map(|[a, p, q, d]| [0, 1].map(|k| inner(a[k], p[k], q[k], d[k])));
+    let cubic: Curve = [a, b, c, d].map(|[u, v]| DVec4::new(u, v, 0.0, 1.0)).to_vec();
+    let near = |t: f64| {
+        let (own, truth) = (point(&cubic, t), place(t));
+        (own[0] - truth[0]).hypot(own[1] - truth[1]) <= off
+    };
+    if depth == 0 || [1.0 / 6.0, 0.5, 5.0 / 6.0].into_iter().all(near) {
+        return vec![cubic];
+    }
+    let middle = 0.5 * (from + to);
+    [[from, middle], [middle, to]].into_iter().flat_map(|part| fitted(at, part, off, depth - 1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A circle of four rational quadratics.
+    fn circle(u: f64, v: f64, r: f64) -> Vec<TrimCurve> {
+        let corner = |k: usize| {
+            [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-1.0, 1.0], [-1.0, 0.0], [-1.0, -1.0], [0.0, -1.0], [1.0, -1.0]]
+                [k % 8]
+        };
+        (0..4)
+            .map(|k| TrimCurve {
+                degree: 2,
+                knots: knots::single(2, [0.0, 1.0]),
+                points: (0..3).map(|i| corner(2 * k + i)).map(|[x, y]| [u + r * x, v + r * y]).collect(),
+                weights: vec![1.0, 0.5f64.sqrt(), 1.0],
+            })
+            .collect()
+    }
+
+    fn trimmed(loops: Vec<Vec<TrimCurve>>) -> Trims {
+        Trims::of(&Surface { trims: loops, ..Surface::default() }).unwrap()
+    }
+
+    #[test]
+    fn parts_of_a_disc() {
+        let disc = trimmed(vec![circle(0.5, 0.5, 0.4)]);
+        let quarter = disc.part([0.5, 0.5], [1.0, 1.0]).unwrap();
+        // π·0.4²/4 of a quarter of the square, by polygons with 16 corners on a quarter of the circle.
+        let truth = std::f64::consts::PI * 0.16;
+        assert_eq!(quarter.0.len(), 1);
+        assert!((area(&quarter.0[0]) / truth - 1.0).abs() < 2e-3, "{}", area(&quarter.0[0]));
+        for curve in &quarter.0[0] {
+            for p in (0..=8).map(|i| point(curve, f64::from(i) / 8.0)) {
+                let on_circle = (p[0].hypot(p[1]) - 0.8).abs() < 1e-12;
+                assert!(on_circle || p[0].abs() < 1e-12 || p[1].abs() < 1e-12, "{p:?}");
+            }
+        }
+        // Inside, outside, and a hole as large as the loop around it.
+        assert_eq!(disc.part([0.4, 0.4], [0.6, 0.6]), None);
+        assert!(disc.part([0.0, 0.0], [0.1, 0.1]).unwrap().is_empty());
+        let ring = trimmed(vec![circle(0.5, 0.5, 0.4), circle(0.5, 0.5, 0.2)]);
+        assert!(ring.part([0.45, 0.45], [0.55, 0.55]).unwrap().is_empty());
+        assert_eq!(ring.part([0.45, 0.45], [1.0, 0.55]).unwrap().0.len(), 2);
+        assert_eq!(ring.transposed().transposed(), ring);
+        assert_eq!(trimmed(ring.curves()), ring);
+    }
+
+    #[test]
+    fn signs_change_where_they_change() {
+        // (t − 0.2)(t − 0.5)(t − 0.9), a double root (where a cut does no harm), and a side along which the curve runs.
+        for (c, truth) in [
+            (vec![-0.09, 0.46 / 3.0, -0.41 / 3.0, 0.04], vec![0.2, 0.5, 0.9]),
+            (vec![0.25, -0.25, 0.25], vec![0.5]),
+            (vec![0.0, 0.0, 0.0], vec![]),
+            (vec![-1.0, 1.0], vec![0.5]),
+        ] {
+            let mut found = Vec::new();
+            roots(&c, 0.0, 1.0, &mut found);
+            assert_eq!(found.len(), truth.len(), "{c:?}: {found:?}");
+            assert!(found.iter().zip(&truth).all(|(a, b): (&f64, &f64)| (a - b).abs() < 1e-12), "{c:?}: {found:?}");
+        }
+    }
+}
