@@ -323,6 +323,8 @@
     grips;
     /** Handles of plain numbers. */
     dials = [];
+    /** A path of the drawing that a parameter named before its line was dragged. */
+    released = null;
     /** Control points of nets that have been moved. */
     moved = {};
     frame;
@@ -623,7 +625,11 @@
       else if (grip.adjust) this.step.args[name] = writeAdjust(grip.adjust);
       else if (grip.value !== void 0 && param.kind === "angle") this.step.args[name] = [String(Number(grip.value.toFixed(1)))];
       else if (grip.value !== void 0) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];
-      else this.step.args[name] = valuesOf(param, grip, this.frame, this.step.args[name] ?? []);
+      else {
+        const before2 = this.step.args[name] ?? [];
+        this.step.args[name] = valuesOf(param, grip, this.frame, before2);
+        this.released ??= before2.find((value) => value.startsWith("#")) ?? null;
+      }
     }
     /** A net's moved control points each have a value, which replaces an earlier one and a shift. */
     writeNet(name, net) {
@@ -739,6 +745,8 @@
     appends = false;
     grips = [];
     handles = null;
+    /** A path of the drawing that was a guide until its line was dragged just now. */
+    released = null;
     summary = null;
     warnings = [];
     problem = null;
@@ -999,6 +1007,7 @@
       this.tell("handles");
     }
     takeHandles() {
+      this.released = this.handles?.released ?? null;
       const deformation = this.deformation(this.step?.deformation);
       const grips = this.grips[this.selected];
       this.handles = this.step && deformation && grips ? new Handles(deformation, this.step, grips) : null;
@@ -2269,6 +2278,8 @@
       byId("smooth").hidden = !handles?.handles.some(({ key }) => /\/(in|out)$/.test(key));
       byId("mirror").hidden = !has;
       byId("snap").hidden = !has;
+      if (app2.released) toast(`The line has left ${app2.released}, which is artwork again. Undo brings it back`);
+      app2.released = null;
       if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
       if (!handles) return;
       const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";

@@ -2,7 +2,8 @@
 # Builds the page anew and compares it with the files in the repository. `--write` stores it there instead.
 set -euo pipefail
 cd "$(dirname "$0")"
-[ -d node_modules/ws ] || npm ci --silent --no-audit --no-fund || {
+# Fetched again whenever the list of packages is newer.
+[ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --silent --no-audit --no-fund || {
     echo "npm could not fetch esbuild and TypeScript; the editor's page in the repository is used as it is" >&2
     exit 0
 }

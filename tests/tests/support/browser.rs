@@ -11,8 +11,8 @@ pub fn missing() -> Option<&'static str> {
     let modules = root().join("crates/pathwarp-editor/web/node_modules");
     if !is_there("node") {
         Some("node")
-    } else if !["playwright-core", "ws"].iter().all(|name| modules.join(name).is_dir()) {
-        Some("playwright-core and ws (npm ci in crates/pathwarp-editor/web)")
+    } else if !["playwright-core", "ws", "axe-core"].iter().all(|name| modules.join(name).is_dir()) {
+        Some("playwright-core, ws and axe-core (npm ci in crates/pathwarp-editor/web)")
     } else if !browsers.iter().any(|b| Path::new(b).exists()) {
         Some("Chromium")
     } else {

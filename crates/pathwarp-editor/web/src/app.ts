@@ -36,6 +36,8 @@ export class App {
   appends = false;
   grips: StepGrips[] = [];
   handles: Handles | null = null;
+  /** A path of the drawing that was a guide until its line was dragged just now. */
+  released: string | null = null;
   summary: Summary | null = null;
   warnings: string[] = [];
   problem: string | null = null;
@@ -329,6 +331,7 @@ export class App {
   }
 
   private takeHandles(): void {
+    this.released = this.handles?.released ?? null;
     const deformation = this.deformation(this.step?.deformation);
     const grips = this.grips[this.selected];
     this.handles = this.step && deformation && grips ? new Handles(deformation, this.step, grips) : null;

@@ -36,6 +36,8 @@ export class Handles {
   private grips: Record<string, Grip>;
   /** Handles of plain numbers. */
   private dials: Dial[] = [];
+  /** A path of the drawing that a parameter named before its line was dragged. */
+  released: string | null = null;
   /** Control points of nets that have been moved. */
   private moved: Record<string, Set<number>> = {};
 
@@ -318,7 +320,11 @@ export class Handles {
     else if (grip.adjust) this.step.args[name] = writeAdjust(grip.adjust);
     else if (grip.value !== undefined && param.kind === "angle") this.step.args[name] = [String(Number(grip.value.toFixed(1)))];
     else if (grip.value !== undefined) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];
-    else this.step.args[name] = valuesOf(param, grip, this.frame, this.step.args[name] ?? []);
+    else {
+      const before = this.step.args[name] ?? [];
+      this.step.args[name] = valuesOf(param, grip, this.frame, before);
+      this.released ??= before.find((value) => value.startsWith("#")) ?? null;
+    }
   }
 
   /** A net's moved control points each have a value, which replaces an earlier one and a shift. */

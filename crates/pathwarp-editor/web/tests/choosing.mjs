@@ -132,4 +132,8 @@ export const a_path_is_picked = () => within(async (page) => {
   await page.keyboard.press("PageUp");
   await quiet(page);
   check((await way()) === skeleton && (await paths(page)) !== picture, "the skeleton is bent, too");
+  await drag(page, "along/0.0/0/out", 0, -60);
+  check((await page.textContent("#toast")).includes("has left #way"), await page.textContent("#toast"));
+  await page.click("#undo");
+  await page.waitForFunction(() => document.querySelector("#set-along").value === "#way");
 }, { drawing: LINE });

@@ -1,6 +1,6 @@
 // Saving, opening again, drafts, dropped files, two pages, the end of the server.
-import { existsSync, readFileSync, readdirSync } from "node:fs";
-import { execFileSync, spawnSync } from "node:child_process";
+import { chmodSync, existsSync, readFileSync, readdirSync } from "node:fs";
+import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { becomes, check, choose, drag, edit, folder, middle, open, paths, program, quiet, root, sample } from "./harness.mjs";
 
 async function within(file, test, ...args) {
@@ -113,6 +113,35 @@ export const a_port_is_chosen_and_ctrl_c_ends = async () => {
   const code = await Promise.race([editor.ended, new Promise((r) => setTimeout(() => r("still running"), 5000))]);
   check(code === 130, `exit ${code}`);
 };
+
+/** Starts the program with a stand-in for the browser, and ends it by Ctrl-C. Returns what it has said, and the addresses opened. */
+async function started(display, browser, ...args) {
+  const dir = folder({ "logo.svg": sample("logo.svg"), browser: '#!/bin/sh\necho "$1" >> opened\n' });
+  chmodSync(`${dir}/browser`, 0o755);
+  const env = { ...process.env, DISPLAY: display, WAYLAND_DISPLAY: "", BROWSER: browser ?? `${dir}/browser` };
+  const child = spawn(program, ["edit", "logo.svg", ...args], { cwd: dir, env, stdio: ["ignore", "pipe", "pipe"] });
+  let [out, said] = ["", ""];
+  child.stdout.on("data", (text) => (out += text));
+  child.stderr.on("data", (text) => (said += text));
+  for (let i = 0; i < 100 && !out.includes("\n"); i++) await new Promise((r) => setTimeout(r, 50));
+  await new Promise((r) => setTimeout(r, 700));
+  child.kill("SIGINT");
+  await new Promise((r) => child.once("close", r));
+  return { out, said, opened: existsSync(`${dir}/opened`) ? readFileSync(`${dir}/opened`, "utf8") : "" };
+}
+
+/** The address is all that is printed; a browser opens only where it can be seen, and Ctrl-C needs no words. */
+export async function a_browser_is_opened_where_there_is_a_display() {
+  const address = /^http:\/\/127\.0\.0\.1:\d+\/\?token=\S+\n$/;
+  const shown = await started(":99");
+  check(address.test(shown.out) && shown.opened === shown.out && shown.said === "", JSON.stringify(shown));
+  for (const [display, ...args] of [[""], [":99", "--no-open"]]) {
+    const { out, said, opened } = await started(display, undefined, ...args);
+    check(address.test(out) && opened === "" && said === "", `${display} ${args}: ${out}${said}${opened}`);
+  }
+  const { out, said } = await started(":99", "/nothing/here");
+  check(address.test(out) && /^warning: no browser can be started/.test(said), out + said);
+}
 
 export const a_program_that_was_stopped_goes_on = () => within(null, async ({ page, editor }) => {
   await drag(page, "shaper/0.0/2", 20, 30);
