@@ -24,7 +24,7 @@
 
 use crate::ambiguity::ambiguity;
 use crate::budget::{Budget, Limit};
-use crate::deform::{Built, Overlay, Placement, Registry, Role, Seam};
+use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse};
 use crate::outline::Outline;
@@ -106,11 +106,15 @@ impl Recipe {
             let work = SAMPLE * places * *samples * out.map.work();
             budget.spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)
         };
-        self.built(registry, frame, artwork, &count)
+        self.counted(registry, frame, artwork, &count)
     }
 
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
     /// as it is by then.
+    ///
+    /// A recipe of inverse steps alone undoes its reverse ([`Recipe::inverted`]): `artwork` is a result, `frame` that of its source, and
+    /// the frames of the other steps are the boxes of the artwork on its way back. Those depend on the inverses, and these on them: they
+    /// are found by turns. A warning says so if they do not settle.
     ///
     /// # Errors
     /// An unknown deformation, a step that only the first can be, or any error from building a step.
@@ -120,33 +124,85 @@ impl Recipe {
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
-        self.built(registry, frame, artwork, &|_| Ok(()))
+        self.counted(registry, frame, artwork, &|_| Ok(()))
     }
 
     /// Builds every step; `count` is called before the artwork's image under the steps so far is sampled.
-    fn built<'a>(
+    fn counted<'a>(
         &self,
         registry: &Registry,
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
         count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
     ) -> Result<BuiltRecipe, Error> {
-        let mut out = BuiltRecipe {
-            map: Chain::default(),
-            steps: Vec::with_capacity(self.steps.len()),
-            placement: Placement::default(),
-            after: Chain::default(),
-            frames: Vec::with_capacity(self.steps.len()),
-        };
+        if self.steps.len() < 2 || !self.steps.iter().all(|s| s.inverse) {
+            return self.built(registry, frame, artwork, count, None);
+        }
+        let (frames, off) = self.frames_on_the_way_back(registry, frame.clone(), artwork, count)?;
+        let mut out = self.built(registry, frame, artwork, count, Some(&frames))?;
+        if let Some(step) = out.steps.last_mut().filter(|_| off > SETTLED) {
+            step.warn(format!(
+                "the boxes that percentages of the later steps refer to were not found again, and differ by {off:.1e} of their size: \
+                 the result is not the source; give those steps lengths instead"
+            ));
+        }
+        Ok(out)
+    }
+
+    /// The frames of inverse steps, in their order, for artwork that is a result; and by how much the last turn moved them, as a share of
+    /// their size.
+    fn frames_on_the_way_back<'a>(
+        &self,
+        registry: &Registry,
+        source: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
+    ) -> Result<(Vec<Frame>, f64), Error> {
+        let Rect { x0, y0, x1, y1 } = source.rect;
+        let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(Point::from);
+        let page = Outline::from_points(&corners, true);
+        let there = self.inverted().built(registry, source, &std::iter::once(&page), count, None)?;
+        let mut frames: Vec<Frame> = there.frames.into_iter().rev().collect();
+        let mut off = f64::INFINITY;
+        for _ in 0..TURNS {
+            let mut back = BuiltRecipe::with_capacity(frames.len());
+            off = 0.0;
+            // The source's frame, the last, is known.
+            for (i, step) in self.steps.iter().enumerate().take(frames.len() - 1) {
+                let built = entry(registry, i, step)?.build_from(&step.args, &frames[i])?;
+                back.map.push(inverse(&built, &frames[i]));
+                count(&back)?;
+                let Some(found) = image_box(artwork.clone(), &[], &back.map) else { continue };
+                let known = frames[i].rect;
+                let moved =
+                    (found.origin() - known.origin()).hypot().max((found.size() - known.size()).to_vec2().hypot());
+                off = f64::max(off, moved / known.size().to_vec2().hypot());
+                frames[i] = Frame::new(found).with_units_per_px(frames[i].units_per_px);
+            }
+            if off <= SETTLED {
+                break;
+            }
+        }
+        Ok((frames, off))
+    }
+
+    /// Builds every step, with the frames that are found for them or those of the artwork on its way.
+    fn built<'a>(
+        &self,
+        registry: &Registry,
+        frame: Frame,
+        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
+        found: Option<&[Frame]>,
+    ) -> Result<BuiltRecipe, Error> {
+        let mut out = BuiltRecipe::with_capacity(self.steps.len());
         let letters = Arc::clone(&frame.letters);
         let mut frame = frame;
         for (i, step) in self.steps.iter().enumerate() {
-            let entry = registry.get(&step.deformation).ok_or_else(|| {
-                let known: Vec<_> = registry.entries().iter().map(|e| e.info().name).collect();
-                let problem = format!("there is no deformation `{}`; known are {}", step.deformation, known.join(", "));
-                Error::input(format!("step {}", i + 1), problem)
-            })?;
-            if i > 0 {
+            let entry = entry(registry, i, step)?;
+            if let Some(found) = found.and_then(|f| f.get(i)) {
+                frame = found.clone();
+            } else if i > 0 {
                 count(&out)?;
                 let units_per_px = frame.units_per_px;
                 let image = out.image_box(artwork.clone(), &letters);
@@ -182,6 +238,15 @@ impl Recipe {
     }
 }
 
+/// The entry of step `i`.
+fn entry<'a>(registry: &'a Registry, i: usize, step: &Step) -> Result<&'a Arc<dyn Deformation>, Error> {
+    registry.get(&step.deformation).ok_or_else(|| {
+        let known: Vec<_> = registry.entries().iter().map(|e| e.info().name).collect();
+        let problem = format!("there is no deformation `{}`; known are {}", step.deformation, known.join(", "));
+        Error::input(format!("step {}", i + 1), problem)
+    })
+}
+
 /// Refuses copies and placed letters in all but a first step that is not inverted.
 fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), Error> {
     let effect = match placement {
@@ -198,6 +263,16 @@ fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), E
 }
 
 impl BuiltRecipe {
+    fn with_capacity(steps: usize) -> Self {
+        Self {
+            map: Chain::default(),
+            steps: Vec::with_capacity(steps),
+            placement: Placement::default(),
+            after: Chain::default(),
+            frames: Vec::with_capacity(steps),
+        }
+    }
+
     /// Returns the failure of a step's map, if one has failed. Results computed with it are not to be used.
     #[must_use]
     pub fn failure(&self) -> Option<Error> {
@@ -234,12 +309,17 @@ impl BuiltRecipe {
     }
 }
 
-/// Inverts a deformation: by its closed-form inverse, or by Newton's method over the frame.
-fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
+/// The inverse of a map: its closed form, or Newton's method over the frame.
+fn inverse(built: &Built, frame: &Frame) -> Arc<dyn Map> {
     /// Distance beyond the frame at which a solution is accepted, as a share of its diagonal: strokes and handles extend past it.
     const REACH: f64 = 0.25;
     let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
-    let map = built.map.inverse().unwrap_or_else(newton);
+    built.map.inverse().unwrap_or_else(newton)
+}
+
+/// Inverts a deformation, with a warning if it folds.
+fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
+    let map = inverse(&built, frame);
     if let Some(a) = ambiguity(&*built.map, &*map, frame.rect) {
         built.warn(format!(
             "{deformation}: undoing it is ambiguous: {} and {} have the same image, {}, of which only one can come back; artwork \
@@ -262,6 +342,12 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
 
 /// Intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
+
+/// Frames on the way back that move by less than this share of their size are found.
+const SETTLED: f64 = 1e-9;
+
+/// Turns in which they are looked for; they take five to twenty.
+const TURNS: usize = 64;
 
 /// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.
 const MEASURED: u64 = 4000;
@@ -310,6 +396,7 @@ fn first_across<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::refit::{Options, warp_path};
 
     #[test]
     fn later_percentages_mean_the_box_at_that_step() {
@@ -347,5 +434,31 @@ mod tests {
             assert!(back.point(there.point(p)).distance(p) < 1e-12);
         }
         assert_eq!(recipe.inverted().inverted(), recipe);
+    }
+
+    /// Percentages of the later steps refer to boxes that the result alone does not show.
+    #[test]
+    fn steps_of_percentages_are_undone_from_the_result() {
+        let art = Outline::from_svg("M20,20 H180 V80 H20 Z M60,30 C80,90 120,10 140,70").unwrap();
+        let step = |name: &str, pairs: &[(&str, &str)]| Step::new(name, Args::from_pairs(pairs));
+        let recipe = Recipe {
+            steps: vec![
+                step("warp", &[("style", "arc"), ("bend", "30%")]),
+                step("wave", &[("height", "10%"), ("length", "40%")]),
+                step("affine", &[("scale-y", "1.5"), ("move-x", "10%")]),
+            ],
+        };
+        let (registry, frame) = (Registry::builtin(), Frame::new(art.bounding_box().unwrap()));
+        let there = recipe.build(&registry, frame.clone(), &std::iter::once(&art)).unwrap();
+        let bent = warp_path(&art, &there.map, &Options::new(1e-4)).unwrap();
+        let bent = Outline::from(&bent.path);
+        let back = recipe.inverted().build(&registry, frame, &std::iter::once(&bent)).unwrap();
+        assert!(back.steps.iter().all(|s| s.explanation.warnings.is_empty()));
+        for seg in art.segs() {
+            let p = seg.eval(0.3);
+            let off = back.map.point(there.map.point(p)).distance(p);
+            // Boxes are sampled.
+            assert!(off < 0.02, "{p:?} comes back {off} away");
+        }
     }
 }
