@@ -313,8 +313,9 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
 }
 
 /// Work of a point of the inverse, as a multiple of the map's: a dozen jets, which take a fifth of what an evaluation stands for in the
-/// budget, with the fit around it. The hairpin of `tests/cli/report.rs` takes 7 ns for each, an evaluation 80.
-pub(crate) const INVERSE_WORK: f64 = 2.5;
+/// budget, with the fit around it (the hairpin of `tests/cli/report.rs` takes 7 ns for each, an evaluation 80); and as much again for
+/// places without a source, which are searched for from several starts: half of a twist by 1000 %.
+pub(crate) const INVERSE_WORK: f64 = 5.0;
 
 impl Map for NewtonInverse {
     fn work(&self) -> f64 {
