@@ -346,7 +346,7 @@ const PER_SEGMENT: usize = 16;
 /// Frames on the way back that move by less than this share of their size are found.
 const SETTLED: f64 = 1e-9;
 
-/// Turns in which they are looked for; they take five to twenty.
+/// Turns in which they are looked for; what takes more is taken not to settle.
 const TURNS: usize = 64;
 
 /// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.

@@ -198,7 +198,7 @@ struct InLayer {
     kept: Kept,
     /// The side beyond which the loop is; `None` inside.
     beyond: Option<bool>,
-    /// Where it was last.
+    /// The last position.
     last: [f64; 2],
     off: f64,
 }

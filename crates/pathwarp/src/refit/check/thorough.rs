@@ -198,7 +198,7 @@ fn refined(
         }
     }
     for foot in feet {
-        // Where chords are no guide, Newton steps with the derivative itself.
+        // Take Newton steps with the derivative where the chords lead to no place within the tolerance.
         let (mut tau, mut best) = (foot.tau, foot.square);
         for _ in 0..MORE_STEPS {
             if best <= larger(worst, enough) {

@@ -108,12 +108,12 @@ impl Distances {
             let errors = &self.errors[from - first..=to - first];
             let end = errors.len() - 1;
             let factor = if end < SHORT_PART { SHORT_FACTOR } else { PEAK_FACTOR };
-            let may_peak = |near: [f64; 3], joint: usize, k: usize, vertex: usize| {
+            let may_peak = |near: [f64; 3], joint: usize, next: usize| {
                 predicted_end_peak(near, factor) > enough
                     || (first < joint && joint < last)
-                        && near[0].abs().max(near[1].abs()) + self.parting(run, c, k, vertex) > enough
+                        && near[0].abs().max(near[1].abs()) + self.parting(run, c, joint, next) > enough
             };
-            if may_peak([errors[0], errors[1], errors[2]], from, from, from + 1) {
+            if may_peak([errors[0], errors[1], errors[2]], from, from + 1) {
                 out.push((i, [from, from + 1]));
             }
             for (k, w) in errors.windows(3).enumerate() {
@@ -121,22 +121,23 @@ impl Distances {
                     out.push((i, [from + k, from + k + 2]));
                 }
             }
-            if may_peak([errors[end], errors[end - 1], errors[end - 2]], to, to - 1, to - 1) {
+            if may_peak([errors[end], errors[end - 1], errors[end - 2]], to, to - 1) {
                 out.push((i, [to - 1, to]));
             }
         }
         out
     }
 
-    /// By how much the error may rise between sample `k` and the next because the cubic turns by another angle than the image does, which
-    /// is known from the polygon's at `vertex`: a difference of θ moves them apart by θ/8 of the chord. Beside a joint, errors do not show
+    /// By how much the error may rise between the sample at a joint and its neighbour `next` because the cubic turns by another angle than
+    /// the image does, which is known from the polygon's at `next`: a difference of θ moves them apart by θ/8 of the chord. Beside a joint, errors do not show
     /// a turn that begins just there.
-    fn parting(&self, run: &SegmentRun<'_>, c: &RunCubic, k: usize, vertex: usize) -> f64 {
+    fn parting(&self, run: &SegmentRun<'_>, c: &RunCubic, joint: usize, next: usize) -> f64 {
+        let k = joint.min(next);
         let j = k - c.samples[0];
         let [u, _, v] = controls(&c.frame.power(c.a, c.b), [self.feet[j], self.feet[j + 1]]);
         let chord = |k: usize| Vec2::new(run.x[k + 1] - run.x[k], run.y[k + 1] - run.y[k]);
         let turn = |u: Vec2, v: Vec2| u.cross(v) / u.dot(v);
-        let apart = turn(u, v) - turn(chord(vertex - 1), chord(vertex));
+        let apart = turn(u, v) - turn(chord(next - 1), chord(next));
         0.125 * chord(k).hypot() * apart.abs()
     }
 
