@@ -45,12 +45,16 @@ fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
 }
 
 /// Builds every step of a recipe. Percentages refer to `frame` in the first step, and in later ones to the bounding box of
-/// `points` as they are by then.
+/// `points` as they are by then. As in the plane, a recipe of inverse steps alone undoes its reverse: `points` are of a result, `frame` is
+/// that of its source, and the other boxes are found by turns; a warning says so if they do not settle.
 ///
 /// # Errors
 /// An unknown deformation, or any error from building a step.
 pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVec3]) -> Result<BuiltRecipe3, Error> {
     let n = recipe.steps.len();
+    if n > 1 && recipe.steps.iter().all(|s| s.inverse) {
+        return undo(&recipe.inverted(), registry, frame, points);
+    }
     let mut out = BuiltRecipe3 { map: Chain3::default(), steps: Vec::with_capacity(n), frames: Vec::with_capacity(n) };
     let mut frame = frame;
     let mut images = if recipe.steps.len() > 1 { points.to_vec() } else { Vec::new() };
@@ -78,18 +82,13 @@ pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVe
     Ok(out)
 }
 
-/// Builds the inverse of a recipe for a model that is a result of it. `frame` is that of the source; the boxes of later steps are those of
-/// the source's points on their way, which are found by turns: from boxes to points, and from points to boxes. A warning says so if that
-/// does not settle.
-///
-/// # Errors
-/// As [`build`].
-pub fn undo(recipe: &Recipe, registry: &Registry3, frame: Frame3, images: &[DVec3]) -> Result<BuiltRecipe3, Error> {
+/// Builds the inverse of a recipe of several steps: boxes give the source's points, and these the boxes on their way, until they settle.
+fn undo(recipe: &Recipe, registry: &Registry3, frame: Frame3, images: &[DVec3]) -> Result<BuiltRecipe3, Error> {
     /// Boxes that differ by less than this share of their size are the same.
     const SETTLED: f64 = 1e-12;
     const TURNS: usize = 64;
     let mut there = build(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>())?;
-    let mut off = if recipe.steps.len() > 1 { f64::INFINITY } else { 0.0 };
+    let mut off = f64::INFINITY;
     for _ in 0..TURNS {
         if off <= SETTLED {
             break;

@@ -65,8 +65,6 @@ pub(super) struct Own {
     pub(super) refine: Option<Length>,
     /// Millimetres by which a drawing is extruded.
     pub(super) depth: Option<f64>,
-    /// The recipe undoes another one.
-    pub(super) undo: bool,
 }
 
 impl Own {
@@ -74,7 +72,7 @@ impl Own {
     pub(super) fn read(m: &ArgMatches) -> Result<Self, Failure> {
         let depth = length(m, "extrude")?
             .map(|l| l.in_units(Axis::X, &Frame::new(Rect::ZERO).with_units_per_px([MM_PER_PX; 2])));
-        Ok(Self { frame: frame(m)?, refine: length(m, "refine")?, depth, undo: false })
+        Ok(Self { frame: frame(m)?, refine: length(m, "refine")?, depth })
     }
 }
 

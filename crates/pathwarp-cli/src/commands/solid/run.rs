@@ -30,6 +30,5 @@ pub(super) fn run(registry: &Registry3, m: &ArgMatches) -> Result<Status, Failur
     let saved = recipe_file::read(registry, file, Given::reading(m)?.external)?;
     let given = saved.options.overridden_by(&Given::inputs_and_options(m));
     let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
-    let own = args::Own { undo: m.get_flag(INVERSE), ..args::Own::read(m)? };
-    warp::run(registry, &recipe, &given, &own, Some(file))
+    warp::run(registry, &recipe, &given, &args::Own::read(m)?, Some(file))
 }

@@ -37,12 +37,7 @@ impl Work<'_> {
     pub(super) fn build(&self, bounds: Option<Box3>, points: &[DVec3]) -> Result<(Frame3, BuiltRecipe3), Failure> {
         let bounds = bounds.unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
         let frame = Frame3::new(self.own.frame.unwrap_or(bounds));
-        let built = if self.own.undo {
-            recipe::undo(&self.recipe.inverted(), self.registry, frame, points)
-        } else {
-            recipe::build(self.recipe, self.registry, frame, points)
-        };
-        let built = built.map_err(Failure::of_recipe)?;
+        let built = recipe::build(self.recipe, self.registry, frame, points).map_err(Failure::of_recipe)?;
         Ok((frame, built))
     }
 
