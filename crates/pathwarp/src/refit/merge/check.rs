@@ -195,20 +195,26 @@ impl Distances {
         })
     }
 
-    /// The largest distance between two samples of segment `i`, by eight more and the parabolas through them.
+    /// The largest distance between two samples of segment `i`, by eight more and the parabolas through all ten.
     fn closely(&self, run: &SegmentRun<'_>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64, Point> {
         Ok(self.between(c, run.images(i, &places(run, i, [a, b]))?, [a, b]))
     }
 
-    /// The same for eight images `g` evenly between the samples.
+    /// The same, given eight images `g` evenly between the samples.
     fn between(&self, c: &RunCubic, mut g: Lanes, [a, b]: [usize; 2]) -> f64 {
-        let feet = [self.feet[a - c.samples[0]], self.feet[b - c.samples[0]]];
+        let first = c.samples[0];
         for i in 0..8 {
             g.x[i] -= c.ends[0].x;
             g.y[i] -= c.ends[0].y;
         }
-        let errors = c.frame.distances(&g, c.a, c.b, &mut spread(feet), 3).map(f64::sqrt);
-        let top = largest(&errors);
+        let mut feet = spread([self.feet[a - first], self.feet[b - first]]);
+        let squares = c.frame.distances(&g, c.a, c.b, &mut feet, 3);
+        let mut errors = [self.errors[a - first].abs(); 10];
+        for (error, square) in errors[1..].iter_mut().zip(squares) {
+            *error = square.sqrt();
+        }
+        errors[9] = self.errors[b - first].abs();
+        let top = largest(&squares).sqrt();
         let tops = errors.windows(3).filter(|w| w[1] >= PEAK_NEAR * top && w[1] >= w[0] && w[1] >= w[2]);
         tops.map(|w| parabola_peak(w[0], w[1], w[2])).fold(top, f64::max)
     }
