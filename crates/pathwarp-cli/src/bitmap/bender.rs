@@ -23,6 +23,9 @@ const GRADIENT: f64 = 24e3;
 
 /// Work for a pixel of a gradient, in pixels painted.
 const SHADED: f64 = 40.0;
+/// Work to find the resolution of a gradient, in pixels of it; and where no difference may be visible.
+const SEARCHED: f64 = 500.0;
+const SEARCHED_STRICTLY: f64 = 2000.0;
 
 /// Bends the bitmaps and gradients of drawings by one map.
 pub struct Bender {
@@ -131,7 +134,7 @@ impl GradientPainter for Bender {
         let finest = finest.min((most / (width * height)).sqrt()).min(most / width.max(height));
         let seen: Vec<_> = r.seen.iter().map(|s| SeenColor { at: s.at, color: s.color }).collect();
         let shade = SmoothShade {
-            color: r.color,
+            colors: r.colors,
             source: r.area,
             placed: r.placed,
             map: r.map,
@@ -144,7 +147,8 @@ impl GradientPainter for Bender {
         };
         self.count(GRADIENT).map_err(too_much)?;
         // The number of pixels follows from painting. Nothing is painted once the limit is reached.
-        self.budget.spend(Limit::Painting, SHADED as u64).map_err(too_much)?;
+        let search = if r.strict { SEARCHED_STRICTLY } else { SEARCHED };
+        self.budget.spend(Limit::Painting, (SHADED * search) as u64).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
         let pixels = f64::from(pixmap.width()) * f64::from(pixmap.height());
         self.budget.spend(Limit::Painting, (SHADED * pixels) as u64).map_err(too_much)?;

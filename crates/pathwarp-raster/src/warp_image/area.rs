@@ -34,6 +34,18 @@ impl PixelArea {
         (0..4).map(quarter).filter(|a| a.width > 0 && a.height > 0)
     }
 
+    /// Parts of the area that are no larger than a tile.
+    pub(super) fn tiles(self) -> impl Iterator<Item = Self> {
+        let (right, bottom) = (self.left + self.width, self.top + self.height);
+        let corners = (self.top..bottom)
+            .step_by(TILE)
+            .flat_map(move |top| (self.left..right).step_by(TILE).map(move |left| (left, top)));
+        corners.map(move |(left, top)| {
+            let (width, height) = (TILE.min(right - left), TILE.min(bottom - top));
+            Self { left, top, width, height }
+        })
+    }
+
     /// The box in the plane that the pixels cover.
     pub(super) fn covered(self, shown: Affine) -> Rect {
         let (left, top) = (self.left as f64, self.top as f64);

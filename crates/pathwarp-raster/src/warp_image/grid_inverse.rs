@@ -2,8 +2,8 @@
 //!
 //! The box is cut into cells, whose corners are mapped forwards. To invert a point, the triangle of mapped corners that contains it
 //! gives a first answer, and Newton's steps x ← x + J⁻¹(q − F(x)) improve it. A point outside of all triangles has no inverse, which
-//! costs a look into a table and no step. Around the box the map continues by its tangent, so that the inverse reaches a little
-//! beyond the image of the box even where the map is undefined there.
+//! costs a look into a table and no step. The inverse reaches a little beyond the image of the box: around the box the map goes on, or,
+//! where it is undefined or changes much there, its tangent.
 //!
 //! Unlike [`NewtonInverse`](pathwarp::map::NewtonInverse), answers are not certified: this serves colours, not geometry.
 
@@ -25,6 +25,8 @@ const BUCKETS: usize = 32;
 const MAX_STEPS: usize = 5;
 /// A residual below this fraction of the image's size needs no step after the next: that leaves about its square.
 const CLOSE: f64 = 1.0 / 1024.0;
+/// The map goes on around the box if it is off its tangent by no more than this fraction of the way.
+const CONTINUES: f64 = 0.25;
 /// Farthest step from the first answer, in cells.
 const FARTHEST: f64 = 1.5;
 
@@ -50,8 +52,10 @@ struct Node {
 #[derive(Debug, Clone, Copy)]
 struct Triangle {
     corners: [usize; 3],
-    /// The triangle lies in the box: Newton's steps can improve its answers.
+    /// The triangle lies in the box.
     inner: bool,
+    /// The map holds in it: Newton's steps can improve its answers.
+    mapped: bool,
     /// The map does not reverse it.
     upright: bool,
 }
@@ -65,8 +69,8 @@ impl<'a> GridInverse<'a> {
         let grow = |side: f64| 0.5 * (FLATTEST * longest - side).max(0.0);
         let area = area.inflate(grow(area.width()), grow(area.height()));
         let grid = Grid::over(area, reach, (pixels / PIXELS).clamp(SQUARE_CELLS.0, SQUARE_CELLS.1));
-        let nodes = grid.nodes(map, read, write);
-        let triangles = grid.triangles(&nodes);
+        let (nodes, continues) = grid.nodes(map, read, write);
+        let triangles = grid.triangles(&nodes, continues);
         let images = nodes.iter().map(|n| n.image).filter(|p| p.is_finite());
         let bounds = images
             .fold(None, |b: Option<Rect>, p| Some(b.map_or(Rect::from_origin_size(p, (0.0, 0.0)), |b| b.union_pt(p))));
@@ -98,7 +102,7 @@ impl<'a> GridInverse<'a> {
             let t = &self.triangles[*k as usize];
             let Some(found) = self.within(q, *k) else { continue };
             if t.upright {
-                *last = t.inner.then_some(*k);
+                *last = t.mapped.then_some(*k);
                 return Some(found);
             }
             reversed = reversed.or(Some(found));
@@ -113,7 +117,7 @@ impl<'a> GridInverse<'a> {
         let [a, b, c] = t.corners;
         let (a, b, c) = (&self.nodes[a], &self.nodes[b], &self.nodes[c]);
         let (v, w) = barycentric(q, a.image, b.image, c.image)?;
-        Some((a.at + (b.at - a.at) * v + (c.at - a.at) * w, t.inner))
+        Some((a.at + (b.at - a.at) * v + (c.at - a.at) * w, t.mapped))
     }
 
     /// One Newton step from `p`, whose jet is known; `None` where that is singular.
@@ -222,8 +226,9 @@ impl Grid {
         self.columns + 3
     }
 
-    /// The nodes row by row: those of the box, and those around it on the tangents of the map.
-    fn nodes(&self, map: &dyn Map, read: Affine, write: Affine) -> Vec<Node> {
+    /// The nodes row by row: those of the box, and those around it, all by the map, or else on its tangents. Returns `true` beside them if
+    /// it is the map.
+    fn nodes(&self, map: &dyn Map, read: Affine, write: Affine) -> (Vec<Node>, bool) {
         let (area, side) = (self.area, self.side());
         let along = |k: usize, from: f64, size: f64, n: usize| match k {
             0 => from - self.reach,
@@ -249,11 +254,24 @@ impl Grid {
             let image = if creases.defined_at(*place) { image } else { Point::new(f64::NAN, f64::NAN) };
             Node { at: at(k), image }
         };
-        jets.iter().zip(&places).enumerate().map(node).collect()
+        let mut nodes: Vec<Node> = jets.iter().zip(&places).enumerate().map(node).collect();
+        let around: Vec<usize> = (0..nodes.len()).filter(|k| at(*k) != inside[*k]).collect();
+        let beyond: Vec<Point> = around.iter().map(|k| read * at(*k)).collect();
+        let mut images = vec![Point::ORIGIN; beyond.len()];
+        map.points(&beyond, &mut images);
+        let continues = around.iter().zip(&beyond).zip(&mut images).all(|((k, place), image)| {
+            *image = write * *image;
+            let (by_tangent, from) = (nodes[*k].image, write * jets[*k].p);
+            creases.defined_at(*place) && image.distance(by_tangent) <= CONTINUES * by_tangent.distance(from)
+        });
+        if continues {
+            around.iter().zip(images).for_each(|(k, image)| nodes[*k].image = image);
+        }
+        (nodes, continues)
     }
 
     /// The triangles between nodes that have images: those of the box first, which take precedence.
-    fn triangles(&self, nodes: &[Node]) -> Vec<Triangle> {
+    fn triangles(&self, nodes: &[Node], continues: bool) -> Vec<Triangle> {
         let area = |t: [usize; 3]| {
             let [a, b, c] = t.map(|n| nodes[n].image);
             (b - a).cross(c - a)
@@ -265,7 +283,7 @@ impl Grid {
             for corners in [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]] {
                 let size = area(corners);
                 if size.is_finite() && size != 0.0 {
-                    out.push((Triangle { corners, inner, upright: true }, size));
+                    out.push((Triangle { corners, inner, mapped: inner || continues, upright: true }, size));
                 }
             }
         }

@@ -15,8 +15,8 @@ use tiny_skia::Pixmap;
 const COARSEST: f64 = 12.0;
 /// Margin around the target in pixels: renderers read up to two pixels on either side of a place.
 const MARGIN: f64 = 2.0;
-/// Reach of the paint around its source, in pixels: the margin, several times as wide where the map compresses.
-const READ: f64 = 6.0;
+/// Reach of the paint around its source, in pixels: the cells around the margin, several times as wide where the map compresses.
+const READ: f64 = 12.0;
 /// Largest reach as a fraction of the source's longer side.
 const FARTHEST: f64 = 0.3;
 /// Range of the growth of a side from one picture to the next.
@@ -57,8 +57,8 @@ impl ShadeTolerance {
 /// A paint to be warped at the lowest sufficient resolution.
 #[derive(Clone, Copy)]
 pub struct SmoothShade<'a> {
-    /// The colour at a point of the paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
-    pub color: &'a (dyn Fn(Point) -> [f64; 4] + Sync),
+    /// The colours at points of the paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
+    pub colors: &'a (dyn Fn(&[Point], &mut [[f64; 4]]) + Sync),
     /// The part of the paint that is warped, in its coordinates.
     pub source: Rect,
     /// From the paint's coordinates to the plane of the map.
@@ -112,8 +112,8 @@ impl SmoothShade<'_> {
         let reach = (READ / inner.x.min(inner.y)).min(FARTHEST) * self.source.width().max(self.source.height());
         let side = (inner.x * inner.y).sqrt();
         let inverse = GridInverse::new(self.map, self.source, reach, self.placed, self.after, side);
-        let (color, shape) = (self.color, self.shape);
-        let pixmap = shade(&Shade { color, inverse: &inverse, shown: shown(area, size), size, shape })?;
+        let (colors, shape) = (self.colors, self.shape);
+        let pixmap = shade(&Shade { colors, inverse: &inverse, shown: shown(area, size), size, shape })?;
         Ok((pixmap, area))
     }
 }
@@ -181,6 +181,7 @@ impl Interpolation<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::warp_image::shade::tests::each;
     use pathwarp::map::{AffineMap, Formula, Real};
 
     struct Bend;
@@ -203,7 +204,8 @@ mod tests {
         let target = Rect::new(0.0, -8.0, 100.0, 68.0);
         let (placed, after) = (Affine::IDENTITY, Affine::IDENTITY);
         let (source, finest) = (SOURCE, 8.0);
-        SmoothShade { color, source, placed, map, after, target, shape: None, seen: &seen, tolerance, finest }
+        let colors = &each(color);
+        SmoothShade { colors, source, placed, map, after, target, shape: None, seen: &seen, tolerance, finest }
             .paint()
             .unwrap()
     }

@@ -14,14 +14,16 @@ use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 /// Largest error of a place in pixels if a tile is traced.
 const MAX_OFF: f64 = 1.0 / 64.0;
+/// Side of a block in pixels, at most. Colours bear a larger [`MAX_OFF`] than the pixels of a bitmap, so a cubic reaches further.
+const BLOCK: usize = 2 * TILE;
 /// Pictures with fewer pixels are painted faster than threads start.
 const WORTH_THREADS: usize = 1 << 17;
 
 /// A paint, a map, and the part of the plane that the result shows.
 #[derive(Clone, Copy)]
 pub struct Shade<'a> {
-    /// The colour at a point of the paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
-    pub color: &'a (dyn Fn(Point) -> [f64; 4] + Sync),
+    /// The colours at points of the paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
+    pub colors: &'a (dyn Fn(&[Point], &mut [[f64; 4]]) + Sync),
     /// From the plane of the result to the paint's coordinates.
     pub inverse: &'a GridInverse<'a>,
     /// The view of the result: maps its pixels (the box 0, 0, width, height) to the plane.
@@ -44,33 +46,36 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let centre = shade.shown * Point::new(0.5 * f64::from(width), 0.5 * f64::from(height));
     let det = (shade.inverse.jet(centre).det() * shade.shown.determinant()).abs();
     let unit = if det > 0.0 && det.is_finite() { det.sqrt() } else { shade.shown.determinant().abs().sqrt() };
-    let painter =
-        ShadePainter { shade, basis: ChebyshevBasis::new(), to_pixels: Affine::scale(MAX_ERROR / (MAX_OFF * unit)) };
+    let painter = ShadePainter {
+        shade,
+        cover: shade.shape.map(|shape| Cover::of(shape, shade.shown, shade.size)),
+        basis: ChebyshevBasis::new(),
+        to_pixels: Affine::scale(MAX_ERROR / (MAX_OFF * unit)),
+    };
     let columns = width as usize;
     let mut known = vec![false; columns * height as usize];
-    let cover = shade.shape.map(|shape| Cover::of(shape, shade.shown, shade.size));
-    let tiles = |top: usize, rows: usize| {
-        let held = (0..columns).step_by(TILE).filter(|left| cover.as_ref().is_none_or(|c| c.holds(*left, top)));
-        let tiles = held.map(|left| PixelArea { left, top, width: TILE.min(columns - left), height: rows });
-        tiles.filter(|a| shade.inverse.touches(a.covered(shade.shown))).collect::<Vec<_>>()
+    let blocks = |top: usize, rows: usize| {
+        let lefts = (0..columns).step_by(BLOCK);
+        let blocks = lefts.map(|left| PixelArea { left, top, width: BLOCK.min(columns - left), height: rows });
+        blocks.filter_map(|block| painter.seen(block)).collect::<Vec<_>>()
     };
     let paint = |band: usize, pixels: &mut [PremultipliedColorU8], known: &mut [bool], inverse: &dyn Map| {
-        let top = band * TILE;
-        let tiles = tiles(top, pixels.len() / columns);
+        let top = band * BLOCK;
+        let blocks = blocks(top, pixels.len() / columns);
         let mut band = ShadeBand { top, columns, pixels, known, inverse };
-        tiles.into_iter().for_each(|tile| painter.tile(&mut band, tile));
+        blocks.into_iter().for_each(|block| painter.block(&mut band, block));
     };
     let batches = shade.inverse.prefers_batches();
     if known.len() >= WORTH_THREADS {
-        for_each_chunk_pair(out.pixels_mut(), &mut known, columns * TILE, |i, pixels, known| {
-            let memory = batches.then(|| painter.memory(tiles(i * TILE, pixels.len() / columns)));
+        for_each_chunk_pair(out.pixels_mut(), &mut known, columns * BLOCK, |i, pixels, known| {
+            let memory = batches.then(|| painter.memory(blocks(i * BLOCK, pixels.len() / columns)));
             paint(i, pixels, known, memory.as_ref().map_or(shade.inverse, |m| m as &dyn Map));
         });
     } else {
-        let all = || (0..height as usize).step_by(TILE).flat_map(|top| tiles(top, TILE.min(height as usize - top)));
+        let all = || (0..height as usize).step_by(BLOCK).flat_map(|top| blocks(top, BLOCK.min(height as usize - top)));
         let memory = batches.then(|| painter.memory(all().collect()));
         let inverse = memory.as_ref().map_or(shade.inverse as &dyn Map, |m| m);
-        let bands = out.pixels_mut().chunks_mut(columns * TILE).zip(known.chunks_mut(columns * TILE));
+        let bands = out.pixels_mut().chunks_mut(columns * BLOCK).zip(known.chunks_mut(columns * BLOCK));
         bands.enumerate().for_each(|(i, (pixels, known))| paint(i, pixels, known, inverse));
     }
     if !known.contains(&true) {
@@ -95,28 +100,42 @@ struct ShadeBand<'a> {
 /// The data shared by all tiles.
 struct ShadePainter<'a> {
     shade: &'a Shade<'a>,
+    /// The part that is seen; `None` if everything is.
+    cover: Option<Cover>,
     basis: ChebyshevBasis,
     to_pixels: Affine,
 }
 
 impl<'a> ShadePainter<'a> {
-    /// A memory of what the inverse answers for these tiles.
-    fn memory(&self, tiles: Vec<PixelArea>) -> Gathered<'a> {
+    /// The part of an area that is seen. `None` if nothing is, or nothing has an inverse.
+    fn seen(&self, area: PixelArea) -> Option<PixelArea> {
+        let seen = self.cover.as_ref().map_or(Some(area), |cover| cover.seen(area));
+        seen.filter(|seen| self.shade.inverse.touches(seen.covered(self.shade.shown)))
+    }
+
+    /// A memory of what the inverse answers for these blocks.
+    fn memory(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
         let memory = Gathered::new(self.shade.inverse);
-        announce(tiles, &self.basis, (self.shade.shown, self.to_pixels), &memory, |pixels| memory.prepare(pixels, &[]));
+        announce(blocks, &self.basis, (self.shade.shown, self.to_pixels), &memory, |pixels| {
+            memory.prepare(pixels, &[])
+        });
         memory
     }
 
-    /// Paints a tile, dividing it until the inverse is close to a cubic.
-    fn tile(&self, band: &mut ShadeBand<'_>, area: PixelArea) {
+    /// Paints a block, dividing it until the inverse is close to a cubic.
+    fn block(&self, band: &mut ShadeBand<'_>, area: PixelArea) {
         match area.trace(&self.basis, self.shade.shown, band.inverse, self.to_pixels) {
-            Some(trace) => self.paint(band, area, |j| {
-                let row = trace.pixels(j);
-                move |i| row.point(i)
-            }),
+            Some(trace) => {
+                for tile in area.tiles().filter_map(|tile| self.seen(tile)) {
+                    let (right, down) = (tile.left - area.left, tile.top - area.top);
+                    self.paint(band, tile, |j| {
+                        let row = trace.pixels(down + j);
+                        move |i| row.point(right + i)
+                    });
+                }
+            }
             None if area.width.max(area.height) > SMALLEST => {
-                let touched = |a: &PixelArea| self.shade.inverse.touches(a.covered(self.shade.shown));
-                area.quarters().filter(touched).for_each(|quarter| self.tile(band, quarter));
+                area.quarters().filter_map(|a| self.seen(a)).for_each(|quarter| self.block(band, quarter));
             }
             None => {
                 let pixels: Vec<Point> = area.pixels(self.shade.shown).collect();
@@ -128,18 +147,23 @@ impl<'a> ShadePainter<'a> {
         }
     }
 
-    /// Paints an area. `row` gives the places of a row's pixels in the paint, measured in pixels.
+    /// Paints at most a tile. `row` gives the places of a row's pixels in the paint, measured in pixels.
     fn paint<Row: Fn(usize) -> Point>(&self, band: &mut ShadeBand<'_>, area: PixelArea, row: impl Fn(usize) -> Row) {
         let to_paint = self.to_pixels.inverse();
+        let (mut places, mut colors) = ([Point::ORIGIN; TILE], [[0.0; 4]; TILE]);
         for j in 0..area.height {
             let start = (area.top - band.top + j) * band.columns + area.left;
             let pixels = &mut band.pixels[start..start + area.width];
             let known = &mut band.known[start..start + area.width];
             let from = row(j);
-            for (i, (pixel, known)) in pixels.iter_mut().zip(known).enumerate() {
-                let place = to_paint * from(i);
+            let (places, colors) = (&mut places[..area.width], &mut colors[..area.width]);
+            for (i, place) in places.iter_mut().enumerate() {
+                *place = to_paint * from(i);
+            }
+            (self.shade.colors)(places, colors);
+            for (((pixel, known), place), color) in pixels.iter_mut().zip(known).zip(places).zip(colors) {
                 if place.is_finite() {
-                    let [r, g, b, a] = (self.shade.color)(place).map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
+                    let [r, g, b, a] = color.map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
                     *pixel = ColorU8::from_rgba(r, g, b, a).premultiply();
                     *known = true;
                 }
@@ -178,10 +202,15 @@ fn extend(out: &mut Pixmap, known: &[bool]) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use kurbo::{Rect, Vec2};
     use pathwarp::map::{Formula, Jet, Real};
+
+    /// The colours of many places by that of each.
+    pub(crate) fn each(color: impl Fn(Point) -> [f64; 4]) -> impl Fn(&[Point], &mut [[f64; 4]]) {
+        move |places, out| out.iter_mut().zip(places).for_each(|(o, p)| *o = color(*p))
+    }
 
     /// Two shears, whose inverse has a closed form.
     struct Shears;
@@ -206,7 +235,8 @@ mod tests {
         };
         let inverse = GridInverse::new(&Shears, area, 1.0, placed, Affine::IDENTITY, 100.0);
         let shown = Affine::new([0.2, 0.0, 0.0, 0.25, 1.0, -3.0]);
-        let picture = shade(&Shade { color: &color, inverse: &inverse, shown, size: (150, 90), shape: None }).unwrap();
+        let picture =
+            shade(&Shade { colors: &each(color), inverse: &inverse, shown, size: (150, 90), shape: None }).unwrap();
         let (mut outside, mut inside) = (0, 0);
         for (at, found) in picture.pixels().iter().enumerate() {
             let from = placed.inverse() * back(shown * Point::new((at % 150) as f64 + 0.5, (at / 150) as f64 + 0.5));
@@ -240,16 +270,21 @@ mod tests {
         let color = |p: Point| [p.x / 20.0, p.y / 20.0, 0.0, 1.0];
         let area = Rect::new(0.0, 0.0, 20.0, 20.0);
         let inverse = GridInverse::new(&Half, area, 1.0, Affine::IDENTITY, Affine::IDENTITY, 20.0);
-        let picture =
-            shade(&Shade { color: &color, inverse: &inverse, shown: Affine::IDENTITY, size: (20, 20), shape: None })
-                .unwrap();
+        let picture = shade(&Shade {
+            colors: &each(color),
+            inverse: &inverse,
+            shown: Affine::IDENTITY,
+            size: (20, 20),
+            shape: None,
+        })
+        .unwrap();
         for y in 0..20 {
             let first = picture.pixel(3, y).unwrap();
             assert_eq!((picture.pixel(0, y), picture.pixel(2, y)), (Some(first), Some(first)));
             assert!(first.green().abs_diff((255.0 * (f64::from(y) + 0.5) / 20.0) as u8) <= 1, "{y}");
         }
         let nowhere = Shade {
-            color: &color,
+            colors: &each(color),
             inverse: &inverse,
             shown: Affine::translate((500.0, 0.0)),
             size: (20, 20),

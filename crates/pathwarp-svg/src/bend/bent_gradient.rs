@@ -79,7 +79,7 @@ impl BentGradient {
     ) -> Option<BentImage> {
         let (Gradients::Exact(painter) | Gradients::Auto(painter)) = &t.options().gradients else { return None };
         let request = GradientRequest {
-            color: &|q| self.shading.color(q),
+            colors: &|places, colors| self.shading.colors(places, colors),
             area: self.area,
             placed: t.part.frame,
             map: t.context.map,

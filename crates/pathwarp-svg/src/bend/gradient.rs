@@ -16,8 +16,8 @@ pub trait GradientPainter: Send + Sync {
 /// A gradient on a bent shape.
 #[non_exhaustive]
 pub struct GradientRequest<'a> {
-    /// Colour at a point of the shape's user space: red, green, blue and alpha, 0 to 1, not premultiplied.
-    pub color: &'a (dyn Fn(Point) -> [f64; 4] + Sync),
+    /// Colours at points of the shape's user space: red, green, blue and alpha, 0 to 1, not premultiplied.
+    pub colors: &'a (dyn Fn(&[Point], &mut [[f64; 4]]) + Sync),
     /// Bounding box of the shape in its user space.
     pub area: Rect,
     /// From the shape's user space to root user space.

@@ -4,6 +4,9 @@ use crate::scene::affine::{affine, is_invertible, stretch};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use usvg::{Paint, SpreadMethod};
 
+/// Places whose colours are computed together.
+const TOGETHER: usize = 32;
+
 /// A gradient as a function of the plane.
 #[derive(Debug, Clone)]
 pub(super) struct Shading {
@@ -19,6 +22,16 @@ struct Stop {
     offset: f64,
     /// Not premultiplied.
     color: [f64; 4],
+}
+
+/// The colours between two neighbouring stops, or before the first or beyond the last: `color` at the parameter `from`, changing by
+/// `rate`. The default holds no parameter.
+#[derive(Debug, Clone, Copy, Default)]
+struct Band {
+    from: f64,
+    to: f64,
+    color: [f64; 4],
+    rate: [f64; 4],
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -66,10 +79,34 @@ impl Shading {
         })
     }
 
-    /// Parameter along the stops at a point. Returns `None` outside of the cone of a focal gradient.
-    fn along(&self, p: Point) -> Option<f64> {
+    /// Parameters along the stops at points of user space; NaN outside of the cone of a focal gradient.
+    fn along(&self, places: &[Point], out: &mut [f64]) {
+        let pairs = out.iter_mut().zip(places);
         match self.kind {
-            GradientShape::Linear { from, slope } => Some((p - from).dot(slope)),
+            GradientShape::Linear { from, slope } => {
+                pairs.for_each(|(t, p)| *t = (self.inside * *p - from).dot(slope));
+            }
+            GradientShape::Radial { centre, radius, focus, focal_radius } if centre == focus => {
+                let per_unit = 1.0 / (radius - focal_radius);
+                pairs.for_each(|(t, p)| *t = ((self.inside * *p - focus).hypot2().sqrt() - focal_radius) * per_unit);
+            }
+            GradientShape::Radial { .. } => {
+                pairs.for_each(|(t, p)| *t = self.cone(self.inside * *p).unwrap_or(f64::NAN));
+            }
+        }
+    }
+
+    /// The parameter along the stops at one point.
+    fn along_one(&self, p: Point) -> f64 {
+        let mut t = [0.0];
+        self.along(&[p], &mut t);
+        t[0]
+    }
+
+    /// Parameter of a radial gradient at a point of its space. Returns `None` outside of the cone of a focal one.
+    fn cone(&self, p: Point) -> Option<f64> {
+        match self.kind {
+            GradientShape::Linear { .. } => None,
             // The largest t for which the interpolated circle (0: focal, 1: outer) passes through the point.
             GradientShape::Radial { centre, radius, focus, focal_radius } => {
                 let (d, grow, q) = (centre - focus, radius - focal_radius, p - focus);
@@ -87,28 +124,52 @@ impl Shading {
         }
     }
 
-    /// Colour at a point of user space: red, green, blue, alpha, not premultiplied.
-    pub(super) fn color(&self, p: Point) -> [f64; 4] {
-        let Some(t) = self.along(self.inside * p) else { return [0.0; 4] };
+    /// Colours at points of user space: red, green, blue, alpha, not premultiplied.
+    pub(super) fn colors(&self, places: &[Point], out: &mut [[f64; 4]]) {
+        let (mut along, mut band) = ([0.0; TOGETHER], Band::default());
+        for (places, out) in places.chunks(TOGETHER).zip(out.chunks_mut(TOGETHER)) {
+            self.along(places, &mut along);
+            for (color, t) in out.iter_mut().zip(along) {
+                *color = self.color(t, &mut band);
+            }
+        }
+    }
+
+    /// The colour at a parameter. `band` is that of the parameter before: neighbours are mostly between the same stops.
+    #[inline]
+    fn color(&self, t: f64, band: &mut Band) -> [f64; 4] {
         let t = match self.spread {
             SpreadMethod::Pad => t.clamp(0.0, 1.0),
             SpreadMethod::Repeat => t - t.floor(),
             SpreadMethod::Reflect => 1.0 - (t.rem_euclid(2.0) - 1.0).abs(),
         };
+        if t.is_nan() {
+            return [0.0; 4];
+        }
+        if !(band.from <= t && t < band.to) {
+            *band = self.band(t);
+        }
+        std::array::from_fn(|k| band.color[k] + (t - band.from) * band.rate[k])
+    }
+
+    /// The stops around a parameter.
+    fn band(&self, t: f64) -> Band {
         let next = self.stops.partition_point(|s| s.offset <= t);
         match (next.checked_sub(1).and_then(|i| self.stops.get(i)), self.stops.get(next)) {
             (Some(a), Some(b)) => {
-                let u = (t - a.offset) / (b.offset - a.offset);
-                std::array::from_fn(|k| a.color[k] + u * (b.color[k] - a.color[k]))
+                let per_unit = 1.0 / (b.offset - a.offset);
+                let rate = std::array::from_fn(|k| (b.color[k] - a.color[k]) * per_unit);
+                Band { from: a.offset, to: b.offset, color: a.color, rate }
             }
-            (Some(s), None) | (None, Some(s)) => s.color,
-            (None, None) => [0.0; 4],
+            (Some(s), None) => Band { from: s.offset, to: f64::INFINITY, color: s.color, rate: [0.0; 4] },
+            (None, Some(s)) => Band { from: 0.0, to: s.offset, color: s.color, rate: [0.0; 4] },
+            (None, None) => Band::default(),
         }
     }
 
-    /// The same, premultiplied.
+    /// The premultiplied colour at a point of user space.
     pub(super) fn premultiplied(&self, p: Point) -> [f64; 4] {
-        premultiplied(self.color(p))
+        premultiplied(self.color(self.along_one(p), &mut Band::default()))
     }
 
     /// Upper bound on the change of a premultiplied channel per unit of user space; infinite if colours jump or the bound is not
@@ -131,7 +192,8 @@ impl Shading {
         /// Places are spread over the shape with gaps between.
         const BETWEEN: f64 = 0.05;
         let range = places
-            .filter_map(|p| self.along(self.inside * p))
+            .map(|p| self.along_one(p))
+            .filter(|t| !t.is_nan())
             .fold(None, |r: Option<(f64, f64)>, t| Some(r.map_or((t, t), |(a, b)| (a.min(t), b.max(t)))));
         let Some((from, to)) = range else { return false };
         let margin = BETWEEN * (to - from);
