@@ -51,5 +51,6 @@ pub use render::{RenderOptions, Size, render};
 pub use smooth_png::encode_smooth_png;
 pub use tiny_skia::{Color, Pixmap};
 pub use warp_image::{
-    Extent, GridInverse, ImageWarp, SeenColor, Shade, ShadeTolerance, SmoothShade, extent, shade, shown, warp_image,
+    Colors, Extent, GridInverse, ImageWarp, SeenColor, Shade, ShadeTolerance, SmoothShade, extent, shade, shown,
+    warp_image,
 };

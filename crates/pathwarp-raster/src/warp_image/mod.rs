@@ -39,7 +39,7 @@ pub use grid_inverse::GridInverse;
 pub use image_warp::{ImageWarp, shown};
 pub use painter::warp_image;
 pub use resolution::{SeenColor, ShadeTolerance, SmoothShade};
-pub use shade::{Shade, shade};
+pub use shade::{Colors, Shade, shade};
 
 #[cfg(test)]
 mod tests;

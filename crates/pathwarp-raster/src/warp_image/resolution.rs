@@ -5,7 +5,7 @@
 
 use super::grid_inverse::GridInverse;
 use super::image_warp::shown;
-use super::shade::{Shade, shade};
+use super::shade::{Colors, Shade, shade};
 use crate::error::Error;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use pathwarp::map::Map;
@@ -57,8 +57,8 @@ impl ShadeTolerance {
 /// A paint to be warped at the lowest sufficient resolution.
 #[derive(Clone, Copy)]
 pub struct SmoothShade<'a> {
-    /// The colours at points of the paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
-    pub colors: &'a (dyn Fn(&[Point], &mut [[f64; 4]]) + Sync),
+    /// The paint.
+    pub colors: &'a Colors<'a>,
     /// The part of the paint that is warped, in its coordinates.
     pub source: Rect,
     /// From the paint's coordinates to the plane of the map.

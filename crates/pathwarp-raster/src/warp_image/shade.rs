@@ -19,11 +19,14 @@ const BLOCK: usize = 2 * TILE;
 /// Pictures with fewer pixels are painted faster than threads start.
 const WORTH_THREADS: usize = 1 << 17;
 
+/// The colours at points of a paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
+pub type Colors<'a> = dyn Fn(&[Point], &mut [[f64; 4]]) + Sync + 'a;
+
 /// A paint, a map, and the part of the plane that the result shows.
 #[derive(Clone, Copy)]
 pub struct Shade<'a> {
-    /// The colours at points of the paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
-    pub colors: &'a (dyn Fn(&[Point], &mut [[f64; 4]]) + Sync),
+    /// The paint.
+    pub colors: &'a Colors<'a>,
     /// From the plane of the result to the paint's coordinates.
     pub inverse: &'a GridInverse<'a>,
     /// The view of the result: maps its pixels (the box 0, 0, width, height) to the plane.
@@ -117,7 +120,7 @@ impl<'a> ShadePainter<'a> {
     fn memory(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
         let memory = Gathered::new(self.shade.inverse);
         announce(blocks, &self.basis, (self.shade.shown, self.to_pixels), &memory, |pixels| {
-            memory.prepare(pixels, &[])
+            memory.prepare(pixels, &[]);
         });
         memory
     }

@@ -13,11 +13,14 @@ pub trait GradientPainter: Send + Sync {
     fn paint(&self, request: &GradientRequest<'_>) -> Result<BentImage, PictureError>;
 }
 
+/// The colours of a gradient at points of its shape's user space: red, green, blue and alpha, 0 to 1, not premultiplied.
+pub type GradientColors<'a> = dyn Fn(&[Point], &mut [[f64; 4]]) + Sync + 'a;
+
 /// A gradient on a bent shape.
 #[non_exhaustive]
 pub struct GradientRequest<'a> {
-    /// Colours at points of the shape's user space: red, green, blue and alpha, 0 to 1, not premultiplied.
-    pub colors: &'a (dyn Fn(&[Point], &mut [[f64; 4]]) + Sync),
+    /// The gradient.
+    pub colors: &'a GradientColors<'a>,
     /// Bounding box of the shape in its user space.
     pub area: Rect,
     /// From the shape's user space to root user space.
