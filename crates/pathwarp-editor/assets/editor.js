@@ -2024,10 +2024,12 @@
       this.modes = modes2;
       stage2.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
       stage2.svg.addEventListener("pointerdown", (e) => this.press(e));
-      window.addEventListener(MOVES, (e) => {
-        const { pointerId } = e;
-        if (this.down.has(pointerId)) this.down.set(pointerId, stage2.point(e));
-      });
+      for (const moves of /* @__PURE__ */ new Set([MOVES, "pointermove"])) {
+        window.addEventListener(moves, (e) => {
+          const { pointerId } = e;
+          if (this.down.has(pointerId)) this.down.set(pointerId, stage2.point(e));
+        });
+      }
       for (const end2 of ["pointerup", "pointercancel"]) window.addEventListener(end2, (e) => this.down.delete(e.pointerId));
     }
     app;

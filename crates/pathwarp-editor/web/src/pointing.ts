@@ -34,10 +34,13 @@ export class Pointing {
   constructor(private app: App, private stage: Stage, private modes: Modes) {
     stage.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
     stage.svg.addEventListener("pointerdown", (e) => this.press(e));
-    window.addEventListener(MOVES, (e) => {
-      const { pointerId } = e as PointerEvent;
-      if (this.down.has(pointerId)) this.down.set(pointerId, stage.point(e as PointerEvent));
-    });
+    // A browser may hold the last raw move of a finger back until it is lifted.
+    for (const moves of new Set([MOVES, "pointermove"])) {
+      window.addEventListener(moves, (e) => {
+        const { pointerId } = e as PointerEvent;
+        if (this.down.has(pointerId)) this.down.set(pointerId, stage.point(e as PointerEvent));
+      });
+    }
     for (const end of ["pointerup", "pointercancel"] as const) window.addEventListener(end, (e) => this.down.delete(e.pointerId));
   }
 
