@@ -15,19 +15,19 @@ use std::time::Duration;
 use tempfile::TempDir;
 use wait4::Wait4 as _;
 
-/// The promise: seconds of processor time on the machine of [`slowness`], and bytes of memory in use.
+/// The promise: seconds of processor time on the reference machine, and bytes of memory in use.
 const SECONDS: f64 = 5.0;
+const MEMORY: u64 = 500_000_000;
 /// The seconds after which the program ends by itself.
 const LAST_RESORT: f64 = 4.5;
-const MEMORY: u64 = 500_000_000;
 /// Address space may be reserved without being used, for the stacks of threads.
 const ADDRESSES: u64 = 2 * MEMORY;
 
-/// How many times slower than the machine that the limits on work were set on this one is now, at least 1. What is tested is that work is
-/// counted, so the program gets as many more seconds.
+/// Compares this machine with the reference machine, on which the limits on work were chosen: 2 if it is half as fast, 1 if it is as fast
+/// or faster. The tests check that work is counted, so they multiply the seconds that a run may take by this.
 fn slowness() -> f64 {
-    /// What the bending below takes there.
-    const THERE: Duration = Duration::from_millis(15);
+    /// Processor time of one call of `bending` on the reference machine.
+    const REFERENCE: Duration = Duration::from_millis(15);
     static FOUND: OnceLock<f64> = OnceLock::new();
     struct Wave;
     impl Formula for Wave {
@@ -43,7 +43,7 @@ fn slowness() -> f64 {
             start.elapsed().as_secs_f64()
         };
         // Speed varies with what else is running.
-        (0..5).map(|_| bending() / THERE.as_secs_f64()).fold(1.0, f64::max)
+        (0..5).map(|_| bending() / REFERENCE.as_secs_f64()).fold(1.0, f64::max)
     })
 }
 

@@ -129,8 +129,8 @@ impl Distances {
     }
 
     /// By how much the error may rise between the sample at a joint and its neighbour `next` because the cubic turns by another angle than
-    /// the image does, which is known from the polygon's at `next`: a difference of θ moves them apart by θ/8 of the chord. Beside a joint, errors do not show
-    /// a turn that begins just there.
+    /// the image does, which is known from the polygon's at `next`: a difference of θ moves them apart by θ/8 of the chord. Beside a joint,
+    /// errors do not show a turn that begins just there.
     fn parting(&self, run: &SegmentRun<'_>, c: &RunCubic, joint: usize, next: usize) -> f64 {
         let k = joint.min(next);
         let j = k - c.samples[0];
