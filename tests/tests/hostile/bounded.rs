@@ -2,11 +2,10 @@
 
 use crate::support::pathwarp_program;
 use cpu_time::ThreadTime;
-use pathwarp::Outline;
-use pathwarp::map::{Formula, Real};
-use pathwarp::refit::{Options, warp_path};
+use pathwarp::kurbo::{CubicBez, ParamCurveArclen as _};
 use rustix::process::{Pid, Resource, Rlimit, prlimit};
 use std::fs;
+use std::hint::black_box;
 use std::io::Read as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -26,24 +25,21 @@ const ADDRESSES: u64 = 2 * MEMORY;
 /// Compares this machine with the reference machine, on which the limits on work were chosen: 2 if it is half as fast, 1 if it is as fast
 /// or faster. The tests check that work is counted, so they multiply the seconds that a run may take by this.
 fn slowness() -> f64 {
-    /// Processor time of one call of `bending` on the reference machine.
-    const REFERENCE: Duration = Duration::from_millis(15);
+    /// Processor time of one call of `measuring` on the reference machine.
+    const REFERENCE: Duration = Duration::from_micros(10_500);
     static FOUND: OnceLock<f64> = OnceLock::new();
-    struct Wave;
-    impl Formula for Wave {
-        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-            (x, y + (x / 20.0).sin() * 5.0)
-        }
-    }
     *FOUND.get_or_init(|| {
-        let path = Outline::from_svg(&format!("M0 0{}", "c9 90 9-90 1 1".repeat(2000))).unwrap();
-        let bending = || {
+        // Nothing of pathwarp's own, which would hide it becoming slower.
+        let measuring = || {
             let start = ThreadTime::now();
-            warp_path(&path, &Wave, &Options::new(0.01).with_merge(true)).unwrap();
+            for k in 0..20_000 {
+                let curve = CubicBez::new((0.0, 0.0), (9.0, f64::from(k % 90)), (9.0, -90.0), (1.0, 1.0));
+                black_box(curve.arclen(1e-9));
+            }
             start.elapsed().as_secs_f64()
         };
         // Speed varies with what else is running.
-        (0..5).map(|_| bending() / REFERENCE.as_secs_f64()).fold(1.0, f64::max)
+        (0..5).map(|_| measuring() / REFERENCE.as_secs_f64()).fold(1.0, f64::max)
     })
 }
 
