@@ -90,7 +90,7 @@ impl Mls {
                     }
                     .into());
                 }
-                Arc::new(MlsMap { handles: handles.clone(), stiffness, alpha })
+                Arc::new(MlsMap::new(handles, stiffness, alpha))
             }
         });
         built.overlay(Role::Base, crosses(handles.iter().map(|h| h.0), self.mark));
@@ -253,6 +253,8 @@ fn crosses(points: impl Iterator<Item = Point>, size: f64) -> BezPath {
 #[derive(Debug, Clone)]
 struct MlsMap {
     handles: Vec<(Point, Point)>,
+    /// For every handle, the squared distance of its nearest neighbour.
+    apart: Vec<f64>,
     stiffness: Stiffness,
     alpha: f64,
 }
@@ -260,7 +262,57 @@ struct MlsMap {
 /// A 2×2 matrix, row by row.
 type Matrix<S> = [[S; 2]; 2];
 
+/// Weighted sums over the handles, whose places p and q are relative to those of the nearest one.
+struct Moments<S> {
+    /// Σw.
+    w: S,
+    /// Σwp, Σwq.
+    p: [S; 2],
+    q: [S; 2],
+    /// Σwpₓpₓ, Σwpₓp_y, Σwp_yp_y.
+    pp: [S; 3],
+    /// Σwqpᵀ.
+    qp: Matrix<S>,
+}
+
+impl<S: Real> Moments<S> {
+    /// Sums over `handles`, each with its weight, relative to `origin`.
+    fn new(handles: impl Iterator<Item = ((Point, Point), S)>, origin: (Point, Point)) -> Self {
+        let zero = S::from(0.0);
+        let mut m = Self { w: zero, p: [zero; 2], q: [zero; 2], pp: [zero; 3], qp: [[zero; 2]; 2] };
+        for (handle, w) in handles {
+            let (p, q) = (handle.0 - origin.0, handle.1 - origin.1);
+            m.w = m.w + w;
+            m.p = [m.p[0] + w * p.x, m.p[1] + w * p.y];
+            m.q = [m.q[0] + w * q.x, m.q[1] + w * q.y];
+            m.pp = [m.pp[0] + w * (p.x * p.x), m.pp[1] + w * (p.x * p.y), m.pp[2] + w * (p.y * p.y)];
+            let [a, b] = m.qp;
+            m.qp = [[a[0] + w * (q.x * p.x), a[1] + w * (q.x * p.y)], [b[0] + w * (q.y * p.x), b[1] + w * (q.y * p.y)]];
+        }
+        m
+    }
+
+    /// The means p* and q*, and the sums relative to them: Σwp̂p̂ᵀ = Σwppᵀ − p*(Σwp)ᵀ. Little cancels, as the nearest handle, whose weight
+    /// is the largest, is the origin.
+    fn centred(self) -> ([S; 2], [S; 2], [S; 3], Matrix<S>) {
+        let Self { w, p: [px, py], q, pp, qp } = self;
+        let (mx, my) = (px / w, py / w);
+        let pp = [pp[0] - mx * px, pp[1] - mx * py, pp[2] - my * py];
+        let qp = [[qp[0][0] - q[0] * mx, qp[0][1] - q[0] * my], [qp[1][0] - q[1] * mx, qp[1][1] - q[1] * my]];
+        ([mx, my], [q[0] / w, q[1] / w], pp, qp)
+    }
+}
+
 impl MlsMap {
+    fn new(handles: &[(Point, Point)], stiffness: Stiffness, alpha: f64) -> Self {
+        let apart = |p: Point| {
+            let others = handles.iter().map(|(o, _)| (*o - p).hypot2()).filter(|d| *d > 0.0);
+            others.fold(f64::INFINITY, f64::min)
+        };
+        let apart = handles.iter().map(|(p, _)| apart(*p)).collect();
+        Self { handles: handles.to_vec(), apart, stiffness, alpha }
+    }
+
     /// Returns the nearest handle and its squared distance.
     fn nearest(&self, v: Point) -> (usize, f64) {
         let mut best = (0, f64::INFINITY);
@@ -290,33 +342,6 @@ impl MlsMap {
         let (re, im) = (re / n, im / n);
         [[re, -im], [im, re]]
     }
-
-    /// Returns the sums with these weights, relative to p* and q*; `leave` omits handle k.
-    fn sums<S: Real>(
-        &self,
-        weights: &dyn Fn(Point) -> S,
-        k: usize,
-        p: [S; 2],
-        q: [S; 2],
-        leave: bool,
-    ) -> ([S; 3], Matrix<S>) {
-        let zero = S::from(0.0);
-        let (pk, qk) = self.handles[k];
-        let (mut pp, mut qp) = ([zero; 3], [[zero; 2]; 2]);
-        for (i, (pi, qi)) in self.handles.iter().enumerate() {
-            if leave && i == k {
-                continue;
-            }
-            let w = weights(*pi);
-            let (dp, dq) = (*pi - pk, *qi - qk);
-            let (px, py) = (-p[0] + dp.x, -p[1] + dp.y);
-            let (qx, qy) = (-q[0] + dq.x, -q[1] + dq.y);
-            let (wx, wy) = (w * px, w * py);
-            pp = [pp[0] + wx * px, pp[1] + wx * py, pp[2] + wy * py];
-            qp = [[qp[0][0] + qx * wx, qp[0][1] + qx * wy], [qp[1][0] + qy * wx, qp[1][1] + qy * wy]];
-        }
-        (pp, qp)
-    }
 }
 
 /// Handles that take as long as a net.
@@ -330,35 +355,23 @@ impl Formula for MlsMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         /// Squared distance below which a point counts as on the handle, relative to that of the next handle.
         const ON: f64 = 1e-28;
-        let zero = S::from(0.0);
-        let v = Point::new(x.value(), y.value());
-        let (k, d2) = self.nearest(v);
-        let (pk, qk) = self.handles[k];
+        let (k, d2) = self.nearest(Point::new(x.value(), y.value()));
+        let (nearest, scale) = (self.handles[k], self.apart[k]);
+        let (pk, qk) = nearest;
         let (vx, vy) = (x - pk.x, y - pk.y);
-        let scale =
-            self.handles.iter().map(|(p, _)| (*p - pk).hypot2()).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
         if d2 <= ON * scale {
-            let weight = |p: Point| S::from(((p - pk).hypot2() / scale).powf(-self.alpha));
-            let (pp, qp) = self.sums(&weight, k, [zero; 2], [zero; 2], true);
+            let others = self.handles.iter().enumerate().filter(|(i, _)| *i != k);
+            let weighted = others.map(|(_, h)| (*h, S::from(((h.0 - pk).hypot2() / scale).powf(-self.alpha))));
+            let Moments { pp, qp, .. } = Moments::new(weighted, nearest);
             let m = self.matrix(pp, qp);
             return (m[0][0] * vx + m[0][1] * vy + qk.x, m[1][0] * vx + m[1][1] * vy + qk.y);
         }
-        let weight = |p: Point| {
-            let (dx, dy) = (x - p.x, y - p.y);
+        let weighted = self.handles.iter().map(|h| {
+            let (dx, dy) = (x - h.0.x, y - h.0.y);
             let ratio = S::from(d2) / (dx * dx + dy * dy);
-            if self.alpha == 1.0 { ratio } else { ratio.powf(self.alpha) }
-        };
-        // Means, relative to the nearest handle.
-        let (mut w, mut p, mut q) = (zero, [zero; 2], [zero; 2]);
-        for (pi, qi) in &self.handles {
-            let wi = weight(*pi);
-            let (dp, dq) = (*pi - pk, *qi - qk);
-            w = w + wi;
-            p = [p[0] + wi * dp.x, p[1] + wi * dp.y];
-            q = [q[0] + wi * dq.x, q[1] + wi * dq.y];
-        }
-        let (p, q) = (p.map(|s| s / w), q.map(|s| s / w));
-        let (pp, qp) = self.sums(&weight, k, p, q, false);
+            (*h, if self.alpha == 1.0 { ratio } else { ratio.powf(self.alpha) })
+        });
+        let (p, q, pp, qp) = Moments::new(weighted, nearest).centred();
         let m = self.matrix(pp, qp);
         let (vx, vy) = (vx - p[0], vy - p[1]);
         (m[0][0] * vx + m[0][1] * vy + q[0] + qk.x, m[1][0] * vx + m[1][1] * vy + q[1] + qk.y)

@@ -103,7 +103,7 @@ impl Level {
 fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
     /// A leading coefficient this small relative to the values is rounding noise, which the closed forms would amplify.
     const NOISE: f64 = 1e-14;
-    // Power basis.
+    // Bernstein coefficients, and from them the power basis.
     let c = match seg {
         Seg::Line(s) => {
             let [a, b] = [s.p0, s.p1].map(level);
@@ -111,11 +111,17 @@ fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
         }
         Seg::Quad(s) => {
             let [a, b, c] = [s.p0, s.p1, s.p2].map(level);
+            if same_sign(&[a, b, c]) {
+                return Vec::new();
+            }
             [a, 2.0 * (b - a), c - 2.0 * b + a, 0.0]
         }
         _ => {
             let s = seg.to_cubic();
             let [a, b, c, d] = [s.p0, s.p1, s.p2, s.p3].map(level);
+            if same_sign(&[a, b, c, d]) {
+                return Vec::new();
+            }
             [a, 3.0 * (b - a), 3.0 * (c - 2.0 * b + a), d - 3.0 * c + 3.0 * b - a]
         }
     };
@@ -139,6 +145,11 @@ fn straight_crossings(level: impl Fn(Point) -> f64, seg: &Seg) -> Vec<f64> {
         }
     }
     roots
+}
+
+/// Returns `true` if a polynomial with these Bernstein coefficients has no zero between 0 and 1, as they all have the same sign.
+fn same_sign(coefficients: &[f64]) -> bool {
+    coefficients.iter().all(|c| *c > 0.0) || coefficients.iter().all(|c| *c < 0.0)
 }
 
 fn bisect(f: impl Fn(f64) -> f64, mut lo: (f64, f64), mut hi: (f64, f64)) -> f64 {

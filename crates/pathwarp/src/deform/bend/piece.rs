@@ -13,7 +13,7 @@ pub(super) enum Strip {
     Straight { p: Point, t: Vec2, n: Vec2 },
     /// F = C(u(s)) + d·S with S the unit normal, blended into the mitre of a corner at the ends. s is the length of the offset
     /// curve at height `even`.
-    Normals { seg: Seg, table: ArcLength, mitres: [Vec2; 2], even: f64 },
+    Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64 },
     /// The paper's polynomial F(u, v), v = d / unit; u by arc length if there is a table, else s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
 }
@@ -35,8 +35,8 @@ impl SkeletonPiece {
     pub(super) fn jet(&self, s: f64, d: f64) -> (Point, Vec2, Vec2) {
         match &self.strip {
             Strip::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
-            Strip::Normals { seg, table, mitres: [a, b], even } => {
-                let Moving { p, t, bend } = moving(seg, table.parameter(s));
+            Strip::Normals { spine, table, mitres: [a, b], even } => {
+                let Moving { p, t, bend } = spine.moving(table.parameter(s));
                 let share = s / self.length;
                 let side = normal(t) + *a * (1.0 - share) + *b * share;
                 let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + (*b - *a) * (d / self.length);
@@ -63,6 +63,14 @@ pub(super) fn normal(t: Vec2) -> Vec2 {
     Vec2::new(t.y, -t.x)
 }
 
+/// A piece of the skeleton's curve.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spine {
+    pub(super) seg: Seg,
+    /// The speed that counts as zero.
+    still: f64,
+}
+
 /// The moving frame of a piece. With N the [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
 pub(super) struct Moving {
     pub(super) p: Point,
@@ -72,20 +80,32 @@ pub(super) struct Moving {
     pub(super) bend: f64,
 }
 
-/// Returns the moving frame at a parameter.
-pub(super) fn moving(seg: &Seg, u: f64) -> Moving {
-    /// A speed below this share of the piece's size counts as zero: the direction is taken a little further in.
-    const STILL: f64 = 1e-9;
-    const ASIDE: f64 = 1e-5;
-    let b = seg.bounding_box();
-    let p = seg.eval(u);
-    let mut at = u;
-    if seg.deriv(u).hypot() <= STILL * (b.width() + b.height()) {
-        at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
+impl Spine {
+    pub(super) fn new(seg: Seg) -> Self {
+        /// The speed that counts as zero, as a share of the piece's size.
+        const STILL: f64 = 1e-9;
+        let b = seg.bounding_box();
+        Self { seg, still: STILL * (b.width() + b.height()) }
     }
-    let (v, a) = (seg.deriv(at), second(seg, at));
-    let speed = v.hypot();
-    Moving { p, t: v / speed, bend: v.cross(a) / speed.powi(3) }
+
+    /// Returns the moving frame at a parameter. Where the curve stands still, the direction is taken a little further in.
+    pub(super) fn moving(&self, u: f64) -> Moving {
+        /// How much further in.
+        const ASIDE: f64 = 1e-5;
+        let (mut at, mut v) = (u, self.seg.deriv(u));
+        let mut speed = v.hypot();
+        if speed <= self.still {
+            at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
+            v = self.seg.deriv(at);
+            speed = v.hypot();
+        }
+        Moving { p: self.seg.eval(u), t: v / speed, bend: v.cross(second(&self.seg, at)) / speed.powi(3) }
+    }
+
+    /// Tabulates its arc length.
+    pub(super) fn measured(&self) -> ArcLength {
+        ArcLength::new(&|u| self.seg.deriv(u).hypot())
+    }
 }
 
 /// Returns the second derivative.

@@ -1,7 +1,7 @@
 //! The skeleton: a path's pieces in a row, measured, oriented, and joined.
 
 use super::casteljau::Ribbon;
-use super::piece::{Moving, SkeletonPiece, Strip, moving, normal};
+use super::piece::{Moving, SkeletonPiece, Spine, Strip, normal};
 use crate::anchors;
 use crate::error::{Error, show};
 use crate::map::curves::ArcLength;
@@ -18,7 +18,7 @@ const SHARPEST: f64 = 1.0 / 32.0;
 
 /// The measured pieces of a path.
 pub(super) struct Skeleton {
-    segs: Vec<(Seg, ArcLength)>,
+    spines: Vec<(Spine, ArcLength)>,
     pub(super) closed: bool,
     pub(super) length: f64,
     /// The height at which lengths are measured.
@@ -49,18 +49,17 @@ impl Skeleton {
         if reverse != (backwards && !as_drawn) {
             sub = sub.reversed();
         }
-        let measured = sub.segs.into_iter().map(|s| (s, ArcLength::new(&move |u| s.deriv(u).hypot())));
-        let measured: Vec<_> = measured.collect();
+        let measured: Vec<_> = sub.segs.into_iter().map(Spine::new).map(|s| (s, s.measured())).collect();
         let length: f64 = measured.iter().map(|(_, t)| t.length()).sum();
         if !(length > 0.0 && length.is_finite()) {
             return Err(Error::usage("along", path.name.clone(), "has no length"));
         }
-        let segs = measured.into_iter().filter(|(_, t)| t.length() > 1e-12 * length).collect();
-        Ok(Self { segs, closed: sub.closed, length, even: 0.0, name: path.name.clone() })
+        let spines = measured.into_iter().filter(|(_, t)| t.length() > 1e-12 * length).collect();
+        Ok(Self { spines, closed: sub.closed, length, even: 0.0, name: path.name.clone() })
     }
 
     pub(super) fn has_arcs(&self) -> bool {
-        self.segs.iter().any(|(s, _)| matches!(s, Seg::Arc(_)))
+        self.spines.iter().any(|(s, _)| matches!(s.seg, Seg::Arc(_)))
     }
 
     /// Measures lengths at height `d`: along the offset curve, whose speed is (1 + κd) times the skeleton's.
@@ -69,25 +68,25 @@ impl Skeleton {
         const SAMPLES: u32 = 256;
         /// Below this share of the skeleton's speed, the offset is close to a cusp.
         const SLOWEST: f64 = 1e-3;
-        let rate = move |s: &Seg, u: f64| 1.0 + moving(s, u).bend * d;
-        for (seg, _) in &self.segs {
+        let rate = move |s: &Spine, u: f64| 1.0 + s.moving(u).bend * d;
+        for (spine, _) in &self.spines {
             let mut all = (0..=SAMPLES).map(|i| f64::from(i) / f64::from(SAMPLES));
-            if let Some(u) = all.find(|u| rate(seg, *u).is_nan() || rate(seg, *u) < SLOWEST) {
+            if let Some(u) = all.find(|u| rate(spine, *u).is_nan() || rate(spine, *u) < SLOWEST) {
                 let problem = format!(
                     "needs a gentler bend: near {} the centre of curvature is no further from the skeleton than half the \
 artwork's height; a smaller `width` helps too",
-                    show(seg.eval(u))
+                    show(spine.seg.eval(u))
                 );
                 return Err(Error::usage("spacing", "even", problem));
             }
         }
-        let measured = self.segs.into_iter().map(|(s, _)| {
-            let table = ArcLength::new(&move |u| s.deriv(u).hypot() * rate(&s, u));
+        let measured = self.spines.into_iter().map(|(s, _)| {
+            let table = ArcLength::new(&move |u| s.seg.deriv(u).hypot() * rate(&s, u));
             (s, table)
         });
-        let segs: Vec<(Seg, ArcLength)> = measured.collect();
-        let length = segs.iter().map(|(_, t)| t.length()).sum();
-        Ok(Self { segs, length, even: d, ..self })
+        let spines: Vec<(Spine, ArcLength)> = measured.collect();
+        let length = spines.iter().map(|(_, t)| t.length()).sum();
+        Ok(Self { spines, length, even: d, ..self })
     }
 
     /// Returns the scale k at which artwork of `width` is as long as the skeleton's offset at height k·`height`:
@@ -95,11 +94,11 @@ artwork's height; a smaller `width` helps too",
     pub(super) fn even_scale(&self, width: f64, height: f64) -> Result<f64, Error> {
         /// Samples of a piece, between which its tangent turns by less than half a circle.
         const SAMPLES: u32 = 256;
-        let turn = |s: &Seg| {
-            let tangent = |i: u32| moving(s, f64::from(i) / f64::from(SAMPLES)).t;
+        let turn = |s: &Spine| {
+            let tangent = |i: u32| s.moving(f64::from(i) / f64::from(SAMPLES)).t;
             (0..SAMPLES).map(|i| (tangent(i), tangent(i + 1))).map(|(a, b)| a.cross(b).atan2(a.dot(b))).sum::<f64>()
         };
-        let turn: f64 = self.segs.iter().map(|(s, _)| turn(s)).sum();
+        let turn: f64 = self.spines.iter().map(|(s, _)| turn(s)).sum();
         let scale = self.length / (width - height * turn);
         if scale > 0.0 && scale.is_finite() {
             return Ok(scale);
@@ -110,20 +109,21 @@ artwork's height; a smaller `width` helps too",
 
     /// Converts arcs to cubics within `tolerance`, and lines to quadratics if `raise`, for the paper's handles.
     pub(super) fn polynomial(mut self, tolerance: f64, raise: bool) -> Self {
-        let segs = std::mem::take(&mut self.segs);
-        for (seg, table) in segs {
-            match seg {
-                Seg::Arc(a) => self.segs.extend(a.to_cubics(tolerance).map(|c| {
-                    let s = Seg::Cubic(c);
-                    (s, ArcLength::new(&move |u| s.deriv(u).hypot()))
-                })),
-                Seg::Line(l) if raise => {
-                    self.segs.push((Seg::Quad(kurbo::QuadBez::new(l.p0, l.p0.midpoint(l.p1), l.p1)), table));
+        let spines = std::mem::take(&mut self.spines);
+        for (spine, table) in spines {
+            match spine.seg {
+                Seg::Arc(a) => {
+                    let cubics = a.to_cubics(tolerance).map(|c| Spine::new(Seg::Cubic(c)));
+                    self.spines.extend(cubics.map(|s| (s, s.measured())));
                 }
-                _ => self.segs.push((seg, table)),
+                Seg::Line(l) if raise => {
+                    let raised = Seg::Quad(kurbo::QuadBez::new(l.p0, l.p0.midpoint(l.p1), l.p1));
+                    self.spines.push((Spine::new(raised), table));
+                }
+                _ => self.spines.push((spine, table)),
             }
         }
-        self.length = self.segs.iter().map(|(_, t)| t.length()).sum();
+        self.length = self.spines.iter().map(|(_, t)| t.length()).sum();
         self
     }
 
@@ -132,10 +132,10 @@ artwork's height; a smaller `width` helps too",
         /// Samples of a piece. They decide the position of the artwork, not its shape.
         const SAMPLES: u32 = 256;
         let (mut best, mut start) = ((f64::INFINITY, 0.0), 0.0);
-        for (seg, table) in &self.segs {
+        for (spine, table) in &self.spines {
             for i in 0..=SAMPLES {
                 let s = table.length() * f64::from(i) / f64::from(SAMPLES);
-                let y = seg.eval(table.parameter(s)).y;
+                let y = spine.seg.eval(table.parameter(s)).y;
                 if y < best.0 {
                     best = (y, start + s);
                 }
@@ -147,13 +147,13 @@ artwork's height; a smaller `width` helps too",
 
     /// Returns the pieces before and after each joint.
     fn joints(&self) -> impl Iterator<Item = (usize, usize)> {
-        let n = self.segs.len();
+        let n = self.spines.len();
         (0..if self.closed { n } else { n - 1 }).map(move |i| (i, (i + 1) % n))
     }
 
     /// Returns the unit normals at every piece's ends, mitred at corners, and the corners.
     fn sides(&self) -> Result<(Vec<[Vec2; 2]>, Vec<Corner>), Error> {
-        let ends: Vec<[Moving; 2]> = self.segs.iter().map(|(s, _)| [moving(s, 0.0), moving(s, 1.0)]).collect();
+        let ends: Vec<[Moving; 2]> = self.spines.iter().map(|(s, _)| [s.moving(0.0), s.moving(1.0)]).collect();
         let mut sides: Vec<[Vec2; 2]> = ends.iter().map(|[a, b]| [normal(a.t), normal(b.t)]).collect();
         let mut corners = Vec::new();
         for (i, j) in self.joints() {
@@ -180,14 +180,14 @@ artwork's height; a smaller `width` helps too",
     /// Joins pieces whose sides are unit normals.
     pub(super) fn with_normals(self) -> Result<Joined, Error> {
         let (sides, corners) = self.sides()?;
-        let strips = self.segs.iter().zip(sides).map(|((seg, table), [a, b])| {
-            let (first, last) = (moving(seg, 0.0), moving(seg, 1.0));
+        let strips = self.spines.iter().zip(sides).map(|((spine, table), [a, b])| {
+            let (first, last) = (spine.moving(0.0), spine.moving(1.0));
             let mitres = [a - normal(first.t), b - normal(last.t)];
-            let strip = match seg {
+            let strip = match spine.seg {
                 Seg::Line(_) if mitres == [Vec2::ZERO; 2] => {
                     Strip::Straight { p: first.p, t: first.t, n: normal(first.t) }
                 }
-                _ => Strip::Normals { seg: *seg, table: table.clone(), mitres, even: self.even },
+                _ => Strip::Normals { spine: *spine, table: table.clone(), mitres, even: self.even },
             };
             (strip, table.length())
         });
@@ -204,13 +204,13 @@ artwork's height; a smaller `width` helps too",
         by_arc_length: bool,
     ) -> Result<Joined, Error> {
         let (sides, corners) = if given.is_some() { (Vec::new(), Vec::new()) } else { self.sides()? };
-        if let Some(g) = given.filter(|g| g.len() != self.segs.len()) {
-            let problem = format!("has handles for {} pieces; the skeleton has {}", g.len(), self.segs.len());
+        if let Some(g) = given.filter(|g| g.len() != self.spines.len()) {
+            let problem = format!("has handles for {} pieces; the skeleton has {}", g.len(), self.spines.len());
             return Err(Error::input("handles", problem));
         }
-        let mut ribbons = Vec::with_capacity(self.segs.len());
-        for (i, (seg, _)) in self.segs.iter().enumerate() {
-            let points = control_points(seg);
+        let mut ribbons = Vec::with_capacity(self.spines.len());
+        for (i, (spine, _)) in self.spines.iter().enumerate() {
+            let points = control_points(&spine.seg);
             let degree = points.len() - 1;
             let levels = match given {
                 Some(g) => g[i].clone(),
@@ -231,7 +231,7 @@ artwork's height; a smaller `width` helps too",
         let mut notes = Vec::new();
         for (i, j) in self.joints() {
             let (a, b) = (ribbons[i].side_at_end(1), ribbons[j].side_at_end(0));
-            let at = self.segs[j].0.start();
+            let at = self.spines[j].0.seg.start();
             if (a - b).hypot() > 1e-6 * (a.hypot() + b.hypot()) {
                 let problem = format!(
                     "the handles on both sides of the joint at {} differ: {:.6},{:.6} and {:.6},{:.6}; the artwork would tear",
@@ -244,7 +244,7 @@ artwork's height; a smaller `width` helps too",
                 return Err(Error::input("handles", problem));
             }
         }
-        let strips = self.segs.iter().zip(ribbons).map(|((_, table), ribbon)| {
+        let strips = self.spines.iter().zip(ribbons).map(|((_, table), ribbon)| {
             let length = table.length();
             (Strip::Ribbon { ribbon, unit, table: by_arc_length.then(|| table.clone()) }, length)
         });
@@ -275,7 +275,7 @@ artwork's height; a smaller `width` helps too",
             let (p, _, n) = piece.jet(s, 0.0);
             Strip::Straight { p, t, n }
         };
-        let (t0, t1) = (moving(&self.segs[0].0, 0.0).t, moving(&self.segs[self.segs.len() - 1].0, 1.0).t);
+        let (t0, t1) = (self.spines[0].0.moving(0.0).t, self.spines[self.spines.len() - 1].0.moving(1.0).t);
         let (before, after) = (straight(first, 0.0, t0), straight(last, last.length, t1));
         if !matches!(last.strip, Strip::Straight { .. }) {
             pieces.push(SkeletonPiece { from: at, anchor: at, length: 1.0, strip: after });

@@ -3,10 +3,12 @@
 use super::ring::SIDES;
 use crate::error::show;
 use crate::map::{Coons, Map, Side};
-use kurbo::{Affine, Line, Point};
+use kurbo::{Affine, Line, Point, Rect};
 
 /// Chords of a side.
 const CHORDS: u32 = 400;
+/// Chords that are looked at only if their common box is met.
+const BLOCK: usize = 20;
 /// Overshoot, in lengths of a chord, that still counts as its end.
 const ROUNDING: f64 = 1e-9;
 /// Samples of the map's determinant along an axis.
@@ -22,19 +24,16 @@ pub(super) fn warnings(map: &Coons, inverse: Affine) -> Vec<String> {
 }
 
 fn crossings(sides: [&Side; 4]) -> Vec<String> {
-    let chords = sides.map(|s| {
-        let at = |i: u32| s.at(f64::from(i) / f64::from(CHORDS)).0;
-        (0..CHORDS).map(|i| Line::new(at(i), at(i + 1))).collect::<Vec<_>>()
-    });
     let size = sides[0].length() + sides[2].length();
+    let chords = sides.map(|s| Chords::new(s, ROUNDING * size));
     let mut out = Vec::new();
     for i in 0..4 {
         for j in i..4 {
             let meets = |p: Point| sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size);
-            let pairs = chords[i].iter().enumerate().flat_map(|(k, a)| {
+            let pairs = chords[i].all.iter().enumerate().flat_map(|(k, a)| {
                 // A side against itself: each pair once, without neighbours.
                 let from = if i == j { k + 2 } else { 0 };
-                chords[j].iter().skip(from).map(move |b| (a, b))
+                chords[j].near(a, from).map(move |b| (a, b))
             });
             let found = pairs.filter_map(|(a, b)| crossing(a, b)).find(|p| !meets(*p));
             if let Some(at) = found {
@@ -51,6 +50,38 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
         }
     }
     out
+}
+
+/// The chords of a side.
+struct Chords {
+    all: Vec<Line>,
+    /// The box of every [`BLOCK`] of them.
+    boxes: Vec<Rect>,
+}
+
+impl Chords {
+    /// Cuts a side into chords. Their boxes are wider by `room`.
+    fn new(side: &Side, room: f64) -> Self {
+        let points: Vec<Point> = (0..=CHORDS).map(|i| side.at(f64::from(i) / f64::from(CHORDS)).0).collect();
+        let all: Vec<Line> = points.windows(2).map(|p| Line::new(p[0], p[1])).collect();
+        let of = |lines: &[Line]| {
+            let start = Rect::from_points(lines[0].p0, lines[0].p1);
+            lines.iter().fold(start, |b, l| b.union_pt(l.p1)).inflate(room, room)
+        };
+        let boxes = all.chunks(BLOCK).map(of).collect();
+        Self { all, boxes }
+    }
+
+    /// Returns the chords, from a number on, in the blocks whose box meets that of `line`.
+    fn near(&self, line: &Line, from: usize) -> impl Iterator<Item = &Line> {
+        let here = Rect::from_points(line.p0, line.p1);
+        let first = from / BLOCK;
+        let blocks = self.boxes.iter().enumerate().skip(first).filter(move |(_, b)| b.overlaps(here));
+        blocks.flat_map(move |(k, _)| {
+            let (start, end) = ((k * BLOCK).max(from), self.all.len().min((k + 1) * BLOCK));
+            &self.all[start.min(end)..end]
+        })
+    }
 }
 
 /// Returns the point where two chords cross or touch, ends included: sides may cross in the joint of two chords.

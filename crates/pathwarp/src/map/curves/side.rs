@@ -194,10 +194,12 @@ impl SidePiece {
                 let length = self.table.length();
                 let u = self.table.parameter(inside * length);
                 let mut v = self.seg.deriv(u);
-                if v.hypot() <= MIN_SPEED * length {
+                let mut speed = v.hypot();
+                if speed <= MIN_SPEED * length {
                     v = self.seg.deriv(if u < 0.5 { u + INWARD } else { u - INWARD });
+                    speed = v.hypot();
                 }
-                (self.seg.eval(u), v * (length / v.hypot()))
+                (self.seg.eval(u), v * (length / speed))
             }
             Pace::Width | Pace::Height => {
                 let along = |v: Vec2| if self.pace == Pace::Width { v.x } else { v.y };
