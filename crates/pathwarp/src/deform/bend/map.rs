@@ -26,6 +26,11 @@ impl ToStrip {
         (self.base - y) * self.up
     }
 
+    /// Returns the point on `piece`, which begins at distance `begin`.
+    fn point(&self, piece: &SkeletonPiece, begin: f64, p: Point) -> Point {
+        piece.point(self.s(p.x) - begin, self.d(p.y))
+    }
+
     /// Returns the jet on `piece`, which begins at distance `begin`.
     fn jet(&self, piece: &SkeletonPiece, begin: f64, p: Point) -> Jet {
         let (at, ds, dd) = piece.jet(self.s(p.x) - begin, self.d(p.y));
@@ -119,6 +124,11 @@ impl Map for BendMap {
         self.to_strip.jet(piece, begin, p)
     }
 
+    fn point(&self, p: Point) -> Point {
+        let (piece, begin) = self.piece(self.to_strip.s(p.x));
+        self.to_strip.point(piece, begin, p)
+    }
+
     /// Verticals at the skeleton's joints.
     fn creases(&self, out: &mut Creases) {
         /// Limit on the turns around a closed skeleton whose joints are reported.
@@ -165,6 +175,10 @@ impl OnPiece {
 impl Map for OnPiece {
     fn jet(&self, p: Point) -> Jet {
         self.to_strip.jet(&self.piece, self.begin, p)
+    }
+
+    fn point(&self, p: Point) -> Point {
+        self.to_strip.point(&self.piece, self.begin, p)
     }
 
     fn class(&self) -> Class {

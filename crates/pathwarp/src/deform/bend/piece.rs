@@ -31,6 +31,19 @@ pub(super) struct SkeletonPiece {
 }
 
 impl SkeletonPiece {
+    /// Returns F at distance `s` from the piece's start and height `d`.
+    pub(super) fn point(&self, s: f64, d: f64) -> Point {
+        match &self.strip {
+            Strip::Straight { p, t, n } => *p + *t * s + *n * d,
+            Strip::Normals { spine, table, mitres: [a, b], .. } => {
+                let (p, t) = spine.frame(table.parameter(s));
+                let share = s / self.length;
+                p + (normal(t) + *a * (1.0 - share) + *b * share) * d
+            }
+            Strip::Ribbon { .. } => self.jet(s, d).0,
+        }
+    }
+
     /// Returns F, ∂F/∂s and ∂F/∂d at distance `s` from the piece's start and height `d`.
     pub(super) fn jet(&self, s: f64, d: f64) -> (Point, Vec2, Vec2) {
         match &self.strip {
@@ -88,18 +101,30 @@ impl Spine {
         Self { seg, still: STILL * (b.width() + b.height()) }
     }
 
-    /// Returns the moving frame at a parameter. Where the curve stands still, the direction is taken a little further in.
+    /// Returns the point and the unit tangent at a parameter.
+    fn frame(&self, u: f64) -> (Point, Vec2) {
+        let (_, v, speed) = self.velocity(u);
+        (self.seg.eval(u), v / speed)
+    }
+
+    /// Returns the moving frame at a parameter.
     pub(super) fn moving(&self, u: f64) -> Moving {
+        let (at, v, speed) = self.velocity(u);
+        Moving { p: self.seg.eval(u), t: v / speed, bend: v.cross(second(&self.seg, at)) / speed.powi(3) }
+    }
+
+    /// Returns the derivative and its length at a parameter, which comes first. Where the curve stands still, that is a little further in.
+    fn velocity(&self, u: f64) -> (f64, Vec2, f64) {
         /// How much further in.
         const ASIDE: f64 = 1e-5;
-        let (mut at, mut v) = (u, self.seg.deriv(u));
-        let mut speed = v.hypot();
-        if speed <= self.still {
-            at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
-            v = self.seg.deriv(at);
-            speed = v.hypot();
+        let v = self.seg.deriv(u);
+        let speed = v.hypot();
+        if speed > self.still {
+            return (u, v, speed);
         }
-        Moving { p: self.seg.eval(u), t: v / speed, bend: v.cross(second(&self.seg, at)) / speed.powi(3) }
+        let at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
+        let v = self.seg.deriv(at);
+        (at, v, v.hypot())
     }
 
     /// Tabulates its arc length.

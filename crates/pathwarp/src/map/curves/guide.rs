@@ -85,7 +85,7 @@ impl Guide {
 impl GuidePiece {
     /// Point and derivative with respect to u.
     pub(in crate::map) fn at(&self, u: f64) -> (Point, Vec2) {
-        let share = (u - self.from) / (self.to - self.from);
+        let share = self.share(u);
         let (t, dt) = match &self.table {
             None => (share, 1.0),
             Some(table) => {
@@ -93,10 +93,25 @@ impl GuidePiece {
                 let inside = share.clamp(0.0, 1.0);
                 let t = table.parameter(inside * length);
                 let dt = length / self.seg.deriv(t).hypot().max(f64::MIN_POSITIVE);
-                (t + (share - inside) * dt, dt)
+                (if share == inside { t } else { t + (share - inside) * dt }, dt)
             }
         };
         (self.seg.eval(t), self.seg.deriv(t) * (dt / (self.to - self.from)))
+    }
+
+    /// The point of [`at`](Self::at).
+    pub(in crate::map) fn point(&self, u: f64) -> Point {
+        let share = self.share(u);
+        match &self.table {
+            None => self.seg.eval(share),
+            Some(table) if (0.0..=1.0).contains(&share) => self.seg.eval(table.parameter(share * table.length())),
+            Some(_) => self.at(u).0,
+        }
+    }
+
+    /// The share of the piece that is before u.
+    fn share(&self, u: f64) -> f64 {
+        (u - self.from) / (self.to - self.from)
     }
 
     /// The piece over [u0, u1] as a cubic in u; `None` if it is not polynomial in u.
@@ -104,9 +119,8 @@ impl GuidePiece {
         if self.table.is_some() || matches!(self.seg, Seg::Arc(_)) {
             return None;
         }
-        let share = |u: f64| (u - self.from) / (self.to - self.from);
         let c = self.seg.to_cubic();
         let whole = u0 == self.from && u1 == self.to;
-        Some(if whole { c } else { c.subsegment(share(u0)..share(u1)) })
+        Some(if whole { c } else { c.subsegment(self.share(u0)..self.share(u1)) })
     }
 }

@@ -131,6 +131,13 @@ impl Side {
         (p, v / (to - from))
     }
 
+    /// The point of [`Side::on`].
+    #[must_use]
+    pub(crate) fn point_on(&self, piece: usize, u: f64) -> Point {
+        let (from, to) = (self.knots[piece], self.knots[piece + 1]);
+        self.pieces[piece].point((u - from) / (to - from))
+    }
+
     /// Returns `true` if every piece continues smoothly beyond its ends.
     #[must_use]
     pub(crate) fn runs_on(&self) -> bool {
@@ -185,35 +192,47 @@ impl SidePiece {
 
     /// Point and derivative at `t`, which runs from 0 to 1 over the piece.
     fn at(&self, t: f64) -> (Point, Vec2) {
-        if self.pace == Pace::Parameter || matches!(self.seg, Seg::Line(_)) {
-            return (self.seg.eval(t), self.seg.deriv(t));
-        }
         let inside = t.clamp(0.0, 1.0);
-        let (p, v) = match self.pace {
-            Pace::Length | Pace::Parameter => {
-                let length = self.table.length();
-                let u = self.table.parameter(inside * length);
-                let mut v = self.seg.deriv(u);
-                let mut speed = v.hypot();
-                if speed <= MIN_SPEED * length {
-                    v = self.seg.deriv(if u < 0.5 { u + INWARD } else { u - INWARD });
-                    speed = v.hypot();
-                }
-                (self.seg.eval(u), v * (length / speed))
+        let Some(u) = self.parameter(inside) else { return (self.seg.eval(t), self.seg.deriv(t)) };
+        let mut v = self.seg.deriv(u);
+        if self.pace == Pace::Length {
+            let length = self.table.length();
+            let mut speed = v.hypot();
+            if speed <= MIN_SPEED * length {
+                v = self.seg.deriv(if u < 0.5 { u + INWARD } else { u - INWARD });
+                speed = v.hypot();
             }
-            Pace::Width | Pace::Height => {
-                let along = |v: Vec2| if self.pace == Pace::Width { v.x } else { v.y };
-                let (from, extent) = (self.seg.start(), along(self.seg.end() - self.seg.start()));
-                let u = Self::inverse(
-                    inside,
-                    |u| along(self.seg.eval(u) - from) / extent,
-                    |u| along(self.seg.deriv(u)) / extent,
-                );
-                let v = self.seg.deriv(u);
-                (self.seg.eval(u), v * (extent / along(v)))
+            v *= length / speed;
+        } else {
+            v *= self.along(self.seg.end() - self.seg.start()) / self.along(v);
+        }
+        (self.seg.eval(u) + v * (t - inside), v)
+    }
+
+    /// The point of [`at`](Self::at).
+    fn point(&self, t: f64) -> Point {
+        if !(0.0..=1.0).contains(&t) {
+            return self.at(t).0;
+        }
+        self.seg.eval(self.parameter(t).unwrap_or(t))
+    }
+
+    /// The segment's parameter at `t` in [0, 1]; `None` if that is `t` itself, beyond the ends as well.
+    fn parameter(&self, t: f64) -> Option<f64> {
+        match (self.pace, self.seg) {
+            (Pace::Parameter, _) | (_, Seg::Line(_)) => None,
+            (Pace::Length, _) => Some(self.table.parameter(t * self.table.length())),
+            (Pace::Width | Pace::Height, _) => {
+                let (from, extent) = (self.seg.start(), self.along(self.seg.end() - self.seg.start()));
+                let share = |u: f64| self.along(self.seg.eval(u) - from) / extent;
+                Some(Self::inverse(t, share, |u| self.along(self.seg.deriv(u)) / extent))
             }
-        };
-        (p + v * (t - inside), v)
+        }
+    }
+
+    /// The part of a vector along the axis of a pace along an axis.
+    fn along(&self, v: Vec2) -> f64 {
+        if self.pace == Pace::Width { v.x } else { v.y }
     }
 
     /// Solves f(u) = `t` for u in [0, 1], for an increasing `f` from 0 to 1, by bracketed Newton iteration.

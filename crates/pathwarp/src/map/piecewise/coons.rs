@@ -128,6 +128,16 @@ impl Coons {
         Jet { p: value, dx: du * a + dv * bb, dy: du * c + dv * d }
     }
 
+    /// The point of [`on`](Self::on).
+    fn point_on(&self, [b, r, t, l]: Cell, p: Point) -> Point {
+        let Point { x: u, y: v } = self.pre * p;
+        let s = self.sides();
+        let (b, t) = (s.bottom.point_on(b, u), s.top.point_on(t, u));
+        let (l, r) = (s.left.point_on(l, v), s.right.point_on(r, v));
+        let [p00, p10, p01, p11] = self.corners();
+        b + (t - b) * v + ((l - p00.lerp(p01, v)) * (1.0 - u) + (r - p10.lerp(p11, v)) * u)
+    }
+
     /// The corners: bottom left, bottom right, top left, top right.
     fn corners(&self) -> [Point; 4] {
         let ([a, b], [c, d]) = (self.sides().bottom.ends(), self.sides().top.ends());
@@ -175,6 +185,11 @@ impl Map for Coons {
         self.on(self.cell(q.x, q.y), p)
     }
 
+    fn point(&self, p: Point) -> Point {
+        let q = self.pre * p;
+        self.point_on(self.cell(q.x, q.y), p)
+    }
+
     fn creases(&self, out: &mut Creases) {
         let (mut us, mut vs) = (self.cut.us.clone(), self.cut.vs.clone());
         let s = self.sides();
@@ -211,5 +226,9 @@ struct OnCell {
 impl Map for OnCell {
     fn jet(&self, p: Point) -> Jet {
         self.whole.on(self.cell, p)
+    }
+
+    fn point(&self, p: Point) -> Point {
+        self.whole.point_on(self.cell, p)
     }
 }

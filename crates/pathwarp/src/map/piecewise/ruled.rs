@@ -70,6 +70,11 @@ impl Map for Strip {
         let [a, _, _, d, ..] = self.pre.as_coeffs();
         Jet { p: t.lerp(b, v), dx: (dt * (1.0 - v) + db * v) * a, dy: (b - t) * d }
     }
+
+    fn point(&self, p: Point) -> Point {
+        let Point { x: u, y: v } = self.pre * p;
+        self.top.point(u).lerp(self.bottom.point(u), v)
+    }
 }
 
 #[cfg(test)]
