@@ -64,7 +64,7 @@ fn debian(build: &Build<'_>, folder: &Path) -> Result<PathBuf, ChoreError> {
 /// Packs the tree as an archive, with the same order, owner and time of all files in every run.
 fn archive(build: &Build<'_>, tree: &Tree, folder: &Path) -> Result<PathBuf, ChoreError> {
     let name = format!("pathwarp-{}-{}-linux", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH);
-    let output = folder.join(&name).with_extension("tar.gz");
+    let output = folder.join(format!("{name}.tar.gz"));
     let mut tar = process::Command::new("tar");
     tar.args(["--create", "--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--format=gnu"]);
     tar.args(["--use-compress-program=gzip --no-name --best", &format!("--mtime=@{}", build.time)]);

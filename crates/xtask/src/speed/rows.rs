@@ -24,8 +24,9 @@ pub(super) struct Bench {
 type Part = fn(&Bench, &mut String) -> Result<(), ChoreError>;
 
 /// The parts of the table by name.
-pub(super) const PARTS: [(&str, Part); 6] = [
+pub(super) const PARTS: [(&str, Part); 7] = [
     ("drawings", drawings),
+    ("deformations", deformations),
     ("segments", segments),
     ("text", text),
     ("growth", growth),
@@ -35,6 +36,29 @@ pub(super) const PARTS: [(&str, Part); 6] = [
 
 /// The default run: what the README shows first.
 const WARP: [&str; 5] = ["warp", "--style", "flag", "--bend", "40%"];
+/// Every deformation that bends, as its help suggests it.
+const DEFORMATIONS: [&[&str]; 20] = [
+    &["shaper", "--shaper", "M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z"],
+    &["envelope", "--bottom", "M0,160 C120,100 260,220 400,150", "--height", "90"],
+    &["warp", "--style", "flag", "--bend", "40%"],
+    &["wordart", "--preset", "wave1"],
+    &["bilinear"],
+    &["birational", "--top", "0%,20% 30%,-60% 60%,90% 100%,0%", "--bottom", "0%,100% 35%,60% 60%,170% 100%,100%"],
+    &["bend", "--along", "M20,170 C180,60 356,60 516,170", "--stretch", "scale"],
+    &["bend", "--along", "0%,60% 25%,40% 50%,60% 75%,40% 100%,60%", "--spline", "3", "--stretch", "scale"],
+    &["polar"],
+    &["ffd", "--degree", "2x2", "--move", "1,1:0,-60%"],
+    &["ffd", "--pin", "50%,50%:50%,20%", "--pin", "90%,50%:95%,70%", "--pin", "10%,50%:10%,50%"],
+    &["triangle", "--move", "0,1,1:0,60%"],
+    &["mls", "--pin", "0%,100%", "--pin", "100%,100%", "--pair", "50%,0%:65%,-10%"],
+    &["projective", "--target", "0%,100% 100%,100% 75%,0% 25%,0%"],
+    &["wave"],
+    &["swirl"],
+    &["bulge"],
+    &["lens"],
+    &["mobius"],
+    &["expr", "--x", "x + w/40*sin(y/h*9)"],
+];
 /// Segments of the large generated path.
 const LARGE: usize = 30_000;
 /// Segments of the drawing for several threads.
@@ -50,7 +74,11 @@ const FIXED: f64 = 15e6;
 
 impl Bench {
     fn warp(&self, file: &Path) -> Job {
-        let job = Job::new(&self.program, WARP);
+        self.deform(&WARP, file)
+    }
+
+    fn deform(&self, words: &[&str], file: &Path) -> Job {
+        let job = Job::new(&self.program, words.iter().copied());
         job.with(&[&file.to_string_lossy(), "-o", &self.folder.join("warped.svg").to_string_lossy()])
     }
 
@@ -120,6 +148,15 @@ fn drawings(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     row(out, &format!("{n} drawings, default ÷ `--merge off`"), &b.compare(default, unmerged)?);
     let certified = |f: &Path| b.warp(f).with(&["--certify"]);
     row(out, &format!("{n} drawings, `--certify` ÷ default"), &b.compare(certified, default)?);
+    Ok(())
+}
+
+fn deformations(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
+    let n = b.drawings.len();
+    for words in DEFORMATIONS {
+        let what = format!("{n} drawings, `{}` ÷ usvg", words.join(" "));
+        row(out, &what, &b.compare(|f| b.deform(words, f), |f| b.resolve(f))?);
+    }
     Ok(())
 }
 
