@@ -130,6 +130,17 @@ impl Document {
         seen.or_else(|| self.artwork_box(selection))
     }
 
+    /// The box of what is seen, [`Document::seen_box`], with what the page cuts off the shapes in it. `None` if it cuts nothing.
+    #[must_use]
+    pub fn uncut_box(&self, selection: &Selection, seen: Rect) -> Option<Rect> {
+        let page = self.drawing.specified_area()?;
+        if seen.x0 > page.x0 && seen.y0 > page.y0 && seen.x1 < page.x1 && seen.y1 < page.y1 {
+            return None;
+        }
+        let selected = self.drawing.selected_parts(selection);
+        seen::uncut_box(self.drawing.scene(), page, &|i| selected[i]).filter(|b| *b != seen)
+    }
+
     /// The selected painted shapes, in painting order.
     pub fn selected<'a>(&'a self, selection: &Selection) -> impl Iterator<Item = &'a Shape> + use<'a> {
         let selected = self.drawing.selected_parts(selection);

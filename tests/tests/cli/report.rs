@@ -2,6 +2,7 @@
 
 use super::common::{CAGE, SQUARE, text};
 use crate::support::{expect_code, pathwarp_in, sample};
+use pathwarp::Outline;
 use serde_json::Value;
 use std::fs;
 
@@ -28,6 +29,27 @@ fn artwork_that_extends_past_the_page_causes_one_warning() {
         let (said, warnings) = run(&["--fit", fit]);
         assert!(said.is_empty() && warnings.is_empty(), "{fit}: {said}");
     }
+}
+
+#[test]
+fn what_the_page_cuts_off_and_the_map_stretches_causes_a_warning_with_a_frame_that_helps() {
+    let dir = tempfile::tempdir().unwrap();
+    // Half of the shape is on the page.
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M60 40C80 30 120 30 140 40V60H60Z'/></svg>";
+    let run = |args: &[&str]| {
+        let out = pathwarp_in(dir.path(), &[args, &["-o", "o.svg"]].concat(), svg.as_bytes());
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        let (said, written) = (text(&out.stderr), fs::read_to_string(dir.path().join("o.svg")).unwrap());
+        let x = Outline::from_svg(written.split('\'').find(|t| t.starts_with('M')).unwrap()).unwrap();
+        (said, x.bounding_box().unwrap())
+    };
+    let flag = ["warp", "--style", "flag", "--bend", "80%"];
+    let (said, stretched) = run(&flag);
+    let frame = said.split("--frame ").nth(1).and_then(|s| s.split_whitespace().next()).unwrap();
+    assert!(said.contains("the page cuts shapes off") && stretched.height() > 100.0, "{said} {stretched:?}");
+    let (said, bent) = run(&[&flag[..], &["--frame", frame]].concat());
+    assert!(!said.contains("cuts") && bent.height() < 60.0, "{said} {bent:?}");
+    assert!(!run(&["wave"]).0.contains("cuts"));
 }
 
 #[test]

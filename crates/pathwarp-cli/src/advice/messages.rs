@@ -3,6 +3,7 @@
 use super::flags::Flags;
 use crate::decimals::three_figures;
 use pathwarp::budget::Exceeded;
+use pathwarp::kurbo::Rect;
 use pathwarp::{Error, GeometryError};
 use pathwarp_svg::{LetteringFrameError, Overhang, UnreadImages};
 
@@ -73,6 +74,22 @@ pub(crate) fn overhang(o: Overhang) -> String {
         three_figures(most),
         three_figures(100.0 * o.share),
         sides.join(", ")
+    )
+}
+
+/// Describes artwork that the page cuts off and the map stretches, with the frame that prevents it.
+pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
+    // Three figures, rounded outwards.
+    let digits = (2.0 - uncut.width().max(uncut.height()).log10().floor()).clamp(0.0, 9.0) as usize;
+    let unit = 0.1f64.powi(digits as i32);
+    let [x0, y0] = [uncut.x0, uncut.y0].map(|v| (v / unit).floor() * unit);
+    let [x1, y1] = [uncut.x1, uncut.y1].map(|v| (v / unit).ceil() * unit);
+    format!(
+        "the page cuts shapes off, and the map, whose frame is what the page shows, stretches the hidden parts {} times as much as the \
+         rest; --frame {x0:.digits$},{y0:.digits$},{:.digits$},{:.digits$} has room for them",
+        three_figures(stretch),
+        x1 - x0,
+        y1 - y0
     )
 }
 

@@ -5,5 +5,7 @@ mod messages;
 mod names;
 
 pub(crate) use flags::Flags;
-pub(crate) use messages::{error, lettering_frame, outside, overhang, overhangs, picture, raise, surface, unread};
+pub(crate) use messages::{
+    error, lettering_frame, outside, overhang, overhangs, picture, raise, stretched, surface, unread,
+};
 pub(crate) use names::unknown;

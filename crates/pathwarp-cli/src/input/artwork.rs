@@ -25,6 +25,11 @@ pub(crate) trait Artwork {
     /// The bounding box of the artwork; `None` if there is none.
     fn bounding_box(&self) -> Option<Rect>;
 
+    /// The bounding box, `bounds`, with what the page cuts off the artwork. `None` if it cuts nothing.
+    fn uncut_box(&self, _bounds: Rect) -> Option<Rect> {
+        None
+    }
+
     /// The frame for building the first step. `bounds` is the artwork's bounding box.
     fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure>;
 

@@ -233,6 +233,10 @@ impl Artwork for SvgArtwork {
         self.doc.seen_box(&self.selection)
     }
 
+    fn uncut_box(&self, bounds: Rect) -> Option<Rect> {
+        self.doc.uncut_box(&self.selection, bounds)
+    }
+
     fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure> {
         let artwork = || Frame::new(bounds.unwrap_or_else(|| self.doc.view_box()));
         let plain = match choice {

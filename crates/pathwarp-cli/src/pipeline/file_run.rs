@@ -1,5 +1,6 @@
 //! The run of one input: open, look up references, choose the frame, build, warp, report.
 
+use super::beyond;
 use super::plan::Job;
 use crate::advice::{self, Flags};
 use crate::failure::Failure;
@@ -95,6 +96,10 @@ impl Batch<'_> {
         let sound = || built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
         sound()?;
 
+        let uncut = bounds.filter(|b| *b == frame_box).and_then(|b| artwork.uncut_box(b));
+        let stretched = uncut.and_then(|uncut| Some((uncut, beyond::stretch(&built.map, frame_box, uncut)?)));
+        sound()?;
+
         let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
         let request = WarpRequest { built: &built, options, bounds, tolerance, embedded_recipe };
@@ -103,6 +108,7 @@ impl Batch<'_> {
         let warped = warped.map_err(|f| explained(f, &built))?;
 
         let mut warnings: Vec<String> = self.in_flags(&built, |e| &e.warnings).chain(warped.warnings).collect();
+        warnings.extend(stretched.map(|(uncut, stretch)| advice::stretched(uncut, stretch)));
         warnings.extend(warped.overhang.map(advice::overhang));
         let report = FileReport {
             file: artwork.file_name(),

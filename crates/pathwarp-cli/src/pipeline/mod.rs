@@ -1,6 +1,7 @@
 //! The one run of every deformation: the outputs are planned, each input is opened, built, warped and reported
 //! (`file_run.rs`), and its files are put in place, all or none. Of several inputs, each is finished on its own.
 
+mod beyond;
 mod file_run;
 mod folders;
 mod inputs;

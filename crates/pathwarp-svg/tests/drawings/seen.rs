@@ -54,6 +54,24 @@ fn the_frame_is_what_is_seen() {
     assert_eq!(read(&all).seen_box(&Selection::default()).unwrap(), Rect::new(-200.0, -300.0, 700.0, 500.0));
 }
 
+/// Shapes that the page cuts count whole, and no others; clip paths and masks still hide.
+#[test]
+fn the_uncut_box_holds_what_the_page_cuts_off() {
+    let uncut = |body: &str| {
+        let (doc, all) = (read(&drawing(body)), Selection::default());
+        doc.uncut_box(&all, doc.seen_box(&all).unwrap())
+    };
+    for (name, body) in drawings() {
+        assert_eq!(uncut(&body), None, "{name}");
+        // Something at the edge of the page, so that everything is looked at.
+        let b = uncut(&format!("{body}<path d='M90 50H110V51Z'/>")).unwrap();
+        let off = [b.x0 - 20.0, b.y0 - 20.0, b.x1 - 110.0, b.y1 - 60.0];
+        assert!(off.iter().all(|d| d.abs() < 1e-3), "{name}: {b:?}");
+    }
+    assert_eq!(uncut(&format!("{BIG}/>")), Some(Rect::new(-200.0, -300.0, 700.0, 500.0)));
+    assert_eq!(uncut("<rect x='0' y='0' width='100' height='100'/>"), None);
+}
+
 /// The page follows what was seen: moved by 70, the square reaches from 90 to 130.
 #[test]
 fn the_page_holds_what_is_seen() {
