@@ -10,8 +10,12 @@ const FAR: f64 = 0.02;
 /// and how many times as much as the frame they are stretched.
 const STRETCHED: f64 = 3.0;
 
-/// How many times as much as the frame the map stretches what is between the frame and the edge of `uncut`, if that is far more.
+/// How many times as much as the frame the map stretches what is between the frame and the edge of `uncut`, if that is far more. Maps
+/// that are other programs are not asked: they may fail at points that no shape has.
 pub(super) fn stretch(map: &dyn Map, frame: Rect, uncut: Rect) -> Option<f64> {
+    if map.prefers_batches() {
+        return None;
+    }
     let size = diagonal(frame.size());
     let of_frame = image_size(map, frame)? / size;
     let stretch = edge(uncut).filter_map(|p| {
