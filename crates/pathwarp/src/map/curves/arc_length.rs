@@ -147,10 +147,13 @@ impl Speed {
         points.series(&from_fn(|k| self.middle + self.half * self.at(0.5 * whole * (1.0 + points.value(1, k)), whole)))
     }
 
-    /// The t whose distance from the start is `wanted` of `whole`, by bracketed Newton iteration.
+    /// The t whose distance from the start is `wanted` of `whole`, by bracketed Newton iteration; the middle of a span without length.
     fn at(&self, wanted: f64, whole: f64) -> f64 {
         /// Bisection alone would end within so many steps.
         const STEPS: usize = 60;
+        if whole <= 0.0 {
+            return 0.0;
+        }
         let (mut lo, mut hi) = (-1.0, 1.0);
         let mut t = 2.0 * wanted / whole - 1.0;
         for _ in 0..STEPS {
@@ -253,6 +256,15 @@ mod tests {
         assert!(asked.get() < (4 + 2 * table.spans.len()) * TERMS, "{} for {} spans", asked.get(), table.spans.len());
         assert!(table.spans.len() < 60, "{}", table.spans.len());
         assert!((table.length() - c.arclen(1e-13)).abs() < 1e-11);
+    }
+
+    #[test]
+    fn a_point_has_no_length() {
+        let table = ArcLength::new(&|_| 0.0);
+        assert_eq!((table.length(), table.parameter(0.0)), (0.0, 0.5));
+        let half = ArcLength::new(&|u| if u < 0.5 { 0.0 } else { 2.0 });
+        assert!((half.length() - 1.0).abs() < 1e-9 && (half.parameter(0.5) - 0.75).abs() < 1e-9);
+        assert!((0..=8).all(|i| half.parameter(f64::from(i) / 8.0).is_finite()));
     }
 
     #[test]
