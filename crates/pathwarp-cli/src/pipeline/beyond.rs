@@ -1,22 +1,22 @@
 //! Artwork that the page cuts: the frame holds what is seen, and the rest follows the map beyond the frame, where many maps grow fast.
 
-use pathwarp::kurbo::{Point, Rect, Size};
+use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::Map;
 
 /// Samples of a side of a box.
 const SAMPLES: u32 = 16;
-/// Lengths beyond the frame, relative to its diagonal, that are long enough to be noticed,
+/// Shortest length beyond the frame that counts, relative to the frame's diagonal.
 const FAR: f64 = 0.02;
-/// and how many times as much as the frame they are stretched.
+/// Smallest ratio that is worth a warning.
 const STRETCHED: f64 = 3.0;
 
-/// How many times as much as the frame the map stretches what is between the frame and the edge of `uncut`, if that is far more. Maps
-/// that are other programs are not asked: they may fail at points that no shape has.
+/// Compares how much the map stretches the artwork between the frame and the edge of `uncut` with how much it stretches the frame. Returns
+/// the ratio if it is large. Does not ask maps that are other programs: they may fail at points that no shape has.
 pub(super) fn stretch(map: &dyn Map, frame: Rect, uncut: Rect) -> Option<f64> {
     if map.prefers_batches() {
         return None;
     }
-    let size = diagonal(frame.size());
+    let size = frame.size().to_vec2().hypot();
     let of_frame = image_size(map, frame)? / size;
     let stretch = edge(uncut).filter_map(|p| {
         let inside = Point::new(p.x.clamp(frame.x0, frame.x1), p.y.clamp(frame.y0, frame.y1));
@@ -31,11 +31,7 @@ pub(super) fn stretch(map: &dyn Map, frame: Rect, uncut: Rect) -> Option<f64> {
 fn image_size(map: &dyn Map, rect: Rect) -> Option<f64> {
     let image = edge(rect).map(|p| map.point(p)).filter(|p| p.is_finite());
     let bounds = image.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))?;
-    Some(diagonal(bounds.size())).filter(|d| *d > 0.0)
-}
-
-fn diagonal(size: Size) -> f64 {
-    size.width.hypot(size.height)
+    Some(bounds.size().to_vec2().hypot()).filter(|d| *d > 0.0)
 }
 
 /// Points around a box.

@@ -98,7 +98,6 @@ impl Batch<'_> {
 
         let uncut = bounds.filter(|b| *b == frame_box).and_then(|b| artwork.uncut_box(b));
         let stretched = uncut.and_then(|uncut| Some((uncut, beyond::stretch(&built.map, frame_box, uncut)?)));
-        sound()?;
 
         let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;

@@ -37,11 +37,16 @@ impl SkeletonPiece {
             Strip::Straight { p, t, n } => *p + *t * s + *n * d,
             Strip::Normals { spine, table, mitres: [a, b], .. } => {
                 let (p, t) = spine.frame(table.parameter(s));
-                let share = s / self.length;
-                p + (normal(t) + *a * (1.0 - share) + *b * share) * d
+                p + self.side(t, *a, *b, s) * d
             }
             Strip::Ribbon { .. } => self.jet(s, d).0,
         }
+    }
+
+    /// Returns the side at distance `s`: the normal of `t`, blended into the mitres.
+    fn side(&self, t: Vec2, start: Vec2, end: Vec2, s: f64) -> Vec2 {
+        let share = s / self.length;
+        normal(t) + start * (1.0 - share) + end * share
     }
 
     /// Returns F, ∂F/∂s and ∂F/∂d at distance `s` from the piece's start and height `d`.
@@ -50,8 +55,7 @@ impl SkeletonPiece {
             Strip::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
             Strip::Normals { spine, table, mitres: [a, b], even } => {
                 let Moving { p, t, bend } = spine.moving(table.parameter(s));
-                let share = s / self.length;
-                let side = normal(t) + *a * (1.0 - share) + *b * share;
+                let side = self.side(t, *a, *b, s);
                 let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + (*b - *a) * (d / self.length);
                 (p + side * d, along, side)
             }
@@ -125,11 +129,6 @@ impl Spine {
         let at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
         let v = self.seg.deriv(at);
         (at, v, v.hypot())
-    }
-
-    /// Tabulates its arc length.
-    pub(super) fn measured(&self) -> ArcLength {
-        ArcLength::new(&|u| self.seg.deriv(u).hypot())
     }
 }
 

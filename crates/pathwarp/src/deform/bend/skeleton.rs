@@ -49,7 +49,7 @@ impl Skeleton {
         if reverse != (backwards && !as_drawn) {
             sub = sub.reversed();
         }
-        let measured: Vec<_> = sub.segs.into_iter().map(Spine::new).map(|s| (s, s.measured())).collect();
+        let measured: Vec<_> = sub.segs.into_iter().map(|s| (Spine::new(s), ArcLength::of(&s))).collect();
         let length: f64 = measured.iter().map(|(_, t)| t.length()).sum();
         if !(length > 0.0 && length.is_finite()) {
             return Err(Error::usage("along", path.name.clone(), "has no length"));
@@ -113,8 +113,8 @@ artwork's height; a smaller `width` helps too",
         for (spine, table) in spines {
             match spine.seg {
                 Seg::Arc(a) => {
-                    let cubics = a.to_cubics(tolerance).map(|c| Spine::new(Seg::Cubic(c)));
-                    self.spines.extend(cubics.map(|s| (s, s.measured())));
+                    let cubics = a.to_cubics(tolerance).map(Seg::Cubic);
+                    self.spines.extend(cubics.map(|s| (Spine::new(s), ArcLength::of(&s))));
                 }
                 Seg::Line(l) if raise => {
                     let raised = Seg::Quad(kurbo::QuadBez::new(l.p0, l.p0.midpoint(l.p1), l.p1));

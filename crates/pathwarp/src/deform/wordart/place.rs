@@ -80,7 +80,7 @@ fn samples() -> impl Iterator<Item = (f64, f64)> {
 }
 
 fn length(guide: &[Seg]) -> f64 {
-    guide.iter().map(|s| ArcLength::new(&|u| s.deriv(u).hypot()).length()).sum()
+    guide.iter().map(|s| ArcLength::of(s).length()).sum()
 }
 
 /// The total turn of the tangent, radians, clockwise on the screen.

@@ -5,6 +5,8 @@
 //! Practice*, 2013, chapters 2–4 and 19). A span on which one of the series does not converge is halved. A lookup is one binary search and
 //! one polynomial, and its slope is exactly 1/|C'(u)|.
 
+use super::root::increasing_root;
+use crate::outline::Seg;
 use std::array::from_fn;
 use std::f64::consts::PI;
 
@@ -64,6 +66,11 @@ impl ArcLength {
             todo.push((a, middle, depth + 1));
         }
         Self { spans }
+    }
+
+    /// Tabulates a segment.
+    pub(crate) fn of(seg: &Seg) -> Self {
+        Self::new(&|u| seg.deriv(u).hypot())
     }
 
     /// The whole length.
@@ -147,31 +154,16 @@ impl Speed {
         points.series(&from_fn(|k| self.middle + self.half * self.at(0.5 * whole * (1.0 + points.value(1, k)), whole)))
     }
 
-    /// The t whose distance from the start is `wanted` of `whole`, by bracketed Newton iteration; the middle of a span without length.
+    /// The t whose distance from the start is `wanted` of `whole`; the middle of a span without length.
     fn at(&self, wanted: f64, whole: f64) -> f64 {
-        /// Bisection alone would end within so many steps.
-        const STEPS: usize = 60;
         if whole <= 0.0 {
             return 0.0;
         }
-        let (mut lo, mut hi) = (-1.0, 1.0);
-        let mut t = 2.0 * wanted / whole - 1.0;
-        for _ in 0..STEPS {
-            let off = sum(&self.length, t) - wanted;
-            let step = off / sum(&self.speed, t);
-            // Test for convergence before updating the bracket, which rounding would make too small. Where the curve nearly stands still,
-            // the length is exact before the parameter is.
-            if step.abs() <= 2.0 * f64::EPSILON || off.abs() <= f64::EPSILON * whole {
-                break;
-            }
-            if off > 0.0 {
-                hi = t;
-            } else {
-                lo = t;
-            }
-            t = if t - step > lo && t - step < hi { t - step } else { 0.5 * (lo + hi) };
-        }
-        t
+        let start = 2.0 * wanted / whole - 1.0;
+        let off = |t: f64| (sum(&self.length, t) - wanted, sum(&self.speed, t));
+        // Where the curve nearly stands still, the length is exact before the parameter is.
+        let is_close = |_, off: f64, step: f64| step.abs() <= 2.0 * f64::EPSILON || off.abs() <= f64::EPSILON * whole;
+        increasing_root((-1.0, 1.0), start, off, is_close)
     }
 }
 
@@ -213,7 +205,7 @@ mod tests {
     use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv};
 
     fn of(c: CubicBez) -> ArcLength {
-        ArcLength::new(&move |u| c.deriv().eval(u).to_vec2().hypot())
+        ArcLength::of(&Seg::Cubic(c))
     }
 
     #[test]

@@ -37,7 +37,7 @@ impl Guide {
         let mut lengths = Vec::with_capacity(segs.len());
         let mut tables = Vec::with_capacity(segs.len());
         for seg in segs {
-            let table = ArcLength::new(&|t| seg.deriv(t).hypot());
+            let table = ArcLength::of(seg);
             lengths.push(if along == Along::ArcLength { table.length() } else { 1.0 });
             // The parameter of a line is proportional to its length.
             let even = along == Along::Parameter || matches!(seg, Seg::Line(_));

@@ -2,6 +2,7 @@
 
 mod arc_length;
 mod guide;
+mod root;
 mod side;
 
 pub(crate) use arc_length::ArcLength;

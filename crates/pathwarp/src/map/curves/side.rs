@@ -4,6 +4,7 @@
 //! a Bézier segment with its own parameter continues as the same polynomial; everything else continues along its end tangent.
 
 use super::ArcLength;
+use super::root::increasing_root;
 use crate::outline::Seg;
 use kurbo::{CubicBez, Line, Point, Vec2};
 
@@ -45,16 +46,13 @@ const INWARD: f64 = 1e-5;
 const MIN_SLOPE: f64 = 1e-3;
 /// Pieces shorter than this share of the side are dropped.
 const MIN_LENGTH: f64 = 1e-12;
-/// Iterations to find a parameter: as many bisections exhaust double precision.
-const MAX_STEPS: usize = 60;
 
 impl Side {
     /// A side of these segments, each starting at the end of the previous one. `None` if they have no length, or if they turn
     /// back or are too steep for a pace along an axis.
     #[must_use]
     pub fn new(segs: &[Seg], pace: Pace) -> Option<Self> {
-        let measured = segs.iter().map(|s| (*s, ArcLength::new(&|u| s.deriv(u).hypot())));
-        let measured: Vec<_> = measured.collect();
+        let measured: Vec<_> = segs.iter().map(|s| (*s, ArcLength::of(s))).collect();
         let length: f64 = measured.iter().map(|m| m.1.length()).sum();
         if !(length > 0.0 && length.is_finite()) {
             return None;
@@ -235,25 +233,12 @@ impl SidePiece {
         if self.pace == Pace::Width { v.x } else { v.y }
     }
 
-    /// Solves f(u) = `t` for u in [0, 1], for an increasing `f` from 0 to 1, by bracketed Newton iteration.
+    /// Solves f(u) = `t` for u in [0, 1], for an increasing `f` from 0 to 1.
     fn inverse(t: f64, f: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
         if t <= 0.0 || t >= 1.0 {
             return t;
         }
-        let (mut lo, mut hi, mut u) = (0.0, 1.0, t);
-        for _ in 0..MAX_STEPS {
-            let excess = f(u) - t;
-            let step = excess / slope(u);
-            if step.abs() <= f64::EPSILON * u {
-                break;
-            }
-            if excess > 0.0 {
-                hi = u;
-            } else {
-                lo = u;
-            }
-            u = if u - step > lo && u - step < hi { u - step } else { 0.5 * (lo + hi) };
-        }
-        u
+        let excess = |u: f64| (f(u) - t, slope(u));
+        increasing_root((0.0, 1.0), t, excess, |u, _, step: f64| step.abs() <= f64::EPSILON * u)
     }
 }

@@ -120,8 +120,7 @@ impl Coons {
         let ((b, db), (t, dt)) = (s.bottom.on(b, u), s.top.on(t, u));
         let ((l, dl), (r, dr)) = (s.left.on(l, v), s.right.on(r, v));
         let [p00, p10, p01, p11] = self.corners();
-        // Sums of differences between nearby points round less.
-        let value = b + (t - b) * v + ((l - p00.lerp(p01, v)) * (1.0 - u) + (r - p10.lerp(p11, v)) * u);
+        let value = self.blend([b, r, t, l], u, v);
         let du = db * (1.0 - v) + dt * v + ((r - p10.lerp(p11, v)) - (l - p00.lerp(p01, v)));
         let dv = (t - b) + (dl - (p01 - p00)) * (1.0 - u) + (dr - (p11 - p10)) * u;
         let [a, bb, c, d, ..] = self.pre.as_coeffs();
@@ -134,7 +133,13 @@ impl Coons {
         let s = self.sides();
         let (b, t) = (s.bottom.point_on(b, u), s.top.point_on(t, u));
         let (l, r) = (s.left.point_on(l, v), s.right.point_on(r, v));
+        self.blend([b, r, t, l], u, v)
+    }
+
+    /// F(u,v), from the points of the bottom, right, top and left side.
+    fn blend(&self, [b, r, t, l]: [Point; 4], u: f64, v: f64) -> Point {
         let [p00, p10, p01, p11] = self.corners();
+        // Sums of differences between nearby points round less.
         b + (t - b) * v + ((l - p00.lerp(p01, v)) * (1.0 - u) + (r - p10.lerp(p11, v)) * u)
     }
 
