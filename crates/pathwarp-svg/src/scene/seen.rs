@@ -5,29 +5,31 @@ use pathwarp::kurbo::Rect;
 
 /// Bounding box, without stroke widths, of what is seen of the parts that count. `page` is the visible area, if there is one.
 pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counts: &dyn Fn(usize) -> bool) -> Option<Rect> {
-    in_group(scene, &scene.root, page, &|i| boxed(scene, i, counts))
+    in_group(scene, &scene.root, page, counts, &|_| true)
 }
 
 /// The same, with what of those parts lies off the page.
 pub(crate) fn uncut_box(scene: &Scene, page: Rect, counts: &dyn Fn(usize) -> bool) -> Option<Rect> {
-    in_group(scene, &scene.root, None, &|i| boxed(scene, i, counts).filter(|b| overlap(*b, page).is_some()))
+    in_group(scene, &scene.root, None, counts, &|b| overlap(b, page).is_some())
 }
 
-/// Bounding box of a part that is seen and counts.
-fn boxed(scene: &Scene, i: usize, counts: &dyn Fn(usize) -> bool) -> Option<Rect> {
-    let p = &scene.parts[i];
-    let seen = is_seen(p) && p.role == PartRole::Paint && counts(i);
-    p.outline().bounding_box().filter(|b| seen && b.is_finite())
-}
-
-fn in_group(scene: &Scene, g: &Group, room: Option<Rect>, boxed: &dyn Fn(usize) -> Option<Rect>) -> Option<Rect> {
+/// Bounding box of what `room` leaves of the parts that count, as far as the box of a part is `kept`.
+fn in_group(
+    scene: &Scene,
+    g: &Group,
+    room: Option<Rect>,
+    counts: &dyn Fn(usize) -> bool,
+    kept: &dyn Fn(Rect) -> bool,
+) -> Option<Rect> {
     let room = room_in(scene, g, room)?;
     let one = |n: &Node| match n {
-        Node::Group(g) => in_group(scene, g, room, boxed),
-        Node::Text { content, .. } => in_group(scene, content, room, boxed),
+        Node::Group(g) => in_group(scene, g, room, counts, kept),
+        Node::Text { content, .. } => in_group(scene, content, room, counts, kept),
         Node::Part(i) => {
-            let all = boxed(*i)?;
-            room.map_or(Some(all), |room| overlap(all, room))
+            let p = &scene.parts[*i];
+            let seen = is_seen(p) && p.role == PartRole::Paint && counts(*i);
+            let all = p.outline().bounding_box().filter(|b| seen && b.is_finite())?;
+            room.map_or(Some(all), |room| overlap(all, room)).filter(|b| kept(*b))
         }
         Node::Image(_) => None,
     };

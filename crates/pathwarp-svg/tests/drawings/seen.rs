@@ -70,6 +70,9 @@ fn the_uncut_box_holds_what_the_page_cuts_off() {
     }
     assert_eq!(uncut(&format!("{BIG}/>")), Some(Rect::new(-200.0, -300.0, 700.0, 500.0)));
     assert_eq!(uncut("<rect x='0' y='0' width='100' height='100'/>"), None);
+    // What a clip path leaves lies off the page, although the shape does not.
+    let off = "<clipPath id='c'><path d='M300 0H400V9H300Z'/></clipPath>";
+    assert_eq!(uncut(&format!("<rect width='100' height='50'/>{off}{BIG} clip-path='url(#c)'/>")), None);
 }
 
 /// The page follows what was seen: moved by 70, the square reaches from 90 to 130.
