@@ -64,9 +64,12 @@ fn compressed<const N: usize>(pixmap: &Pixmap, channels: impl Fn([u8; 4]) -> [u8
     let mut above = vec![[0; N]; width];
     for row in pixels.chunks_exact(width) {
         filtered.push(UP);
-        for (pixel, above) in row.iter().zip(&mut above) {
+        let start = filtered.len();
+        filtered.resize(start + width * N, 0);
+        let (differences, _) = filtered[start..].as_chunks_mut::<N>();
+        for ((pixel, above), difference) in row.iter().zip(&mut above).zip(differences) {
             let here = channels(demultiplied(pixel));
-            filtered.extend_from_slice(&std::array::from_fn::<u8, N, _>(|k| here[k].wrapping_sub(above[k])));
+            *difference = std::array::from_fn(|k| here[k].wrapping_sub(above[k]));
             *above = here;
         }
         if filtered.len() >= TOGETHER {
@@ -78,7 +81,11 @@ fn compressed<const N: usize>(pixmap: &Pixmap, channels: impl Fn([u8; 4]) -> [u8
     encoder.finish()
 }
 
+#[inline]
 fn demultiplied(p: &PremultipliedColorU8) -> [u8; 4] {
+    if p.alpha() == u8::MAX {
+        return [p.red(), p.green(), p.blue(), u8::MAX];
+    }
     let c = p.demultiply();
     [c.red(), c.green(), c.blue(), c.alpha()]
 }

@@ -166,7 +166,8 @@ impl<'a> ShadePainter<'a> {
             (self.shade.colors)(places, colors);
             for (((pixel, known), place), color) in pixels.iter_mut().zip(known).zip(places).zip(colors) {
                 if place.is_finite() {
-                    let [r, g, b, a] = color.map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
+                    // The cast saturates.
+                    let [r, g, b, a] = color.map(|v| (v * 255.0 + 0.5) as u8);
                     *pixel = ColorU8::from_rgba(r, g, b, a).premultiply();
                     *known = true;
                 }
