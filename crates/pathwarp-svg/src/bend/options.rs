@@ -172,7 +172,7 @@ pub struct WarpOptions {
     pub gradients: Gradients,
     /// Treatment of patterns.
     pub patterns: Patterns,
-    /// Treatment of the page: viewBox, width and height. Lengths in percent in the file then refer to the new page.
+    /// Treatment of the page: viewBox, width and height. Lengths in percent of it become numbers, except in style sheets.
     pub page: PageFit,
     /// Transforms to the copies of every shape before the warp, in root user space, the original included. A shape and its
     /// copies become one path, also in clip paths and masks. Empty: the shape alone.

@@ -16,10 +16,21 @@ pub(super) const MM_PER_INCH: f64 = 25.4;
 
 /// The dimension of the viewport that a percentage refers to.
 #[derive(Debug, Clone, Copy)]
-enum Dimension {
+pub(crate) enum Dimension {
     Width,
     Height,
     Diagonal,
+}
+
+impl Dimension {
+    /// 100 % of a viewport.
+    pub(crate) fn of(self, view: Size) -> f64 {
+        match self {
+            Self::Width => view.width,
+            Self::Height => view.height,
+            Self::Diagonal => ((view.width.powi(2) + view.height.powi(2)) / 2.0).sqrt(),
+        }
+    }
 }
 
 /// Reads geometry from the source.
@@ -44,15 +55,7 @@ impl GeometryReader<'_> {
             LengthUnit::Mm => n * self.dpi / MM_PER_INCH,
             LengthUnit::Pt => n * self.dpi / 72.0,
             LengthUnit::Pc => n * self.dpi / 6.0,
-            LengthUnit::Percent => {
-                let view = self.viewport_size(e)?;
-                n / 100.0
-                    * match of {
-                        Dimension::Width => view.width,
-                        Dimension::Height => view.height,
-                        Dimension::Diagonal => ((view.width.powi(2) + view.height.powi(2)) / 2.0).sqrt(),
-                    }
-            }
+            LengthUnit::Percent => n / 100.0 * of.of(self.viewport_size(e)?),
             // Needs the font.
             LengthUnit::Em | LengthUnit::Ex => return None,
         }))
@@ -62,13 +65,14 @@ impl GeometryReader<'_> {
         Some(self.length(e, name, of)?.unwrap_or(0.0))
     }
 
+    /// Returns the size of the nearest enclosing viewport. `None` if it cannot be read from the source alone.
     fn viewport_size(&self, e: ElementId) -> Option<Size> {
         let Some(svg) = self.source.viewport(e) else { return Some(self.page) };
+        if self.source.elements[svg].parent.is_none() {
+            return Some(self.root_size());
+        }
         if let Some(v) = self.view_box(svg) {
             return Some(v.size());
-        }
-        if self.source.elements[svg].parent.is_none() {
-            return Some(self.page);
         }
         // Percentages of an outer viewport are left to usvg.
         let side = |name| {
@@ -77,6 +81,11 @@ impl GeometryReader<'_> {
             matches!(l.unit, LengthUnit::None | LengthUnit::Px).then_some(l.number)
         };
         Some(Size::new(side("width")?, side("height")?))
+    }
+
+    /// Returns the size of the root's viewport, in its user units.
+    pub(crate) fn root_size(&self) -> Size {
+        self.view_box(0).map_or(self.page, |v| v.size())
     }
 
     /// Returns an element's `viewBox`.

@@ -178,6 +178,40 @@ fn the_identity_fits_the_page() {
     assert!(w.svg.contains("viewBox=\"20 30 60 40\""), "{}", w.svg);
 }
 
+/// Lengths in percent of the page, given and left out.
+const IN_PERCENT: &str = "<svg x='25%' y='10%' width='20%' height='30%'><rect width='100%' height='50%' fill='green'/></svg>\
+    <svg y='60%'><circle cx='50%' cy='15' r='10%' fill='teal'/></svg>\
+    <linearGradient id='a' gradientUnits='userSpaceOnUse' x1='10%'><stop stop-color='red'/><stop offset='1'/></linearGradient>\
+    <rect x='60%' y='5%' width='30%' height='20%' fill='url(#a)'/>\
+    <radialGradient id='b' gradientUnits='userSpaceOnUse'><stop stop-color='gold'/><stop offset='1'/></radialGradient>\
+    <rect x='5' y='50' width='30' height='5%' fill='url(#b)'/>\
+    <path d='M10 90H70' stroke='blue' stroke-width='4%'/><path d='M10 80H70' style='stroke:navy;stroke-width:2%'/>\
+    <mask id='m' maskUnits='userSpaceOnUse' x='50%' y='50%' width='30%' height='30%'><rect width='100%' height='100%' \
+    fill='white'/></mask><rect x='40' y='40' width='55' height='50' fill='orange' mask='url(#m)'/>\
+    <rect x='10%' y='10%' width='10%' height='10%' fill='url(#box)'/><linearGradient id='box' x2='50%'><stop \
+    stop-color='red'/><stop offset='1'/></linearGradient>\
+    <symbol id='s' viewBox='0 0 10 10'><circle cx='50%' cy='5' r='5'/></symbol><use href='#s' x='20' opacity='.2'/>\
+    <text x='5%, 10%' y='40%' font-size='12'>AB</text>";
+
+/// Percentages of the page are as long as they were when the page changes.
+#[test]
+fn percentages_refer_to_the_page_as_it_was() {
+    let svg = crate::common::drawing(&format!("{IN_PERCENT}<rect id='moved' x='80' y='80' width='9' height='9'/>"));
+    let shown = |page: PageFit| {
+        let selection = Selection { select: vec!["#moved".into()], ..Selection::default() };
+        let options = warp_options().with_page(page).with_selection(selection);
+        let w = read(&svg).warp(&Hidden(Affine::translate((70.0, 60.0))), &options).unwrap();
+        let d = read(&w.svg);
+        let window = Affine::scale(4.0) * d.user_to_px().inverse();
+        (d.view_box(), rendered(pathwarp_svg::usvg_tree::tree(&d), 400, window), w.svg)
+    };
+    let (page, before, _) = shown(PageFit::None);
+    let (grown, after, text) = shown(PageFit::Grow);
+    assert!(grown.width() > 1.4 * page.width() && grown.height() > 1.3 * page.height(), "{grown:?}");
+    let off = crate::common::difference(&before, &after);
+    assert!(off < 1e-3, "{off}: {text}");
+}
+
 /// A page whose viewBox equals its size up to rounding has no transform, so none may be confused with a group's.
 #[test]
 fn a_page_of_odd_size_is_no_group() {

@@ -6,6 +6,7 @@ mod copies;
 mod keeper;
 mod live;
 mod pages;
+mod percentages;
 mod shape;
 mod text;
 mod walk;
@@ -34,6 +35,7 @@ pub(super) fn write(
 ) -> Result<String, Unpatchable> {
     let mut writer = Writer::new(*input, true, skipped, notes);
     let mut k = Keeper::new(*input, &mut writer);
+    percentages::hold(&mut k);
     clips::clips(&mut k)?;
     clips::masks(&mut k)?;
     walk::group(&mut k, &input.scene.root);

@@ -169,11 +169,12 @@ pub(super) fn flat(d: &Dilation, foot: Point, distance: f64) -> Option<SpacePlan
 /// Warns of sides that tear the artwork that crosses them.
 pub(super) fn warn_of_torn_sides(d: &Dilation, frame: Rect, built: &mut Built) {
     let corners = d.reference().corners();
+    // Strokes reach past the box.
     let room = 1e-9 * (frame.width() + frame.height());
-    let inner = frame.inflate(-room, -room);
+    let frame = frame.inflate(room, room);
     for k in 0..corners.len() {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-        let meets = Rect::from_points(a, b).bounding_box().overlaps(inner);
+        let meets = Rect::from_points(a, b).bounding_box().overlaps(frame);
         if meets && !d.side_is_fixed(k) {
             built.warn(format!(
                 "the side of the reference from {} to {} has control points moved: artwork that crosses it is torn apart; keep that side's \

@@ -16,17 +16,17 @@ static INFO: Info = Info::new("triangle", "pull artwork about by a triangular ne
 them. Degree 1 has the three corners; degree 2 the middles of the sides too; degree 3 one more in the middle. The higher \
 the degree, the more local each point's pull. A triangle bends less stiffly than a rectangular net of the same degree, and treats \
 all directions alike.\n\nA control point is named by three numbers I,J,K that add up to the degree: how near it lies to the first, \
-second and third corner. 2,0,0 is the first corner of a triangle of degree 2, 0,1,1 the middle of the side opposite.\n\nOutside the \
-triangle nothing moves, unless --extend is given. Where a side's control points stay in their places, inside and outside join \
-without a gap; otherwise there is a warning.")
+second and third corner. 2,0,0 is the first corner of a triangle of degree 2, 0,1,1 the middle of the side opposite.\n\nOutside an \
+explicit triangle (--reference) nothing moves, unless --extend is given. Where a side's control points stay in their places, inside \
+and outside join without a gap; otherwise there is a warning.")
     .source("G. Farin, Triangular Bernstein-Bézier patches, CAGD 3, 1986; J. Sánchez-Reyes, J. M. Chacón, Anamorphic Free-Form \
 Deformation, CAGD 46, 2016")
     .params(&[
         Param::new(
             "reference",
             Kind::Text("X,Y X,Y X,Y"),
-            "The triangle's corners. Default: a triangle about the artwork, its \
-first corner at the top, its second at the bottom left.",
+            "The triangle's corners; outside it nothing moves. Default: a triangle about the artwork, its first corner at the top, its \
+second at the bottom left, and the map continues outside it.",
         ),
         Param::new("degree", Kind::Count, "Degree of the net: control points along a side, less one.")
             .default("2")
@@ -56,8 +56,8 @@ first corner at the top, its second at the bottom left.",
             command: "triangle samples/badge.svg --reference '50%,5% 5%,80% 95%,80%' --degree 3 --move 1,1,1:0,-20% -o out.svg",
         },
         Example {
-            what: "Six points, two of them moved, with no edge",
-            command: "triangle samples/grid.svg --move 1,1,0:-30%,30% --move 1,0,1:30%,30% --extend -o out.svg",
+            what: "Two of the six points moved",
+            command: "triangle samples/grid.svg --move 1,1,0:-30%,30% --move 1,0,1:30%,30% -o out.svg",
         },
     ])
     .laws(&[
@@ -80,6 +80,8 @@ first corner at the top, its second at the bottom left.",
             to: (75.0, 52.5),
             tolerance: 1e-12,
         },
+        // Below the box of the artwork, about which the triangle lies: u = (−0.05, 0.525, 0.525), B011 = 2·0.525².
+        Case { args: &[("move", "0,1,1:0,10")], at: (50.0, 110.0), to: (50.0, 115.5125), tolerance: 1e-12 },
         // Weights draw along the sides: (¼·0 + ½·2·50 + ¼·100)/(¼ + 1 + ¼) = 50; at u = (¾, ¼, 0) it is
         // (2·⅜·50 + 100/16)/(9/16 + ¾ + 1/16) = 43.75/1.375.
         Case {
@@ -98,24 +100,21 @@ impl Deformation for Entry {
     }
 
     fn build(&self, s: &Settings<'_>) -> Result<Built, Error> {
-        let triangle = Triangle {
-            corners: corners(s)?,
-            degree: s.number("degree")? as usize,
-            changes: changes(s)?,
-            extended: s.flag("extend")?,
-            frame: Some(s.frame().rect),
-        };
-        triangle.build()
+        let over = over(s)?;
+        let extended = over.extended || s.flag("extend")?;
+        Triangle { degree: s.number("degree")? as usize, changes: changes(s)?, extended, ..over }.build()
     }
 }
 
 /// Reads the reference triangle; the default lies about the artwork's box, twice as wide and twice as high.
-fn corners(s: &Settings<'_>) -> Result<[Point; 3], Error> {
-    let Some(text) = s.texts("reference").pop() else { return Ok(Triangle::around(s.frame().rect).corners) };
+fn over(s: &Settings<'_>) -> Result<Triangle, Error> {
+    let frame = s.frame().rect;
+    let Some(text) = s.texts("reference").pop() else { return Ok(Triangle::around(frame)) };
     let points = s.points_in("reference", text)?;
-    points.try_into().map_err(|p: Vec<Point>| {
+    let corners: [Point; 3] = points.try_into().map_err(|p: Vec<Point>| {
         Error::usage("reference", text, format!("has {} points; a triangle has three", p.len()))
-    })
+    })?;
+    Ok(Triangle { frame: Some(frame), ..Triangle::new(corners) })
 }
 
 /// Reads `at`, `move` and `weight`, in this order.

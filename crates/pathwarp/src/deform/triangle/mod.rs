@@ -3,8 +3,9 @@
 //! F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), with Bᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱu₁ʲu₂ᵏ and u the barycentric coordinates in
 //! the reference triangle ABC (see [`net`]). Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the
 //! map is affine, with weights projective; at degree 2 six points are free and lines become conics' projections: parabolas, or
-//! conics with weights. Outside the triangle nothing moves; the restriction of the map to a side depends on that side's points
-//! alone, so a side whose points stay put is joined without a gap.
+//! conics with weights. Outside a triangle that was asked for nothing moves; the restriction of the map to a side depends on that
+//! side's points alone, so a side whose points stay put is joined without a gap. Outside the triangle about the artwork's box the map
+//! continues: strokes reach past the box.
 //!
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
@@ -50,7 +51,8 @@ impl Triangle {
         Self { corners: corners.map(Into::into), degree: 2, changes: Vec::new(), extended: false, frame: None }
     }
 
-    /// Creates a net over a triangle about the artwork's box: its first corner at the top, its second at the bottom left.
+    /// Creates a net over a triangle about the artwork's box: its first corner at the top, its second at the bottom left. The map
+    /// continues outside it.
     #[must_use]
     pub fn around(frame: Rect) -> Self {
         let half = frame.width() / 2.0;
@@ -59,7 +61,7 @@ impl Triangle {
             Point::new(frame.x0 - half, frame.y1),
             Point::new(frame.x1 + half, frame.y1),
         ];
-        Self { frame: Some(frame), ..Self::new(corners) }
+        Self { frame: Some(frame), extended: true, ..Self::new(corners) }
     }
 
     /// Sets the degree n, 1 to 10.
@@ -116,7 +118,7 @@ impl Triangle {
             let crosses = |k: usize| self.frame.is_none_or(|f| meets(f, corners[k], corners[(k + 1) % 3]));
             for k in (0..3).filter(|&k| !net.side_is_fixed(k) && crosses(k)) {
                 built.warn(format!(
-                    "the side between the {} corner runs through the artwork's box and has control points moved: artwork that crosses it \
+                    "the side between the {} corner meets the artwork's box and has control points moved: artwork that crosses it \
 is torn apart; keep that side's points in place, choose a larger `reference`, or give `extend`",
                     names[k]
                 ));
@@ -156,13 +158,13 @@ fn outline(corners: [Point; 3]) -> BezPath {
     path
 }
 
-/// Returns `true` if the line between two points runs through the inside of a box.
+/// Returns `true` if the line between two points runs through a box or along its edge, past which strokes reach.
 fn meets(r: Rect, a: Point, b: Point) -> bool {
     let room = 1e-9 * (r.width() + r.height());
-    let inner = r.inflate(-room, -room);
+    let r = r.inflate(room, room);
     // Clip the line's parameter range by the box's two slabs.
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    for (p, d, lo, hi) in [(a.x, b.x - a.x, inner.x0, inner.x1), (a.y, b.y - a.y, inner.y0, inner.y1)] {
+    for (p, d, lo, hi) in [(a.x, b.x - a.x, r.x0, r.x1), (a.y, b.y - a.y, r.y0, r.y1)] {
         if d == 0.0 {
             if p <= lo || p >= hi {
                 return false;

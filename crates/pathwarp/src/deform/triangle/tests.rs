@@ -110,8 +110,18 @@ fn a_fixed_side_joins_and_a_torn_one_warns() {
         "{:?}",
         torn.explanation.warnings
     );
-    let large = build(&[("move", "0,1,1:0,10")]).unwrap();
-    assert!(large.explanation.warnings.is_empty(), "{:?}", large.explanation.warnings);
+}
+
+/// The triangle about the artwork's box has no edge: strokes reach past it.
+#[test]
+fn the_artworks_box_has_no_outside() {
+    let built = build(&[("move", "0,1,1:0,10")]).unwrap();
+    assert!(built.explanation.warnings.is_empty(), "{:?}", built.explanation.warnings);
+    let bottom = check::frame().rect.y1;
+    for x in [-20.0, 10.0, 50.0, 90.0, 130.0] {
+        let [above, below] = [-1e-6, 1e-6].map(|d| built.map.point(Point::new(x, bottom + d)));
+        assert!(above.distance(below) < 1e-5, "{x}: {above} {below}");
+    }
 }
 
 #[test]

@@ -1,0 +1,141 @@
+//! Lengths in percent of the page, which keep their size when the page changes: they become numbers.
+
+use super::keeper::Keeper;
+use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
+use crate::source::number::short;
+use crate::source::style::declared;
+use crate::source::tags::ElementId;
+use crate::source::text::SourceText;
+use crate::write::page;
+use pathwarp::kurbo::Size;
+
+/// Attributes that may be percentages of the viewport, alone or in lists.
+const LENGTHS: &[(&str, Dimension)] = &[
+    ("x", Width),
+    ("y", Height),
+    ("width", Width),
+    ("height", Height),
+    ("x1", Width),
+    ("y1", Height),
+    ("x2", Width),
+    ("y2", Height),
+    ("cx", Width),
+    ("cy", Height),
+    ("rx", Width),
+    ("ry", Height),
+    ("r", Diagonal),
+    ("fx", Width),
+    ("fy", Height),
+    ("fr", Diagonal),
+    ("dx", Width),
+    ("dy", Height),
+    ("markerWidth", Width),
+    ("markerHeight", Height),
+];
+
+/// Properties of the same kind.
+const PROPERTIES: [&str; 3] = ["stroke-width", "stroke-dasharray", "stroke-dashoffset"];
+
+/// Lengths that are percentages unless they are given: of gradients in user space.
+const OF_GRADIENTS: [(&str, &[(&str, &str)]); 2] =
+    [("linearGradient", &[("x2", "100%")]), ("radialGradient", &[("cx", "50%"), ("cy", "50%"), ("r", "50%")])];
+
+/// Replaces percentages of the root's viewport by numbers if its size changes. Must come before other edits, which go on from
+/// lengths that usvg has resolved.
+pub(super) fn hold(k: &mut Keeper<'_, '_>) {
+    let before = k.input.drawing.reader().root_size();
+    if page::change(&k.input).is_none_or(|(_, after)| after.size() == before) {
+        return;
+    }
+    for e in 1..k.source.elements.len() {
+        if !refers_to_root(k.source, e) {
+            continue;
+        }
+        if is_in_user_space(k.source, e) {
+            lengths(k, e, before);
+            defaults(k, e, before);
+        }
+        properties(k, e, before);
+    }
+}
+
+/// Returns `true` if percentages of an element refer to the root.
+fn refers_to_root(source: &SourceText, e: ElementId) -> bool {
+    let establishes = |a: &ElementId| match source.elements[*a].tag.as_ref() {
+        "svg" | "symbol" | "marker" => true,
+        "pattern" => source.attr(*a, "viewBox").is_some(),
+        _ => false,
+    };
+    source.ancestors(e).skip(1).find(establishes) == Some(0)
+}
+
+/// Returns `true` unless the lengths of an element are fractions of a box.
+fn is_in_user_space(source: &SourceText, e: ElementId) -> bool {
+    /// Longest chain of references followed.
+    const LINKS: usize = 16;
+    let tag = |e: ElementId| source.elements[e].tag.as_ref();
+    let (owner, name, default) = match tag(e) {
+        "linearGradient" | "radialGradient" => (e, "gradientUnits", false),
+        "pattern" => (e, "patternUnits", false),
+        "mask" => (e, "maskUnits", false),
+        "filter" => (e, "filterUnits", false),
+        primitive if primitive.starts_with("fe") => match source.elements[e].parent {
+            Some(filter) => (filter, "primitiveUnits", true),
+            None => return true,
+        },
+        _ => return true,
+    };
+    let next = |&e: &ElementId| source.by_id().get(&source.href(e)?)?.last().copied();
+    let units = std::iter::successors(Some(owner), next).take(LINKS).find_map(|e| source.attr(e, name));
+    units.map_or(default, |u| u.trim() == "userSpaceOnUse")
+}
+
+/// The numbers in the place of percentages. `None` if there are none.
+fn numbers(text: &str, full: f64) -> Option<String> {
+    let number = |part: &str| Some(short(part.strip_suffix('%')?.trim_end().parse::<f64>().ok()? / 100.0 * full));
+    let parts = || text.split([' ', ',', '\t', '\n', '\r']).filter(|p| !p.is_empty());
+    parts().any(|p| number(p).is_some()).then(|| {
+        let all = parts().map(|p| number(p).unwrap_or_else(|| p.to_owned()));
+        all.collect::<Vec<_>>().join(" ")
+    })
+}
+
+fn lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+    for &(name, of) in LENGTHS {
+        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, of.of(view))) {
+            k.edits.set_attr(e, name, new);
+        }
+    }
+}
+
+fn properties(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+    for name in PROPERTIES {
+        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, Diagonal.of(view))) {
+            k.edits.set_attr(e, name, new);
+        }
+        let style = k.source.attr(e, "style");
+        if let Some(new) = style.and_then(|s| numbers(declared(&s, name)?, Diagonal.of(view))) {
+            k.edits.set_style(e, name, new);
+        }
+    }
+}
+
+/// Writes out the lengths that are percentages if they are not given.
+fn defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+    let target = || k.source.by_id().get(&k.source.href(e)?)?.last().copied();
+    let missing: &[(&str, &str)] = match k.tag(e) {
+        "svg" => &[("width", "100%"), ("height", "100%")],
+        "use" if target().is_some_and(|t| k.tag(t) == "symbol") => &[("width", "100%"), ("height", "100%")],
+        // What it refers to may give them.
+        gradient if target().is_none() => OF_GRADIENTS.iter().find(|g| g.0 == gradient).map_or(&[], |g| g.1),
+        _ => &[],
+    };
+    for &(name, of) in LENGTHS {
+        if let Some((_, default)) = missing.iter().find(|m| m.0 == name)
+            && k.source.attr(e, name).is_none()
+            && let Some(new) = numbers(default, of.of(view))
+        {
+            k.edits.set_attr(e, name, new);
+        }
+    }
+}
