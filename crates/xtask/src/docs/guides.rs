@@ -1,7 +1,7 @@
 //! Pictures of the guides: pages written by hand, each picture drawn by the command below it.
 
 use crate::chore::{ChoreError, at};
-use crate::shell::{pipe, stages};
+use crate::shell::{pipe, stages, words};
 use std::fs;
 use std::path::Path;
 
@@ -44,7 +44,9 @@ fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(),
     fs::create_dir_all(&folder).map_err(at(&folder))?;
     let drawn = format!("--preview {}", png.display());
     let command = command.replace(PREVIEW, &drawn).replace(" -o out.", &format!(" -o {}/out.", folder.display()));
-    let done = stages(&command).into_iter().try_for_each(|stage| pipe(root, program, &stage, &[]).map(drop));
+    // The extension of the output says what it is.
+    let words = words(&command);
+    let done = pipe(root, program, words.get(1..).unwrap_or_default(), &[]).map(drop);
     let _ = fs::remove_dir_all(&folder);
     done
 }
