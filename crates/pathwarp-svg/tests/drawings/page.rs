@@ -191,7 +191,8 @@ const IN_PERCENT: &str = "<svg x='25%' y='10%' width='20%' height='30%'><rect wi
     <rect x='10%' y='10%' width='10%' height='10%' fill='url(#box)'/><linearGradient id='box' x2='50%'><stop \
     stop-color='red'/><stop offset='1'/></linearGradient>\
     <symbol id='s' viewBox='0 0 10 10'><circle cx='50%' cy='5' r='5'/></symbol><use href='#s' x='20' opacity='.2'/>\
-    <text x='5%, 10%' y='40%' font-size='12'>AB</text>";
+    <text x='5%, 10%' y='40%' font-size='12'>AB</text>\
+    <foreignObject width='1' height='1'><p xmlns='http://www.w3.org/1999/xhtml' width='50%'/></foreignObject>";
 
 /// Percentages of the page are as long as they were when the page changes.
 #[test]
@@ -210,6 +211,8 @@ fn percentages_refer_to_the_page_as_it_was() {
     assert!(grown.width() > 1.4 * page.width() && grown.height() > 1.3 * page.height(), "{grown:?}");
     let off = crate::common::difference(&before, &after);
     assert!(off < 1e-3, "{off}: {text}");
+    // HTML has viewports of its own.
+    assert!(text.contains("width='50%'"), "{text}");
 }
 
 /// A page whose viewBox equals its size up to rounding has no transform, so none may be confused with a group's.

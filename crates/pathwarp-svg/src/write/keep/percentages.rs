@@ -48,7 +48,7 @@ pub(super) fn hold(k: &mut Keeper<'_, '_>) {
         return;
     }
     for e in 1..k.source.elements.len() {
-        if !refers_to_root(k.source, e) {
+        if !has_percentages(k.source, e) || !refers_to_root(k.source, e) {
             continue;
         }
         if is_in_user_space(k.source, e) {
@@ -56,6 +56,16 @@ pub(super) fn hold(k: &mut Keeper<'_, '_>) {
             defaults(k, e, before);
         }
         properties(k, e, before);
+    }
+}
+
+/// Returns `true` if an element of SVG may have percentages, written or not.
+fn has_percentages(source: &SourceText, e: ElementId) -> bool {
+    let el = &source.elements[e];
+    match el.tag.as_ref() {
+        "" => false,
+        "svg" | "use" | "linearGradient" | "radialGradient" => true,
+        _ => source.text[el.range.start..el.open_end].contains('%'),
     }
 }
 
