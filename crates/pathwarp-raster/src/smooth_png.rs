@@ -83,9 +83,6 @@ fn compressed<const N: usize>(pixmap: &Pixmap, channels: impl Fn([u8; 4]) -> [u8
 
 #[inline]
 fn demultiplied(p: &PremultipliedColorU8) -> [u8; 4] {
-    if p.alpha() == u8::MAX {
-        return [p.red(), p.green(), p.blue(), u8::MAX];
-    }
     let c = p.demultiply();
     [c.red(), c.green(), c.blue(), c.alpha()]
 }

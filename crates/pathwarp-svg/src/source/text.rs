@@ -214,6 +214,11 @@ impl SourceText {
         self.link(e)?.trim().strip_prefix('#').map(ToOwned::to_owned)
     }
 
+    /// The element that `href` or `xlink:href` refers to. Of several with one id, the last counts.
+    pub(crate) fn target(&self, e: ElementId) -> Option<ElementId> {
+        self.by_id().get(&self.href(e)?)?.last().copied()
+    }
+
     /// Value of `href` or `xlink:href`.
     pub(crate) fn link(&self, e: ElementId) -> Option<Cow<'_, str>> {
         self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))

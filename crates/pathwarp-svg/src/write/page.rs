@@ -12,6 +12,7 @@ use crate::scene::model::{Group, Node, Part, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};
 use crate::source::number::short;
 use crate::source::select::Selection;
+use crate::source::text::SourceText;
 use pathwarp::kurbo::{Affine, Point, Rect};
 use std::str::FromStr;
 use svgtypes::{Length, LengthUnit};
@@ -50,24 +51,23 @@ pub(super) fn shown(input: &WriteInput<'_>) -> Rect {
     adapted(input).unwrap_or_else(|| input.drawing.visible_area())
 }
 
-/// Returns new attributes of the root, if the page is to be adapted and changes.
-pub(super) fn attributes(input: &WriteInput<'_>) -> Option<Vec<(&'static str, String)>> {
-    let (page, shown) = (input.drawing.visible_area(), adapted(input)?);
+/// Returns new attributes of the root for a [`change`] of the page.
+pub(super) fn attributes(source: &SourceText, (page, shown): (Rect, Rect)) -> Vec<(&'static str, String)> {
     let view = [shown.x0, shown.y0, shown.width(), shown.height()].map(short).join(" ");
     let mut out = vec![("viewBox", view)];
     let sides = [("width", shown.width() / page.width()), ("height", shown.height() / page.height())];
     for (name, ratio) in sides {
-        let text = input.source.attr(0, name);
+        let text = source.attr(0, name);
         if let Some(l) = text.and_then(|t| Length::from_str(t.trim()).ok())
             && l.unit != LengthUnit::Percent
         {
             out.push((name, format!("{}{}", short(l.number * ratio), unit(l.unit))));
         }
     }
-    Some(out)
+    out
 }
 
-/// The visible area before and after, if the page changes.
+/// The visible area before and after, if the page changes. Measures the artwork.
 pub(super) fn change(input: &WriteInput<'_>) -> Option<(Rect, Rect)> {
     Some((input.drawing.visible_area(), adapted(input)?))
 }

@@ -35,7 +35,10 @@ pub(super) fn write(
 ) -> Result<String, Unpatchable> {
     let mut writer = Writer::new(*input, true, skipped, notes);
     let mut k = Keeper::new(*input, &mut writer);
-    percentages::hold(&mut k);
+    let change = page::change(input);
+    if let Some((_, after)) = change {
+        percentages::hold(&mut k, after.size());
+    }
     clips::clips(&mut k)?;
     clips::masks(&mut k)?;
     walk::group(&mut k, &input.scene.root);
@@ -44,10 +47,12 @@ pub(super) fn write(
     let warped = Warped::new(input);
     live::let_go(&mut k, &warped);
     animations::remove_unfit(&mut k, &warped);
-    for (name, value) in page::attributes(input).into_iter().flatten() {
-        k.edits.set_attr(0, name, value);
+    if let Some(change) = change {
+        for (name, value) in page::attributes(input.source, change) {
+            k.edits.set_attr(0, name, value);
+        }
+        pages::follow(&mut k, change);
     }
-    pages::follow(&mut k);
     let edits = k.edits;
     let defs = std::mem::take(&mut writer.defs.text);
     finish(input.source, edits, &defs, &writer.markup.tag("defs"))
@@ -69,7 +74,9 @@ fn slots(k: &mut Keeper<'_, '_>) {
 /// Lets the regions of filters grow. Those in box units follow the boxes of what they filter.
 fn regions(k: &mut Keeper<'_, '_>) {
     for (id, region) in std::mem::take(&mut k.writer.defs.regions) {
-        if let Some(e) = k.definition(&id, "filter").filter(|&e| in_user_space(k.source, e)) {
+        if let Some(e) =
+            k.definition(&id, "filter").filter(|&e| in_user_space(k.source, e, "filterUnits") == Some(true))
+        {
             for (name, value) in filter::region(region) {
                 k.edits.set_attr(e, name, value);
             }
@@ -77,13 +84,13 @@ fn regions(k: &mut Keeper<'_, '_>) {
     }
 }
 
-/// Returns `true` if the region of a filter is in user space. The units may be those of a filter that it refers to.
-fn in_user_space(source: &SourceText, filter: ElementId) -> bool {
+/// Whether an attribute such as `filterUnits` puts lengths in user space, on the element itself or on one that it refers to. `None` if
+/// it is not given.
+fn in_user_space(source: &SourceText, e: ElementId, units: &str) -> Option<bool> {
     /// Longest chain of references followed.
     const LINKS: usize = 16;
-    let next = |&e: &ElementId| source.by_id().get(&source.href(e)?)?.last().copied();
-    let units = std::iter::successors(Some(filter), next).take(LINKS).find_map(|e| source.attr(e, "filterUnits"));
-    units.is_some_and(|units| units.trim() == "userSpaceOnUse")
+    let mut chain = std::iter::successors(Some(e), |&e| source.target(e)).take(LINKS);
+    chain.find_map(|e| source.attr(e, units)).map(|u| u.trim() == "userSpaceOnUse")
 }
 
 /// Adds the new definitions to the file's `<defs>`, or else at its end, so that the title stays the first child.

@@ -4,20 +4,15 @@
 use super::keeper::Keeper;
 use crate::source::number::short;
 use crate::source::tags::ElementId;
-use crate::write::page;
 use pathwarp::kurbo::{Rect, Vec2};
 
 /// Sides that differ by less than this share are the same: Inkscape writes eight digits.
 const SAME: f64 = 1e-6;
 
 /// Moves pages and guide lines with the page.
-pub(super) fn follow(k: &mut Keeper<'_, '_>) {
+pub(super) fn follow(k: &mut Keeper<'_, '_>, (before, after): (Rect, Rect)) {
     let namedview = |e: ElementId| k.source.elements[e].parent.is_some_and(|p| name(k, p) == "sodipodi:namedview");
     let found: Vec<ElementId> = (0..k.source.elements.len()).filter(|&e| namedview(e)).collect();
-    if found.is_empty() {
-        return;
-    }
-    let Some((before, after)) = page::change(&k.input) else { return };
     for e in found {
         match name(k, e) {
             "inkscape:page" => one_page(k, e, before, after),

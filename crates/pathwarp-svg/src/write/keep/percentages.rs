@@ -1,12 +1,12 @@
 //! Lengths in percent of the page, which keep their size when the page changes: they become numbers.
 
+use super::in_user_space;
 use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
 use crate::source::number::short;
 use crate::source::style::declared;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
-use crate::write::page;
 use pathwarp::kurbo::Size;
 
 /// Attributes that may be percentages of the viewport, alone or in lists.
@@ -42,9 +42,9 @@ const OF_GRADIENTS: [(&str, &[(&str, &str)]); 2] =
 
 /// Replaces percentages of the root's viewport by numbers if its size changes. Must come before other edits, which go on from
 /// lengths that usvg has resolved.
-pub(super) fn hold(k: &mut Keeper<'_, '_>) {
+pub(super) fn hold(k: &mut Keeper<'_, '_>, after: Size) {
     let before = k.input.drawing.reader().root_size();
-    if page::change(&k.input).is_none_or(|(_, after)| after.size() == before) {
+    if after == before {
         return;
     }
     for e in 1..k.source.elements.len() {
@@ -81,8 +81,6 @@ fn refers_to_root(source: &SourceText, e: ElementId) -> bool {
 
 /// Returns `true` unless the lengths of an element are fractions of a box.
 fn is_in_user_space(source: &SourceText, e: ElementId) -> bool {
-    /// Longest chain of references followed.
-    const LINKS: usize = 16;
     let tag = |e: ElementId| source.elements[e].tag.as_ref();
     let (owner, name, default) = match tag(e) {
         "linearGradient" | "radialGradient" => (e, "gradientUnits", false),
@@ -95,9 +93,7 @@ fn is_in_user_space(source: &SourceText, e: ElementId) -> bool {
         },
         _ => return true,
     };
-    let next = |&e: &ElementId| source.by_id().get(&source.href(e)?)?.last().copied();
-    let units = std::iter::successors(Some(owner), next).take(LINKS).find_map(|e| source.attr(e, name));
-    units.map_or(default, |u| u.trim() == "userSpaceOnUse")
+    in_user_space(source, owner, name).unwrap_or(default)
 }
 
 /// The numbers in the place of percentages. `None` if there are none.
@@ -132,11 +128,11 @@ fn properties(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
 
 /// Writes out the lengths that are percentages if they are not given.
 fn defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
-    let target = || k.source.by_id().get(&k.source.href(e)?)?.last().copied();
+    let target = || k.source.target(e);
     let missing: &[(&str, &str)] = match k.tag(e) {
         "svg" => &[("width", "100%"), ("height", "100%")],
         "use" if target().is_some_and(|t| k.tag(t) == "symbol") => &[("width", "100%"), ("height", "100%")],
-        // What it refers to may give them.
+        // A template may give them.
         gradient if target().is_none() => OF_GRADIENTS.iter().find(|g| g.0 == gradient).map_or(&[], |g| g.1),
         _ => &[],
     };

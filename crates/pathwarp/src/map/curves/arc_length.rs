@@ -161,7 +161,7 @@ impl Speed {
         }
         let start = 2.0 * wanted / whole - 1.0;
         let off = |t: f64| (sum(&self.length, t) - wanted, sum(&self.speed, t));
-        // Where the curve nearly stands still, the length is exact before the parameter is.
+        // Stop at the exact length, too: where the curve nearly stands still, the parameter converges later.
         let is_close = |_, off: f64, step: f64| step.abs() <= 2.0 * f64::EPSILON || off.abs() <= f64::EPSILON * whole;
         increasing_root((-1.0, 1.0), start, off, is_close)
     }
