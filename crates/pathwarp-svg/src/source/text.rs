@@ -219,6 +219,15 @@ impl SourceText {
         self.by_id().get(&self.href(e)?)?.last().copied()
     }
 
+    /// Whether an attribute such as `filterUnits` puts lengths in user space, on the element itself or on one that it refers to. `None`
+    /// if it is not given.
+    pub(crate) fn in_user_space(&self, e: ElementId, units: &str) -> Option<bool> {
+        /// Longest chain of references followed.
+        const LINKS: usize = 16;
+        let mut chain = std::iter::successors(Some(e), |&e| self.target(e)).take(LINKS);
+        chain.find_map(|e| self.attr(e, units)).map(|u| u.trim() == "userSpaceOnUse")
+    }
+
     /// Value of `href` or `xlink:href`.
     pub(crate) fn link(&self, e: ElementId) -> Option<Cow<'_, str>> {
         self.attr_in(e, Namespace::None, "href").or_else(|| self.attr_in(e, Namespace::Xlink, "href"))

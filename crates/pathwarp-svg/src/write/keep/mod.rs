@@ -20,7 +20,6 @@ use crate::bend::outcome::{Notes, Skipped};
 use crate::source::edit::Edits;
 use crate::source::live::is_live;
 use crate::source::number::matrix;
-use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
 use keeper::Keeper;
@@ -74,23 +73,13 @@ fn slots(k: &mut Keeper<'_, '_>) {
 /// Lets the regions of filters grow. Those in box units follow the boxes of what they filter.
 fn regions(k: &mut Keeper<'_, '_>) {
     for (id, region) in std::mem::take(&mut k.writer.defs.regions) {
-        if let Some(e) =
-            k.definition(&id, "filter").filter(|&e| in_user_space(k.source, e, "filterUnits") == Some(true))
+        if let Some(e) = k.definition(&id, "filter").filter(|&e| k.source.in_user_space(e, "filterUnits") == Some(true))
         {
             for (name, value) in filter::region(region) {
                 k.edits.set_attr(e, name, value);
             }
         }
     }
-}
-
-/// Whether an attribute such as `filterUnits` puts lengths in user space, on the element itself or on one that it refers to. `None` if
-/// it is not given.
-fn in_user_space(source: &SourceText, e: ElementId, units: &str) -> Option<bool> {
-    /// Longest chain of references followed.
-    const LINKS: usize = 16;
-    let mut chain = std::iter::successors(Some(e), |&e| source.target(e)).take(LINKS);
-    chain.find_map(|e| source.attr(e, units)).map(|u| u.trim() == "userSpaceOnUse")
 }
 
 /// Adds the new definitions to the file's `<defs>`, or else at its end, so that the title stays the first child.

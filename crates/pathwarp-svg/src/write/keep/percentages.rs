@@ -1,6 +1,5 @@
 //! Lengths in percent of the page, which keep their size when the page changes: they become numbers.
 
-use super::in_user_space;
 use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
 use crate::source::number::short;
@@ -93,7 +92,7 @@ fn is_in_user_space(source: &SourceText, e: ElementId) -> bool {
         },
         _ => return true,
     };
-    in_user_space(source, owner, name).unwrap_or(default)
+    source.in_user_space(owner, name).unwrap_or(default)
 }
 
 /// The numbers in the place of percentages. `None` if there are none.
