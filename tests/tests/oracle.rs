@@ -47,14 +47,9 @@ type Curve<'a> = Box<dyn Fn(f64) -> Point + 'a>;
 /// search is local (coarse samples, then golden section), so it may overestimate the distance but never underestimate it.
 fn nearest(curves: &[Curve<'_>], coarse: &[Vec<Point>], p: Point, hint: &mut usize, good: f64) -> f64 {
     let n = curves.len();
-    let mut order: Vec<usize> = (0..n).collect();
     let h = *hint;
-    order.sort_by_key(|&i| {
-        let d = i.abs_diff(h);
-        d.min(n - d)
-    });
     let mut best = f64::INFINITY;
-    for i in order {
+    for i in (0..=n / 2).flat_map(|away| [(h + away) % n, (h + n - away) % n]) {
         let (k, d) = coarse[i]
             .iter()
             .map(|q| q.distance(p))

@@ -7,7 +7,12 @@ use std::process::Command;
 /// Names a tool that tests in a browser need and that is missing.
 pub fn missing() -> Option<&'static str> {
     let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success());
-    let browsers = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+    let browsers = [
+        "/usr/bin/chromium-headless-shell",
+        "/usr/bin/chromium",
+        "/usr/bin/chromium-browser",
+        "/usr/bin/google-chrome",
+    ];
     let modules = root().join("crates/pathwarp-editor/web/node_modules");
     if !is_there("node") {
         Some("node")

@@ -1,16 +1,14 @@
 // *Bend by hand…* as Inkscape calls it, without Inkscape: the program waits for the page and prints the drawing that the user keeps.
 import { spawn } from "node:child_process";
-import { chmodSync, existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
-import { check, choose, drag, open, paths, program, quiet } from "./harness.mjs";
+import { chmodSync, existsSync, readFileSync, writeFileSync } from "node:fs";
+import { check, choose, drag, emptyFolder, open, paths, program, quiet } from "./harness.mjs";
 
 const DRAWING = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200">
 <path id="a" d="M20,20h160v60h-160z"/><path id="b" style="fill:#c03030" d="M220,20h160v60h-160z"/></svg>`;
 
 /** Calls the effect. A program in the place of the browser writes the address of the page to a file. */
 async function call(svg, ...ids) {
-  const dir = mkdtempSync(join(tmpdir(), "pathwarp-inkscape-"));
+  const dir = emptyFolder();
   writeFileSync(`${dir}/ink_ext_1.svg`, svg);
   writeFileSync(`${dir}/browser`, `#!/bin/sh\necho "$1" > ${dir}/address.new && mv ${dir}/address.new ${dir}/address\n`);
   chmodSync(`${dir}/browser`, 0o755);
