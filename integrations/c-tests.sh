@@ -8,8 +8,8 @@ if ! command -v "$compiler" >/dev/null; then
     echo "No C compiler: the C library is not tested" >&2
     exit 0
 fi
-# With the Python package, crates below have the same features as in its build, and are not built again.
-cargo build --quiet --locked -p pathwarp-c -p pathwarp-cli -p pathwarp-python
+# The whole workspace: with the features that the tests have built already.
+cargo build --quiet --locked --workspace
 out=target/c-tests
 mkdir -p "$out"
 flags=(-std=c11 -Wall -Wextra -Wpedantic -Werror -g -I crates/pathwarp-c/include crates/pathwarp-c/examples/bend.c)

@@ -23,7 +23,7 @@ fi
 rm -rf target/python-wheels
 "$env/bin/maturin" build --quiet --locked --profile dev --strip true --interpreter "$env/bin/python" \
     --manifest-path crates/pathwarp-python/Cargo.toml --out target/python-wheels
-cargo build --quiet --locked -p pathwarp-cli
+cargo build --quiet --locked --workspace --bin pathwarp
 "$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps target/python-wheels/*.whl
 PATHWARP=$PWD/target/debug/pathwarp "$env/bin/python" -m pytest --quiet -p no:cacheprovider crates/pathwarp-python/tests
 if [ "$with_vpype" = 1 ]; then

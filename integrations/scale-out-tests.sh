@@ -24,7 +24,7 @@ if ! "$env/bin/python" -m pip install --quiet --disable-pip-version-check $packa
     exit 0
 fi
 "$env/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheel"
-cargo build --quiet --locked -p pathwarp-cli
+cargo build --quiet --locked --workspace --bin pathwarp
 measure() {
     "$env/bin/python" -B integrations/scale-out/measure.py --program target/debug/pathwarp --source samples --workers 2 "$@" 2>&1 |
         grep -v "INFO\|WARNING"
