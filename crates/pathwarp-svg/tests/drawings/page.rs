@@ -186,6 +186,7 @@ const IN_PERCENT: &str = "<svg x='25%' y='10%' width='20%' height='30%'><rect wi
     <radialGradient id='b' gradientUnits='userSpaceOnUse'><stop stop-color='gold'/><stop offset='1'/></radialGradient>\
     <rect x='5' y='50' width='30' height='5%' fill='url(#b)'/>\
     <path d='M10 90H70' stroke='blue' stroke-width='4%'/><path d='M10 80H70' style='stroke:navy;stroke-width:2%'/>\
+    <style>.wide{stroke:purple;stroke-width:3%}</style><path class='wide' d='M10 70H70'/><path d='M10 75H70' stroke='lime'/>\
     <mask id='m' maskUnits='userSpaceOnUse' x='50%' y='50%' width='30%' height='30%'><rect width='100%' height='100%' \
     fill='white'/></mask><rect x='40' y='40' width='55' height='50' fill='orange' mask='url(#m)'/>\
     <rect x='10%' y='10%' width='10%' height='10%' fill='url(#box)'/><linearGradient id='box' x2='50%'><stop \
@@ -198,6 +199,7 @@ const IN_PERCENT: &str = "<svg x='25%' y='10%' width='20%' height='30%'><rect wi
 #[test]
 fn percentages_refer_to_the_page_as_it_was() {
     let svg = crate::common::drawing(&format!("{IN_PERCENT}<rect id='moved' x='80' y='80' width='9' height='9'/>"));
+    let svg = svg.replacen("<svg ", "<svg stroke-width='1%' ", 1);
     let shown = |page: PageFit| {
         let selection = Selection { select: vec!["#moved".into()], ..Selection::default() };
         let options = warp_options().with_page(page).with_selection(selection);

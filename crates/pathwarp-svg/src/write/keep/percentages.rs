@@ -2,6 +2,7 @@
 
 use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
+use crate::source::cascade;
 use crate::source::number::short;
 use crate::source::style::declared;
 use crate::source::tags::ElementId;
@@ -47,14 +48,13 @@ pub(super) fn hold(k: &mut Keeper<'_, '_>, after: Size) {
         return;
     }
     for e in 1..k.source.elements.len() {
-        if !has_percentages(k.source, e) || !refers_to_root(k.source, e) {
-            continue;
-        }
-        if is_in_user_space(k.source, e) {
+        if has_percentages(k.source, e) && refers_to_root(k.source, e) && is_in_user_space(k.source, e) {
             lengths(k, e, before);
             defaults(k, e, before);
         }
-        properties(k, e, before);
+    }
+    for name in PROPERTIES {
+        property(k, name, Diagonal.of(before));
     }
 }
 
@@ -113,14 +113,22 @@ fn lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
     }
 }
 
-fn properties(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
-    for name in PROPERTIES {
-        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, Diagonal.of(view))) {
-            k.edits.set_attr(e, name, new);
+/// A property wherever it is declared: in attributes and styles, and by style sheets, whose rule is overridden.
+fn property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
+    if !k.source.text.contains(name) {
+        return;
+    }
+    for (e, value) in cascade::values(k.source, name).into_iter().enumerate() {
+        let Some(new) = value.and_then(|v| numbers(&v, diagonal)) else { continue };
+        // What the root declares, it hands down.
+        if k.tag(e).is_empty() || e > 0 && !refers_to_root(k.source, e) {
+            continue;
         }
         let style = k.source.attr(e, "style");
-        if let Some(new) = style.and_then(|s| numbers(declared(&s, name)?, Diagonal.of(view))) {
+        if k.source.css.contains(name) || style.is_some_and(|s| declared(&s, name).is_some()) {
             k.edits.set_style(e, name, new);
+        } else {
+            k.edits.set_attr(e, name, new);
         }
     }
 }
