@@ -49,7 +49,8 @@ fn nearest(curves: &[Curve<'_>], coarse: &[Vec<Point>], p: Point, hint: &mut usi
     let n = curves.len();
     let h = *hint;
     let mut best = f64::INFINITY;
-    for i in (0..=n / 2).flat_map(|away| [(h + away) % n, (h + n - away) % n]) {
+    let around = (1..=n / 2).flat_map(|away| [(h + away) % n, (h + n - away) % n]);
+    for i in std::iter::once(h).chain(around) {
         let (k, d) = coarse[i]
             .iter()
             .map(|q| q.distance(p))

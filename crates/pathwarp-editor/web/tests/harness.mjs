@@ -51,7 +51,7 @@ const settings = emptyFolder();
 
 // One listener for every program that is started.
 process.setMaxListeners(0);
-process.once("exit", () => temporary.forEach((dir) => rmSync(dir, { recursive: true, force: true })));
+process.once("exit", () => temporary.forEach((dir) => rmSync(dir, { recursive: true, force: true, maxRetries: 5 })));
 
 /** Starts the editor on a file. */
 export async function edit(file, ...args) {

@@ -53,8 +53,10 @@ pub(super) fn hold(k: &mut Keeper<'_, '_>, after: Size) {
             defaults(k, e, before);
         }
     }
-    for name in PROPERTIES {
-        property(k, name, Diagonal.of(before));
+    if k.source.text.contains('%') {
+        for name in PROPERTIES {
+            property(k, name, Diagonal.of(before));
+        }
     }
 }
 
@@ -125,7 +127,7 @@ fn property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
             continue;
         }
         let style = k.source.attr(e, "style");
-        if k.source.css.contains(name) || style.is_some_and(|s| declared(&s, name).is_some()) {
+        if k.source.css_mentions(name) || style.is_some_and(|s| declared(&s, name).is_some()) {
             k.edits.set_style(e, name, new);
         } else {
             k.edits.set_attr(e, name, new);
