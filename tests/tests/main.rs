@@ -22,6 +22,7 @@ mod plugins;
 mod presets;
 mod recipes;
 mod solid;
+mod styles;
 mod support;
 mod text;
 mod text_shapes;

@@ -42,7 +42,8 @@ impl Document {
         Ok(Self { drawing, packed })
     }
 
-    /// The text of the file, decoded: where that was another encoding than UTF-8, the XML declaration names UTF-8.
+    /// The text of the file, decoded: where that was another encoding than UTF-8, the XML declaration names UTF-8. Style that only
+    /// browsers read is in attributes that usvg reads.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.drawing.source.text
@@ -285,7 +286,8 @@ impl Document {
         // If nothing moves, return the source unchanged.
         let unchanged = is_identity(map, options) && options.page == PageFit::None;
         if unchanged && options.structure != Structure::Flatten {
-            return Ok(WarpedDocument { svg: self.drawing.source.text.clone(), ..WarpedDocument::default() });
+            let svg = self.drawing.source.as_in_file().into_owned();
+            return Ok(WarpedDocument { svg, ..WarpedDocument::default() });
         }
         match tiles::laid_out(&self.drawing, map, options)? {
             Some(tiled) => warp(&tiled, map, options),

@@ -29,6 +29,13 @@ struct Change {
     after: String,
 }
 
+impl Change {
+    /// Whether the change decides about an attribute.
+    fn sets(&self, name: &str) -> bool {
+        self.attrs.iter().any(|a| a.0 == name) || name == "style" && !self.properties.is_empty()
+    }
+}
+
 /// Edits to be applied together.
 #[derive(Debug)]
 pub(crate) struct Edits<'a> {
@@ -118,6 +125,9 @@ impl<'a> Edits<'a> {
     pub(crate) fn apply(self) -> String {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
+        for o in source.originals.iter().filter(|o| !self.changes.get(&o.element).is_some_and(|c| c.sets(o.name))) {
+            patches.push((o.range.start, o.range.end, o.kept.clone()));
+        }
         for (e, c) in self.changes {
             patch(source, e, c, &mut patches);
         }

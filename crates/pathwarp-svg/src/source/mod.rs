@@ -3,6 +3,7 @@
 pub(crate) mod ahead;
 pub(crate) mod cascade;
 mod check;
+pub(crate) mod css;
 pub(crate) mod edit;
 pub(crate) mod element;
 mod encoding;

@@ -1,6 +1,7 @@
 //! The source text with its table of elements: names and attributes are looked up here, and patches refer to it.
 
 use super::ahead::{self, Ahead};
+use super::css::{self, Original, Resolved};
 use super::element::{Attr, Element};
 use super::marks::{self, Marks};
 use super::parallel::both;
@@ -34,6 +35,10 @@ pub(crate) struct SourceText {
     pub(crate) unpatchable: Option<Unpatchable>,
     /// Namespace prefixes that the file did not declare; the text does.
     pub(crate) undeclared: Vec<String>,
+    /// Attributes that differ from the file's, in the order of the text: its style, as browsers read it.
+    pub(crate) originals: Vec<Original>,
+    /// What the style asks for and is not supported: the element, or none for the style sheets, and what there is to say.
+    pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
     marks: Marks,
     /// Outlines of `path` elements. A large drawing has them.
     pub(crate) ahead: Ahead,
@@ -56,14 +61,22 @@ impl SourceText {
         then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
     ) -> Result<(Self, T), Error> {
         xml::check(&text, name, budget)?;
-        let mut text = text;
+        let styled = |text: String| {
+            let resolved = css::resolved(&text, budget).map_err(|e| Error::limit(name, "its style takes", e))?;
+            Ok::<_, Error>(resolved.unwrap_or_else(|| Resolved {
+                text,
+                originals: Vec::new(),
+                unsupported: Vec::new(),
+            }))
+        };
+        let Resolved { mut text, mut originals, unsupported: mut unsupported_style } = styled(text)?;
         let mut undeclared = Vec::new();
         while let Some(marked) = marks::mark(&text) {
             let doc = match xml::document(&marked.text) {
                 Ok(doc) => doc,
                 Err(roxmltree::Error::UnknownNamespace(prefix, _)) => match prefixes::declared(&text, &prefix) {
                     Some(mended) if undeclared.len() < MOST_PREFIXES => {
-                        text = mended;
+                        Resolved { text, originals, unsupported: unsupported_style } = styled(mended)?;
                         undeclared.push(prefix);
                         continue;
                     }
@@ -75,11 +88,12 @@ impl SourceText {
             if table.unpatchable.is_some() || table.elements.len() != marked.elements {
                 break;
             }
-            let source = Self { undeclared, ..Self::new(text, table, marked.marks) };
+            let read = Self::new(text, table, marked.marks);
+            let source = Self { undeclared, originals, unsupported_style, ..read };
             let result = then(&source, &doc)?;
             return Ok((source, result));
         }
-        let mut source = Self { undeclared, ..Self::parse(text, name)? };
+        let mut source = Self { undeclared, originals, unsupported_style, ..Self::parse(text, name)? };
         let (marked, marks) = source.instrumented();
         source.marks = marks;
         // Without reliable positions, ids cannot be inserted.
@@ -113,6 +127,8 @@ impl SourceText {
             animated,
             unpatchable,
             undeclared: Vec::new(),
+            originals: Vec::new(),
+            unsupported_style: Vec::new(),
             marks,
             ahead: Ahead::default(),
             by_id: OnceLock::new(),
@@ -134,6 +150,22 @@ impl SourceText {
             let _ = self.ahead.set(outlines);
         };
         both(f, read).0
+    }
+
+    /// The text with the style of the file.
+    pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
+        if self.originals.is_empty() {
+            return Cow::Borrowed(&self.text);
+        }
+        let mut out = String::with_capacity(self.text.len());
+        let mut done = 0;
+        for o in &self.originals {
+            out.push_str(&self.text[done..o.range.start]);
+            out.push_str(&o.text);
+            done = o.range.end;
+        }
+        out.push_str(&self.text[done..]);
+        Cow::Owned(out)
     }
 
     /// Elements by id, in document order.

@@ -5,7 +5,7 @@ use super::fonts::{self, Missing};
 use super::images::{self, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
-use super::{fontface, range, xml};
+use super::{css, fontface, range, xml};
 use pathwarp::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -99,7 +99,10 @@ fn resolve(
 pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let options = &options.begin(data.len());
     let text = read::text(data, name, &options.budget)?;
-    let xml = xml::parse(&text, name, &options.budget)?;
+    xml::check(&text, name, &options.budget)?;
+    let resolved = css::resolved(&text, &options.budget).map_err(|e| Error::limit(name, "its style takes", e))?;
+    let text = resolved.map_or(text, |r| r.text);
+    let xml = xml::parse_checked(&text, name)?;
     let (tree, missed) = with_stack(name, || tree(&xml, name, options))?;
     Ok((Arc::new(tree), missed))
 }

@@ -43,6 +43,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
     };
     arrivals::note(input, &mut notes);
     unsupported::note_private(input, &mut notes);
+    unsupported::note_style_sheets(input, &mut notes);
     out.warnings.extend(notes.warnings());
     out.overhang = page::overhang(input);
     Ok(())

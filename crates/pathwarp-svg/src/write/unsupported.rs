@@ -47,15 +47,32 @@ pub(super) fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
     }
 }
 
-/// Lists the selected elements that are not warped because the renderer does not know them or their paint.
+/// Notes what is not supported of the style sheets.
+pub(super) fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
+    let sheets = input.source.unsupported_style.iter().filter(|(element, _)| element.is_none());
+    for (_, why) in sheets.filter(|_| input.outcomes.iter().any(|o| o.warped().is_some())) {
+        notes.add("the style sheets ask for more than is supported", why);
+    }
+}
+
+/// Lists the selected elements of which something is not warped because the renderer does not know it.
 pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
     let source = input.source;
     let known = |e: ElementId| content(source, e).is_none() && paint(&source.elements[e].tag).is_none();
     let all = 0..source.elements.len();
-    if all.clone().all(known) {
+    let styled = source.unsupported_style.iter().filter_map(|(e, why)| Some(((*e)?, why)));
+    let has_unknown = !all.clone().all(known);
+    if !has_unknown && styled.clone().next().is_none() {
         return Vec::new();
     }
     let selected = input.options.selection.resolve(source);
+    let hidden = |e: ElementId| source.ancestors(e).any(|a| source.elements[a].tag == "defs");
+    let skipped = |e: ElementId, why: String| Skipped { id: source.display_name(e), why };
+    let mut out: Vec<Skipped> =
+        styled.filter(|(e, _)| selected[*e] && !hidden(*e)).map(|(e, why)| skipped(e, why.clone())).collect();
+    if !has_unknown {
+        return out;
+    }
     let [fills, strokes] = ["fill", "stroke"].map(|p| cascade::values(source, p));
     let parts = input.scene.parts.iter().zip(input.outcomes);
     let warped: HashSet<ElementId> =
@@ -65,7 +82,6 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
         let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
         paint(&source.elements[*source.by_id().get(id)?.first()?].tag)
     };
-    let hidden = |e: ElementId| source.ancestors(e).any(|a| source.elements[a].tag == "defs");
     let why = |e: ElementId| {
         if let Some(why) = content(source, e) {
             return Some(why.to_owned());
@@ -82,7 +98,6 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
             format!("its {name} is {kind}; such shapes cannot be warped")
         })
     };
-    all.filter(|&e| selected[e] && !hidden(e))
-        .filter_map(|e| Some(Skipped { id: source.display_name(e), why: why(e)? }))
-        .collect()
+    out.extend(all.filter(|&e| selected[e] && !hidden(e)).filter_map(|e| Some(skipped(e, why(e)?))));
+    out
 }

@@ -17,5 +17,6 @@ mod report;
 mod seen;
 mod strokes;
 mod structure;
+mod style;
 mod unsupported;
 mod vector_images;

@@ -1,0 +1,203 @@
+//! What the style of one element comes to: declarations for usvg, attributes, and what is left for the transform.
+
+use super::sheet::Declaration;
+use super::transform;
+use super::value::{self, Custom, Units};
+use std::collections::HashSet;
+use std::rc::Rc;
+
+/// Lengths of SVG 2's geometry properties and of attributes that hold lengths.
+const GEOMETRY: [&str; 9] = ["x", "y", "width", "height", "cx", "cy", "r", "rx", "ry"];
+const LENGTHS: [&str; 4] = ["x1", "y1", "x2", "y2"];
+
+/// Attributes that stand for properties and whose values may need computing.
+const PRESENTATION: [&str; 19] = [
+    "fill",
+    "fill-opacity",
+    "stroke",
+    "stroke-width",
+    "stroke-dasharray",
+    "stroke-dashoffset",
+    "stroke-opacity",
+    "opacity",
+    "color",
+    "stop-color",
+    "stop-opacity",
+    "flood-color",
+    "flood-opacity",
+    "lighting-color",
+    "font-size",
+    "letter-spacing",
+    "word-spacing",
+    "stroke-miterlimit",
+    "display",
+];
+
+/// Properties whose value is a colour or a paint.
+const PAINTS: [&str; 6] = ["fill", "stroke", "color", "stop-color", "flood-color", "lighting-color"];
+
+/// What an element hands on to its children.
+#[derive(Debug, Clone)]
+pub(super) struct Inherited {
+    pub(super) custom: Rc<Custom>,
+    pub(super) units: Units,
+}
+
+/// The style of an element.
+#[derive(Debug, Default)]
+pub(super) struct Computed {
+    /// Declarations that usvg reads.
+    pub(super) style: Vec<(String, String)>,
+    /// New values of attributes.
+    pub(super) attributes: Vec<(&'static str, String)>,
+    /// Declarations of the transform.
+    pub(super) transform: Vec<(String, String)>,
+    /// What is not supported, in words.
+    pub(super) unsupported: Vec<String>,
+}
+
+/// The geometry properties of an element, as far as Chromium goes: nested viewports take none from style sheets, and a `use` no
+/// size.
+fn geometry(tag: &str) -> &'static [&'static str] {
+    match tag {
+        "rect" => &["x", "y", "width", "height", "rx", "ry"],
+        "circle" => &["cx", "cy", "r"],
+        "ellipse" => &["cx", "cy", "rx", "ry"],
+        "image" => &["x", "y", "width", "height"],
+        "use" => &["x", "y"],
+        _ => &[],
+    }
+}
+
+/// What 100 % of a property is. `font` is the font size of the parent.
+fn whole(name: &str, units: &Units, font: f64) -> Option<f64> {
+    let (w, h) = units.viewport;
+    Some(match name {
+        "x" | "width" | "cx" | "rx" | "x1" | "x2" => w,
+        "y" | "height" | "cy" | "ry" | "y1" | "y2" => h,
+        "r" | "stroke-width" | "stroke-dasharray" | "stroke-dashoffset" => w.hypot(h) / std::f64::consts::SQRT_2,
+        "font-size" => font,
+        _ => return None,
+    })
+}
+
+/// Computes the style of an element from the declarations that apply, weakest first. `attr` gives its attributes. `inherited` is
+/// what its parent hands on, and becomes what the element itself does.
+pub(super) fn computed<'a>(
+    tag: &str,
+    is_root: bool,
+    declarations: &[&Declaration],
+    attr: impl Fn(&str) -> Option<&'a str>,
+    inherited: &mut Inherited,
+) -> Computed {
+    let own = declarations.iter().filter(|d| d.name.starts_with("--")).map(|d| (d.name.clone(), d.value.clone()));
+    let own: Vec<(String, String)> = own.collect();
+    if !own.is_empty() {
+        inherited.custom = Rc::new(value::custom(&own, &inherited.custom));
+    }
+    let font = inherited.units.font;
+    let mut values = Values { custom: Rc::clone(&inherited.custom), units: inherited.units, font };
+    // The font size first: other lengths refer to it.
+    let sizes = declarations.iter().rev().filter(|d| d.name == "font-size").map(|d| d.value.as_str());
+    let size = sizes.chain(attr("font-size")).find_map(|v| values.of("font-size", v));
+    if let Some(px) = size.and_then(|s| value::length(&s, &inherited.units, font)) {
+        inherited.units.font = px;
+    }
+    if is_root {
+        inherited.units.root_font = inherited.units.font;
+    }
+    values.units = inherited.units;
+    let mut out = Computed::default();
+    out.declare(tag, if is_root { &[] } else { geometry(tag) }, declarations, &values);
+    let lengths = GEOMETRY.iter().chain(&LENGTHS).chain(&PRESENTATION).copied();
+    for name in lengths {
+        let styled = out.attributes.iter().any(|a| a.0 == name);
+        let raw = attr(name).filter(|v| !styled && !value::is_plain(v));
+        out.attributes.extend(raw.and_then(|raw| values.of(name, raw)).map(|v| (name, v)));
+    }
+    // usvg takes percentages of a `use` twice where it shows a symbol.
+    for name in ["width", "height"].into_iter().filter(|_| tag == "use") {
+        let share = attr(name).filter(|v| v.trim().ends_with('%'));
+        let px = share.zip(whole(name, &values.units, font)).and_then(|(v, all)| value::length(v, &values.units, all));
+        out.attributes.extend(px.map(|px| (name, px.to_string())));
+    }
+    out.unsupported.extend(attr("clip-path").and_then(|clip| unsupported(tag, "clip-path", clip)));
+    out
+}
+
+/// Computes single values.
+struct Values {
+    custom: Rc<Custom>,
+    units: Units,
+    /// Font size of the parent.
+    font: f64,
+}
+
+impl Values {
+    /// A value without variables and expressions. `None` if it is invalid.
+    fn of(&self, name: &str, raw: &str) -> Option<String> {
+        if value::is_plain(raw) {
+            return Some(raw.to_owned());
+        }
+        // Font sizes refer to that of the parent.
+        let units = if name == "font-size" { Units { font: self.font, ..self.units } } else { self.units };
+        let text = value::substituted(raw, &|n| self.custom.get(n).map(ToString::to_string))?;
+        value::computed(&text, &units, whole(name, &units, self.font))
+    }
+}
+
+impl Computed {
+    /// Adds declarations, weakest first. Of several for a property, the last valid one counts.
+    fn declare(
+        &mut self,
+        tag: &str,
+        geometry: &'static [&'static str],
+        declarations: &[&Declaration],
+        values: &Values,
+    ) {
+        let mut seen = HashSet::new();
+        for d in declarations.iter().rev().filter(|d| !d.name.starts_with("--")) {
+            let name = d.name.as_str();
+            if seen.contains(name) {
+                continue;
+            }
+            let Some(value) = values.of(name, &d.value) else { continue };
+            let known = geometry.iter().find(|g| **g == name);
+            let is_length = || value::length(&value, &values.units, 1.0).is_some();
+            if PAINTS.contains(&name) && !is_paint(&value) || known.is_some() && !is_length() {
+                continue;
+            }
+            seen.insert(name);
+            if transform::PROPERTIES.contains(&name) {
+                self.transform.push((d.name.clone(), value));
+            } else if let Some(known) = known {
+                self.attributes.push((known, value));
+            } else if !GEOMETRY.contains(&name) {
+                self.unsupported.extend(unsupported(tag, name, &value));
+                self.style.push((d.name.clone(), value));
+            }
+        }
+        self.style.reverse();
+    }
+}
+
+/// Whether usvg reads a paint, or a keyword stands for it.
+fn is_paint(value: &str) -> bool {
+    matches!(value, "inherit" | "initial" | "unset" | "currentColor" | "currentcolor")
+        || svgtypes::Paint::from_str(value).is_ok()
+}
+
+/// What has no effect in the result, in words.
+fn unsupported(tag: &str, name: &str, value: &str) -> Option<String> {
+    let lower = value.to_ascii_lowercase();
+    let is_unset = matches!(lower.as_str(), "none" | "inherit" | "initial" | "unset" | "revert" | "auto");
+    if is_unset {
+        return None;
+    }
+    let cut = matches!(name, "clip-path" | "mask") && !lower.contains("url(");
+    if name == "d" && tag == "path" {
+        return Some("its outline is that of the property “d” of CSS, which overrides the result".to_owned());
+    }
+    let ignored = cut || matches!(name, "mask-image" | "offset-path" | "text-transform");
+    ignored.then(|| format!("only without “{name}: {value}”, which is not supported"))
+}

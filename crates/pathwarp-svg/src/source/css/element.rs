@@ -1,0 +1,195 @@
+//! Elements as the crate `selectors` looks at them. Every look is counted: a selector of many parts tries many ways to choose
+//! them among an element's ancestors and siblings.
+
+use super::names::{Name, State, Svg};
+use selectors::OpaqueElement;
+use selectors::attr::{AttrSelectorOperation, CaseSensitivity, NamespaceConstraint};
+use selectors::bloom::BloomFilter;
+use selectors::context::{
+    MatchingContext, MatchingForInvalidation, MatchingMode, NeedsSelectorFlags, QuirksMode, SelectorCaches,
+};
+use selectors::matching::{ElementSelectorFlags, matches_selector};
+use selectors::parser::SelectorList;
+use std::cell::Cell;
+use usvg::roxmltree::Node;
+
+/// Bytes of an attribute's value, and attributes, that are looked at in the time of a comparison.
+const VALUE: usize = 32;
+const ATTRIBUTES: usize = 64;
+
+/// What matching has looked at so far, and may look at.
+pub(super) struct Looks {
+    pub(super) done: Cell<u64>,
+    pub(super) most: u64,
+}
+
+impl Looks {
+    /// Counts, and tells whether matching may go on.
+    pub(super) fn add(&self, looks: usize) -> bool {
+        self.done.set(self.done.get().saturating_add(looks as u64));
+        !self.exceeded()
+    }
+
+    pub(super) fn exceeded(&self) -> bool {
+        self.done.get() > self.most
+    }
+}
+
+/// The specificity of the strongest selector of a list that the element matches.
+pub(super) fn specificity(
+    list: &SelectorList<Svg>,
+    node: Node<'_, '_>,
+    looks: &Looks,
+    caches: &mut SelectorCaches,
+) -> Option<u32> {
+    let mut context = MatchingContext::new(
+        MatchingMode::Normal,
+        None,
+        caches,
+        QuirksMode::NoQuirks,
+        NeedsSelectorFlags::No,
+        MatchingForInvalidation::No,
+    );
+    let element = Counted { node, looks };
+    let matching = list.slice().iter().filter(|s| looks.add(1) && matches_selector(s, 0, None, element, &mut context));
+    matching.map(selectors::parser::Selector::specificity).max()
+}
+
+/// An element that counts what is looked at, and has no neighbours once that is too much.
+#[derive(Clone, Copy)]
+struct Counted<'a, 'b, 'i> {
+    node: Node<'b, 'i>,
+    looks: &'a Looks,
+}
+
+impl std::fmt::Debug for Counted<'_, '_, '_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.node.fmt(f)
+    }
+}
+
+impl<'b, 'i> Counted<'_, 'b, 'i> {
+    fn go(self, to: impl FnOnce(&Node<'b, 'i>) -> Option<Node<'b, 'i>>) -> Option<Self> {
+        self.looks.add(1).then(|| to(&self.node)).flatten().map(|node| Self { node, ..self })
+    }
+
+    fn attribute(&self, name: &str) -> Option<&'b str> {
+        let value = self.node.attribute(name);
+        let looked_at = 1 + value.map_or(0, str::len) / VALUE + self.node.attributes().len() / ATTRIBUTES;
+        value.filter(|_| self.looks.add(looked_at))
+    }
+}
+
+impl selectors::Element for Counted<'_, '_, '_> {
+    type Impl = Svg;
+
+    fn opaque(&self) -> OpaqueElement {
+        // No two elements begin at the same place.
+        let text = self.node.document().input_text().as_bytes();
+        OpaqueElement::new(text.get(self.node.range().start).unwrap_or(&0))
+    }
+
+    fn parent_element(&self) -> Option<Self> {
+        self.go(Node::parent_element)
+    }
+
+    fn parent_node_is_shadow_root(&self) -> bool {
+        false
+    }
+
+    fn containing_shadow_host(&self) -> Option<Self> {
+        None
+    }
+
+    fn is_pseudo_element(&self) -> bool {
+        false
+    }
+
+    fn prev_sibling_element(&self) -> Option<Self> {
+        self.go(Node::prev_sibling_element)
+    }
+
+    fn next_sibling_element(&self) -> Option<Self> {
+        self.go(Node::next_sibling_element)
+    }
+
+    fn first_element_child(&self) -> Option<Self> {
+        self.go(Node::first_element_child)
+    }
+
+    fn is_html_element_in_html_document(&self) -> bool {
+        false
+    }
+
+    fn has_local_name(&self, name: &str) -> bool {
+        self.looks.add(1) && self.node.tag_name().name() == name
+    }
+
+    fn has_namespace(&self, namespace: &str) -> bool {
+        self.node.tag_name().namespace().unwrap_or_default() == namespace
+    }
+
+    fn is_same_type(&self, other: &Self) -> bool {
+        self.node.tag_name() == other.node.tag_name()
+    }
+
+    fn attr_matches(
+        &self,
+        _: &NamespaceConstraint<&Name>,
+        name: &Name,
+        operation: &AttrSelectorOperation<&Name>,
+    ) -> bool {
+        self.attribute(name.as_ref()).is_some_and(|value| operation.eval_str(value))
+    }
+
+    fn match_non_ts_pseudo_class(&self, state: &State, _: &mut MatchingContext<'_, Svg>) -> bool {
+        *state == State::Link && self.is_link()
+    }
+
+    fn match_pseudo_element(&self, _: &super::names::Part, _: &mut MatchingContext<'_, Svg>) -> bool {
+        false
+    }
+
+    fn apply_selector_flags(&self, _: ElementSelectorFlags) {}
+
+    fn is_link(&self) -> bool {
+        self.node.tag_name().name() == "a"
+    }
+
+    fn is_html_slot_element(&self) -> bool {
+        false
+    }
+
+    fn has_id(&self, id: &Name, case: CaseSensitivity) -> bool {
+        self.attribute("id").is_some_and(|v| case.eq(v.as_bytes(), id.as_ref().as_bytes()))
+    }
+
+    fn has_class(&self, name: &Name, case: CaseSensitivity) -> bool {
+        let classes = self.attribute("class").unwrap_or_default();
+        classes.split_ascii_whitespace().any(|c| case.eq(c.as_bytes(), name.as_ref().as_bytes()))
+    }
+
+    fn has_custom_state(&self, _: &Name) -> bool {
+        false
+    }
+
+    fn imported_part(&self, _: &Name) -> Option<Name> {
+        None
+    }
+
+    fn is_part(&self, _: &Name) -> bool {
+        false
+    }
+
+    fn is_empty(&self) -> bool {
+        !self.node.has_children()
+    }
+
+    fn is_root(&self) -> bool {
+        self.node.parent_element().is_none()
+    }
+
+    fn add_element_unique_hashes(&self, _: &mut BloomFilter) -> bool {
+        false
+    }
+}

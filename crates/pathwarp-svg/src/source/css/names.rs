@@ -1,0 +1,133 @@
+//! The types that the crate `selectors` asks for: names, pseudo-classes, pseudo-elements, and how to parse them.
+
+use cssparser::{ParseError, Parser, ToCss, serialize_identifier};
+use precomputed_hash::PrecomputedHash;
+use selectors::parser::{
+    NonTSPseudoClass, ParseRelative, PseudoElement, SelectorImpl, SelectorList, SelectorParseErrorKind,
+};
+use std::borrow::Borrow;
+use std::fmt;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
+/// Selectors for SVG.
+#[derive(Debug, Clone)]
+pub(super) struct Svg;
+
+/// A name or a value in a selector.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Name(String);
+
+impl From<&str> for Name {
+    fn from(name: &str) -> Self {
+        Self(name.to_owned())
+    }
+}
+
+impl AsRef<str> for Name {
+    fn as_ref(&self) -> &str {
+        &self.0
+    }
+}
+
+impl Borrow<str> for Name {
+    fn borrow(&self) -> &str {
+        &self.0
+    }
+}
+
+impl ToCss for Name {
+    fn to_css<W: fmt::Write>(&self, out: &mut W) -> fmt::Result {
+        serialize_identifier(&self.0, out)
+    }
+}
+
+impl PrecomputedHash for Name {
+    #[expect(clippy::cast_possible_truncation, reason = "any bits of a hash do")]
+    fn precomputed_hash(&self) -> u32 {
+        let mut hasher = DefaultHasher::new();
+        self.0.hash(&mut hasher);
+        hasher.finish() as u32
+    }
+}
+
+/// A pseudo-class that does not depend on the tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum State {
+    /// `:link` and `:any-link`.
+    Link,
+    /// What only a reader at a screen can bring about, such as `:hover`.
+    Never,
+}
+
+impl ToCss for State {
+    fn to_css<W: fmt::Write>(&self, out: &mut W) -> fmt::Result {
+        out.write_str(match self {
+            Self::Link => ":link",
+            Self::Never => ":hover",
+        })
+    }
+}
+
+impl NonTSPseudoClass for State {
+    fn is_active_or_hover(&self) -> bool {
+        *self == Self::Never
+    }
+
+    fn is_user_action_state(&self) -> bool {
+        *self == Self::Never
+    }
+}
+
+/// A part of an element that has no counterpart in the file, such as `::before`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Part;
+
+impl ToCss for Part {
+    fn to_css<W: fmt::Write>(&self, out: &mut W) -> fmt::Result {
+        out.write_str("::before")
+    }
+}
+
+impl PseudoElement for Part {}
+
+impl SelectorImpl for Svg {
+    type ExtraMatchingData<'a> = ();
+    type AttrValue = Name;
+    type Identifier = Name;
+    type LocalName = Name;
+    type NamespaceUrl = Name;
+    type NamespacePrefix = Name;
+    type BorrowedNamespaceUrl = str;
+    type BorrowedLocalName = str;
+    type NonTSPseudoClass = State;
+    type PseudoElement = Part;
+}
+
+/// Parses selectors as browsers do: one that is unknown makes the whole list invalid.
+struct Dialect;
+
+impl<'i> selectors::parser::Parser<'i> for Dialect {
+    type Impl = Svg;
+    type Error = SelectorParseErrorKind;
+
+    fn parse_is_and_where(&self) -> bool {
+        true
+    }
+
+    fn parse_non_ts_pseudo_class(&self, name: &str) -> Result<State, ParseError<SelectorParseErrorKind>> {
+        match name.to_ascii_lowercase().as_str() {
+            "link" | "any-link" => Ok(State::Link),
+            "active" | "focus" | "focus-visible" | "focus-within" | "hover" | "target" | "visited" => Ok(State::Never),
+            _ => Err(ParseError::custom(SelectorParseErrorKind::UnsupportedPseudoClassOrElement)),
+        }
+    }
+
+    fn parse_pseudo_element(&self, _: &str) -> Result<Part, ParseError<SelectorParseErrorKind>> {
+        Ok(Part)
+    }
+}
+
+/// Parses the selectors of a rule.
+pub(super) fn selectors<'i>(input: &mut Parser<'i>) -> Result<SelectorList<Svg>, ParseError<SelectorParseErrorKind>> {
+    SelectorList::parse(&Dialect, input, ParseRelative::No)
+}

@@ -1,0 +1,141 @@
+//! Writes computed style into the text.
+
+use super::cascade::own;
+use super::needed::is_needed;
+use super::tree::{Styled, Tree, styled};
+use crate::source::style::with_declaration;
+use crate::source::tags::ElementId;
+use crate::source::xml::{self, escape};
+use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::kurbo::Affine;
+use std::ops::Range;
+use usvg::roxmltree::Node;
+
+/// Bytes of style that are written in the time of a comparison.
+const WRITTEN: usize = 16;
+
+/// The text with its style resolved.
+#[derive(Debug)]
+pub(crate) struct Resolved {
+    pub(crate) text: String,
+    /// In the order of the text.
+    pub(crate) originals: Vec<Original>,
+    /// What is not supported: the element, or none for the style sheets, and what there is to say.
+    pub(crate) unsupported: Vec<(Option<ElementId>, String)>,
+}
+
+/// An attribute that differs from the file's.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Original {
+    pub(crate) element: ElementId,
+    pub(crate) name: &'static str,
+    /// The attribute and the space before it.
+    pub(crate) range: Range<usize>,
+    /// What the file has there.
+    pub(crate) text: String,
+    /// What a result has there that does not change the attribute. Transforms are frozen, as boxes that they refer to change.
+    pub(crate) kept: String,
+}
+
+/// A new value for an attribute, and what a result is to have if that is not what the file has.
+struct Edit {
+    name: &'static str,
+    value: String,
+    kept: Option<String>,
+}
+
+/// Resolves the style of a drawing. Returns `None` if usvg reads it as it is, or the text cannot be parsed.
+///
+/// # Errors
+/// It takes more work than the budget allows.
+pub(crate) fn resolved(text: &str, budget: &Budget) -> Result<Option<Resolved>, Exceeded> {
+    if !is_needed(text) || text.contains("<!ENTITY") {
+        return Ok(None);
+    }
+    let Ok(doc) = xml::document(text) else { return Ok(None) };
+    let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
+    let Tree { styles, sheets, unsupported } = styled(&doc, &nodes, budget)?;
+    let mut out = Resolved {
+        text: String::with_capacity(text.len() * 2),
+        originals: Vec::new(),
+        unsupported: unsupported.into_iter().map(|why| (None, why)).collect(),
+    };
+    let mut done = 0;
+    for (e, (node, style)) in nodes.iter().zip(&styles).enumerate() {
+        let mut edits = edits(*node, style);
+        if sheets.contains(&e) {
+            // usvg passes over sheets of other types.
+            edits.push(Edit { name: "type", value: "text/plain".to_owned(), kept: None });
+        }
+        let mut places: Vec<_> = edits.into_iter().map(|edit| (place(text, *node, edit.name), edit)).collect();
+        places.sort_by_key(|(range, _)| (range.start, range.end));
+        for (range, Edit { name, value, kept }) in places {
+            let Some(before) = text.get(done..range.start) else { continue };
+            budget.spend(Limit::Comparisons, (value.len() / WRITTEN) as u64)?;
+            let old = text[range.clone()].to_owned();
+            // Lines keep their numbers.
+            let lines = "\n".repeat(old.matches('\n').count());
+            let attribute = |value: &str| format!(" {lines}{name}=\"{}\"", escape(value));
+            out.text.push_str(before);
+            let start = out.text.len();
+            out.text.push_str(&attribute(&value));
+            let kept = kept.map_or_else(|| old.clone(), |v| attribute(&v));
+            out.originals.push(Original { element: e, name, range: start..out.text.len(), text: old, kept });
+            done = range.end;
+        }
+        out.unsupported.extend(style.computed.unsupported.iter().map(|why| (Some(e), why.clone())));
+        if style.matrix.is_none() {
+            out.unsupported.push((Some(e), "its transform is not supported".to_owned()));
+        }
+    }
+    out.text.push_str(&text[done..]);
+    Ok(Some(out).filter(|o| !o.originals.is_empty() || !o.unsupported.is_empty()))
+}
+
+/// The attributes to change in an element.
+fn edits(node: Node<'_, '_>, style: &Styled) -> Vec<Edit> {
+    let computed = &style.computed;
+    let mut out: Vec<Edit> =
+        computed.attributes.iter().map(|(name, v)| Edit { name, value: v.clone(), kept: None }).collect();
+    let mut declarations = computed.style.clone();
+    let frozen = style.matrix.filter(|_| !computed.transform.is_empty()).map(frozen);
+    if let Some([transform, origin, ..]) = &frozen {
+        declarations.extend([transform, origin].map(|(n, v)| ((*n).to_owned(), v.clone())));
+    }
+    let before: Vec<(String, String)> = own(node).into_iter().map(|d| (d.name, d.value)).collect();
+    if declarations != before {
+        let value = declarations.iter().map(|(n, v)| format!("{n}:{v}")).collect::<Vec<_>>().join(";");
+        let kept = frozen.map(|all| {
+            let was = node.attribute("style").unwrap_or_default().to_owned();
+            all.iter().fold(was, |s, (name, value)| with_declaration(&s, name, value))
+        });
+        out.push(Edit { name: "style", value, kept });
+    }
+    out
+}
+
+/// Declarations of a transform that refers to nothing. The first two are for usvg.
+fn frozen(m: Affine) -> [(&'static str, String); 6] {
+    let list = m.as_coeffs().map(|c| c.to_string()).join(",");
+    let none = || "none".to_owned();
+    [
+        ("transform", format!("matrix({list})")),
+        ("transform-origin", "0 0".to_owned()),
+        ("transform-box", "view-box".to_owned()),
+        ("rotate", none()),
+        ("scale", none()),
+        ("translate", none()),
+    ]
+}
+
+/// The range of an attribute with the space before it, or the place after the element's name.
+fn place(text: &str, node: Node<'_, '_>, name: &str) -> Range<usize> {
+    if let Some(a) = node.attributes().find(|a| a.namespace().is_none() && a.name() == name) {
+        let range = a.range();
+        return text[..range.start].trim_end().len()..range.end;
+    }
+    let start = node.range().start + 1;
+    let end =
+        text[start..].find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).map_or(start, |i| start + i);
+    end..end
+}

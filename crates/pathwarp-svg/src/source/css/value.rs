@@ -1,0 +1,421 @@
+//! Values that usvg does not read: `var()` (CSS Custom Properties 1), `calc()`, `min()`, `max()`, `clamp()` and units relative
+//! to fonts and windows (CSS Values 4), `light-dark()` (CSS Color 5).
+
+use cssparser::{Parser, Token};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// Longest chain of variables that is followed.
+const CHAIN: usize = 16;
+
+/// Longest value with its variables replaced. A few lines could ask for any length.
+const LONGEST: usize = 1 << 14;
+
+/// Names that mark values which are not plain.
+const FUNCTIONS: [&str; 6] = ["var(", "calc(", "min(", "max(", "clamp(", "light-dark("];
+
+/// Custom properties and their values, variables replaced.
+pub(super) type Custom = BTreeMap<String, Rc<str>>;
+
+/// What relative units refer to, in user units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Units {
+    /// Font size of the element.
+    pub(super) font: f64,
+    /// Font size of the root element.
+    pub(super) root_font: f64,
+    /// The window: the size of the drawing.
+    pub(super) window: (f64, f64),
+    /// The nearest viewport.
+    pub(super) viewport: (f64, f64),
+}
+
+/// Whether a value may need [`substituted`] or [`computed`].
+pub(super) fn is_plain(value: &str) -> bool {
+    let bytes = value.as_bytes();
+    let unit = |(i, b): (usize, &u8)| {
+        (b.is_ascii_digit() || *b == b'.') && bytes.get(i + 1).is_some_and(u8::is_ascii_alphabetic) && {
+            let rest = &value[i + 1..];
+            let end = rest.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(rest.len());
+            is_relative(&rest[..end])
+        }
+    };
+    !FUNCTIONS.iter().any(|f| contains(value, f)) && !bytes.iter().enumerate().any(unit)
+}
+
+fn contains(value: &str, function: &str) -> bool {
+    value.as_bytes().windows(function.len()).any(|w| w.eq_ignore_ascii_case(function.as_bytes()))
+}
+
+/// Units that usvg does not know.
+fn is_relative(unit: &str) -> bool {
+    let unit = unit.to_ascii_lowercase();
+    matches!(unit.as_str(), "rem" | "ch" | "ic" | "cap" | "lh" | "rlh" | "q")
+        || unit
+            .strip_prefix(['s', 'l', 'd'])
+            .unwrap_or(&unit)
+            .strip_prefix('v')
+            .is_some_and(|v| matches!(v, "w" | "h" | "i" | "b" | "min" | "max"))
+}
+
+/// Replaces variables. Returns `None` if one has no value, which makes the declaration invalid.
+pub(super) fn substituted(value: &str, variable: &dyn Fn(&str) -> Option<String>) -> Option<String> {
+    replaced(value, variable, CHAIN)
+}
+
+fn replaced(value: &str, variable: &dyn Fn(&str) -> Option<String>, depth: usize) -> Option<String> {
+    let mut out = String::new();
+    let mut left = value;
+    while let Some(at) = left.to_ascii_lowercase().find("var(") {
+        let (before, from) = left.split_at(at);
+        out.push_str(before);
+        let mut input = Parser::new(&from["var(".len()..]);
+        let end = closing(&mut input);
+        let arguments = &from["var(".len().."var(".len() + end];
+        let (name, fallback) = arguments.split_once(',').map_or((arguments, None), |(n, f)| (n, Some(f)));
+        let found = variable(name.trim()).or_else(|| replaced(fallback?, variable, depth.checked_sub(1)?))?;
+        out.push_str(found.trim());
+        if out.len() > LONGEST {
+            return None;
+        }
+        left = from.get("var(".len() + end + 1..).unwrap_or_default();
+    }
+    out.push_str(left);
+    (out.len() <= LONGEST).then(|| out.trim().to_owned())
+}
+
+/// Position of the parenthesis that closes what the input begins in.
+fn closing(input: &mut Parser<'_>) -> usize {
+    loop {
+        let at = input.position().byte_index();
+        match input.next_including_whitespace_and_comments() {
+            Err(_) | Ok(Token::CloseParenthesis) => return at,
+            Ok(Token::Function(_) | Token::ParenthesisBlock | Token::SquareBracketBlock | Token::CurlyBracketBlock) => {
+                nested(input);
+            }
+            Ok(_) => {}
+        }
+    }
+}
+
+/// The custom properties of an element: its own, and those of its parent.
+pub(super) fn custom(own: &[(String, String)], inherited: &Custom) -> Custom {
+    let found = Variables {
+        own: own.iter().map(|(n, v)| (n.as_str(), v.as_str())).collect(),
+        inherited,
+        known: RefCell::default(),
+    };
+    let mut out = inherited.clone();
+    for name in found.own.keys() {
+        match found.value(name, CHAIN) {
+            Some(v) => out.insert((*name).to_owned(), v),
+            None => out.remove(*name),
+        };
+    }
+    out
+}
+
+/// Variables whose values are found one after the other.
+struct Variables<'a> {
+    /// Of several values, the last.
+    own: BTreeMap<&'a str, &'a str>,
+    inherited: &'a Custom,
+    /// Values that were found, and `None` for those that have none or are being looked for.
+    known: RefCell<BTreeMap<String, Option<Rc<str>>>>,
+}
+
+impl Variables<'_> {
+    fn value(&self, name: &str, depth: usize) -> Option<Rc<str>> {
+        let Some(raw) = self.own.get(name) else { return self.inherited.get(name).cloned() };
+        if let Some(known) = self.known.borrow().get(name) {
+            return known.clone();
+        }
+        self.known.borrow_mut().insert(name.to_owned(), None);
+        let value = if contains(raw, "var(") {
+            depth.checked_sub(1).and_then(|depth| substituted(raw, &|n| self.value(n, depth).map(|v| v.to_string())))
+        } else {
+            (raw.len() <= LONGEST).then(|| (*raw).to_owned())
+        };
+        let value: Option<Rc<str>> = value.map(Into::into);
+        self.known.borrow_mut().insert(name.to_owned(), value.clone());
+        value
+    }
+}
+
+/// Replaces expressions and relative units by px. `percent` is what 100 % of the property is. Returns `None` for values that are
+/// invalid or cannot be computed.
+pub(super) fn computed(value: &str, units: &Units, percent: Option<f64>) -> Option<String> {
+    let mut out = String::new();
+    let mut input = Parser::new(value);
+    let math = Math { units, percent };
+    loop {
+        let start = input.position();
+        let Ok(token) = input.next_including_whitespace_and_comments().cloned() else { return Some(out) };
+        match &token {
+            Token::Function(name) if is_math(name) => {
+                let quantity = math.function(&name.to_ascii_lowercase(), &mut input)?;
+                out.push_str(&quantity.text());
+            }
+            Token::Function(name) if name.eq_ignore_ascii_case("light-dark") => {
+                let inside = nested(&mut input);
+                out.push_str(&computed(first_argument(inside), units, percent)?);
+            }
+            Token::Dimension { unit, .. } if is_relative(unit) => {
+                out.push_str(&math.dimension(input.slice_from(start), unit)?.text());
+            }
+            Token::Function(_) | Token::ParenthesisBlock | Token::SquareBracketBlock | Token::CurlyBracketBlock => {
+                nested(&mut input);
+                out.push_str(input.slice_from(start));
+            }
+            _ => out.push_str(input.slice_from(start)),
+        }
+    }
+}
+
+/// The text inside a block.
+fn nested<'i>(input: &mut Parser<'i>) -> &'i str {
+    let inside = input.parse_nested_block(|input| {
+        let start = input.position();
+        while input.next().is_ok() {}
+        Ok::<_, cssparser::ParseError<()>>(input.slice_from(start))
+    });
+    inside.unwrap_or_default()
+}
+
+/// The text before the first comma that is in no parentheses.
+fn first_argument(text: &str) -> &str {
+    let mut depth = 0_usize;
+    let end = text.find(|c| {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        c == ',' && depth == 0
+    });
+    text[..end.unwrap_or(text.len())].trim()
+}
+
+/// A single length in user units, percentages included.
+pub(super) fn length(value: &str, units: &Units, percent: f64) -> Option<f64> {
+    let mut input = Parser::new(value);
+    let quantity = Math { units, percent: Some(percent) }.atom(&mut input)?;
+    (input.is_exhausted() && quantity.value.is_finite()).then_some(quantity.value)
+}
+
+/// A number, or a length in px.
+#[derive(Debug, Clone, Copy)]
+struct Quantity {
+    value: f64,
+    is_length: bool,
+}
+
+impl Quantity {
+    fn text(self) -> String {
+        format!("{}{}", self.value, if self.is_length { "px" } else { "" })
+    }
+}
+
+fn is_math(name: &str) -> bool {
+    ["calc", "min", "max", "clamp", "-webkit-calc"].iter().any(|f| name.eq_ignore_ascii_case(f))
+}
+
+/// Expressions of CSS Values 4, section 10.
+struct Math<'a> {
+    units: &'a Units,
+    percent: Option<f64>,
+}
+
+impl Math<'_> {
+    fn function(&self, name: &str, input: &mut Parser<'_>) -> Option<Quantity> {
+        let arguments = input.parse_nested_block(|input| {
+            let mut all = vec![self.sum(input).ok_or_else(unexpected)?];
+            while input.try_parse(Parser::expect_comma).is_ok() {
+                all.push(self.sum(input).ok_or_else(unexpected)?);
+            }
+            input.expect_exhausted()?;
+            Ok(all)
+        });
+        let all = arguments.ok()?;
+        let of =
+            |f: fn(f64, f64) -> f64| all.iter().copied().reduce(|a, b| Quantity { value: f(a.value, b.value), ..a });
+        let out = match (name, all.as_slice()) {
+            ("min", _) => of(f64::min),
+            ("max", _) => of(f64::max),
+            ("clamp", [low, value, high]) => {
+                Some(Quantity { value: value.value.min(high.value).max(low.value), ..*value })
+            }
+            ("calc" | "-webkit-calc", [one]) => Some(*one),
+            _ => None,
+        };
+        out.filter(|q| q.value.is_finite() && all.iter().all(|a| a.is_length == q.is_length))
+    }
+
+    fn sum(&self, input: &mut Parser<'_>) -> Option<Quantity> {
+        let mut out = self.product(input)?;
+        loop {
+            let state = input.state();
+            let sign = match input.next() {
+                Ok(Token::Delim('+')) => 1.0,
+                Ok(Token::Delim('-')) => -1.0,
+                _ => {
+                    input.reset(&state);
+                    return Some(out);
+                }
+            };
+            let term = self.product(input).filter(|t| t.is_length == out.is_length)?;
+            out.value += sign * term.value;
+        }
+    }
+
+    fn product(&self, input: &mut Parser<'_>) -> Option<Quantity> {
+        let mut out = self.atom(input)?;
+        loop {
+            let state = input.state();
+            match input.next() {
+                Ok(Token::Delim('*')) => {
+                    let by = self.atom(input).filter(|b| !(b.is_length && out.is_length))?;
+                    out = Quantity { value: out.value * by.value, is_length: out.is_length || by.is_length };
+                }
+                Ok(Token::Delim('/')) => {
+                    let by = self.atom(input).filter(|b| !b.is_length && b.value != 0.0)?;
+                    out.value /= by.value;
+                }
+                _ => {
+                    input.reset(&state);
+                    return Some(out);
+                }
+            }
+        }
+    }
+
+    fn atom(&self, input: &mut Parser<'_>) -> Option<Quantity> {
+        input.skip_whitespace();
+        let start = input.position();
+        let token = input.next().ok()?.clone();
+        let text = input.slice_from(start).trim();
+        match &token {
+            Token::Number { .. } => Some(Quantity { value: text.parse().ok()?, is_length: false }),
+            Token::Percentage { .. } => {
+                let share: f64 = text.strip_suffix('%')?.parse().ok()?;
+                Some(Quantity { value: share / 100.0 * self.percent?, is_length: true })
+            }
+            Token::Dimension { unit, .. } => self.dimension(text, unit),
+            Token::ParenthesisBlock => {
+                let inside = input.parse_nested_block(|input| {
+                    let sum = self.sum(input).ok_or_else(unexpected)?;
+                    input.expect_exhausted()?;
+                    Ok(sum)
+                });
+                inside.ok()
+            }
+            Token::Function(name) if is_math(name) => self.function(&name.to_ascii_lowercase(), input),
+            _ => None,
+        }
+    }
+
+    fn dimension(&self, text: &str, unit: &str) -> Option<Quantity> {
+        /// Pixels of CSS per inch.
+        const INCH: f64 = 96.0;
+        let number: f64 = text.get(..text.len().checked_sub(unit.len())?)?.parse().ok()?;
+        let u = self.units;
+        let unit = unit.to_ascii_lowercase();
+        let window = |share: &str| {
+            let (w, h) = u.window;
+            Some(match share {
+                "w" | "i" => w,
+                "h" | "b" => h,
+                "min" => w.min(h),
+                "max" => w.max(h),
+                _ => return None,
+            })
+        };
+        let one = match unit.as_str() {
+            "px" => 1.0,
+            "em" | "ic" => u.font,
+            "rem" => u.root_font,
+            // Where the font does not tell, CSS takes half an em.
+            "ex" | "ch" => 0.5 * u.font,
+            "cap" => 0.7 * u.font,
+            "lh" => 1.2 * u.font,
+            "rlh" => 1.2 * u.root_font,
+            "in" => INCH,
+            "cm" => INCH / 2.54,
+            "mm" => INCH / 25.4,
+            "q" => INCH / 101.6,
+            "pt" => INCH / 72.0,
+            "pc" => INCH / 6.0,
+            other => window(other.strip_prefix(['s', 'l', 'd']).unwrap_or(other).strip_prefix('v')?)? / 100.0,
+        };
+        Some(Quantity { value: number * one, is_length: true })
+    }
+}
+
+fn unexpected() -> cssparser::ParseError<()> {
+    cssparser::ParseError::unexpected_token()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UNITS: Units = Units { font: 10.0, root_font: 20.0, window: (300.0, 200.0), viewport: (100.0, 50.0) };
+
+    #[test]
+    fn expressions() {
+        let cases = [
+            ("calc(2px + 4px)", "6px"),
+            ("calc(50% - 10px)", "40px"),
+            ("3rem red 4px", "60px red 4px"),
+            ("calc((1 + 2) * 1em / 2)", "15px"),
+            ("min(3px, 1in) max(2px,1px)", "3px 2px"),
+            ("clamp(1px, 10vw, 20px)", "20px"),
+            ("calc(1 / 4)", "0.25"),
+            ("light-dark(rgb(1,2,3), #fff)", "rgb(1,2,3)"),
+            ("url(#a) 'calc(1px)' f(2rem)", "url(#a) 'calc(1px)' f(2rem)"),
+            ("40Q 1ch", "37.795275590551185px 5px"),
+        ];
+        for (from, to) in cases {
+            assert_eq!(computed(from, &UNITS, Some(100.0)).as_deref(), Some(to), "{from}");
+        }
+        for bad in ["calc(1px + 2)", "calc(1px * 1px)", "calc(1px / 0)", "calc()", "min()", "calc(1px 2px)"] {
+            assert_eq!(computed(bad, &UNITS, Some(100.0)), None, "{bad}");
+        }
+        assert_eq!(computed("calc(1%)", &UNITS, None), None);
+        assert_eq!(length("25%", &UNITS, 200.0), Some(50.0));
+    }
+
+    #[test]
+    fn variables() {
+        let of = |value: &str| {
+            let own = [("--a", "1px"), ("--b", "var(--a)"), ("--c", "var(--d)"), ("--d", "var(--c)")];
+            let own: Vec<_> = own.iter().map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
+            let all = custom(&own, &Custom::from([("--e".to_owned(), "x".into())]));
+            substituted(value, &|n| all.get(n).map(ToString::to_string))
+        };
+        assert_eq!(of("a var( --b ) var(--e) b").as_deref(), Some("a 1px x b"));
+        assert_eq!(of("var(--z, var(--y, f(1, 2)))").as_deref(), Some("f(1, 2)"));
+        assert_eq!(of("var(--c)"), None);
+        assert_eq!(of("var(--z)"), None);
+        assert_eq!(of("var(--b").as_deref(), Some("1px"));
+    }
+
+    #[test]
+    fn variables_that_multiply_end() {
+        let mut own = vec![("--0".to_owned(), "x".repeat(100))];
+        own.extend((1..40).map(|i| (format!("--{i}"), format!("var(--{0})var(--{0})", i - 1))));
+        let all = custom(&own, &Custom::new());
+        assert!(all.values().all(|v| v.len() <= LONGEST));
+    }
+
+    #[test]
+    fn plain_values() {
+        for plain in ["red", "12px", "1.5em", "url(#rem)", "#1a2", "M1 2q3 4"] {
+            assert!(is_plain(plain), "{plain}");
+        }
+        for other in ["2rem", "VAR(--x)", "calc(1px)", "10vw", "3.5Q", "1dvh"] {
+            assert!(!is_plain(other), "{other}");
+        }
+    }
+}

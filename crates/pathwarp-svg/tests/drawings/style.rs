@@ -1,0 +1,104 @@
+//! Style that usvg does not read: what stays in the file, and what is reported. How it looks is compared with a browser in
+//! `tests/tests/styles.rs`.
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
+
+use crate::common::{Bend, Hidden, drawing, oblique, options, read, warp_options};
+use pathwarp::budget::Limit;
+use pathwarp::kurbo::Affine;
+use pathwarp::map::AffineMap;
+use pathwarp_svg::{Document, Selection, WarpedDocument};
+
+fn bent(body: &str) -> WarpedDocument {
+    read(&drawing(body)).warp(&Bend, &warp_options()).unwrap()
+}
+
+#[test]
+fn what_is_not_warped_keeps_its_style() {
+    let style = "<style>:root{--c:red}\n.a:not(.b){fill:var(--c);r:9px}</style>";
+    let rest =
+        "<circle class='a'  style='fill:var(--c);\n x:y' cx='calc(1px)'/><rect id='r' width='2rem'\n height='3'/>";
+    let body = format!("{style}<path id='p' style='fill:var(--c)' d='M10 10h50v50z'/>{rest}");
+    let svg = drawing(&body);
+    let only = Selection { select: vec!["#p".into()], ..Selection::default() };
+    let w = read(&svg).warp(&Bend, &warp_options().with_selection(only)).unwrap();
+    assert!(w.svg.contains(style) && w.svg.contains(rest), "{}", w.svg);
+    assert!(w.svg.contains("<path id='p' style='fill:var(--c)' d='M"), "{}", w.svg);
+    // Nothing moves: nothing changes.
+    let w = read(&svg).warp(&AffineMap(Affine::IDENTITY), &warp_options()).unwrap();
+    assert_eq!(w.svg, svg);
+}
+
+#[test]
+fn shapes_with_lengths_of_style_sheets_become_paths() {
+    let w = bent("<style>.a{cx:30px;cy:calc(20px * 2);r:15px}</style><circle id='c' class='a' r='3'/>");
+    assert!(
+        w.svg.contains("<path id='c' class='a' d='M") || w.svg.contains("<path id='c' class='a' d=\"M"),
+        "{}",
+        w.svg
+    );
+    assert_eq!(w.shapes.len(), 1);
+}
+
+/// Boxes change, so that a transform about the centre of its shape would move elsewhere.
+#[test]
+fn transforms_of_style_sheets_are_frozen() {
+    let body = "<style>.a{transform:rotate(90deg);transform-box:fill-box;transform-origin:center}</style>\
+                <rect class='a' x='20' y='20' width='40' height='20'/>";
+    let w = read(&drawing(body)).warp(&Hidden(oblique()), &warp_options()).unwrap();
+    for kept in ["transform:matrix(", "transform-origin:0 0", "transform-box:view-box"] {
+        assert!(w.svg.contains(kept), "{}", w.svg);
+    }
+    let plain = "<rect transform='rotate(90 40 30)' x='20' y='20' width='40' height='20'/>";
+    let plain = read(&drawing(plain)).warp(&Hidden(oblique()), &warp_options()).unwrap();
+    let area = |svg: &str| read(svg).artwork_box(&Selection::default()).unwrap();
+    let (a, b) = (area(&w.svg), area(&plain.svg));
+    assert!(
+        (a.x0 - b.x0).abs() + (a.y0 - b.y0).abs() + (a.x1 - b.x1).abs() + (a.y1 - b.y1).abs() < 1e-3,
+        "{a:?} {b:?}"
+    );
+}
+
+#[test]
+fn what_is_not_supported_is_reported() {
+    let shape = "id='s' x='10' y='10' width='40' height='40'";
+    for (content, why) in [
+        (format!("<rect {shape} style='clip-path:circle(9px)'/>"), "clip-path: circle(9px)"),
+        (format!("<rect {shape} clip-path='inset(2px)'/>"), "clip-path: inset(2px)"),
+        (format!("<style>rect{{offset-path:path('M0 0L9 9')}}</style><rect {shape}/>"), "offset-path"),
+        (format!("<rect {shape} style='transform:rotateX(40deg)'/>"), "transform"),
+        ("<style>path{d:path('M0 0H9V9z')}</style><path id='s' d='M0 0H9V8z'/>".to_owned(), "property “d”"),
+    ] {
+        let w = bent(&content);
+        let [s] = w.skipped.as_slice() else { panic!("{content}: {:?}", w.skipped) };
+        assert!(s.id == "s" && s.why.contains(why), "{s:?}");
+    }
+    let w = bent("<style>@import 'x.css'; a:foo(1){fill:red}</style><rect width='9' height='9'/>");
+    let said: Vec<String> = w.warnings.iter().map(ToString::to_string).collect();
+    assert!(said.iter().any(|s| s.contains("@import") && s.contains("a:foo(1)")), "{said:?}");
+    // Nor are ordinary drawings.
+    let w = bent("<style>.a{fill:red}</style><rect class='a' style='clip-path:none' width='9' height='9'/>");
+    assert!(w.warnings.is_empty() && w.skipped.is_empty(), "{:?}", w.warnings);
+}
+
+/// Few bytes can ask for much: selectors that try every way through the tree, variables that multiply, rules that apply to all.
+#[test]
+fn style_ends_by_the_budget() {
+    let deep = format!("<style>x {}:not(.a){{fill:red}}</style>", "* ".repeat(20));
+    let nested = format!("{deep}{}<rect/>{}", "<g>".repeat(60), "</g>".repeat(60));
+    let many = format!("<style>{}</style>{}", "rect:not(.a){fill:red}".repeat(5_000), "<rect/>".repeat(5_000));
+    let siblings = format!("<style>a ~ b ~ c ~ rect{{fill:red}}</style>{}", "<rect/>".repeat(20_000));
+    let nth = format!(
+        "<style>rect:nth-last-child(3n of .a), rect:nth-child(2){{fill:red}}</style>{}",
+        "<rect/>".repeat(20_000)
+    );
+    for body in [nested, many, siblings, nth] {
+        let read = Document::read(drawing(&body).as_bytes(), "t", &options());
+        if let Err(e) = read {
+            assert!(e.to_string().contains(&Limit::Comparisons.to_string()), "{e}");
+        }
+    }
+    let mut rules = "--0:xxxxxxxxxxxxxxxx;".to_owned();
+    (1..60).for_each(|i| rules += &format!("--{i}:var(--{0})var(--{0});", i - 1));
+    let svg = drawing(&format!("<style>rect{{{rules}stroke:var(--59)}}</style>{}", "<rect/>".repeat(3_000)));
+    let _ = Document::read(svg.as_bytes(), "t", &options());
+}
