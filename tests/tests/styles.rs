@@ -64,6 +64,11 @@ const DRAWINGS: &[&str] = &[
     "<circle style='cx:30;cy:40;r:15px;fill:red'/>",
     "<rect fill='var(--c, blue)' x='calc(10px + 5px)' y='1rem' width='calc(50% - 10px)' height='20'/>",
     "<symbol id='s' viewBox='0 0 10 10'><circle cx='5' cy='5' r='5'/></symbol><use href='#s' x='10' width='50%' height='30%'/>",
+    "<path d='M10 50H90' pathLength='10' stroke='black' stroke-width='4' stroke-dasharray='1'/>",
+    "<g stroke-dasharray='20 5' stroke-dashoffset='7'><circle cx='50' cy='50' r='30' pathLength='100' fill='none' stroke='red'/></g>",
+    "<style>rect{stroke:red;fill:none;stroke-dasharray:.2}</style><rect x='9' y='9' width='60' height='40' rx='9' pathLength='2'/>",
+    "<style>g > :nth-of-type(2){fill:red}</style><g><path d='M9 9h20v20z'/><rect x='50' width='20' height='20'/><rect y='50' \
+     width='20' height='20'/><path d='M50 50h20v20z'/></g>",
     "<g style='--c:lime'><rect style='fill:var(--c);transform:rotate(10deg)' x='30' width='40' height='20'/></g>",
 ];
 

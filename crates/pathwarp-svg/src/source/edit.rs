@@ -171,8 +171,7 @@ fn patch(source: &SourceText, e: ElementId, c: Change, out: &mut Vec<(usize, usi
     let mut added = String::new();
     let mut attrs = c.attrs;
     if !c.properties.is_empty() {
-        let old = source.attr(e, "style").unwrap_or_default();
-        let mut style = old.into_owned();
+        let mut style = source.written_style(e);
         for (name, value) in &c.properties {
             style = with_declaration(&style, name, value);
         }

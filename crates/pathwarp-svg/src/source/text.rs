@@ -152,6 +152,14 @@ impl SourceText {
         both(f, read).0
     }
 
+    /// The style attribute that a result has if nothing changes it.
+    pub(crate) fn written_style(&self, e: ElementId) -> String {
+        let first = self.originals.partition_point(|o| o.element < e);
+        let own = self.originals[first..].iter().take_while(|o| o.element == e).find(|o| o.name == "style");
+        let value = own.map_or_else(|| self.attr(e, "style").map(Cow::into_owned), |o| o.value.clone());
+        value.unwrap_or_default()
+    }
+
     /// The text with the style of the file.
     pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
         if self.originals.is_empty() {

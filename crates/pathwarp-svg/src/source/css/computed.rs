@@ -1,5 +1,6 @@
 //! What the style of one element comes to: declarations for usvg, attributes, and what is left for the transform.
 
+use super::shapes::shape_length;
 use super::sheet::Declaration;
 use super::transform;
 use super::value::{self, Custom, Units};
@@ -9,6 +10,10 @@ use std::rc::Rc;
 /// Lengths of SVG 2's geometry properties and of attributes that hold lengths.
 const GEOMETRY: [&str; 9] = ["x", "y", "width", "height", "cx", "cy", "r", "rx", "ry"];
 const LENGTHS: [&str; 4] = ["x1", "y1", "x2", "y2"];
+
+/// Attributes that make a shape.
+const SHAPE: [&str; 15] =
+    ["x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2", "points", "d"];
 
 /// Attributes that stand for properties and whose values may need computing.
 const PRESENTATION: [&str; 19] = [
@@ -36,11 +41,15 @@ const PRESENTATION: [&str; 19] = [
 /// Properties whose value is a colour or a paint.
 const PAINTS: [&str; 6] = ["fill", "stroke", "color", "stop-color", "flood-color", "lighting-color"];
 
+const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
+
 /// What an element hands on to its children.
 #[derive(Debug, Clone)]
 pub(super) struct Inherited {
     pub(super) custom: Rc<Custom>,
     pub(super) units: Units,
+    /// Values of [`DASHES`].
+    pub(super) dashes: [Option<Rc<str>>; 2],
 }
 
 /// The style of an element.
@@ -121,8 +130,44 @@ pub(super) fn computed<'a>(
         let px = share.zip(whole(name, &values.units, font)).and_then(|(v, all)| value::length(v, &values.units, all));
         out.attributes.extend(px.map(|px| (name, px.to_string())));
     }
+    for (name, value) in DASHES.iter().zip(&mut inherited.dashes) {
+        let styled = out.style.iter().rev().find(|s| s.0 == *name).map(|s| s.1.as_str());
+        let changed = out.attributes.iter().find(|a| a.0 == *name).map(|a| a.1.as_str());
+        if let Some(v) = styled.or(changed).or_else(|| attr(name)).filter(|v| v.trim() != "inherit") {
+            *value = Some(v.into());
+        }
+    }
+    if let Some(dashes) = scaled_dashes(tag, &attr, &out, inherited) {
+        out.style.retain(|s| !DASHES.contains(&s.0.as_str()));
+        out.style.extend(DASHES.iter().zip(dashes).map(|(name, value)| ((*name).to_owned(), value)));
+    }
     out.unsupported.extend(attr("clip-path").and_then(|clip| unsupported(tag, "clip-path", clip)));
     out
+}
+
+/// Dashes in user units, where `pathLength` gives their unit.
+fn scaled_dashes<'a>(
+    tag: &str,
+    attr: impl Fn(&str) -> Option<&'a str>,
+    style: &Computed,
+    inherited: &Inherited,
+) -> Option<[String; 2]> {
+    let whole: f64 = attr("pathLength")?.trim().parse().ok().filter(|l| *l > 0.0)?;
+    let [Some(array), offset] = &inherited.dashes else { return None };
+    let units = &inherited.units;
+    let found = |name: &str| {
+        let changed = style.attributes.iter().find(|a| a.0 == name).map(|a| a.1.clone());
+        changed.or_else(|| attr(name).map(ToOwned::to_owned))
+    };
+    let values: Vec<(String, String)> =
+        SHAPE.iter().filter_map(|name| Some(((*name).to_owned(), found(name)?))).collect();
+    let attr = |name: &str| values.iter().find(|v| v.0 == name).map(|v| v.1.as_str());
+    let unit = shape_length(tag, attr, units)? / whole;
+    let diagonal = units.viewport.0.hypot(units.viewport.1) / std::f64::consts::SQRT_2;
+    let scaled = |v: &str| Some((value::length(v, units, diagonal)? * unit).to_string());
+    let array = array.split([',', ' ']).filter(|v| !v.is_empty()).map(scaled).collect::<Option<Vec<_>>>()?;
+    let offset = offset.as_deref().map_or_else(|| Some("0".to_owned()), scaled)?;
+    (!array.is_empty()).then(|| [array.join(","), offset])
 }
 
 /// Computes single values.

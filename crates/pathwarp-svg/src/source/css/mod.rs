@@ -3,7 +3,6 @@
 //! and 2, SVG 2's geometry properties), and written into attributes that usvg and the rest of this crate read. The writer puts the
 //! original attributes back where it does not change them.
 
-mod boxes;
 mod cascade;
 mod computed;
 mod element;
@@ -11,6 +10,7 @@ mod media;
 mod names;
 mod needed;
 mod resolved;
+mod shapes;
 mod sheet;
 mod transform;
 mod tree;

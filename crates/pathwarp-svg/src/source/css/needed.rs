@@ -87,7 +87,7 @@ pub(super) fn is_needed(text: &str) -> bool {
             memchr(b'%', tag).is_some()
         })
     };
-    marked || shares() || compared() || sibling() || has("media=") || UNITS.iter().any(unit)
+    marked || shares() || compared() || sibling() || has("media=") || has("pathLength=") || UNITS.iter().any(unit)
 }
 
 /// The name that ends at a place, spaces left out.

@@ -33,7 +33,10 @@ pub(crate) struct Original {
     pub(crate) range: Range<usize>,
     /// What the file has there.
     pub(crate) text: String,
-    /// What a result has there that does not change the attribute. Transforms are frozen, as boxes that they refer to change.
+    /// The attribute's value in a result that does not change it, if it has one there: that of the file, unless a transform is
+    /// frozen, as boxes that it refers to change.
+    pub(crate) value: Option<String>,
+    /// That attribute, with the space before it.
     pub(crate) kept: String,
 }
 
@@ -79,8 +82,12 @@ pub(crate) fn resolved(text: &str, budget: &Budget) -> Result<Option<Resolved>, 
             out.text.push_str(before);
             let start = out.text.len();
             out.text.push_str(&attribute(&value));
-            let kept = kept.map_or_else(|| old.clone(), |v| attribute(&v));
-            out.originals.push(Original { element: e, name, range: start..out.text.len(), text: old, kept });
+            let (value, kept) = match kept {
+                Some(v) => (Some(v.clone()), attribute(&v)),
+                None => (node.attribute(name).map(ToOwned::to_owned), old.clone()),
+            };
+            let here = start..out.text.len();
+            out.originals.push(Original { element: e, name, range: here, text: old, value, kept });
             done = range.end;
         }
         out.unsupported.extend(style.computed.unsupported.iter().map(|why| (Some(e), why.clone())));

@@ -1,10 +1,10 @@
 //! The style of every element, from the root down, and the transforms, from the leaves up: the box of a group depends on those
 //! of its children.
 
-use super::boxes::shape_box;
 use super::cascade::{applying, own};
 use super::computed::{Computed, Inherited, computed};
 use super::element::Looks;
+use super::shapes::shape_box;
 use super::sheet::Rules;
 use super::value::{Custom, Units, length};
 use super::{media, transform};
@@ -82,8 +82,11 @@ pub(super) fn styled(doc: &Document<'_>, nodes: &[Node<'_, '_>], budget: &Budget
             break;
         }
         let parent = node.parent_element().and_then(|p| inherited.get(&p.id()));
-        let mut here =
-            parent.cloned().unwrap_or_else(|| Inherited { custom: Rc::new(Custom::new()), units: root_units(doc) });
+        let mut here = parent.cloned().unwrap_or_else(|| Inherited {
+            custom: Rc::new(Custom::new()),
+            units: root_units(doc),
+            dashes: [None, None],
+        });
         let tag = node.tag_name().name();
         let style = computed(tag, parent.is_none(), &declarations, |name| node.attribute(name), &mut here);
         if parent.is_none_or(|p| !Rc::ptr_eq(&p.custom, &here.custom)) {

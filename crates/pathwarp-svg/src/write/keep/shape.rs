@@ -23,12 +23,17 @@ pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     if tag != "path" {
         k.edits.rename(e, "path");
         k.remove_geometry(e);
-        // Rules for the old name no longer apply, and rules for `path` now do.
-        if k.source.css_mentions(tag) || k.source.css_mentions("path") || k.source.css.contains('[') {
-            for (name, value) in k.writer.properties(i) {
-                k.edits.set_style(e, name, value);
-            }
+    }
+    // Rules for the old name no longer apply, and rules for `path` now do.
+    let css = &k.source.css;
+    let renamed = tag != "path" && (k.source.css_mentions(tag) || k.source.css_mentions("path") || css.contains('['));
+    // Neighbours become paths, too, and change what is the first of its type.
+    if renamed || css.contains("-of-type") {
+        for (name, value) in k.writer.properties(i) {
+            k.edits.set_style(e, name, value);
         }
+        // The dashes among them are in user units.
+        k.edits.remove_attr(e, "pathLength");
     }
     k.edits.set_attr(e, "d", part_data(p, Some(warped), k.source));
     k.remove_lettering(e);
@@ -63,7 +68,8 @@ fn patch_stroke(k: &mut Keeper<'_, '_>, e: ElementId, p: &Part, warped: &WarpedP
     let scale = warped.stroke.scale();
     let Some(s) = p.stroke.as_ref().filter(|_| (scale - 1.0).abs() > 1e-9) else { return };
     k.edits.set_property(e, "stroke-width", short(f64::from(s.width().get()) * scale));
-    if s.dasharray().is_some() {
+    // In units of `pathLength`, dashes are the same on the new path.
+    if s.dasharray().is_some() && k.source.attr(e, "pathLength").is_none() {
         k.edits.set_property(e, "stroke-dasharray", dashes(s, scale));
         if s.dashoffset() != 0.0 {
             k.edits.set_property(e, "stroke-dashoffset", short(f64::from(s.dashoffset()) * scale));
