@@ -59,8 +59,8 @@ const SELECTORS: [&str; 10] =
 
 const RULES: [&str; 6] = ["media", "supports", "layer", "import", "container", "scope"];
 
-/// Units that are relative to the window or the root.
-const UNITS: [&str; 5] = ["rem", "vw", "vh", "vmin", "vmax"];
+/// Units that usvg does not know.
+const UNITS: [&str; 13] = ["rem", "vw", "vh", "vmin", "vmax", "vi", "vb", "Q", "q", "ch", "ic", "lh", "cap"];
 
 /// Returns `false` if usvg reads all style of this text as browsers do.
 pub(super) fn is_needed(text: &str) -> bool {
@@ -78,7 +78,9 @@ pub(super) fn is_needed(text: &str) -> bool {
     let has = |word: &str| memmem::find(bytes, word.as_bytes()).is_some();
     let unit = |unit: &&str| {
         let number = |at: usize| at.checked_sub(1).is_some_and(|b| bytes[b].is_ascii_digit() || bytes[b] == b'.');
-        let ends = |at: usize| !bytes.get(at + unit.len()).is_some_and(u8::is_ascii_alphanumeric);
+        // None of these is in base64.
+        let ends =
+            |at: usize| matches!(bytes.get(at + unit.len()), Some(b'"' | b'\'' | b';' | b' ' | b')' | b',' | b'}'));
         memmem::find_iter(bytes, unit.as_bytes()).any(|at| number(at) && ends(at))
     };
     let shares = || {
@@ -126,7 +128,8 @@ mod tests {
             "a ~ b{}",
             "[id^='a']{}",
             "@media print{}",
-            "font-size:2rem",
+            "font-size:2rem;",
+            "x='3Q'",
             "clip-path:circle(3px)",
             "<style media='print'>",
             "a:not(.b){}",
