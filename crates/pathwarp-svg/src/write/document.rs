@@ -41,6 +41,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
             flat::write(input, &mut out.skipped, &mut notes)
         }
     };
+    out.skipped.extend(unsupported::styles(input));
     arrivals::note(input, &mut notes);
     unsupported::note_private(input, &mut notes);
     unsupported::note_style_sheets(input, &mut notes);

@@ -55,24 +55,31 @@ pub(super) fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
     }
 }
 
-/// Lists the selected elements of which something is not warped because the renderer does not know it.
+/// Lists the selected elements whose style asks for what is not supported.
+pub(super) fn styles(input: &WriteInput<'_>) -> Vec<Skipped> {
+    let source = input.source;
+    let unsupported = || source.unsupported_style.iter().filter_map(|(e, why)| Some(((*e)?, why)));
+    if unsupported().next().is_none() {
+        return Vec::new();
+    }
+    let selected = input.options.selection.resolve(source);
+    let shown = unsupported().filter(|(e, _)| selected[*e] && !is_definition(source, *e));
+    shown.map(|(e, why)| Skipped { id: source.display_name(e), why: why.clone() }).collect()
+}
+
+fn is_definition(source: &SourceText, e: ElementId) -> bool {
+    source.ancestors(e).any(|a| source.elements[a].tag == "defs")
+}
+
+/// Lists the selected elements that are not warped because the renderer does not know them or their paint.
 pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
     let source = input.source;
     let known = |e: ElementId| content(source, e).is_none() && paint(&source.elements[e].tag).is_none();
     let all = 0..source.elements.len();
-    let styled = source.unsupported_style.iter().filter_map(|(e, why)| Some(((*e)?, why)));
-    let has_unknown = !all.clone().all(known);
-    if !has_unknown && styled.clone().next().is_none() {
+    if all.clone().all(known) {
         return Vec::new();
     }
     let selected = input.options.selection.resolve(source);
-    let hidden = |e: ElementId| source.ancestors(e).any(|a| source.elements[a].tag == "defs");
-    let skipped = |e: ElementId, why: String| Skipped { id: source.display_name(e), why };
-    let mut out: Vec<Skipped> =
-        styled.filter(|(e, _)| selected[*e] && !hidden(*e)).map(|(e, why)| skipped(e, why.clone())).collect();
-    if !has_unknown {
-        return out;
-    }
     let [fills, strokes] = ["fill", "stroke"].map(|p| cascade::values(source, p));
     let parts = input.scene.parts.iter().zip(input.outcomes);
     let warped: HashSet<ElementId> =
@@ -98,6 +105,7 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
             format!("its {name} is {kind}; such shapes cannot be warped")
         })
     };
-    out.extend(all.filter(|&e| selected[e] && !hidden(e)).filter_map(|e| Some(skipped(e, why(e)?))));
-    out
+    all.filter(|&e| selected[e] && !is_definition(source, e))
+        .filter_map(|e| Some(Skipped { id: source.display_name(e), why: why(e)? }))
+        .collect()
 }

@@ -6,7 +6,7 @@ use crate::common::{Bend, Hidden, drawing, oblique, options, read, warp_options}
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::Affine;
 use pathwarp::map::AffineMap;
-use pathwarp_svg::{Document, Selection, WarpedDocument};
+use pathwarp_svg::{Document, Selection, Structure, WarpedDocument};
 
 fn bent(body: &str) -> WarpedDocument {
     read(&drawing(body)).warp(&Bend, &warp_options()).unwrap()
@@ -71,6 +71,9 @@ fn what_is_not_supported_is_reported() {
         let w = bent(&content);
         let [s] = w.skipped.as_slice() else { panic!("{content}: {:?}", w.skipped) };
         assert!(s.id == "s" && s.why.contains(why), "{s:?}");
+        let flat = warp_options().with_structure(Structure::Flatten);
+        let w = read(&drawing(&content)).warp(&Bend, &flat).unwrap();
+        assert!(w.skipped.iter().all(|s| !s.why.contains("left out")) && w.svg.contains("<path"), "{:?}", w.skipped);
     }
     let w = bent("<style>@import 'x.css'; a:foo(1){fill:red}</style><rect width='9' height='9'/>");
     let said: Vec<String> = w.warnings.iter().map(ToString::to_string).collect();
