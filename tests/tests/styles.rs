@@ -42,7 +42,8 @@ const SHEETS: &[(&str, &str)] = &[
     (":root{--c:#e00;--w:var(--v,6px)}.a{stroke:var(--c)!important;stroke-width:var(--w)}", LINE),
     (".a{stroke-width:calc(2px + 4%)}", LINE),
     (".a{stroke-width:max(2px, .5rem);stroke-dasharray:calc(1px * 8) 1rem}", LINE),
-    (".a{fill:red;fill:color(display-p3 1 0 0)}", RECT),
+    (".a{fill:red;fill:color(display-p3 0.4 0.6 0.4)}", RECT),
+    (".a{stroke:oklch(0.7 0.1 150);stroke-width:9px}", LINE),
     // Selectors.
     ("rect:nth-child(2){fill:red}", THREE),
     ("rect:nth-of-type(2n + 1){fill:red}", THREE),

@@ -1,5 +1,6 @@
 //! What the style of one element comes to: declarations for usvg, attributes, and what is left for the transform.
 
+use super::color;
 use super::shapes::shape_length;
 use super::sheet::Declaration;
 use super::transform;
@@ -121,8 +122,9 @@ pub(super) fn computed<'a>(
     let lengths = GEOMETRY.iter().chain(&LENGTHS).chain(&PRESENTATION).copied();
     for name in lengths {
         let styled = out.attributes.iter().any(|a| a.0 == name);
-        let raw = attr(name).filter(|v| !styled && !value::is_plain(v));
-        out.attributes.extend(raw.and_then(|raw| values.of(name, raw)).map(|v| (name, v)));
+        let raw = attr(name).filter(|_| !styled);
+        let new = raw.and_then(|raw| values.of(name, raw)).filter(|new| raw != Some(new));
+        out.attributes.extend(new.map(|v| (name, v)));
     }
     // usvg takes percentages of a `use` twice where it shows a symbol.
     for name in ["width", "height"].into_iter().filter(|_| tag == "use") {
@@ -181,13 +183,15 @@ struct Values {
 impl Values {
     /// A value without variables and expressions. `None` if it is invalid.
     fn of(&self, name: &str, raw: &str) -> Option<String> {
+        let is_paint = PAINTS.contains(&name);
         if value::is_plain(raw) {
-            return Some(raw.to_owned());
+            return if is_paint { color::paint(raw) } else { Some(raw.to_owned()) };
         }
         // Font sizes refer to that of the parent.
         let units = if name == "font-size" { Units { font: self.font, ..self.units } } else { self.units };
         let text = value::substituted(raw, &|n| self.custom.get(n).map(ToString::to_string))?;
-        value::computed(&text, &units, whole(name, &units, self.font))
+        let computed = value::computed(&text, &units, whole(name, &units, self.font))?;
+        if is_paint { color::paint(&computed) } else { Some(computed) }
     }
 }
 
@@ -209,7 +213,7 @@ impl Computed {
             let Some(value) = values.of(name, &d.value) else { continue };
             let known = geometry.iter().find(|g| **g == name);
             let is_length = || value::length(&value, &values.units, 1.0).is_some();
-            if PAINTS.contains(&name) && !is_paint(&value) || known.is_some() && !is_length() {
+            if known.is_some() && !is_length() {
                 continue;
             }
             seen.insert(name);
@@ -224,12 +228,6 @@ impl Computed {
         }
         self.style.reverse();
     }
-}
-
-/// Whether usvg reads a paint, or a keyword stands for it.
-fn is_paint(value: &str) -> bool {
-    matches!(value, "inherit" | "initial" | "unset" | "currentColor" | "currentcolor")
-        || svgtypes::Paint::from_str(value).is_ok()
 }
 
 /// What has no effect in the result, in words.

@@ -4,6 +4,7 @@
 //! original attributes back where it does not change them.
 
 mod cascade;
+mod color;
 mod computed;
 mod element;
 mod media;

@@ -1,0 +1,69 @@
+//! Colours that usvg does not read (CSS Color 4), as the nearest in sRGB.
+
+/// Display P3 in linear light to XYZ (CSS Color 4, section 10.3).
+const P3_TO_XYZ: [[f64; 3]; 3] = [
+    [608_311.0 / 1_250_200.0, 189_793.0 / 714_400.0, 198_249.0 / 1_000_160.0],
+    [35_783.0 / 156_275.0, 247_089.0 / 357_200.0, 198_249.0 / 2_500_400.0],
+    [0.0, 32_229.0 / 714_400.0, 5_220_557.0 / 5_000_800.0],
+];
+
+/// A paint as usvg reads it. `None` for what is no paint, or of a kind that is not supported.
+pub(super) fn paint(value: &str) -> Option<String> {
+    let is_keyword = matches!(value, "inherit" | "initial" | "unset");
+    if is_keyword || svgtypes::Paint::from_str(value).is_ok() {
+        return Some(value.to_owned());
+    }
+    let lower = value.to_ascii_lowercase();
+    let [r, g, b, a] = csscolorparser::parse(&in_xyz(&lower).unwrap_or(lower)).ok()?.to_rgba8();
+    Some(format!("rgba({r},{g},{b},{})", f64::from(a) / 255.0))
+}
+
+/// Writes a colour of Display P3 in XYZ.
+fn in_xyz(color: &str) -> Option<String> {
+    let arguments = color.strip_prefix("color(display-p3")?.strip_suffix(')')?;
+    let (channels, alpha) = arguments.split_once('/').unwrap_or((arguments, "1"));
+    let channel = |text: &str| {
+        let value: f64 = match text.strip_suffix('%') {
+            Some(share) => share.parse::<f64>().ok()? / 100.0,
+            None => text.parse().ok()?,
+        };
+        // The transfer function is that of sRGB.
+        let v = value.abs();
+        Some(value.signum() * if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) })
+    };
+    let linear: Vec<f64> = channels.split_ascii_whitespace().map(channel).collect::<Option<_>>()?;
+    let [x, y, z] = P3_TO_XYZ.map(|row| row.iter().zip(&linear).map(|(m, v)| m * v).sum::<f64>());
+    (linear.len() == 3).then(|| format!("color(xyz {x:.9} {y:.9} {z:.9} / {})", alpha.trim()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::paint;
+
+    #[test]
+    fn what_usvg_reads_stays() {
+        for css in ["#123", "url(#a) red", "context-fill", "inherit", "currentColor", "hsl(120 50% 40% / 60%)"] {
+            assert_eq!(paint(css).as_deref(), Some(css));
+        }
+    }
+
+    /// As Chromium 156 paints them, within a level.
+    #[test]
+    fn other_spaces() {
+        for (css, wanted) in [
+            ("oklch(0.7 0.1 150)", [111, 176, 125]),
+            ("lab(50% 40 30)", [187, 88, 70]),
+            ("color(srgb 1 .5 0)", [255, 128, 0]),
+            ("color(display-p3 0.5 0.5 0.5)", [127, 128, 128]),
+            ("color(display-p3 0.4 60% 0.4 / 1)", [85, 155, 97]),
+        ] {
+            let found = paint(css).unwrap();
+            let channels = found.strip_prefix("rgba(").unwrap().split(',').take(3);
+            let channels: Vec<i32> = channels.map(|c| c.parse().unwrap()).collect();
+            assert!(channels.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= 1), "{css}: {found}");
+        }
+        for none in ["color(display-p3 1 0)", "color-mix(in srgb, red, blue)", "oklch(x)", ""] {
+            assert_eq!(paint(none), None, "{none}");
+        }
+    }
+}
