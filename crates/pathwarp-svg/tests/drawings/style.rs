@@ -58,6 +58,22 @@ fn transforms_of_style_sheets_are_frozen() {
     );
 }
 
+/// A spinner turns about its centre, also where that has moved.
+#[test]
+fn origins_of_animations_stay() {
+    let css =
+        "@keyframes k{to{transform:rotate(1turn)}}.a{animation:k 3s;transform-box:fill-box;transform-origin:center}";
+    let w = bent(&format!("<style>{css}</style><path class='a' d='M10 10h40v40z'/>"));
+    assert!(w.svg.contains("<path class='a' d='") && !w.svg.contains("style="), "{}", w.svg);
+}
+
+#[test]
+fn frozen_transforms_win_over_important_ones() {
+    let css = ".a{transform:rotate(9deg)!important;transform-origin:50% 50%}";
+    let w = bent(&format!("<style>{css}</style><path class='a' d='M10 10h40v40z'/>"));
+    assert!(w.svg.contains("transform-origin:0 0 !important") && w.svg.contains(") !important"), "{}", w.svg);
+}
+
 #[test]
 fn what_is_not_supported_is_reported() {
     let shape = "id='s' x='10' y='10' width='40' height='40'";

@@ -61,7 +61,7 @@ pub(super) struct Computed {
     /// New values of attributes.
     pub(super) attributes: Vec<(&'static str, String)>,
     /// Declarations of the transform.
-    pub(super) transform: Vec<(String, String)>,
+    pub(super) transform: Vec<Declaration>,
     /// What is not supported, in words.
     pub(super) unsupported: Vec<String>,
 }
@@ -218,7 +218,7 @@ impl Computed {
             }
             seen.insert(name);
             if transform::PROPERTIES.contains(&name) {
-                self.transform.push((d.name.clone(), value));
+                self.transform.push(Declaration { value, ..(*d).clone() });
             } else if let Some(known) = known {
                 self.attributes.push((known, value));
             } else if !GEOMETRY.contains(&name) {

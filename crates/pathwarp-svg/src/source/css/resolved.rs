@@ -105,7 +105,9 @@ fn edits(node: Node<'_, '_>, style: &Styled) -> Vec<Edit> {
     let mut out: Vec<Edit> =
         computed.attributes.iter().map(|(name, v)| Edit { name, value: v.clone(), kept: None }).collect();
     let mut declarations = computed.style.clone();
-    let frozen = style.matrix.filter(|_| !computed.transform.is_empty()).map(frozen);
+    // The origin of what only an animation turns stays.
+    let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
+    let frozen = style.matrix.filter(|m| !computed.transform.is_empty() && !is_still(m)).map(frozen);
     if let Some([transform, origin, ..]) = &frozen {
         declarations.extend([transform, origin].map(|(n, v)| ((*n).to_owned(), v.clone())));
     }
@@ -114,7 +116,8 @@ fn edits(node: Node<'_, '_>, style: &Styled) -> Vec<Edit> {
         let value = declarations.iter().map(|(n, v)| format!("{n}:{v}")).collect::<Vec<_>>().join(";");
         let kept = frozen.map(|all| {
             let was = node.attribute("style").unwrap_or_default().to_owned();
-            all.iter().fold(was, |s, (name, value)| with_declaration(&s, name, value))
+            let important = if computed.transform.iter().any(|d| d.important) { " !important" } else { "" };
+            all.iter().fold(was, |s, (name, value)| with_declaration(&s, name, &format!("{value}{important}")))
         });
         out.push(Edit { name: "style", value, kept });
     }

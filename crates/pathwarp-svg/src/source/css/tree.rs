@@ -158,7 +158,7 @@ fn matrices(nodes: &[Node<'_, '_>], styles: &[(Computed, Units)]) -> Vec<Option<
         };
         let own = if matches!(tag, "g" | "a" | "switch") { boxes[e] } else { shape_box(tag, attr, units) };
         let declared = |name: &str| {
-            let last = style.transform.iter().rev().find(|t| t.0 == name).map(|t| t.1.as_str());
+            let last = style.transform.iter().find(|d| d.name == name).map(|d| d.value.as_str());
             last.or_else(|| node.attribute(name).filter(|_| matches!(name, "transform" | "transform-origin")))
         };
         let reference = match declared("transform-box").unwrap_or("view-box") {
