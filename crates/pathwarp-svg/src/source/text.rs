@@ -37,7 +37,7 @@ pub(crate) struct SourceText {
     pub(crate) undeclared: Vec<String>,
     /// Attributes that differ from the file's, in the order of the text: its style, as browsers read it.
     pub(crate) originals: Vec<Original>,
-    /// What the style asks for and is not supported: the element, or none for the style sheets, and what there is to say.
+    /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
     marks: Marks,
     /// Outlines of `path` elements. A large drawing has them.

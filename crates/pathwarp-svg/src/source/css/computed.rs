@@ -1,4 +1,4 @@
-//! What the style of one element comes to: declarations for usvg, attributes, and what is left for the transform.
+//! Computes the style of one element: declarations that usvg reads, attributes, and the declarations of the transform.
 
 use super::color;
 use super::shapes::shape_length;
@@ -11,10 +11,6 @@ use std::rc::Rc;
 /// Lengths of SVG 2's geometry properties and of attributes that hold lengths.
 const GEOMETRY: [&str; 9] = ["x", "y", "width", "height", "cx", "cy", "r", "rx", "ry"];
 const LENGTHS: [&str; 4] = ["x1", "y1", "x2", "y2"];
-
-/// Attributes that make a shape.
-const SHAPE: [&str; 15] =
-    ["x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2", "points", "d"];
 
 /// Attributes that stand for properties and whose values may need computing.
 const PRESENTATION: [&str; 19] = [
@@ -121,8 +117,7 @@ pub(super) fn computed<'a>(
     out.declare(tag, if is_root { &[] } else { geometry(tag) }, declarations, &values);
     let lengths = GEOMETRY.iter().chain(&LENGTHS).chain(&PRESENTATION).copied();
     for name in lengths {
-        let styled = out.attributes.iter().any(|a| a.0 == name);
-        let raw = attr(name).filter(|_| !styled);
+        let raw = attr(name).filter(|_| out.new_value(name).is_none());
         let new = raw.and_then(|raw| values.of(name, raw)).filter(|new| raw != Some(new));
         out.attributes.extend(new.map(|v| (name, v)));
     }
@@ -134,8 +129,8 @@ pub(super) fn computed<'a>(
     }
     for (name, value) in DASHES.iter().zip(&mut inherited.dashes) {
         let styled = out.style.iter().rev().find(|s| s.0 == *name).map(|s| s.1.as_str());
-        let changed = out.attributes.iter().find(|a| a.0 == *name).map(|a| a.1.as_str());
-        if let Some(v) = styled.or(changed).or_else(|| attr(name)).filter(|v| v.trim() != "inherit") {
+        if let Some(v) = styled.or_else(|| out.new_value(name)).or_else(|| attr(name)).filter(|v| v.trim() != "inherit")
+        {
             *value = Some(v.into());
         }
     }
@@ -157,14 +152,7 @@ fn scaled_dashes<'a>(
     let whole: f64 = attr("pathLength")?.trim().parse().ok().filter(|l| *l > 0.0)?;
     let [Some(array), offset] = &inherited.dashes else { return None };
     let units = &inherited.units;
-    let found = |name: &str| {
-        let changed = style.attributes.iter().find(|a| a.0 == name).map(|a| a.1.clone());
-        changed.or_else(|| attr(name).map(ToOwned::to_owned))
-    };
-    let values: Vec<(String, String)> =
-        SHAPE.iter().filter_map(|name| Some(((*name).to_owned(), found(name)?))).collect();
-    let attr = |name: &str| values.iter().find(|v| v.0 == name).map(|v| v.1.as_str());
-    let unit = shape_length(tag, attr, units)? / whole;
+    let unit = shape_length(tag, |name| style.new_value(name).or_else(|| attr(name)), units)? / whole;
     let diagonal = units.viewport.0.hypot(units.viewport.1) / std::f64::consts::SQRT_2;
     let scaled = |v: &str| Some((value::length(v, units, diagonal)? * unit).to_string());
     let array = array.split([',', ' ']).filter(|v| !v.is_empty()).map(scaled).collect::<Option<Vec<_>>>()?;
@@ -196,6 +184,11 @@ impl Values {
 }
 
 impl Computed {
+    /// The new value of an attribute, if it has one.
+    pub(super) fn new_value(&self, name: &str) -> Option<&str> {
+        self.attributes.iter().find(|a| a.0 == name).map(|a| a.1.as_str())
+    }
+
     /// Adds declarations, weakest first. Of several for a property, the last valid one counts.
     fn declare(
         &mut self,

@@ -17,7 +17,7 @@ use usvg::roxmltree::Node;
 const VALUE: usize = 32;
 const ATTRIBUTES: usize = 64;
 
-/// What matching has looked at so far, and may look at.
+/// Counts what matching looks at, up to a limit.
 pub(super) struct Looks {
     pub(super) done: Cell<u64>,
     pub(super) most: u64,

@@ -53,7 +53,7 @@ const PROPERTIES: [&str; 19] = [
     "mask-image",
 ];
 
-/// What follows a colon in selectors that usvg does not know.
+/// Pseudo-classes that usvg does not know, as they begin.
 const SELECTORS: [&str; 10] =
     ["not(", "is(", "where(", "nth-", "last-", "only-", "first-of", "root", "empty", "any-link"];
 

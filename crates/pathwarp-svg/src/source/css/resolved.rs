@@ -31,7 +31,7 @@ pub(crate) struct Original {
     pub(crate) name: &'static str,
     /// The attribute and the space before it.
     pub(crate) range: Range<usize>,
-    /// What the file has there.
+    /// The file's own text in this place.
     pub(crate) text: String,
     /// The attribute's value in a result that does not change it, if it has one there: that of the file, unless a transform is
     /// frozen, as boxes that it refers to change.

@@ -1,6 +1,6 @@
 //! Transforms as style sheets write them (CSS Transforms 1 and 2), computed to a matrix.
 
-use super::value::{Units, length};
+use super::value::{Units, length, nested};
 use cssparser::{Parser, Token};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 
@@ -96,12 +96,7 @@ fn functions(value: &str, units: &Units, size: (f64, f64)) -> Option<Affine> {
             Ok(Token::Function(name)) => name.to_ascii_lowercase(),
             Ok(_) => return None,
         };
-        let arguments = input.parse_nested_block(|input| {
-            let start = input.position();
-            while input.next().is_ok() {}
-            Ok::<_, cssparser::ParseError<()>>(input.slice_from(start))
-        });
-        out *= function(&name, arguments.ok()?, units, size)?;
+        out *= function(&name, nested(&mut input), units, size)?;
     }
 }
 

@@ -130,8 +130,7 @@ fn root_units(doc: &Document<'_>) -> Units {
 /// Size of the viewport that an `<svg>` makes, in its own coordinates.
 fn viewport(node: Node<'_, '_>, style: &Computed, units: &Units) -> (f64, f64) {
     let size = |name: &str, full: f64| {
-        let changed = style.attributes.iter().find(|a| a.0 == name).map(|a| a.1.as_str());
-        changed.or_else(|| node.attribute(name)).and_then(|v| length(v, units, full)).unwrap_or(full)
+        style.new_value(name).or_else(|| node.attribute(name)).and_then(|v| length(v, units, full)).unwrap_or(full)
     };
     view_box(node).unwrap_or_else(|| (size("width", units.viewport.0), size("height", units.viewport.1)))
 }
@@ -152,10 +151,7 @@ fn matrices(nodes: &[Node<'_, '_>], styles: &[(Computed, Units)]) -> Vec<Option<
     let mut out = vec![Some(Affine::IDENTITY); nodes.len()];
     for (e, (node, (style, units))) in nodes.iter().zip(styles).enumerate().rev() {
         let tag = node.tag_name().name();
-        let attr = |name: &str| {
-            let changed = style.attributes.iter().find(|a| a.0 == name).map(|a| a.1.as_str());
-            changed.or_else(|| node.attribute(name))
-        };
+        let attr = |name: &str| style.new_value(name).or_else(|| node.attribute(name));
         let own = if matches!(tag, "g" | "a" | "switch") { boxes[e] } else { shape_box(tag, attr, units) };
         let declared = |name: &str| {
             let last = style.transform.iter().find(|d| d.name == name).map(|d| d.value.as_str());

@@ -31,7 +31,7 @@ pub(super) struct Units {
     pub(super) viewport: (f64, f64),
 }
 
-/// Whether a value may need [`substituted`] or [`computed`].
+/// Returns `true` if a value has no variables, expressions or units for [`substituted`] and [`computed`] to replace.
 pub(super) fn is_plain(value: &str) -> bool {
     let bytes = value.as_bytes();
     let unit = |(i, b): (usize, &u8)| {
@@ -45,7 +45,12 @@ pub(super) fn is_plain(value: &str) -> bool {
 }
 
 fn contains(value: &str, function: &str) -> bool {
-    value.as_bytes().windows(function.len()).any(|w| w.eq_ignore_ascii_case(function.as_bytes()))
+    find(value, function).is_some()
+}
+
+/// The first place of a function's name, in upper or lower case.
+fn find(value: &str, function: &str) -> Option<usize> {
+    value.as_bytes().windows(function.len()).position(|w| w.eq_ignore_ascii_case(function.as_bytes()))
 }
 
 /// Units that usvg does not know.
@@ -67,7 +72,7 @@ pub(super) fn substituted(value: &str, variable: &dyn Fn(&str) -> Option<String>
 fn replaced(value: &str, variable: &dyn Fn(&str) -> Option<String>, depth: usize) -> Option<String> {
     let mut out = String::new();
     let mut left = value;
-    while let Some(at) = left.to_ascii_lowercase().find("var(") {
+    while let Some(at) = find(left, "var(") {
         let (before, from) = left.split_at(at);
         out.push_str(before);
         let mut input = Parser::new(&from["var(".len()..]);
@@ -174,7 +179,7 @@ pub(super) fn computed(value: &str, units: &Units, percent: Option<f64>) -> Opti
 }
 
 /// The text inside a block.
-fn nested<'i>(input: &mut Parser<'i>) -> &'i str {
+pub(super) fn nested<'i>(input: &mut Parser<'i>) -> &'i str {
     let inside = input.parse_nested_block(|input| {
         let start = input.position();
         while input.next().is_ok() {}
@@ -335,7 +340,7 @@ impl Math<'_> {
             "px" => 1.0,
             "em" | "ic" => u.font,
             "rem" => u.root_font,
-            // Where the font does not tell, CSS takes half an em.
+            // Half an em, as CSS assumes for fonts without these metrics.
             "ex" | "ch" => 0.5 * u.font,
             "cap" => 0.7 * u.font,
             "lh" => 1.2 * u.font,
