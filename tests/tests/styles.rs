@@ -3,6 +3,8 @@
 //! Skipped where Chromium is not installed.
 
 use crate::support::browser::chromium;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Frame};
@@ -73,9 +75,32 @@ const DRAWINGS: &[&str] = &[
     "<g style='--c:lime'><rect style='fill:var(--c);transform:rotate(10deg)' x='30' width='40' height='20'/></g>",
 ];
 
+/// Texts in the font F.
+const TEXTS: &[&str] = &[
+    "<text class='a' x='5' y='30' font-size='9'>Hand</text><style>.a{font:14px/1.5 F,serif}</style>",
+    "<text x='5' y='30'>Size</text><text x='5' y='60' font-size='large'>Size <tspan font-size='smaller'>of</tspan></text>",
+    "<text x='5' y='40' font-size='20' style='text-transform:uppercase'>straße</text>",
+    "<text x='5' y='40' font-size='16'><tspan style='text-transform:capitalize'>two words</tspan></text>",
+    "<text x='5' y='40' font-size='14' style='white-space:pre'>a  b   c</text>",
+    "<text x='95' y='40' font-size='16' direction='rtl'>abc!</text><text x='95' y='80' font-size='16' direction='rtl'>4 (5) x.</text>",
+    "<text x='50' y='40' font-size='14' style='direction:rtl;unicode-bidi:bidi-override' text-anchor='middle'>Hallo!</text>",
+    "<g direction='rtl'><text font-size='14'><tspan x='90' y='30'>one!</tspan><tspan x='90' y='60'>two?</tspan></text></g>",
+    "<text x='5' y='40' font-size='20'>A<tspan opacity='.3'>BC<tspan style='opacity:.5'>D</tspan></tspan>E</text>",
+    "<text x='5' y='40' font-size='12' style='letter-spacing:2.4px'>fifty ff</text>\
+     <text x='95' y='80' font-size='12' letter-spacing='9' text-anchor='end'>end</text>",
+];
+
+/// The bundled font as F.
+fn with_font(text: &str) -> String {
+    let data = STANDARD.encode(pathwarp_svg::bundled_font());
+    format!(
+        "<style>@font-face{{font-family:F;src:url(data:font/ttf;base64,{data})}}</style><g font-family='F' text-rendering='geometricPrecision'>{text}</g>"
+    )
+}
+
 fn drawings() -> Vec<String> {
     let sheets = SHEETS.iter().map(|(css, body)| format!("<style>{css}</style>{body}"));
-    let all = sheets.chain(DRAWINGS.iter().map(|d| (*d).to_owned()));
+    let all = sheets.chain(DRAWINGS.iter().map(|d| (*d).to_owned())).chain(TEXTS.iter().map(|t| with_font(t)));
     let svg = |body| {
         format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100' width='400' height='400'>{body}</svg>")
     };

@@ -15,6 +15,7 @@ use crate::scene::unread::UnreadImages;
 use crate::source::read::ReadOptions;
 use crate::source::select::{Selection, candidates, is_named, matches_any};
 use crate::source::tags::{ElementId, is_shape};
+use crate::source::undrawn::undrawn;
 use crate::write;
 use crate::write::input::WriteInput;
 use pathwarp::budget::{Budget, Exceeded};
@@ -101,12 +102,24 @@ impl Document {
         &self.drawing
     }
 
+    /// Families of fonts that the drawing asks for and that were not found.
+    #[must_use]
+    pub fn missing_fonts(&self) -> &[String] {
+        &self.drawing.missed.fonts
+    }
+
     /// Fonts and images that the drawing asks for and that were not found, in words.
     #[must_use]
     pub fn missing(&self) -> Vec<String> {
         let missed = &self.drawing.missed;
         let fonts = missed.fonts.iter().map(|name| format!("text uses another font, as {name} is missing"));
         fonts.chain(missed.images.iter().map(|link| format!("the image {link} cannot be read"))).collect()
+    }
+
+    /// What the drawing asks for and a picture of it lacks, in words: content and style that are not supported.
+    #[must_use]
+    pub fn undrawn(&self) -> Vec<String> {
+        undrawn(&self.drawing.source)
     }
 
     /// All shapes that are painted, clip or mask, in painting order. Texts and `use` copies have one shape per path.

@@ -72,8 +72,8 @@ pub use scene::lettering::selected::{Lettering, LetteringFrame, LetteringFrameEr
 pub use scene::plot::{Plot, PlotLoss, PlotShape};
 pub use scene::shape::{NamedPath, Shape};
 pub use scene::unread::UnreadImages;
+pub use source::faces::{GenericFamilies, bundled_font};
 pub use source::families::{FontFile, check_fonts, family_styles, find_font};
-pub use source::fonts::{GenericFamilies, bundled_font};
 pub use source::read::{ReadOptions, compressed};
 pub use source::select::Selection;
 pub use write::lettering::{LetteringOptions, write_lettering};

@@ -29,15 +29,20 @@ pub struct ReadTree {
     pub tree: Arc<usvg::Tree>,
     /// Images that it lacks.
     pub unread: UnreadImages,
+    /// Families of fonts that it lacks.
+    pub missing_fonts: Vec<String>,
+    /// What else a picture of it lacks, in words: content and style that are not supported.
+    pub undrawn: Vec<String>,
 }
 
-/// Reads SVG or svgz data like [`parse_tree`], and lists the images that the drawing lacks.
+/// Reads SVG or svgz data like [`parse_tree`], and lists what the tree lacks of the drawing.
 ///
 /// # Errors
 /// As for [`parse_tree`].
 pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadTree, Error> {
     let (tree, missed) = tree::parse(data, name, options)?;
-    Ok(ReadTree { tree, unread: UnreadImages::of(&missed) })
+    let unread = UnreadImages::of(&missed);
+    Ok(ReadTree { tree, unread, missing_fonts: missed.fonts, undrawn: missed.undrawn })
 }
 
 /// Returns the tree of a document. Elements without id have temporary ones in it.

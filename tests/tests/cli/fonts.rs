@@ -178,3 +178,35 @@ fn styles_are_synthesised_on_request() {
         assert!(code == Some(2) && said.contains(part), "{said}");
     }
 }
+
+/// What a picture or a PDF lacks is said, once.
+#[test]
+fn what_is_not_drawn_is_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let cases = [
+        ("<text x='9' y='50' font-family='Nope'>a</text>", 0, "text uses another font, as Nope is missing"),
+        (
+            "<text x='9' y='50' font-family='Noto Sans' style='text-shadow:1px 1px red'>a</text>",
+            1,
+            "text-shadow: 1px 1px red",
+        ),
+        ("<foreignObject width='9' height='9'/><rect width='9' height='9'/>", 1, "foreignObject at 1:63 is not drawn"),
+        ("<style>@import 'a.css';</style><rect width='9' height='9'/>", 1, "@import"),
+        ("<image width='9' height='9' href='nope.png'/>", 1, "the image nope.png cannot be read"),
+        ("<defs><foreignObject width='9' height='9'/></defs><rect width='9' height='9'/>", 0, ""),
+    ];
+    for (body, expected, why) in cases {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
+        for args in
+            [&["render", "-", "--no-system-fonts"][..], &["convert", "-", "--format", "pdf", "--no-system-fonts"]]
+        {
+            let (code, out, said) = run(dir.path(), args, &svg);
+            assert_eq!(
+                (code, said.lines().count()),
+                (Some(expected), usize::from(!why.is_empty())),
+                "{args:?} {body}: {said}"
+            );
+            assert!(said.contains(why) && !out.is_empty(), "{said}");
+        }
+    }
+}

@@ -3,7 +3,6 @@
 use crate::support::pathwarp_program;
 use cpu_time::ThreadTime;
 use pathwarp::kurbo::{CubicBez, ParamCurveArclen as _};
-use rustix::process::{Pid, Resource, Rlimit, prlimit};
 use std::fs;
 use std::hint::black_box;
 use std::io::Read as _;
@@ -65,15 +64,14 @@ impl Folder {
     #[track_caller]
     pub fn run(&self, args: &[&str]) -> (i32, String) {
         let slowness = slowness();
-        let mut command = Command::new(pathwarp_program());
-        command.args(args).args(["--limit", &format!("seconds={}", LAST_RESORT * slowness)]).current_dir(self.path());
+        // The shell sets the limits before the program begins, in kilobytes and seconds.
+        let (kilobytes, seconds) = (ADDRESSES / 1024, (SECONDS * slowness).ceil());
+        let limited = format!("ulimit -v {kilobytes} && ulimit -t {seconds} && exec \"$0\" \"$@\"");
+        let mut command = Command::new("sh");
+        command.arg("-c").arg(limited).arg(pathwarp_program()).args(args).current_dir(self.path());
+        command.args(["--limit", &format!("seconds={}", LAST_RESORT * slowness)]);
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
-        let pid = Pid::from_raw(i32::try_from(child.id()).unwrap());
-        let limit = |n| Rlimit { current: Some(n), maximum: Some(n) };
-        // A child that has ended has no limits to set.
-        let _ = prlimit(pid, Resource::As, limit(ADDRESSES));
-        let _ = prlimit(pid, Resource::Cpu, limit((SECONDS * slowness).ceil() as u64));
         let mut said = String::new();
         let _ = child.stderr.take().unwrap().read_to_string(&mut said);
         let done = child.wait4().unwrap();

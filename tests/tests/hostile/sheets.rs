@@ -31,6 +31,19 @@ fn values_of_attributes_are_counted() {
 }
 
 #[test]
+fn values_are_counted_for_each_element() {
+    let paths = "<path d='M0 0h9v9z'/>".repeat(20_000);
+    let rule = |css: &str| format!("<style>{css}</style>{paths}");
+    expect(&rule(&format!("path{{transform:{}}}", "rotate(1deg)".repeat(38_000))), [3, 3], "comparisons");
+    // Texts that inherit what they are shown without.
+    let inherited = format!("<g style='text-shadow:{}'>{}</g>", "1px ".repeat(15_000), "<text>a</text>".repeat(5000));
+    expect(&inherited, [1, 1], "");
+    // A value may be short that asks for a long one.
+    let long = "1px ".repeat(4000);
+    expect(&rule(&format!("svg{{--a:{long}}}path{{stroke-dasharray:var(--a)}}")), [3, 3], "comparisons");
+}
+
+#[test]
 fn namespaces_are_counted() {
     let open: String = (0..12_000).map(|i| format!("<g xmlns:n{i}='u{i}'>")).collect();
     let deep = format!("{open}{RECT}{}", "</g>".repeat(12_000));

@@ -5,7 +5,7 @@ use crate::decimals::three_figures;
 use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Rect;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, Overhang, UnreadImages};
+use pathwarp_svg::{LetteringFrameError, Overhang, UnreadImages, Warning};
 
 /// The message of an error of the libraries: parameters as flags, with the options that help.
 pub(crate) fn error(e: &Error, flags: &Flags) -> String {
@@ -93,6 +93,21 @@ pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
     )
 }
 
+/// A warning about fonts that are missing.
+fn missing_fonts(families: &[String]) -> Option<String> {
+    (!families.is_empty()).then(|| Warning::MissingFonts(families.to_vec()).to_string())
+}
+
+/// Lists what a picture of a drawing lacks: fonts, images, and what else is not drawn, of which the first are named.
+pub(crate) fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String]) -> Vec<String> {
+    const NAMED: usize = 10;
+    let mut out: Vec<String> = missing_fonts(fonts).into_iter().chain(unread(images)).collect();
+    out.extend(undrawn.iter().take(NAMED).cloned());
+    let more = undrawn.len().saturating_sub(NAMED);
+    out.extend((more > 0).then(|| format!("and {more} more")));
+    out
+}
+
 /// Describes images that were not read because they lie outside of the drawing's folder.
 pub(crate) fn outside(unread: &UnreadImages) -> Option<String> {
     let n = unread.outside.len();
@@ -101,7 +116,7 @@ pub(crate) fn outside(unread: &UnreadImages) -> Option<String> {
 }
 
 /// Lists the images that were not read.
-pub(crate) fn unread(unread: &UnreadImages) -> Vec<String> {
+fn unread(unread: &UnreadImages) -> Vec<String> {
     let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
     let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
     unreadable.chain(outside_links).chain(outside(unread)).collect()

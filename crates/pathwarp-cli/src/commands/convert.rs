@@ -105,13 +105,15 @@ fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOpt
     let doc = input::document(file, &options.reading)?;
     let Exported { bytes, warnings } =
         export::drawing(doc.text().to_owned(), format, &input::read_options(file, &options.reading), options, None)?;
-    let unread = doc.unread_images();
-    let warnings: Vec<String> = doc.missing().into_iter().chain(advice::unread(&unread)).chain(warnings).collect();
+    let (unread, undrawn) = (doc.unread_images(), doc.undrawn());
+    let is_partial = !unread.is_empty() || !undrawn.is_empty();
+    let lacking = advice::lacking(doc.missing_fonts(), &unread, &undrawn).into_iter();
+    let warnings: Vec<String> = lacking.chain(warnings).collect();
     for warning in warnings.iter().filter(|_| !options.quiet) {
         terminal::warning(&format!("{}: {warning}", input::display(file)));
     }
     output::write(target, &bytes)?;
-    Ok(Status::partial_if(!unread.is_empty()))
+    Ok(Status::partial_if(is_partial))
 }
 
 /// The formats that this command writes.

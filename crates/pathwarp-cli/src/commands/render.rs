@@ -77,10 +77,11 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
     let picture = encode(drawn.map_err(|e| Failure::from(e).about(&name))?, format, options.quality)?;
     if !options.quiet {
-        advice::unread(&read.unread).iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
+        let lacking = advice::lacking(&read.missing_fonts, &read.unread, &read.undrawn);
+        lacking.iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
     }
     output::write(target, &picture)?;
-    Ok(Status::partial_if(!read.unread.is_empty()))
+    Ok(Status::partial_if(!read.unread.is_empty() || !read.undrawn.is_empty()))
 }
 
 /// A colour behind the drawing; `None` for transparency.

@@ -125,12 +125,14 @@ impl<'a> Edits<'a> {
     pub(crate) fn apply(self) -> String {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
-        for o in source.originals.iter().filter(|o| !self.changes.get(&o.element).is_some_and(|c| c.sets(o.name))) {
-            patches.push((o.range.start, o.range.end, o.kept.clone()));
-        }
+        let changes = &self.changes;
+        let kept = source.originals.iter().filter(|o| !changes.get(&o.element).is_some_and(|c| c.sets(o.name)));
+        let kept: Vec<_> = kept.map(|o| (o.range.start, o.range.end, o.kept.clone())).collect();
         for (e, c) in self.changes {
             patch(source, e, c, &mut patches);
         }
+        // After new content, which may begin at the same position.
+        patches.extend(kept);
         // The sort is stable, so insertions at one position keep their order. An insertion precedes a replacement that starts
         // at the same position, and an outer replacement precedes an inner one.
         patches.sort_by_key(|p| (p.0, p.0 != p.1, std::cmp::Reverse(p.1)));

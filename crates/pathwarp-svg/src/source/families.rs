@@ -1,12 +1,13 @@
 //! Families: their fonts, by name, weight and slant, for programs that set text themselves.
 
-use super::fonts::{database, of_kind};
+use super::faces::Look;
+use super::fonts::database;
 use super::read::ReadOptions;
 use pathwarp::Error;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use usvg::FontFamily;
-use usvg::fontdb::{self, Database, Family};
+use usvg::fontdb::{self, Database};
 
 /// A font file's content.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,14 +25,8 @@ pub struct FontFile {
 /// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
 pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) -> Result<FontFile, Error> {
     let db = database(read.system_fonts, &read.fonts);
-    let query = |name: &str| {
-        db.query(&fontdb::Query {
-            families: &[Family::Name(name)],
-            weight: fontdb::Weight(weight),
-            stretch: fontdb::Stretch::Normal,
-            style: if italic { fontdb::Style::Italic } else { fontdb::Style::Normal },
-        })
-    };
+    let style = if italic { fontdb::Style::Italic } else { fontdb::Style::Normal };
+    let look = Look { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style };
     let generic = match family.to_ascii_lowercase().as_str() {
         "serif" => Some(FontFamily::Serif),
         "sans-serif" => Some(FontFamily::SansSerif),
@@ -40,10 +35,9 @@ pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) ->
         "monospace" => Some(FontFamily::Monospace),
         _ => None,
     };
-    let exact = || db.faces().flat_map(|f| &f.families).find(|(n, _)| n.eq_ignore_ascii_case(family)).map(|(n, _)| n);
     let found = match generic {
-        Some(kind) => of_kind(&kind, &read.generic_families, query),
-        None => exact().and_then(|name| query(name)),
+        Some(kind) => look.face_of_kind(&kind, &read.generic_families, &db),
+        None => look.face_of(family, &db).or_else(|| look.face_called(family, &db)),
     };
     let file = found.and_then(|id| db.with_face_data(id, |bytes, index| FontFile { bytes: bytes.to_vec(), index }));
     file.ok_or_else(|| {

@@ -1,35 +1,13 @@
 //! Fonts for text: installed ones if wanted, given files, and a bundled fallback.
 
+use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
+use skrifa::{FontRef, MetadataProvider as _};
 use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use usvg::fontdb::{self, Database, Family, ID, Source};
+use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
-
-static BUNDLED: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
-const BUNDLED_FAMILY: &str = "Noto Sans";
-
-/// Families for CSS's generic family names. `None` selects a common family of that kind.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct GenericFamilies {
-    /// `serif`
-    pub serif: Option<String>,
-    /// `sans-serif`
-    pub sans_serif: Option<String>,
-    /// `cursive`
-    pub cursive: Option<String>,
-    /// `fantasy`
-    pub fantasy: Option<String>,
-    /// `monospace`
-    pub monospace: Option<String>,
-}
-
-/// Returns the bytes of the bundled font: Noto Sans (OFL) for Latin, Greek and Cyrillic.
-#[must_use]
-pub fn bundled_font() -> &'static [u8] {
-    BUNDLED
-}
 
 /// Names that were asked for and not found.
 pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
@@ -78,7 +56,6 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
 pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolver<'static> {
     let held = Arc::new(Held::default());
     let also_held = held.clone();
-    let fallback = FontResolver::default_fallback_selector();
     FontResolver {
         select_font: Box::new(move |font, db| {
             let face = select(font, db, &generic, &missing)?;
@@ -90,6 +67,28 @@ pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolv
             (!used.contains(&face)).then_some(face)
         }),
     }
+}
+
+/// The font for a letter that the fonts `used` so far lack: one that looks like the first of them, if there is one. usvg's own choice
+/// may be bold in a text that is not.
+fn fallback(letter: char, used: &[ID], db: &Database) -> Option<ID> {
+    let first = db.face(*used.first()?)?;
+    let off = |f: &fontdb::FaceInfo| {
+        (f.style != first.style, f.stretch != first.stretch, f.weight.0.abs_diff(first.weight.0))
+    };
+    let mut others: Vec<_> = db.faces().filter(|f| !used.contains(&f.id)).map(|f| (off(f), f.id)).collect();
+    // The sort is stable: of equals, the first counts.
+    others.sort_by_key(|(off, _)| *off);
+    others.into_iter().map(|(_, id)| id).find(|id| has_letter(*id, letter, db))
+}
+
+fn has_letter(face: ID, letter: char, db: &Database) -> bool {
+    db.with_face_data(face, |data, index| {
+        let font = FontRef::from_index(data, index).ok()?;
+        font.charmap().map(letter)
+    })
+    .flatten()
+    .is_some()
 }
 
 /// Bytes of a font.
@@ -123,62 +122,37 @@ impl Held {
 
 /// The face for a font of the drawing.
 fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
-    let query = |family: &str| {
-        db.query(&fontdb::Query {
-            families: &[Family::Name(family)],
-            weight: fontdb::Weight(font.weight()),
-            stretch: stretch(font.stretch()),
-            style: match font.style() {
-                usvg::FontStyle::Normal => fontdb::Style::Normal,
-                usvg::FontStyle::Italic => fontdb::Style::Italic,
-                usvg::FontStyle::Oblique => fontdb::Style::Oblique,
-            },
-        })
+    let style = match font.style() {
+        usvg::FontStyle::Normal => fontdb::Style::Normal,
+        usvg::FontStyle::Italic => fontdb::Style::Italic,
+        usvg::FontStyle::Oblique => fontdb::Style::Oblique,
     };
-    let mut absent = Vec::new();
+    let look = Look { weight: fontdb::Weight(font.weight()), stretch: stretch(font.stretch()), style };
+    let query = |family: &str| look.face_of(family, db);
+    let (mut absent, mut similar) = (Vec::new(), None);
     for family in font.families() {
         let found = match family {
-            FontFamily::Named(name) => query(name),
-            other => of_kind(other, generic, query),
+            FontFamily::Named(name) => match of_interface(name) {
+                Some(kind) => look.face_of_kind(&kind, generic, db),
+                None => query(name).or_else(|| look.face_called(name, db)),
+            },
+            other => look.face_of_kind(other, generic, db),
         };
         if found.is_some() {
             return found;
         }
-        absent.extend(asked_for(family, generic).cloned());
+        let Some(name) = asked_for(family, generic) else { continue };
+        absent.push(name.clone());
+        similar = look.face_with_metrics_of(name, db);
+        if similar.is_some() {
+            break;
+        }
     }
     if let Ok(mut m) = missing.lock() {
         m.extend(absent);
     }
-    let last: Option<ID> = of_kind(&FontFamily::Serif, generic, query);
+    let last = similar.or_else(|| look.face_of_kind(&FontFamily::Serif, generic, db));
     last.or_else(|| query(BUNDLED_FAMILY)).or_else(|| db.faces().next().map(|f| f.id))
-}
-
-/// The name of a family; of a generic one, the name configured for it.
-fn asked_for<'a>(family: &'a FontFamily, set: &'a GenericFamilies) -> Option<&'a String> {
-    match family {
-        FontFamily::Named(name) => Some(name),
-        FontFamily::Serif => set.serif.as_ref(),
-        FontFamily::SansSerif => set.sans_serif.as_ref(),
-        FontFamily::Cursive => set.cursive.as_ref(),
-        FontFamily::Fantasy => set.fantasy.as_ref(),
-        FontFamily::Monospace => set.monospace.as_ref(),
-    }
-}
-
-/// Resolves a generic family to the configured one, else to a common one.
-pub(super) fn of_kind(kind: &FontFamily, set: &GenericFamilies, query: impl Fn(&str) -> Option<ID>) -> Option<ID> {
-    let common: &[&str] = match kind {
-        FontFamily::Serif => &["Times New Roman", "Noto Serif", "DejaVu Serif", "Liberation Serif"],
-        FontFamily::SansSerif => &["Arial", "Helvetica", "Noto Sans", "DejaVu Sans"],
-        FontFamily::Cursive => &["Comic Sans MS", "Apple Chancery"],
-        FontFamily::Fantasy => &["Impact", "Papyrus"],
-        FontFamily::Monospace => &["Courier New", "Noto Sans Mono", "Noto Mono", "DejaVu Sans Mono", "Liberation Mono"],
-        FontFamily::Named(_) => return None,
-    };
-    match asked_for(kind, set) {
-        Some(name) => query(name),
-        None => common.iter().find_map(|n| query(n)).or_else(|| query(BUNDLED_FAMILY)),
-    }
 }
 
 fn stretch(s: usvg::FontStretch) -> fontdb::Stretch {

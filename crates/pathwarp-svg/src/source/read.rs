@@ -1,7 +1,7 @@
 //! File content to text and back: encoding, compression, limits.
 
 use super::encoding::decoded;
-use super::fonts::GenericFamilies;
+use super::faces::GenericFamilies;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limit, Limits};
 use std::borrow::Cow;

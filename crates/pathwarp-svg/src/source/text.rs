@@ -162,18 +162,22 @@ impl SourceText {
 
     /// The text with the style of the file.
     pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
-        if self.originals.is_empty() {
-            return Cow::Borrowed(&self.text);
-        }
-        let mut out = String::with_capacity(self.text.len());
-        let mut done = 0;
-        for o in &self.originals {
+        self.part_in_file(0..self.text.len())
+    }
+
+    /// A part of the text with the style of the file.
+    pub(crate) fn part_in_file(&self, range: Range<usize>) -> Cow<'_, str> {
+        let first = self.originals.partition_point(|o| o.range.start < range.start);
+        let inside = self.originals[first..].iter().take_while(|o| o.range.end <= range.end);
+        let mut out = String::new();
+        let mut done = range.start;
+        for o in inside {
             out.push_str(&self.text[done..o.range.start]);
             out.push_str(&o.text);
             done = o.range.end;
         }
-        out.push_str(&self.text[done..]);
-        Cow::Owned(out)
+        let rest = &self.text[done..range.end];
+        if done == range.start { Cow::Borrowed(rest) } else { Cow::Owned(out + rest) }
     }
 
     /// Elements by id, in document order.

@@ -5,6 +5,8 @@ use super::fonts::{self, Missing};
 use super::images::{self, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
+use super::text::SourceText;
+use super::undrawn::{may_be_unknown, undrawn};
 use super::{css, fontface, range, xml};
 use pathwarp::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -22,6 +24,8 @@ pub(crate) struct Missed {
     pub(crate) outside: Vec<String>,
     /// Numbers out of range were replaced.
     pub(crate) range: bool,
+    /// What else a picture of it lacks, in words; of drawings that are read by [`parse`].
+    pub(crate) undrawn: Vec<String>,
 }
 
 /// Resolves a drawing with usvg. `name` identifies it in errors.
@@ -49,6 +53,9 @@ pub(crate) fn resolve_again(
     tree(xml, name, &options.begin_again())
 }
 
+/// Font size where a drawing gives none, in px: that of browsers.
+const MEDIUM: f32 = 16.0;
+
 /// Resolves a drawing that is within the limits.
 fn resolve(
     xml: &roxmltree::Document<'_>,
@@ -63,7 +70,7 @@ fn resolve(
         let fontdb = fontface::add(installed, xml.input_text(), &options.budget)
             .map_err(|e| Error::limit(name, "unpacked, its fonts take", e))?;
         let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone());
-        usvg::Options { fontdb, font_resolver, ..usvg::Options::default() }
+        usvg::Options { fontdb, font_resolver, font_size: MEDIUM, ..usvg::Options::default() }
     } else {
         usvg::Options::default()
     };
@@ -92,7 +99,7 @@ fn resolve(
     }
     let listed = |m: Missing| m.lock().map(|m| m.iter().cloned().collect()).unwrap_or_default();
     let [fonts, images, outside] = [missing, unread.images, unread.outside].map(listed);
-    Ok((tree, Missed { fonts, images, outside, range: false }))
+    Ok((tree, Missed { fonts, images, outside, ..Missed::default() }))
 }
 
 /// Reads SVG or svgz data into usvg's tree.
@@ -101,8 +108,14 @@ pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<(A
     let text = read::text(data, name, &options.budget)?;
     xml::check(&text, name, &options.budget)?;
     let resolved = css::resolved(&text, &options.budget).map_err(|e| Error::limit(name, "its style takes", e))?;
-    let text = resolved.map_or(text, |r| r.text);
+    let (text, unsupported) = resolved.map_or((text, Vec::new()), |r| (r.text, r.unsupported));
     let xml = xml::parse_checked(&text, name)?;
-    let (tree, missed) = with_stack(name, || tree(&xml, name, options))?;
+    let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
+    drop(xml);
+    if !unsupported.is_empty() || may_be_unknown(&text) {
+        let mut source = SourceText::parse(text, name)?;
+        source.unsupported_style = unsupported;
+        missed.undrawn = undrawn(&source);
+    }
     Ok((Arc::new(tree), missed))
 }

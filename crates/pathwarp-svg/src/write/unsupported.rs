@@ -5,6 +5,7 @@ use crate::bend::outcome::{Notes, Skipped};
 use crate::source::cascade;
 use crate::source::tags::{ElementId, is_shape};
 use crate::source::text::SourceText;
+use crate::source::undrawn::{Unknown, is_definition, unknown};
 use std::collections::HashSet;
 
 /// A paint server that the renderer does not know, in words.
@@ -16,19 +17,15 @@ fn paint(tag: &str) -> Option<&'static str> {
     }
 }
 
-/// Content that the renderer does not know, with the reason why it is not warped.
+/// Why content that the renderer does not know is not warped.
 fn content(source: &SourceText, e: ElementId) -> Option<&'static str> {
-    match source.elements[e].tag.as_ref() {
-        "flowRoot" => Some(
-            "text that flows in a frame (flowRoot) cannot be warped, as only Inkscape lays it out; convert it to ordinary text or \
-             to paths there",
-        ),
-        // Private data of an editor is not shown.
-        "foreignObject" if source.attr(e, "requiredExtensions").is_none() => {
-            Some("foreign content (HTML in a foreignObject) cannot be warped")
+    Some(match unknown(source, e)? {
+        Unknown::FlowedText => {
+            "text that flows in a frame (flowRoot) cannot be warped, as only Inkscape lays it out; convert it to ordinary text or to \
+             paths there"
         }
-        _ => None,
-    }
+        Unknown::Foreign => "foreign content (HTML in a foreignObject) cannot be warped",
+    })
 }
 
 /// Notes private data from which its editor would restore the artwork as it was.
@@ -65,10 +62,6 @@ pub(super) fn styles(input: &WriteInput<'_>) -> Vec<Skipped> {
     let selected = input.options.selection.resolve(source);
     let shown = unsupported().filter(|(e, _)| selected[*e] && !is_definition(source, *e));
     shown.map(|(e, why)| Skipped { id: source.display_name(e), why: why.clone() }).collect()
-}
-
-fn is_definition(source: &SourceText, e: ElementId) -> bool {
-    source.ancestors(e).any(|a| source.elements[a].tag == "defs")
 }
 
 /// Lists the selected elements that are not warped because the renderer does not know them or their paint.

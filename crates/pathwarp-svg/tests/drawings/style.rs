@@ -6,7 +6,7 @@ use crate::common::{Bend, Hidden, drawing, oblique, options, read, warp_options}
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::Affine;
 use pathwarp::map::AffineMap;
-use pathwarp_svg::{Document, Selection, Structure, WarpedDocument};
+use pathwarp_svg::{Document, Selection, Structure, TextMode, WarpedDocument};
 
 fn bent(body: &str) -> WarpedDocument {
     read(&drawing(body)).warp(&Bend, &warp_options()).unwrap()
@@ -26,6 +26,9 @@ fn what_is_not_warped_keeps_its_style() {
     // Nothing moves: nothing changes.
     let w = read(&svg).warp(&AffineMap(Affine::IDENTITY), &warp_options()).unwrap();
     assert_eq!(w.svg, svg);
+    let text = drawing(&format!("{style}<text class='a' style='direction:rtl' x='9' y='50'>abc</text>"));
+    let w = read(&text).warp(&Bend, &warp_options().with_text(TextMode::Skip)).unwrap();
+    assert_eq!(w.svg, text);
 }
 
 #[test]
@@ -97,6 +100,55 @@ fn what_is_not_supported_is_reported() {
     // Nor are ordinary drawings.
     let w = bent("<style>.a{fill:red}</style><rect class='a' style='clip-path:none' width='9' height='9'/>");
     assert!(w.warnings.is_empty() && w.skipped.is_empty(), "{:?}", w.warnings);
+}
+
+#[test]
+fn texts_keep_their_words() {
+    let text =
+        "<text id='t' x='10' y='50' style='text-transform:uppercase;direction:rtl'>one <tspan>two</tspan></text>";
+    let svg = drawing(&format!("<path id='p' d='M10 10h50v50z'/>{text}"));
+    let only = Selection { select: vec!["#p".into()], ..Selection::default() };
+    let w = read(&svg).warp(&Bend, &warp_options().with_selection(only)).unwrap();
+    assert!(w.svg.contains(text), "{}", w.svg);
+    let w = read(&svg).warp(&Bend, &warp_options()).unwrap();
+    assert!(w.svg.contains("aria-label=\"one two\"") && w.svg.is_ascii() && !w.svg.contains("ONE"), "{}", w.svg);
+    assert!(w.skipped.is_empty(), "{:?}", w.skipped);
+}
+
+#[test]
+fn fonts_go_by_their_full_names() {
+    let text = |family: &str| format!("<text x='10' y='50' font-family='{family}'>Name</text>");
+    for family in ["Noto Sans", "noto sans", "NotoSans-Regular", "Noto Sans Regular", "system-ui"] {
+        let w = bent(&text(family));
+        assert!(w.warnings.is_empty(), "{family}: {:?}", w.warnings);
+    }
+    let w = bent(&text("Nota Sans"));
+    assert!(w.warnings.iter().any(|w| w.to_string().contains("Nota Sans")), "{:?}", w.warnings);
+}
+
+#[test]
+fn style_of_text_without_effect_is_reported() {
+    let small = |style: &str| bent(&format!("<g style='{style}'><text id='s' x='10' y='50'>abc</text></g>"));
+    for style in [
+        "font-variant:small-caps",
+        "font-feature-settings:&quot;ss01&quot;",
+        "text-shadow:1px 1px red",
+        "text-orientation:upright",
+        "text-transform:full-width",
+    ] {
+        let w = small(style);
+        assert!(w.skipped.iter().any(|s| s.why.contains(style.split(':').next().unwrap())), "{style}: {:?}", w.skipped);
+    }
+    // What Inkscape writes for any text.
+    let w = small(
+        "font-variant-ligatures:normal;font-variant-caps:normal;font-variant-numeric:normal;text-decoration-line:none;\
+                   font-feature-settings:normal;text-decoration-style:solid;text-orientation:mixed;text-transform:none;\
+                   direction:ltr;white-space:normal;text-anchor:start;font-stretch:normal",
+    );
+    assert!(w.skipped.is_empty(), "{:?}", w.skipped);
+    // Single letters have positions, which marks would move.
+    let w = bent("<text id='s' x='10 20 30' y='50' direction='rtl'>abc</text>");
+    assert!(w.skipped.iter().any(|s| s.why.contains("left to right")), "{:?}", w.skipped);
 }
 
 /// Few bytes can ask for much: selectors that try every way through the tree, variables that multiply, rules that apply to all.

@@ -5,6 +5,17 @@ use super::sheet::{Declaration, Rules, declarations};
 use selectors::context::SelectorCaches;
 use usvg::roxmltree::Node;
 
+/// Bytes of a value that are computed in the time of a comparison.
+const COMPUTED: usize = 8;
+
+/// Comparisons that can be made in the time of storing a custom property.
+const REMEMBERED: usize = 8;
+
+/// Estimates the work of computing a value, in comparisons.
+pub(super) fn work(value: &str) -> usize {
+    1 + value.len() / COMPUTED
+}
+
 /// Lists the declarations of rules and of the style attribute that apply to an element, weakest first.
 pub(super) fn applying<'a>(
     rules: &'a Rules,
@@ -16,7 +27,8 @@ pub(super) fn applying<'a>(
     let mut all = Vec::new();
     for (order, rule) in rules.rules.iter().enumerate() {
         let Some(specificity) = element::specificity(&rule.selectors, node, looks, caches) else { continue };
-        looks.add(rule.declarations.len());
+        let variable = |d: &Declaration| if d.name.starts_with("--") { REMEMBERED } else { 0 };
+        looks.add(rule.declarations.iter().map(|d| variable(d) + work(&d.value)).sum());
         for d in &rule.declarations {
             // Importance turns the order of layers around.
             let layer = if d.important { usize::MAX - rule.layer } else { rule.layer };

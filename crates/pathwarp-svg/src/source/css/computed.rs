@@ -3,6 +3,7 @@
 use super::color;
 use super::shapes::shape_length;
 use super::sheet::Declaration;
+use super::text::{self, Letters, TextStyle};
 use super::transform;
 use super::value::{self, Custom, Units};
 use std::collections::HashSet;
@@ -38,6 +39,9 @@ const PRESENTATION: [&str; 19] = [
 /// Properties whose value is a colour or a paint.
 const PAINTS: [&str; 6] = ["fill", "stroke", "color", "stop-color", "flood-color", "lighting-color"];
 
+/// Place of the size among the longhands of `font`.
+const FONT_SIZE: usize = 4;
+
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
 /// What an element hands on to its children.
@@ -47,6 +51,7 @@ pub(super) struct Inherited {
     pub(super) units: Units,
     /// Values of [`DASHES`].
     pub(super) dashes: [Option<Rc<str>>; 2],
+    pub(super) text: TextStyle,
 }
 
 /// The style of an element.
@@ -60,6 +65,7 @@ pub(super) struct Computed {
     pub(super) transform: Vec<Declaration>,
     /// What is not supported, in words.
     pub(super) unsupported: Vec<String>,
+    pub(super) letters: Letters,
 }
 
 /// The geometry properties of an element, as far as Chromium goes: nested viewports take none from style sheets, and a `use` no
@@ -104,8 +110,12 @@ pub(super) fn computed<'a>(
     let font = inherited.units.font;
     let mut values = Values { custom: Rc::clone(&inherited.custom), units: inherited.units, font };
     // The font size first: other lengths refer to it.
-    let sizes = declarations.iter().rev().filter(|d| d.name == "font-size").map(|d| d.value.as_str());
-    let size = sizes.chain(attr("font-size")).find_map(|v| values.of("font-size", v));
+    let size = declarations.iter().rev().find_map(|d| match d.name.as_str() {
+        "font-size" => values.of("font-size", &d.value),
+        "font" => values.of("font-size", &text::font(&values.of("font", &d.value)?)?[FONT_SIZE].1),
+        _ => None,
+    });
+    let size = size.or_else(|| values.of("font-size", attr("font-size")?));
     if let Some(px) = size.and_then(|s| value::length(&s, &inherited.units, font)) {
         inherited.units.font = px;
     }
@@ -127,13 +137,17 @@ pub(super) fn computed<'a>(
         let px = share.zip(whole(name, &values.units, font)).and_then(|(v, all)| value::length(v, &values.units, all));
         out.attributes.extend(px.map(|px| (name, px.to_string())));
     }
-    for (name, value) in DASHES.iter().zip(&mut inherited.dashes) {
-        let styled = out.style.iter().rev().find(|s| s.0 == *name).map(|s| s.1.as_str());
-        if let Some(v) = styled.or_else(|| out.new_value(name)).or_else(|| attr(name)).filter(|v| v.trim() != "inherit")
-        {
-            *value = Some(v.into());
+    let value = |name: &str| out.styled(name).or_else(|| out.new_value(name)).or_else(|| attr(name));
+    for (name, dashes) in DASHES.iter().zip(&mut inherited.dashes) {
+        if let Some(v) = value(name).filter(|v| v.trim() != "inherit") {
+            *dashes = Some(v.into());
         }
     }
+    let (changes, letters) = inherited.text.declare(tag, value);
+    out.letters = letters;
+    out.style.extend(changes.style);
+    out.attributes.extend(changes.attributes.into_iter().filter(|(name, v)| attr(name) != Some(v)));
+    out.unsupported.extend(changes.unsupported.iter().map(|d| ignored(d)));
     if let Some(dashes) = scaled_dashes(tag, &attr, &out, inherited) {
         out.style.retain(|s| !DASHES.contains(&s.0.as_str()));
         out.style.extend(DASHES.iter().zip(dashes).map(|(name, value)| ((*name).to_owned(), value)));
@@ -172,18 +186,37 @@ impl Values {
     /// A value without variables and expressions. `None` if it is invalid.
     fn of(&self, name: &str, raw: &str) -> Option<String> {
         let is_paint = PAINTS.contains(&name);
-        if value::is_plain(raw) {
+        if let Some(px) = Some(name).filter(|n| *n == "font-size").and_then(|_| text::size(raw, self.font)) {
+            return Some(format!("{px}px"));
+        }
+        let is_spacing = matches!(name, "letter-spacing" | "word-spacing") && raw.contains('%');
+        if value::is_plain(raw) && !is_spacing {
             return if is_paint { color::paint(raw) } else { Some(raw.to_owned()) };
         }
         // Font sizes refer to that of the parent.
         let units = if name == "font-size" { Units { font: self.font, ..self.units } } else { self.units };
         let text = value::substituted(raw, &|n| self.custom.get(n).map(ToString::to_string))?;
         let computed = value::computed(&text, &units, whole(name, &units, self.font))?;
-        if is_paint { color::paint(&computed) } else { Some(computed) }
+        match is_paint {
+            true => color::paint(&computed),
+            false if is_spacing => value::length(&computed, &units, units.font).map(|px| px.to_string()),
+            false => Some(computed),
+        }
     }
 }
 
 impl Computed {
+    /// All values.
+    pub(super) fn values(&self) -> impl Iterator<Item = &str> {
+        let declared = self.style.iter().map(|d| &d.1).chain(self.transform.iter().map(|d| &d.value));
+        declared.chain(self.attributes.iter().map(|a| &a.1)).map(String::as_str)
+    }
+
+    /// The value that style declares for a property.
+    fn styled(&self, name: &str) -> Option<&str> {
+        self.style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_str())
+    }
+
     /// The new value of an attribute, if it has one.
     pub(super) fn new_value(&self, name: &str) -> Option<&str> {
         self.attributes.iter().find(|a| a.0 == name).map(|a| a.1.as_str())
@@ -209,6 +242,11 @@ impl Computed {
             if known.is_some() && !is_length() {
                 continue;
             }
+            if name == "font" {
+                let longhands = text::font(&value).into_iter().flatten().filter(|l| seen.insert(l.0));
+                self.style.extend(longhands.filter_map(|(name, v)| Some((name.to_owned(), values.of(name, &v)?))));
+                continue;
+            }
             seen.insert(name);
             if transform::PROPERTIES.contains(&name) {
                 self.transform.push(Declaration { value, ..(*d).clone() });
@@ -231,9 +269,14 @@ fn unsupported(tag: &str, name: &str, value: &str) -> Option<String> {
         return None;
     }
     let cut = matches!(name, "clip-path" | "mask") && !lower.contains("url(");
+    let letters = name == "text-transform" && !matches!(lower.as_str(), "uppercase" | "lowercase" | "capitalize");
     if name == "d" && tag == "path" {
         return Some("its outline is that of the property “d” of CSS, which overrides the result".to_owned());
     }
-    let ignored = cut || matches!(name, "mask-image" | "offset-path" | "text-transform");
-    ignored.then(|| format!("only without “{name}: {value}”, which is not supported"))
+    (cut || letters || matches!(name, "mask-image" | "offset-path"))
+        .then(|| ignored(&format!("{name}: {}", text::start(value))))
+}
+
+fn ignored(declaration: &str) -> String {
+    format!("only without “{declaration}”, which is not supported")
 }

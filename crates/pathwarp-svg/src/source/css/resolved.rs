@@ -1,18 +1,22 @@
 //! Writes computed style into the text.
 
 use super::cascade::own;
+use super::letters::{Rewritten, rewritten};
 use super::needed::is_needed;
-use super::tree::{Styled, Tree, styled};
+use super::text::Letters;
+use super::tree::{Styled, Tree, attribute, styled};
 use crate::source::style::with_declaration;
 use crate::source::tags::ElementId;
 use crate::source::xml::{self, escape};
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::kurbo::Affine;
 use std::ops::Range;
-use usvg::roxmltree::Node;
+use usvg::roxmltree::{NS_XML_URI, Node};
 
 /// Bytes of style that are written in the time of a comparison.
 const WRITTEN: usize = 16;
+
+const SINGLE_LETTERS: &str = "only from left to right, as its letters have positions of their own";
 
 /// The text with its style resolved.
 #[derive(Debug)]
@@ -24,12 +28,14 @@ pub(crate) struct Resolved {
     pub(crate) unsupported: Vec<(Option<ElementId>, String)>,
 }
 
-/// An attribute that differs from the file's.
+/// An attribute or words that differ from the file's.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Original {
+    /// The last element that begins before.
     pub(crate) element: ElementId,
+    /// The attribute's name. Words have none.
     pub(crate) name: &'static str,
-    /// The attribute and the space before it.
+    /// The attribute and the space before it, or the words.
     pub(crate) range: Range<usize>,
     /// The file's own text in this place.
     pub(crate) text: String,
@@ -63,40 +69,72 @@ pub(crate) fn resolved(text: &str, budget: &Budget) -> Result<Option<Resolved>, 
         originals: Vec::new(),
         unsupported: unsupported.into_iter().map(|why| (None, why)).collect(),
     };
-    let mut done = 0;
+    let mut all: Vec<(Original, String)> = Vec::new();
     for (e, (node, style)) in nodes.iter().zip(&styles).enumerate() {
-        let mut edits = edits(*node, style);
+        all.extend(edits(*node, style).into_iter().map(|edit| edit.of(text, e, *node)));
         if sheets.contains(&e) {
             // usvg passes over sheets of other types.
-            edits.push(Edit { name: "type", value: "text/plain".to_owned(), kept: None });
+            all.push(Edit { name: "type", value: "text/plain".to_owned(), kept: None }.of(text, e, *node));
         }
-        let mut places: Vec<_> = edits.into_iter().map(|edit| (place(text, *node, edit.name), edit)).collect();
-        places.sort_by_key(|(range, _)| (range.start, range.end));
-        for (range, Edit { name, value, kept }) in places {
-            let Some(before) = text.get(done..range.start) else { continue };
-            budget.spend(Limit::Comparisons, (value.len() / WRITTEN) as u64)?;
-            let old = text[range.clone()].to_owned();
-            // Lines keep their numbers.
-            let lines = "\n".repeat(old.matches('\n').count());
-            let attribute = |value: &str| format!(" {lines}{name}=\"{}\"", escape(value));
-            out.text.push_str(before);
-            let start = out.text.len();
-            out.text.push_str(&attribute(&value));
-            let (value, kept) = match kept {
-                Some(v) => (Some(v.clone()), attribute(&v)),
-                None => (node.attribute(name).map(ToOwned::to_owned), old.clone()),
-            };
-            let here = start..out.text.len();
-            out.originals.push(Original { element: e, name, range: here, text: old, value, kept });
-            done = range.end;
+        if node.tag_name().name() == "text" {
+            match words(text, e, *node, &styles[e..]) {
+                Some(new) => all.extend(new),
+                None => out.unsupported.push((Some(e), SINGLE_LETTERS.to_owned())),
+            }
         }
         out.unsupported.extend(style.computed.unsupported.iter().map(|why| (Some(e), why.clone())));
         if style.matrix.is_none() {
             out.unsupported.push((Some(e), "its transform is not supported".to_owned()));
         }
     }
+    all.sort_by_key(|(o, _)| (o.range.start, o.range.end));
+    let mut done = 0;
+    for (original, new) in all {
+        let Some(before) = text.get(done..original.range.start) else { continue };
+        budget.spend(Limit::Comparisons, (new.len() / WRITTEN) as u64)?;
+        done = original.range.end;
+        out.text.push_str(before);
+        let start = out.text.len();
+        out.text.push_str(&new);
+        out.originals.push(Original { range: start..out.text.len(), ..original });
+    }
     out.text.push_str(&text[done..]);
     Ok(Some(out).filter(|o| !o.originals.is_empty() || !o.unsupported.is_empty()))
+}
+
+impl Edit {
+    /// The edit of an element in the text, and the attribute that it writes.
+    fn of(self, text: &str, element: ElementId, node: Node<'_, '_>) -> (Original, String) {
+        let Self { name, value, kept } = self;
+        let range = place(text, node, name);
+        let old = text[range.clone()].to_owned();
+        // Lines keep their numbers.
+        let lines = "\n".repeat(old.matches('\n').count());
+        let written = |value: &str| format!(" {lines}{name}=\"{}\"", escape(value));
+        let new = written(&value);
+        let (value, kept) = match kept {
+            Some(v) => (Some(v.clone()), written(&v)),
+            None => (attribute(node, name).map(ToOwned::to_owned), old.clone()),
+        };
+        (Original { element, name, range, text: old, value, kept }, new)
+    }
+}
+
+/// The edits of a text's words. `None` if they cannot be made.
+fn words(
+    text: &str,
+    e: ElementId,
+    node: Node<'_, '_>,
+    styles: &[Styled],
+) -> Option<impl Iterator<Item = (Original, String)>> {
+    let letters = styles.iter().map(|s| s.computed.letters).take(node.descendants().filter(Node::is_element).count());
+    let letters: Vec<Letters> = letters.collect();
+    let new = if letters.iter().all(|l| *l == Letters::default()) { Vec::new() } else { rewritten(node, &letters)? };
+    Some(new.into_iter().map(move |Rewritten { elements, range, text: new }| {
+        let old = text[range.clone()].to_owned();
+        let original = Original { element: e + elements, name: "", range, text: old.clone(), value: None, kept: old };
+        (original, escape(&new))
+    }))
 }
 
 /// The attributes to change in an element.
@@ -140,7 +178,8 @@ fn frozen(m: Affine) -> [(&'static str, String); 6] {
 
 /// The range of an attribute with the space before it, or the place after the element's name.
 fn place(text: &str, node: Node<'_, '_>, name: &str) -> Range<usize> {
-    if let Some(a) = node.attributes().find(|a| a.namespace().is_none() && a.name() == name) {
+    let (namespace, local) = name.strip_prefix("xml:").map_or((None, name), |local| (Some(NS_XML_URI), local));
+    if let Some(a) = node.attributes().find(|a| a.namespace() == namespace && a.name() == local) {
         let range = a.range();
         return text[..range.start].trim_end().len()..range.end;
     }

@@ -77,7 +77,7 @@ fn angle(text: &str) -> Option<f64> {
 }
 
 /// A number or a percentage.
-fn factor(text: &str) -> Option<f64> {
+pub(super) fn factor(text: &str) -> Option<f64> {
     let text = text.trim();
     match text.strip_suffix('%') {
         Some(share) => share.parse::<f64>().ok().map(|s| s / 100.0),

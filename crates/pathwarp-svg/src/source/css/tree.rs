@@ -1,11 +1,12 @@
 //! The style of every element, from the root down, and the transforms, from the leaves up: the box of a group depends on those
 //! of its children.
 
-use super::cascade::{applying, own};
+use super::cascade::{applying, own, work};
 use super::computed::{Computed, Inherited, computed};
 use super::element::Looks;
 use super::shapes::shape_box;
 use super::sheet::Rules;
+use super::text::TextStyle;
 use super::value::{Custom, Units, length};
 use super::{media, transform};
 use crate::source::tags::ElementId;
@@ -15,7 +16,7 @@ use selectors::context::SelectorCaches;
 use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
-use usvg::roxmltree::{Document, Node, NodeId};
+use usvg::roxmltree::{Document, NS_XML_URI, Node, NodeId};
 
 /// Font size where nothing sets one, in px.
 const MEDIUM: f64 = 16.0;
@@ -86,9 +87,12 @@ pub(super) fn styled(doc: &Document<'_>, nodes: &[Node<'_, '_>], budget: &Budget
             custom: Rc::new(Custom::new()),
             units: root_units(doc),
             dashes: [None, None],
+            text: TextStyle::default(),
         });
         let tag = node.tag_name().name();
-        let style = computed(tag, parent.is_none(), &declarations, |name| node.attribute(name), &mut here);
+        let style = computed(tag, parent.is_none(), &declarations, |name| attribute(*node, name), &mut here);
+        // Variables can make any value of a short one.
+        budget.spend(Limit::Comparisons, style.values().map(work).sum::<usize>() as u64)?;
         if parent.is_none_or(|p| !Rc::ptr_eq(&p.custom, &here.custom)) {
             let bytes: usize = here.custom.values().map(|v| VARIABLE + v.len()).sum();
             budget.spend(Limit::Comparisons, (bytes / PARSED) as u64)?;
@@ -106,6 +110,14 @@ pub(super) fn styled(doc: &Document<'_>, nodes: &[Node<'_, '_>], budget: &Budget
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
     Ok(Tree { styles: all.collect(), sheets, unsupported: rules.unsupported })
+}
+
+/// An attribute by its name with the prefix `xml`, or without a prefix.
+pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    match name.strip_prefix("xml:") {
+        Some(name) => node.attribute((NS_XML_URI, name)),
+        None => node.attribute(name),
+    }
 }
 
 fn is_sheet(node: &Node<'_, '_>) -> bool {

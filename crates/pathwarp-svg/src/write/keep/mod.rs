@@ -85,7 +85,7 @@ fn regions(k: &mut Keeper<'_, '_>) {
 /// Adds the new definitions to the file's `<defs>`, or else at its end, so that the title stays the first child.
 fn finish(source: &SourceText, mut edits: Edits<'_>, defs: &str, tag: &str) -> Result<String, Unpatchable> {
     if defs.is_empty() {
-        return Ok(if edits.is_empty() { source.text.clone() } else { edits.apply() });
+        return Ok(if edits.is_empty() { source.as_in_file().into_owned() } else { edits.apply() });
     }
     let home = source.elements.iter().position(|e| e.tag == "defs" && e.parent == Some(0) && e.close.is_some());
     match home {

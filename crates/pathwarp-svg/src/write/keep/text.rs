@@ -167,7 +167,6 @@ fn line_starts(source: &SourceText, text: ElementId) -> Vec<usize> {
 fn words(source: &SourceText, e: ElementId) -> String {
     let el = &source.elements[e];
     let Some(close) = &el.close else { return String::new() };
-    let text = &source.text;
     let hidden = source
         .descendants(e)
         .map(|c| &source.elements[c])
@@ -179,13 +178,13 @@ fn words(source: &SourceText, e: ElementId) -> String {
     let mut raw = String::new();
     let mut at = el.open_end;
     for gap in gaps {
-        raw.push_str(text.get(at..gap.start).unwrap_or(""));
+        raw.push_str(&source.part_in_file(at..gap.start.max(at)));
         if gap.is_empty() {
             raw.push(' ');
         }
         at = at.max(gap.end);
     }
-    raw.push_str(text.get(at..close.start).unwrap_or(""));
+    raw.push_str(&source.part_in_file(at..close.start.max(at)));
     let mut out = String::new();
     let mut in_tag = false;
     for c in raw.chars() {

@@ -1,0 +1,430 @@
+//! Properties of text that usvg reads otherwise, or not at all (CSS Fonts 4, Text 3 and 4, Writing Modes 3).
+
+use super::transform::factor;
+use cssparser::{Parser, Token};
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// The longhands that `font` sets, with their initial values.
+const FONT: [(&str, &str); 6] = [
+    ("font-style", "normal"),
+    ("font-variant", "normal"),
+    ("font-weight", "normal"),
+    ("font-stretch", "normal"),
+    ("font-size", "medium"),
+    ("font-family", "serif"),
+];
+
+/// Widths by their keywords, in percent.
+const WIDTHS: [(f64, &str); 9] = [
+    (50.0, "ultra-condensed"),
+    (62.5, "extra-condensed"),
+    (75.0, "condensed"),
+    (87.5, "semi-condensed"),
+    (100.0, "normal"),
+    (112.5, "semi-expanded"),
+    (125.0, "expanded"),
+    (150.0, "extra-expanded"),
+    (200.0, "ultra-expanded"),
+];
+
+/// Sizes by their keywords, in px, as browsers have them (CSS Fonts 4, section 2.5.1).
+const SIZES: [(&str, f64); 8] = [
+    ("xx-small", 9.0),
+    ("x-small", 10.0),
+    ("small", 13.0),
+    ("medium", 16.0),
+    ("large", 18.0),
+    ("x-large", 24.0),
+    ("xx-large", 32.0),
+    ("xxx-large", 48.0),
+];
+
+/// Properties without effect, with the values that ask for none. Other values count if a word of them is not among these.
+const WITHOUT_EFFECT: [(&str, &[&str]); 13] = [
+    ("font-variant", &["normal", "none", "common-ligatures", "contextual"]),
+    ("font-variant-caps", &["normal"]),
+    ("font-variant-ligatures", &["normal", "common-ligatures", "contextual"]),
+    ("font-variant-numeric", &["normal"]),
+    ("font-variant-position", &["normal"]),
+    ("font-variant-east-asian", &["normal"]),
+    ("font-feature-settings", &["normal"]),
+    ("font-size-adjust", &["none"]),
+    ("text-shadow", &["none"]),
+    ("text-orientation", &["mixed", "auto", "sideways", "sideways-right"]),
+    ("text-decoration", &["none", "underline", "overline", "line-through", "solid", "auto", "blink"]),
+    ("text-decoration-style", &["solid", "auto"]),
+    ("text-decoration-thickness", &["auto", "from-font"]),
+];
+
+/// The case that `text-transform` asks for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Case {
+    #[default]
+    AsTyped,
+    Upper,
+    Lower,
+    /// Words begin with a capital.
+    Capitalized,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Anchor {
+    #[default]
+    Start,
+    Middle,
+    End,
+}
+
+/// What a text inherits.
+#[derive(Debug, Clone)]
+pub(super) struct TextStyle {
+    weight: u16,
+    /// Keeps white space if `Some(true)`, collapses it if `Some(false)`; `None` leaves it to `xml:space`.
+    keeps_space: Option<bool>,
+    rtl: bool,
+    anchor: Anchor,
+    /// Opacities of the fill and the stroke.
+    opacities: [f64; 2],
+    /// The opacity of the elements around, up to the text. `None` outside of texts.
+    fade: Option<f64>,
+    case: Case,
+    /// Letters have space between them.
+    spaced: bool,
+    /// Declarations without effect, by property.
+    without_effect: Rc<BTreeMap<&'static str, String>>,
+}
+
+impl Default for TextStyle {
+    fn default() -> Self {
+        Self {
+            weight: 400,
+            keeps_space: None,
+            rtl: false,
+            anchor: Anchor::Start,
+            opacities: [1.0; 2],
+            fade: None,
+            case: Case::AsTyped,
+            spaced: false,
+            without_effect: Rc::default(),
+        }
+    }
+}
+
+/// What is to be changed in an element for usvg.
+#[derive(Debug, Default)]
+pub(super) struct TextChanges {
+    pub(super) style: Vec<(String, String)>,
+    pub(super) attributes: Vec<(&'static str, String)>,
+    pub(super) unsupported: Vec<String>,
+}
+
+/// What is to be changed in the letters of an element.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Letters {
+    pub(super) case: Case,
+    /// Ligatures are separated: usvg sets them also where letters have space between them (CSS Text 3, section 8.2).
+    pub(super) separate: bool,
+    /// A control character that sets the direction of what follows (Unicode Standard Annex 9, section 2): usvg begins from left to
+    /// right.
+    pub(super) direction: Option<char>,
+}
+
+impl TextStyle {
+    /// Takes over what an element declares: `value` gives the values of its properties.
+    pub(super) fn declare<'a>(&mut self, tag: &str, value: impl Fn(&str) -> Option<&'a str>) -> (TextChanges, Letters) {
+        let value = |name: &str| value(name).map(str::trim).filter(|v| !v.eq_ignore_ascii_case("inherit"));
+        let mut out = TextChanges::default();
+        let mut set = |name: &str, v: String| out.style.push((name.to_owned(), v));
+        if let Some((raw, weight)) = value("font-weight").and_then(|v| Some((v, weight(v, self.weight)?))) {
+            self.weight = weight;
+            if !matches!(raw, "normal" | "bold") && raw != weight.to_string() {
+                set("font-weight", weight.to_string());
+            }
+        }
+        if let Some(keyword) = value("font-stretch").and_then(width) {
+            set("font-stretch", keyword.to_owned());
+        }
+        self.anchor = value("text-anchor").map_or(self.anchor, |v| match v {
+            "middle" => Anchor::Middle,
+            "end" => Anchor::End,
+            _ => Anchor::Start,
+        });
+        self.rtl = value("direction").map_or(self.rtl, |v| v == "rtl");
+        self.case = value("text-transform").map_or(self.case, case);
+        self.spaced = value("letter-spacing").map_or(self.spaced, |v| {
+            let end = v.find(|c: char| !c.is_ascii_digit() && !matches!(c, '.' | '-' | '+')).unwrap_or(v.len());
+            v[..end].parse().is_ok_and(|n: f64| n != 0.0)
+        });
+        self.keeps_space = value("white-space")
+            .map_or(self.keeps_space, |v| Some(matches!(v, "pre" | "pre-wrap" | "break-spaces" | "-moz-pre-space")));
+        let is_content = tag == "text" || self.fade.is_some() && matches!(tag, "tspan" | "textPath" | "a" | "tref");
+        if is_content && self.rtl {
+            // The start is on the right.
+            let anchor = match self.anchor {
+                Anchor::Start => "end",
+                Anchor::Middle => "middle",
+                Anchor::End => "start",
+            };
+            set("text-anchor", anchor.to_owned());
+        }
+        self.fade(tag, &value, &mut set);
+        if let Some(keeps) = self.keeps_space.filter(|_| is_content) {
+            out.attributes.push(("xml:space", if keeps { "preserve" } else { "default" }.to_owned()));
+        }
+        out.unsupported = self.without_effect(tag, is_content, &value);
+        let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
+        let direction = match (self.rtl, overrides) {
+            (true, true) => Some('\u{202e}'),
+            (true, false) => Some('\u{202b}'),
+            (false, true) => Some('\u{202d}'),
+            (false, false) => None,
+        };
+        (out, Letters { case: self.case, separate: self.spaced, direction })
+    }
+
+    /// Parts of a text take their opacity into those of their fill and stroke.
+    fn fade<'a>(&mut self, tag: &str, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
+        const NAMES: [&str; 2] = ["fill-opacity", "stroke-opacity"];
+        let own = NAMES.map(|name| value(name).and_then(opacity));
+        for (known, own) in self.opacities.iter_mut().zip(own) {
+            *known = own.unwrap_or(*known);
+        }
+        let Some(around) = self.fade else {
+            self.fade = (tag == "text").then_some(1.0);
+            return;
+        };
+        let here = around * value("opacity").and_then(opacity).unwrap_or(1.0);
+        self.fade = Some(here);
+        for ((name, all), own) in NAMES.iter().zip(self.opacities).zip(own) {
+            if here != around || own.is_some() && here != 1.0 {
+                set(name, (all * here).to_string());
+            }
+        }
+    }
+
+    /// Lists the declarations without effect for a text or a part of one.
+    fn without_effect<'a>(
+        &mut self,
+        tag: &str,
+        is_content: bool,
+        value: &impl Fn(&str) -> Option<&'a str>,
+    ) -> Vec<String> {
+        let mut changed = false;
+        for (name, plain) in WITHOUT_EFFECT {
+            let Some(v) = value(name) else { continue };
+            let is_plain = v.to_ascii_lowercase().split_ascii_whitespace().all(|word| plain.contains(&word));
+            let all = Rc::make_mut(&mut self.without_effect);
+            changed |= if is_plain {
+                all.remove(name).is_some()
+            } else {
+                let v = start(v);
+                all.insert(name, v.to_owned()).is_none_or(|was| was != v)
+            };
+        }
+        if tag == "text" || is_content && changed {
+            self.without_effect.iter().map(|(name, v)| format!("{name}: {v}")).collect()
+        } else {
+            Vec::new()
+        }
+    }
+}
+
+/// The start of a value, as long as messages show it: many texts may inherit it.
+pub(super) fn start(value: &str) -> &str {
+    const SHOWN: usize = 80;
+    &value[..value.char_indices().nth(SHOWN).map_or(value.len(), |(at, _)| at)]
+}
+
+/// The longhands of a `font` declaration. `None` if it is invalid, or names a font of the system.
+pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
+    let with = |v: &dyn Fn(usize) -> String| FONT.iter().enumerate().map(|(i, (name, _))| (*name, v(i))).collect();
+    if ["inherit", "initial", "unset"].iter().any(|k| value.eq_ignore_ascii_case(k)) {
+        let initial = value.eq_ignore_ascii_case("initial");
+        return Some(with(&|i| if initial { FONT[i].1 } else { "inherit" }.to_owned()));
+    }
+    let mut input = Parser::new(value);
+    let mut found = FONT.map(|(_, initial)| initial.to_owned());
+    let size = loop {
+        input.skip_whitespace();
+        let start = input.position();
+        let token = input.next().ok()?.clone();
+        let text = input.slice_from(start).trim();
+        match &token {
+            Token::Ident(word) => {
+                let word = word.to_ascii_lowercase();
+                let slot = match word.as_str() {
+                    "normal" => continue,
+                    "italic" | "oblique" => 0,
+                    "small-caps" => 1,
+                    "bold" | "bolder" | "lighter" => 2,
+                    w if WIDTHS.iter().any(|(_, k)| *k == w) => 3,
+                    "larger" | "smaller" => break word,
+                    w if SIZES.iter().any(|(k, _)| *k == w) => break word,
+                    _ => return None,
+                };
+                found[slot] = word;
+            }
+            Token::Number { .. } => text.clone_into(&mut found[2]),
+            Token::Dimension { unit, .. } if is_angle(unit) && found[0] == "oblique" => {}
+            Token::Dimension { .. } | Token::Percentage { .. } => break text.to_owned(),
+            _ => return None,
+        }
+    };
+    found[4] = size;
+    if input.try_parse(|i| i.expect_delim('/')).is_ok() {
+        input.next().ok()?;
+    }
+    input.skip_whitespace();
+    let family = value.get(input.position().byte_index()..)?.trim();
+    family.clone_into(&mut found[5]);
+    (!family.is_empty()).then(|| with(&|i| found[i].clone()))
+}
+
+/// A font size for usvg: lengths for keywords. `parent` is the parent's.
+pub(super) fn size(value: &str, parent: f64) -> Option<f64> {
+    /// From one size to the next.
+    const STEP: f64 = 1.2;
+    match value.trim().to_ascii_lowercase().as_str() {
+        "larger" => Some(parent * STEP),
+        "smaller" => Some(parent / STEP),
+        keyword => SIZES.iter().find(|(k, _)| *k == keyword).map(|(_, px)| *px),
+    }
+}
+
+fn is_angle(unit: &str) -> bool {
+    ["deg", "rad", "grad", "turn"].iter().any(|u| unit.eq_ignore_ascii_case(u))
+}
+
+/// A weight in hundreds, which usvg knows. `parent` is the inherited one.
+fn weight(value: &str, parent: u16) -> Option<u16> {
+    Some(match value.to_ascii_lowercase().as_str() {
+        "normal" | "initial" => 400,
+        "bold" => 700,
+        "bolder" => match parent {
+            0..350 => 400,
+            350..550 => 700,
+            _ => parent.max(900),
+        },
+        "lighter" => match parent {
+            0..100 => parent,
+            100..550 => 100,
+            550..750 => 400,
+            _ => 700,
+        },
+        number => {
+            let number: f64 = number.parse().ok().filter(|n| (1.0..=1000.0).contains(n))?;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 9")]
+            let hundreds = (number / 100.0).round().clamp(1.0, 9.0) as u16;
+            100 * hundreds
+        }
+    })
+}
+
+/// The keyword nearest to a width in percent.
+fn width(value: &str) -> Option<&'static str> {
+    let percent: f64 = value.strip_suffix('%')?.parse().ok()?;
+    let off = |w: f64| (w - percent).abs();
+    WIDTHS.iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0))).map(|w| w.1)
+}
+
+fn opacity(value: &str) -> Option<f64> {
+    Some(factor(value)?.clamp(0.0, 1.0))
+}
+
+fn case(value: &str) -> Case {
+    match value.to_ascii_lowercase().as_str() {
+        "uppercase" => Case::Upper,
+        "lowercase" => Case::Lower,
+        "capitalize" => Case::Capitalized,
+        _ => Case::AsTyped,
+    }
+}
+
+/// Separates letters that fonts join.
+pub(super) fn separated(text: &str) -> String {
+    /// Not seen, and not passed over when ligatures are looked for. usvg adds no space after it, as it does after U+200C.
+    const SEPARATOR: char = '\u{180b}';
+    let mut out = String::with_capacity(text.len() + 8);
+    let mut last = ' ';
+    for c in text.chars() {
+        if matches!(last, 'f' | 'T') && c.is_ascii_lowercase() {
+            out.push(SEPARATOR);
+        }
+        out.push(c);
+        last = c;
+    }
+    out
+}
+
+impl Case {
+    /// Rewrites letters. `before` is the letter before them.
+    pub(super) fn of(self, text: &str, before: Option<char>) -> String {
+        match self {
+            Self::AsTyped => text.to_owned(),
+            Self::Upper => text.to_uppercase(),
+            Self::Lower => text.to_lowercase(),
+            Self::Capitalized => {
+                let mut out = String::with_capacity(text.len());
+                let mut last = before;
+                for c in text.chars() {
+                    // Apostrophes are inside of words.
+                    let begins = last.is_none_or(|l| !l.is_alphanumeric() && !matches!(l, '\'' | '’'));
+                    if begins {
+                        out.extend(c.to_uppercase());
+                    } else {
+                        out.push(c);
+                    }
+                    last = Some(c);
+                }
+                out
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fonts() {
+        let of = |v: &str| font(v).map(|all| all.into_iter().map(|(_, v)| v).collect::<Vec<_>>().join("|"));
+        for (from, to) in [
+            ("12px/1.5 Arial", "normal|normal|normal|normal|12px|Arial"),
+            (
+                "italic small-caps bold condensed 1.5em / 2 'A b', serif",
+                "italic|small-caps|bold|condensed|1.5em|'A b', serif",
+            ),
+            ("oblique 10deg 350 larger x", "oblique|normal|350|normal|larger|x"),
+            ("120% \"Lucida Grande\"", "normal|normal|normal|normal|120%|\"Lucida Grande\""),
+            ("inherit", "inherit|inherit|inherit|inherit|inherit|inherit"),
+        ] {
+            assert_eq!(of(from).as_deref(), Some(to), "{from}");
+        }
+        for bad in ["caption", "12px", "bold Arial", "", "12px/", "red 12px Arial"] {
+            assert_eq!(of(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn weights_and_widths() {
+        let of = |v: &str, parent| weight(v, parent).unwrap();
+        assert_eq!([of("bolder", 100), of("bolder", 400), of("bolder", 700), of("bolder", 900)], [400, 700, 900, 900]);
+        assert_eq!([of("lighter", 300), of("lighter", 600), of("lighter", 900)], [100, 400, 700]);
+        assert_eq!([of("350", 400), of("1000", 400), of("bold", 100)], [400, 900, 700]);
+        assert_eq!(weight("0", 400), None);
+        assert_eq!(
+            [width("75%"), width("95%"), width("300%"), width("wide")],
+            [Some("condensed"), Some("normal"), Some("ultra-expanded"), None]
+        );
+    }
+
+    #[test]
+    fn cases() {
+        assert_eq!(Case::Upper.of("straße é", None), "STRASSE É");
+        assert_eq!(Case::Capitalized.of("it's a d-day ünder", Some('x')), "it's A D-Day Ünder");
+        assert_eq!(Case::Capitalized.of("ab", None), "Ab");
+        assert_eq!(separated("office fit Th"), "of\u{180b}f\u{180b}ice f\u{180b}it T\u{180b}h");
+    }
+}

@@ -1,0 +1,173 @@
+//! Faces by the names that drawings give them: families, generic families, full and PostScript names.
+
+use usvg::FontFamily;
+use usvg::fontdb::{self, Database, Family, ID, Source};
+
+pub(super) static BUNDLED: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
+pub(super) const BUNDLED_FAMILY: &str = "Noto Sans";
+
+/// Families for CSS's generic family names. `None` selects a common family of that kind.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct GenericFamilies {
+    /// `serif`
+    pub serif: Option<String>,
+    /// `sans-serif`
+    pub sans_serif: Option<String>,
+    /// `cursive`
+    pub cursive: Option<String>,
+    /// `fantasy`
+    pub fantasy: Option<String>,
+    /// `monospace`
+    pub monospace: Option<String>,
+}
+
+/// Returns the bytes of the bundled font: Noto Sans (OFL) for Latin, Greek and Cyrillic.
+#[must_use]
+pub fn bundled_font() -> &'static [u8] {
+    BUNDLED
+}
+
+/// How the letters of a family should look.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    pub(super) weight: fontdb::Weight,
+    pub(super) stretch: fontdb::Stretch,
+    pub(super) style: fontdb::Style,
+}
+
+impl Look {
+    pub(super) fn face_of(self, family: &str, db: &Database) -> Option<ID> {
+        let Self { weight, stretch, style } = self;
+        db.query(&fontdb::Query { families: &[Family::Name(family)], weight, stretch, style })
+    }
+
+    /// The face of a family whose name is written otherwise, in upper or lower case, or of a face that goes by its full or its
+    /// PostScript name, as Illustrator writes it. What such a name says of the look applies where the drawing says nothing.
+    pub(super) fn face_called(self, name: &str, db: &Database) -> Option<ID> {
+        let family =
+            |f: &fontdb::FaceInfo| f.families.iter().find(|(n, _)| n.to_lowercase() == name.to_lowercase()).cloned();
+        if let Some((family, _)) = db.faces().find_map(family) {
+            return self.face_of(&family, db);
+        }
+        let wanted = plain(name);
+        let face = db.faces().find(|f| !wanted.is_empty() && plain(&f.post_script_name) == wanted)?;
+        self.or(face.weight, face.style, face.stretch).face_of(&face.families.first()?.0, db)
+    }
+
+    /// The face of a family whose letters are as wide as those of a missing one.
+    pub(super) fn face_with_metrics_of(self, missing: &str, db: &Database) -> Option<ID> {
+        let (families, weight, style) = metric_compatible(missing)?;
+        let look = self.or(weight, style, fontdb::Stretch::Normal);
+        families.iter().find_map(|f| look.face_of(f, db))
+    }
+
+    /// The same, with another weight, style or stretch where this one's is normal.
+    fn or(self, weight: fontdb::Weight, style: fontdb::Style, stretch: fontdb::Stretch) -> Self {
+        Self {
+            weight: if self.weight == fontdb::Weight::NORMAL { weight } else { self.weight },
+            stretch: if self.stretch == fontdb::Stretch::Normal { stretch } else { self.stretch },
+            style: if self.style == fontdb::Style::Normal { style } else { self.style },
+        }
+    }
+
+    /// The face of a generic family: of the configured one, else of a common one that is installed, else of the bundled one.
+    pub(super) fn face_of_kind(self, kind: &FontFamily, set: &GenericFamilies, db: &Database) -> Option<ID> {
+        let common: &[&str] = match kind {
+            FontFamily::Serif => &["Times New Roman", "Noto Serif", "DejaVu Serif", "Liberation Serif"],
+            FontFamily::SansSerif => &["Arial", "Helvetica", "Noto Sans", "DejaVu Sans", "Liberation Sans"],
+            FontFamily::Cursive => &["Comic Sans MS", "Apple Chancery"],
+            FontFamily::Fantasy => &["Impact", "Papyrus"],
+            FontFamily::Monospace => {
+                &["Courier New", "Noto Sans Mono", "Noto Mono", "DejaVu Sans Mono", "Liberation Mono"]
+            }
+            FontFamily::Named(_) => return None,
+        };
+        // The bundled family has a single weight.
+        let installed = |name: &&str| self.face_of(name, db).filter(|id| !is_bundled(*id, db));
+        match asked_for(kind, set) {
+            Some(name) => self.face_of(name, db),
+            None => common.iter().find_map(installed).or_else(|| self.face_of(BUNDLED_FAMILY, db)),
+        }
+    }
+}
+
+/// A name in small letters and digits, without the style that most fonts have.
+fn plain(name: &str) -> String {
+    let mut letters: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    letters.truncate(letters.strip_suffix("regular").unwrap_or(&letters).len());
+    letters
+}
+
+/// Families whose letters are as wide as those of others (fontconfig's `30-metric-aliases.conf`), by plain names.
+const METRIC_COMPATIBLE: [(&str, &[&str]); 9] = [
+    ("arial", &["Liberation Sans", "Arimo", "Helvetica", "Nimbus Sans"]),
+    ("helvetica", &["Nimbus Sans", "Arial", "Liberation Sans", "Arimo"]),
+    ("timesnewroman", &["Liberation Serif", "Tinos", "Times", "Nimbus Roman"]),
+    ("times", &["Nimbus Roman", "Times New Roman", "Liberation Serif", "Tinos"]),
+    ("couriernew", &["Liberation Mono", "Cousine", "Courier", "Nimbus Mono PS"]),
+    ("courier", &["Nimbus Mono PS", "Courier New", "Liberation Mono", "Cousine"]),
+    ("calibri", &["Carlito"]),
+    ("cambria", &["Caladea"]),
+    ("georgia", &["Gelasio"]),
+];
+
+/// The families that can stand for a missing one, which may be named by a PostScript name, and the look that its name says.
+fn metric_compatible(missing: &str) -> Option<(&'static [&'static str], fontdb::Weight, fontdb::Style)> {
+    let name = plain(missing);
+    METRIC_COMPATIBLE.iter().find_map(|(family, others)| {
+        let mut rest = name.strip_prefix(family)?;
+        let (mut weight, mut style) = (fontdb::Weight::NORMAL, fontdb::Style::Normal);
+        while !rest.is_empty() {
+            let word = ["ps", "mt", "bold", "italic", "oblique"].into_iter().find(|w| rest.starts_with(w))?;
+            match word {
+                "bold" => weight = fontdb::Weight::BOLD,
+                "italic" | "oblique" => style = fontdb::Style::Italic,
+                _ => {}
+            }
+            rest = &rest[word.len()..];
+        }
+        Some((*others, weight, style))
+    })
+}
+
+fn is_bundled(face: ID, db: &Database) -> bool {
+    db.face(face).is_some_and(|f| matches!(&f.source, Source::Binary(data) if data.as_ref().as_ref() == BUNDLED))
+}
+
+/// The kind of a font of the system's interface (CSS Fonts 4, section 2.1.3).
+pub(super) fn of_interface(name: &str) -> Option<FontFamily> {
+    Some(match name {
+        "system-ui" | "ui-sans-serif" | "ui-rounded" | "-apple-system" | "BlinkMacSystemFont" => FontFamily::SansSerif,
+        "ui-serif" | "math" | "fangsong" => FontFamily::Serif,
+        "ui-monospace" => FontFamily::Monospace,
+        _ => return None,
+    })
+}
+
+/// The name of a family; of a generic one, the name configured for it.
+pub(super) fn asked_for<'a>(family: &'a FontFamily, set: &'a GenericFamilies) -> Option<&'a String> {
+    match family {
+        FontFamily::Named(name) => Some(name),
+        FontFamily::Serif => set.serif.as_ref(),
+        FontFamily::SansSerif => set.sans_serif.as_ref(),
+        FontFamily::Cursive => set.cursive.as_ref(),
+        FontFamily::Fantasy => set.fantasy.as_ref(),
+        FontFamily::Monospace => set.monospace.as_ref(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_fonts() {
+        assert_eq!(plain("Noto Sans-Regular"), "notosans");
+        let of = |name| metric_compatible(name).map(|(families, weight, style)| (families[0], weight.0, style));
+        assert_eq!(of("Arial"), Some(("Liberation Sans", 400, fontdb::Style::Normal)));
+        assert_eq!(of("Helvetica-BoldOblique"), Some(("Nimbus Sans", 700, fontdb::Style::Italic)));
+        assert_eq!(of("TimesNewRomanPS-ItalicMT"), Some(("Liberation Serif", 400, fontdb::Style::Italic)));
+        assert_eq!(of("Courier New"), Some(("Liberation Mono", 400, fontdb::Style::Normal)));
+        assert_eq!([of("Helvetica Neue"), of("Arial Black"), of("Timeless")], [None; 3]);
+    }
+}
