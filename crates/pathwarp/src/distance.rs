@@ -13,12 +13,16 @@
 
 use crate::budget::{Budget, Exceeded, Limit, Limits};
 use crate::outline::{Outline, Seg};
-use kurbo::{Point, Rect};
+use kurbo::{Point, Rect, Vec2};
 
 /// Intervals per segment that [`symmetric`] samples.
 const PER_SEGMENT: usize = 64;
 /// Starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
+/// Where the curve turns by more than 45° within a stretch, the stretch is halved for further starting points,
+const COS_TURN: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// so many times at most.
+const HALVINGS: u32 = 12;
 /// Most steps of a search.
 const STEPS: usize = 24;
 /// A search ends with a step that brings less than this part of the distance,
@@ -37,7 +41,8 @@ const STEP: f64 = 2.0;
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
 /// Sampled at 65 points per segment, whose nearest points are found by the damped Gauss–Newton method from 17 starting points per
-/// segment. A lower bound, exact up to the movement of the distance between samples. `None` if one of the paths is empty.
+/// segment, more where it turns sharply. A lower bound, exact up to the movement of the distance between samples. `None` if one of the
+/// paths is empty.
 #[must_use]
 pub fn symmetric(a: &Outline, b: &Outline) -> Option<f64> {
     symmetric_within(a, b, &Budget::new(Limits::none())).ok().flatten()
@@ -55,13 +60,13 @@ pub fn symmetric_within(a: &Outline, b: &Outline, budget: &Budget) -> Result<Opt
 
 /// The largest distance from a point of `from` to `to`, or `least` if that is larger.
 fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<Option<f64>, Exceeded> {
-    let segs = to.segs().map(Target::Seg);
+    let segs = to.segs().map(Target::of);
     let dots = to.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut targets = Targets::new(segs.chain(dots).collect());
     if targets.all.is_empty() {
         return Ok(None);
     }
-    let samples = from.segs().map(Target::Seg);
+    let samples = from.segs().map(|s| Target::Seg(s, Vec::new()));
     let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut most = None;
     for sampled in samples.chain(alone) {
@@ -76,27 +81,39 @@ fn one_way(from: &Outline, to: &Outline, least: f64, budget: &Budget) -> Result<
     Ok(most)
 }
 
-/// A part of a path: a segment, or a subpath that is a point.
+/// A part of a path: a segment with the further starting points of a search, or a subpath that is a point.
 enum Target<'a> {
-    Seg(&'a Seg),
+    Seg(&'a Seg, Vec<f64>),
     Dot(Point),
 }
 
-impl Target<'_> {
+impl<'a> Target<'a> {
+    fn of(seg: &'a Seg) -> Self {
+        let mut starts = Vec::new();
+        if !matches!(seg, Seg::Line(_)) {
+            let ends: [_; STRETCHES + 1] =
+                std::array::from_fn(|i| i as f64 / STRETCHES as f64).map(|t| (t, seg.deriv(t)));
+            for w in ends.windows(2) {
+                turns(seg, w[0], w[1], HALVINGS, &mut starts);
+            }
+        }
+        Self::Seg(seg, starts)
+    }
+
     fn bounds(&self) -> Rect {
         match self {
-            Self::Seg(s) => s.bounding_box(),
+            Self::Seg(s, _) => s.bounding_box(),
             Self::Dot(p) => Rect::from_points(*p, *p),
         }
     }
 
     fn intervals(&self) -> usize {
-        if matches!(self, Self::Seg(_)) { PER_SEGMENT } else { 0 }
+        if matches!(self, Self::Seg(..)) { PER_SEGMENT } else { 0 }
     }
 
     fn eval(&self, t: f64) -> Point {
         match self {
-            Self::Seg(s) => s.eval(t),
+            Self::Seg(s, _) => s.eval(t),
             Self::Dot(p) => *p,
         }
     }
@@ -104,7 +121,7 @@ impl Target<'_> {
     /// The distance from `p`, or `known` if that is smaller. Adds to `work`.
     fn distance(&self, p: Point, known: f64, work: &mut f64) -> f64 {
         match self {
-            Self::Seg(s) => to_segment(s, p, known, work),
+            Self::Seg(s, starts) => to_segment(s, starts, p, known, work),
             Self::Dot(d) => {
                 *work += LINE;
                 d.distance(p).min(known)
@@ -177,8 +194,28 @@ fn box_distance(r: &Rect, p: Point) -> f64 {
     dx.hypot(dy)
 }
 
-/// The distance from `p` to `seg`, or `known` if that is smaller. Adds to `work`.
-fn to_segment(seg: &Seg, p: Point, known: f64, work: &mut f64) -> f64 {
+/// Halves the part of a segment between two parameters, each with its derivative, wherever it turns sharply. A cubic does so in two
+/// places at most.
+fn turns(seg: &Seg, a: (f64, Vec2), b: (f64, Vec2), halvings: u32, starts: &mut Vec<f64>) {
+    let t = 0.5 * (a.0 + b.0);
+    let mid = (t, seg.deriv(t));
+    // The derivative of a cubic is a parabola, whose directions are between those of its control points.
+    let control = 2.0 * mid.1 - 0.5 * (a.1 + b.1);
+    let is_sharp = |u: Vec2, v: Vec2| u.dot(v) < COS_TURN * u.hypot() * v.hypot();
+    let halves = halvings > 0 && (is_sharp(a.1, control) || is_sharp(control, b.1) || is_sharp(a.1, b.1));
+    // No search gets away from where the derivative is zero.
+    if halves || (a.1 == Vec2::ZERO) != (b.1 == Vec2::ZERO) {
+        starts.push(t);
+    }
+    if !halves {
+        return;
+    }
+    turns(seg, a, mid, halvings - 1, starts);
+    turns(seg, mid, b, halvings - 1, starts);
+}
+
+/// The distance from `p` to `seg`, or `known` if that is smaller. Searches from `starts` as well. Adds to `work`.
+fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -> f64 {
     if let Seg::Line(l) = seg {
         *work += LINE;
         let v = l.p1 - l.p0;
@@ -192,11 +229,12 @@ fn to_segment(seg: &Seg, p: Point, known: f64, work: &mut f64) -> f64 {
     let mut best = at.iter().copied().fold(known, f64::min);
     // No point is farther than this from the nearest of those.
     let reach = most_speed(seg) * 0.5 / STRETCHES as f64;
-    for (i, d) in at.into_iter().enumerate() {
+    *work += each * starts.len() as f64;
+    let regular = at.into_iter().enumerate().map(|(i, d)| (i as f64 / STRETCHES as f64, d));
+    for (mut t, mut d) in regular.chain(starts.iter().map(|&t| (t, seg.eval(t).distance(p)))) {
         if d - reach >= best {
             continue;
         }
-        let (mut t, mut d) = (i as f64 / STRETCHES as f64, d);
         // Gauss–Newton for the foot point, with shorter steps where the curve turns too sharply for it.
         let mut share = 1.0;
         for _ in 0..STEPS {
@@ -247,9 +285,20 @@ mod tests {
         assert!((symmetric(&ring(10.0), &ring(10.5)).unwrap() - 0.5).abs() < 1e-9);
         assert!((symmetric(&path("M0,0 H10"), &path("M0,1 H14")).unwrap() - 17.0_f64.sqrt()).abs() < 1e-12);
         assert!(symmetric(&ring(10.0), &ring(10.0)).unwrap() < 1e-12);
-        // The cubic turns back within a thousandth of its length.
-        let hairpin = path("M9,-54 C10,0.6 3,-563 1,11");
-        assert!(symmetric(&hairpin, &hairpin).unwrap() < 1e-9);
+        for turned in [
+            // The cubic turns back within a thousandth of its length,
+            "M9,-54 C10,0.6 3,-563 1,11",
+            // at its start, where its derivative is zero,
+            "M0,1 C0,1 0,0 5,71",
+            "M97,93 C97,93 100.77894663640085,96.52167116657114 6,4",
+            // and twice within a small part of it.
+            "M94,46 C34.86324402573272,15.739518830697063 57.79779568305158,27.49665112689303 49,23",
+            "M50,0 A100,0.01 30 0 1 -50,9",
+        ] {
+            let turned = path(turned);
+            let apart = symmetric(&turned, &turned).unwrap();
+            assert!(apart < 1e-9, "{turned:?} is {apart} from itself");
+        }
         assert_eq!(symmetric(&ring(1.0), &Outline::default()), None);
         assert_eq!(symmetric(&path("M3,4"), &path("M0,0M9,0H8")), Some(52.0_f64.sqrt()));
     }

@@ -7,7 +7,7 @@ mod support;
 
 use kurbo::{Affine, ParamCurveNearest, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Formula, Homography, Jet, Map, Real};
-use pathwarp::refit::{Assurance, Options, warp_path};
+use pathwarp::refit::{Assurance, Options, RESOLUTION, warp_path};
 use pathwarp::{Outline, Seg};
 use support::Bicubic;
 
@@ -121,4 +121,17 @@ fn the_budget_ends() {
         assert!(!w.report.over_budget.is_empty() && w.report.max_error > 0.01);
         assert!(w.path.is_finite() && w.report.segments_out < 4000, "{}", w.report.segments_out);
     }
+}
+
+/// Found by fuzzing: with a tolerance that rounding exceeds by less than a billionth, no place was named.
+#[test]
+fn a_tolerance_below_rounding_names_a_place() {
+    let far = Outline::from_svg("M11e9 3h2v5").unwrap();
+    let quarter_turn = AffineMap(Affine::rotate(std::f64::consts::FRAC_PI_2));
+    let resolution = RESOLUTION * far.extent();
+    let report = |tolerance: f64| warp_path(&far, &quarter_turn, &Options::new(tolerance)).unwrap().report;
+    let missed = report(resolution * (1.0 - 1e-10));
+    assert!(missed.unresolved.is_some() && missed.over_budget.len() == 1, "{missed:?}");
+    let met = report(resolution * (1.0 + 1e-10));
+    assert!(met.unresolved.is_none() && met.over_budget.is_empty(), "{met:?}");
 }

@@ -56,11 +56,12 @@ impl PathReport {
         /// Sums of errors round up.
         const ROUNDING: f64 = 1e-9;
         let resolution = RESOLUTION * outline.extent().max(image);
+        let mut missed = self.max_error > tolerance * (1.0 + ROUNDING);
         if resolution > tolerance {
             self.unresolved = Some(resolution);
             self.add_error(resolution, Assurance::Checked);
+            missed = true;
         }
-        let missed = self.max_error > tolerance * (1.0 + ROUNDING);
         if missed && self.over_budget.is_empty() {
             self.over_budget.extend(outline.subpaths.first().map(|s| s.start));
         }
