@@ -764,6 +764,8 @@
     since = 0;
     /** Changes of the steps, one after another. */
     turns = Promise.resolve();
+    /** The last commit, which the server answers after those before it. */
+    lastCommit = Promise.resolve();
     /** Runs while keys move a handle, until the steps are committed. */
     pause = 0;
     connection;
@@ -861,7 +863,11 @@
       this.isBusy = false;
     }
     /** Makes the present steps the ones to undo from and to save. */
-    async commit() {
+    commit() {
+      this.lastCommit = this.committed();
+      return this.lastCommit;
+    }
+    async committed() {
       this.isWanted = false;
       this.endPause();
       const done = await this.attempt(async () => {
@@ -885,6 +891,12 @@
     /** Commits what keys have done so far, if anything. */
     async flush() {
       if (this.endPause()) await this.commit();
+    }
+    /** Waits until the server has all that was done so far. */
+    async settle() {
+      await this.turns;
+      await this.flush();
+      await this.lastCommit;
     }
     endPause() {
       if (this.pause === 0) return false;
@@ -1370,7 +1382,7 @@
     }
     async open(file) {
       const { app: app2 } = this;
-      await app2.flush();
+      await app2.settle();
       const { state } = app2;
       if (!state) return;
       if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
@@ -2213,7 +2225,7 @@
     }
     async keep(name) {
       try {
-        await this.app.flush();
+        await this.app.settle();
         const { presets } = await this.app.connection.ask({ do: "keep-preset", name });
         this.gallery.showPresets(presets ?? []);
         this.dialog.close();
@@ -2375,7 +2387,7 @@
     }
     /** Saves where it was saved last; the first time, under the usual name. */
     async quick() {
-      await this.app.flush();
+      await this.app.settle();
       const { state } = this.app;
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
       if (!state || state.steps.length === 0) return;
@@ -2384,7 +2396,7 @@
       if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
     }
     async open() {
-      await this.app.flush();
+      await this.app.settle();
       const { state } = this.app;
       if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
       this.name.value = state.target;

@@ -54,6 +54,8 @@ export class App {
   private since = 0;
   /** Changes of the steps, one after another. */
   private turns: Promise<unknown> = Promise.resolve();
+  /** The last commit, which the server answers after those before it. */
+  private lastCommit: Promise<void> = Promise.resolve();
   /** Runs while keys move a handle, until the steps are committed. */
   private pause = 0;
   readonly connection: Connection;
@@ -165,7 +167,12 @@ export class App {
   }
 
   /** Makes the present steps the ones to undo from and to save. */
-  async commit(): Promise<void> {
+  commit(): Promise<void> {
+    this.lastCommit = this.committed();
+    return this.lastCommit;
+  }
+
+  private async committed(): Promise<void> {
     this.isWanted = false;
     this.endPause();
     const done = await this.attempt(async () => {
@@ -192,6 +199,13 @@ export class App {
   /** Commits what keys have done so far, if anything. */
   async flush(): Promise<void> {
     if (this.endPause()) await this.commit();
+  }
+
+  /** Waits until the server has all that was done so far. */
+  async settle(): Promise<void> {
+    await this.turns;
+    await this.flush();
+    await this.lastCommit;
   }
 
   private endPause(): boolean {

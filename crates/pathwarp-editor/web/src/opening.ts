@@ -46,7 +46,7 @@ export class Opening {
 
   private async open(file: File): Promise<void> {
     const { app } = this;
-    await app.flush();
+    await app.settle();
     const { state } = app;
     if (!state) return;
     if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);

@@ -76,7 +76,7 @@ export class Saving {
 
   /** Saves where it was saved last; the first time, under the usual name. */
   async quick(): Promise<void> {
-    await this.app.flush();
+    await this.app.settle();
     const { state } = this.app;
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
     if (!state || state.steps.length === 0) return;
@@ -86,7 +86,7 @@ export class Saving {
   }
 
   async open(): Promise<void> {
-    await this.app.flush();
+    await this.app.settle();
     const { state } = this.app;
     if (!state || state.steps.length === 0 || state.program || this.dialog.open) return;
     this.name.value = state.target;

@@ -44,6 +44,16 @@ export const a_flag_is_saved_and_opened_again = () => within(null, async ({ dir,
   }
 });
 
+/** Saving right after a choice saves what was chosen, though the server has not answered yet. */
+export const what_was_chosen_just_now_is_saved = () => within(null, async ({ dir, page }) => {
+  await page.evaluate(() => {
+    [...document.querySelectorAll(".card")].find((card) => card.textContent === "Flag").click();
+    window.dispatchEvent(new KeyboardEvent("keydown", { key: "s", ctrlKey: true }));
+  });
+  await page.waitForSelector("#toast.on");
+  check(readFileSync(`${dir}/logo-bent.svg`, "utf8").includes("style = \"flag\""), "the choice is not in the file");
+});
+
 export const every_format_is_written = () => within(null, async ({ dir, page }) => {
   await choose(page, "Arc");
   for (const [format, start] of [["pdf", "%PDF"], ["dxf", "  0"], ["png", "\x89PNG"], ["toml", "pathwarp = 1"], ["svg", "<svg"]]) {
