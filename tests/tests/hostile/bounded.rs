@@ -101,6 +101,16 @@ impl Folder {
         commands.into_iter().map(|c| self.run(c)).collect()
     }
 
+    /// Asserts that warping, rendering and listing `file` are all refused with the limit named: it cannot be read, which the other
+    /// commands do in the same way.
+    #[track_caller]
+    pub fn is_not_read(&self, file: &str, limit: &str) {
+        for args in [&["swirl", file, "-o", "out.svg"][..], &["render", file, "-o", "out.png"], &["paths", file]] {
+            let (code, said) = self.run(args);
+            assert!(code == 3 && said.contains(limit), "{args:?} do not name `{limit}`: {code} {said}");
+        }
+    }
+
     /// Asserts that warping and rendering `file` end with these codes and the words, after all commands kept the promise.
     #[track_caller]
     pub fn expect(&self, file: &str, [warp, render]: [i32; 2], words: &str) {
@@ -123,6 +133,12 @@ pub fn svg(body: &str) -> Vec<u8> {
 #[track_caller]
 pub fn expect(body: &str, codes: [i32; 2], words: &str) {
     Folder::with(&[("a.svg", &svg(body))]).expect("a.svg", codes, words);
+}
+
+/// Asserts that a drawing is refused by the limit when it is read.
+#[track_caller]
+pub fn is_not_read(body: &str, limit: &str) {
+    Folder::with(&[("a.svg", &svg(body))]).is_not_read("a.svg", limit);
 }
 
 pub const RECT: &str = "<rect x='10' y='10' width='50' height='30'/>";

@@ -1,6 +1,6 @@
 //! Style sheets and namespaces, whose parsers take time with the square of their length.
 
-use super::bounded::{Folder, RECT, expect, svg};
+use super::bounded::{Folder, RECT, expect, is_not_read, svg};
 
 /// A style sheet for a rectangle.
 fn sheet(css: &str) -> String {
@@ -9,10 +9,10 @@ fn sheet(css: &str) -> String {
 
 #[test]
 fn ends_of_values_are_counted() {
-    expect(&sheet(&"rect{fill:red;a:1 2 #3}".repeat(8000)), [3, 3], "comparisons");
-    expect(&sheet(&"rect{fill:red;a:1 2 #3}\n".repeat(20_000)), [3, 3], "comparisons");
-    expect(&sheet(&"{}}{;:@\\".repeat(100_000)), [3, 3], "comparisons");
-    expect(&"<style>rect{fill:red}</style>".repeat(20_000), [3, 3], "comparisons");
+    is_not_read(&sheet(&"rect{fill:red;a:1 2 #3}".repeat(8000)), "comparisons");
+    is_not_read(&sheet(&"rect{fill:red;a:1 2 #3}\n".repeat(20_000)), "comparisons");
+    is_not_read(&sheet(&"{}}{;:@\\".repeat(100_000)), "comparisons");
+    is_not_read(&"<style>rect{fill:red}</style>".repeat(20_000), "comparisons");
     // What real sheets hold.
     expect(&sheet(&"rect{fill:red;stroke-width:1.5;stroke:#00a0e9}\n".repeat(1000)), [0, 0], "");
 }
@@ -20,34 +20,34 @@ fn ends_of_values_are_counted() {
 #[test]
 fn declarations_are_counted_for_each_selector() {
     let css = format!("{}b{{{}}}", "a,".repeat(4000), "a:b;".repeat(4000));
-    expect(&sheet(&css), [3, 3], "comparisons");
+    is_not_read(&sheet(&css), "comparisons");
 }
 
 #[test]
 fn values_of_attributes_are_counted() {
     let rules: String = (0..5000).map(|i| format!(".k{i}{{fill:blue}}\n")).collect();
     let rects = format!("<rect width='9' height='9' class='{}z'/>", "y ".repeat(1000)).repeat(300);
-    expect(&format!("<style>{rules}</style>{rects}"), [3, 3], "comparisons");
+    is_not_read(&format!("<style>{rules}</style>{rects}"), "comparisons");
 }
 
 #[test]
 fn values_are_counted_for_each_element() {
     let paths = "<path d='M0 0h9v9z'/>".repeat(20_000);
     let rule = |css: &str| format!("<style>{css}</style>{paths}");
-    expect(&rule(&format!("path{{transform:{}}}", "rotate(1deg)".repeat(38_000))), [3, 3], "comparisons");
+    is_not_read(&rule(&format!("path{{transform:{}}}", "rotate(1deg)".repeat(38_000))), "comparisons");
     // Texts that inherit what they are shown without.
-    let inherited = format!("<g style='text-shadow:{}'>{}</g>", "1px ".repeat(15_000), "<text>a</text>".repeat(5000));
+    let inherited = format!("<g style='text-shadow:{}'>{}</g>", "1px ".repeat(60_000), "<text>a</text>".repeat(1250));
     expect(&inherited, [1, 1], "");
     // A value may be short that asks for a long one.
     let long = "1px ".repeat(4000);
-    expect(&rule(&format!("svg{{--a:{long}}}path{{stroke-dasharray:var(--a)}}")), [3, 3], "comparisons");
+    is_not_read(&rule(&format!("svg{{--a:{long}}}path{{stroke-dasharray:var(--a)}}")), "comparisons");
 }
 
 #[test]
 fn namespaces_are_counted() {
     let open: String = (0..12_000).map(|i| format!("<g xmlns:n{i}='u{i}'>")).collect();
     let deep = format!("{open}{RECT}{}", "</g>".repeat(12_000));
-    Folder::with(&[("a.svg", &svg(&deep))]).expect("a.svg", [3, 3], "comparisons");
+    Folder::with(&[("a.svg", &svg(&deep))]).is_not_read("a.svg", "comparisons");
     // Some programs declare the same ones on every element.
     expect(&"<rect xmlns='http://www.w3.org/2000/svg' width='9' height='9'/>".repeat(9000), [0, 0], "");
 }

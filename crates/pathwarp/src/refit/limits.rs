@@ -3,13 +3,13 @@
 //! Each entry says what the threshold trades, the figure it was chosen by, and the test that fails if it is moved too far.
 //! Constants that are pure mathematics (nodes, growth factors of polynomials) stay where they are used.
 //!
-//! Unless a figure names its source, it is the change over the sample of `tests/refit_figures.rs` at tolerances 1, 0.1, 0.01 and
+//! Unless a figure names its source, it is the change over the sample of `tests/geometry/figures.rs` at tolerances 1, 0.1, 0.01 and
 //! 0.001 together, if this threshold alone is set to the value given: "0.3: +1.1 % pieces, −0.2 % work". Work is counted in
 //! calls of the map. An unchanged output at both ends of the range is reported as such.
 //!
 //! *Figures* stands for the tests `…stay_at_their_figures` of that file, *sample* for `the_sample_stays_within_the_tolerance`
-//! there. Other tests are named: those of `tests/refit_random.rs` as `random::…`, of `tests/refit_limits.rs` as `limits::…`, of
-//! `tests/refit.rs` and `tests/refit_report.rs` as `refit::…` and `report::…`.
+//! there. Other tests are named: those of `tests/geometry/random.rs` as `random::…`, of `tests/geometry/limits.rs` as `limits::…`, of
+//! `refit.rs` and `report.rs` beside them as `refit::…` and `report::…`.
 
 // Subpaths
 

@@ -1,5 +1,5 @@
 //! Thresholds of merging. As in `refit::limits`, each entry says what it trades; figures are those of the merged runs of
-//! `tests/refit_figures.rs`. *Trials* are fits of one cubic to one stretch; figures beside them are those of every fourth icon of
+//! `tests/geometry/figures.rs`. *Trials* are fits of one cubic to one stretch; figures beside them are those of every fourth icon of
 //! docs/benchmarks.md under its strong map.
 
 /// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree). 0: +19 % pieces.

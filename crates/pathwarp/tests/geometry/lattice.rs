@@ -1,8 +1,6 @@
 //! Free-form deformation against its definition (de Casteljau's algorithm, de Boor's recursion), and what is promised of its
 //! images and borders.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveNearest, PathEl, Point, Rect, Shape, Vec2};
 use pathwarp::map::{Class, Creases, Jet, Lattice, LatticeMap, Map, RationalBezier};
 use pathwarp::refit::{Options, warp_path};

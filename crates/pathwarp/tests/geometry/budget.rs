@@ -1,7 +1,5 @@
 //! The work of a refit is counted by the parts of the map, and images that leave the range of numbers are errors.
 
-#![allow(clippy::unwrap_used)]
-
 use kurbo::{Affine, Rect};
 use pathwarp::budget::{Budget, Limit, Limits};
 use pathwarp::deform::Registry;

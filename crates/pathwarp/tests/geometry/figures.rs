@@ -3,11 +3,7 @@
 //!
 //! Work is counted in calls of the map, of one batch or one jet each: unlike time, it is the same on every machine.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "../benches/support/mod.rs"]
-mod support;
-
+use crate::support::{self, Bicubic, Rational};
 use kurbo::{CubicBez, Point};
 use pathwarp::map::batch::Lane;
 use pathwarp::map::{Formula, Jet, Map, RationalDegree, Real};
@@ -15,7 +11,6 @@ use pathwarp::outline::EllipticArc;
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use support::{Bicubic, Rational};
 
 const TOLERANCES: [f64; 4] = [1.0, 0.1, 0.01, 0.001];
 /// Allowance for another order of rounding, as with fused multiply-add.

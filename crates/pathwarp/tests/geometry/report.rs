@@ -1,15 +1,10 @@
 //! Reports: exact images are reported as exact, and places at which the work budget ran out are listed.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "../benches/support/mod.rs"]
-mod support;
-
+use crate::support::{self, Bicubic};
 use kurbo::{Affine, ParamCurveNearest, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Formula, Homography, Jet, Map, Real};
 use pathwarp::refit::{Assurance, Options, RESOLUTION, warp_path};
 use pathwarp::{Outline, Seg};
-use support::Bicubic;
 
 const DRAWING: &str =
     "M100 100L700 200C750 300 800 300 900 350Q500 400 620 800L300 700C200 600 150 300 100 100ZM200 500L400 650";

@@ -1,15 +1,9 @@
 //! Random smooth curves of several segments under random maps: merged paths stay within the tolerance and have no more pieces than
 //! unmerged ones.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "refit_random/maps.rs"]
-mod maps;
-#[path = "../benches/support/mod.rs"]
-mod support;
-
+use crate::random::maps::{self, Waves, map};
+use crate::support;
 use kurbo::{CubicBez, ParamCurve, Point, Vec2};
-use maps::{Waves, map};
 use pathwarp::map::Map;
 use pathwarp::refit::{Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};

@@ -1,17 +1,12 @@
 //! Shapes that come again, as letters do: their cubics are carried from place to place, and stay within the tolerance.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "../benches/support/mod.rs"]
-mod support;
-
+use crate::support::{self, Bicubic, Rational, Ripple};
 use kurbo::{Affine, Point, Vec2};
 use pathwarp::map::batch::Lane;
 use pathwarp::map::{Jet, Map, RationalDegree};
 use pathwarp::refit::{KnownShapes, Options, RefittedPath, warp_path};
 use pathwarp::{Outline, Seg};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use support::{Bicubic, Rational, Ripple};
 
 /// Outlines of letters, with more nodes than they need: some joints are smooth, others corners.
 const LETTERS: [&str; 3] = [

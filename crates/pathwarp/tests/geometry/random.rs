@@ -1,15 +1,10 @@
 //! Random segments under random maps: the refit stays within its budget, its output is finite and within the tolerance, or the
 //! report says that it is not. The generators prefer degenerate cases: points that coincide, or are collinear, or nearly so.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "refit_random/cases.rs"]
 mod cases;
-#[path = "refit_random/maps.rs"]
-mod maps;
-#[path = "../benches/support/mod.rs"]
-mod support;
+pub(crate) mod maps;
 
+use crate::support;
 use kurbo::{CubicBez, Line, Point, QuadBez};
 use maps::{Waves, map};
 use pathwarp::map::Map;

@@ -1,8 +1,6 @@
 //! Images of rational surfaces against their definitions in exact arithmetic: every floating-point number is a fraction, so the
 //! source surface, the formula of the map (written again) and the resulting surface are evaluated without rounding.
 
-#![allow(clippy::unwrap_used)]
-
 mod exact;
 
 use exact::{Q, bernstein, q, rational_point, size_of};

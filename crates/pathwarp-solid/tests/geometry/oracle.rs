@@ -1,8 +1,6 @@
 //! An independent oracle: the formulas written again from their definitions, in plain arrays, and compared with the maps to 1e-9
 //! relative; inverses there and back; rays and planes to 1e-12.
 
-#![allow(clippy::unwrap_used)]
-
 use glam::DVec3;
 use pathwarp::param::Args;
 use pathwarp_solid::deform::Registry3;

@@ -1,15 +1,10 @@
 //! The refit against an independent oracle: Hausdorff distances by 2,000 samples in each direction.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "../benches/support/mod.rs"]
-mod support;
-
+use crate::support::{self, Bicubic, Fold, Rational, Ripple};
 use kurbo::{CubicBez, Point};
 use pathwarp::map::{Formula, Map, Real};
 use pathwarp::refit::{Assurance, Options, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
-use support::{Bicubic, Fold, Rational, Ripple};
 
 fn single(seg: Seg) -> Outline {
     Outline { subpaths: vec![Subpath { start: seg.start(), segs: vec![seg], closed: false }] }

@@ -1,16 +1,11 @@
 //! Thresholds of the refit at work: cases that only one of them decides.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "../benches/support/mod.rs"]
-mod support;
-
+use crate::support::{self, Fold, Ripple};
 use kurbo::{CubicBez, PathEl, Point, Vec2};
 use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
 use pathwarp::refit::{Options, RefittedPath, warp_path};
 use pathwarp::{Outline, Seg, Subpath};
 use std::sync::Arc;
-use support::{Fold, Ripple};
 
 fn warp(d: &str, map: &dyn Map, tolerance: f64) -> RefittedPath {
     warp_path(&Outline::from_svg(d).unwrap(), map, &Options::new(tolerance)).unwrap()

@@ -1,7 +1,5 @@
 //! Surfaces that the end of a region crosses: their images are cut along it, and both sides are right up to the cut.
 
-#![allow(clippy::unwrap_used)]
-
 use pathwarp::budget::{Budget, Limits};
 use pathwarp::param::Args;
 use pathwarp_solid::deform::Registry3;
@@ -201,7 +199,7 @@ fn lattice(pairs: &[(&str, &str)]) -> Chain3 {
 /// The map jumps at the plane x = 0, in which patches of the teapot meet, also at the tip of its lid: each follows its own side.
 #[test]
 fn a_jump_at_joints() {
-    let teapot = bpt::read(include_bytes!("../../../samples/solid/newell.bpt")).unwrap();
+    let teapot = bpt::read(include_bytes!("../../../../samples/solid/newell.bpt")).unwrap();
     // The corner at 0,5,5 of a box from 0,0,−5 to 5,5,5, and the same with its degrees raised.
     let raised = "0,2,1:0,0.1333333333333333,0 0,3,1:0,0.2,0 0,2,2:0,0.2666666666666667,0 0,3,2:0,0.4,0 \
                   0,1,1:0,0.0666666666666667,0 0,1,2:0,0.1333333333333333,0 0,1,3:0,0.2,0 0,2,3:0,0.4,0 0,3,3:0,0.6,0";
