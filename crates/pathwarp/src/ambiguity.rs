@@ -6,6 +6,8 @@ use kurbo::{Point, Rect};
 
 /// Samples in each direction over the box. Places smaller than the spacing can go unnoticed.
 const GRID: usize = 32;
+/// All samples.
+pub(crate) const SAMPLES: usize = GRID * GRID;
 /// Distance between a point and what the inverse makes of its image, as a share of the box's diagonal, beyond which they are two
 /// points: far above the error of an inverse by Newton's method.
 const APART: f64 = 1e-6;
@@ -28,8 +30,7 @@ pub(crate) fn ambiguity(map: &dyn Map, inverse: &dyn Map, frame: Rect) -> Option
         let share = |n: usize| (n as f64 + 0.5) / GRID as f64;
         Point::new(frame.x0 + frame.width() * share(i), frame.y0 + frame.height() * share(j))
     };
-    let sources: Vec<Point> =
-        (0..GRID * GRID).map(|n| at(n % GRID, n / GRID)).filter(|p| creases.defined_at(*p)).collect();
+    let sources: Vec<Point> = (0..SAMPLES).map(|n| at(n % GRID, n / GRID)).filter(|p| creases.defined_at(*p)).collect();
     let mut images = vec![Point::ORIGIN; sources.len()];
     map.points(&sources, &mut images);
     let mut returned = vec![Point::ORIGIN; sources.len()];

@@ -43,6 +43,8 @@ mod error;
 pub mod fold;
 pub(crate) mod formula;
 pub mod map;
+#[doc(hidden)]
+pub mod meter;
 pub mod outline;
 pub mod param;
 pub mod recipe;

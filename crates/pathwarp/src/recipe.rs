@@ -22,11 +22,12 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 
-use crate::ambiguity::ambiguity;
-use crate::budget::{Budget, Limit};
+use crate::ambiguity::{SAMPLES, ambiguity};
+use crate::budget::{Budget, Limit, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
-use crate::map::{Chain, Map, NewtonInverse};
+use crate::map::{Chain, Map, NewtonInverse, metered};
+use crate::meter::Meter;
 use crate::outline::Outline;
 use crate::param::{Args, Frame, Kind, Letter, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -82,12 +83,15 @@ pub struct BuiltRecipe {
     pub after: Chain,
     /// For every step, the frame that its percentages refer to.
     pub frames: Vec<Frame>,
+    /// Counts the searches of inverses.
+    meter: Arc<Meter>,
 }
 
 impl Recipe {
     /// Builds every step within a budget, which counts the segments of the paths that control the steps, and the
-    /// evaluations that find out where the artwork is after each step. See
-    /// [`Recipe::build`].
+    /// evaluations that find out where the artwork is after each step. Inverses that search count in it what each search takes beyond
+    /// [`Map::work`], for as long as they are used: once that exceeds the limit they are undefined everywhere, and
+    /// [`BuiltRecipe::failure`] says so. See [`Recipe::build`].
     ///
     /// # Errors
     /// As for [`Recipe::build`], and [`GeometryError::Limit`] if the budget does not allow so many.
@@ -96,7 +100,7 @@ impl Recipe {
         registry: &Registry,
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
-        budget: &Budget,
+        budget: &Arc<Budget>,
     ) -> Result<BuiltRecipe, Error> {
         let paths: usize = self.steps.iter().map(|s| s.args.path_segments()).sum();
         budget.spend(Limit::Evaluations, MEASURED * paths as u64).map_err(GeometryError::Limit)?;
@@ -106,7 +110,7 @@ impl Recipe {
             let work = SAMPLE * places * *samples * out.map.work();
             budget.spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)
         };
-        self.counted(registry, frame, artwork, &count)
+        self.counted(registry, frame, artwork, (&count, &Meter::new(Arc::clone(budget))))
     }
 
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
@@ -124,22 +128,23 @@ impl Recipe {
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
-        self.counted(registry, frame, artwork, &|_| Ok(()))
+        let unlimited = Arc::new(Budget::new(Limits::none()));
+        self.counted(registry, frame, artwork, (&|_| Ok(()), &Meter::new(unlimited)))
     }
 
-    /// Builds every step; `count` is called before the artwork's image under the steps so far is sampled.
+    /// Builds every step.
     fn counted<'a>(
         &self,
         registry: &Registry,
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
-        count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
+        counting: Counting<'_>,
     ) -> Result<BuiltRecipe, Error> {
         if self.steps.len() < 2 || !self.steps.iter().all(|s| s.inverse) {
-            return self.built(registry, frame, artwork, count, None);
+            return self.built(registry, frame, artwork, counting, None);
         }
-        let (frames, off) = self.frames_on_the_way_back(registry, frame.clone(), artwork, count)?;
-        let mut out = self.built(registry, frame, artwork, count, Some(&frames))?;
+        let (frames, off) = self.frames_on_the_way_back(registry, frame.clone(), artwork, counting)?;
+        let mut out = self.built(registry, frame, artwork, counting, Some(&frames))?;
         if let Some(step) = out.steps.last_mut().filter(|_| off > SETTLED) {
             step.warn(format!(
                 "the boxes that percentages of the later steps refer to were not found again, and differ by {off:.1e} of their size: \
@@ -156,21 +161,22 @@ impl Recipe {
         registry: &Registry,
         source: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
-        count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
+        counting: Counting<'_>,
     ) -> Result<(Vec<Frame>, f64), Error> {
         let Rect { x0, y0, x1, y1 } = source.rect;
         let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(Point::from);
         let page = Outline::from_points(&corners, true);
-        let there = self.inverted().built(registry, source, &std::iter::once(&page), count, None)?;
+        let there = self.inverted().built(registry, source, &std::iter::once(&page), counting, None)?;
         let mut frames: Vec<Frame> = there.frames.into_iter().rev().collect();
+        let (count, meter) = counting;
         let mut off = f64::INFINITY;
         for _ in 0..TURNS {
-            let mut back = BuiltRecipe::with_capacity(frames.len());
+            let mut back = BuiltRecipe::new(frames.len(), meter);
             off = 0.0;
             // The source's frame, the last, is known.
             for (i, step) in self.steps.iter().enumerate().take(frames.len() - 1) {
                 let built = entry(registry, i, step)?.build_from(&step.args, &frames[i])?;
-                back.map.push(inverse(&built, &frames[i]));
+                back.map.push(inverse(&built, &frames[i], meter));
                 count(&back)?;
                 let Some(found) = image_box(artwork.clone(), &[], &back.map) else { continue };
                 let known = frames[i].rect;
@@ -192,10 +198,11 @@ impl Recipe {
         registry: &Registry,
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
-        count: &dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>,
+        counting: Counting<'_>,
         found: Option<&[Frame]>,
     ) -> Result<BuiltRecipe, Error> {
-        let mut out = BuiltRecipe::with_capacity(self.steps.len());
+        let (count, meter) = counting;
+        let mut out = BuiltRecipe::new(self.steps.len(), meter);
         let letters = Arc::clone(&frame.letters);
         let mut frame = frame;
         for (i, step) in self.steps.iter().enumerate() {
@@ -218,7 +225,7 @@ impl Recipe {
                 if let Some(warning) = out.torn_seam(artwork.clone(), &built, &step.deformation) {
                     built.warn(warning);
                 }
-                built = inverted(built, &frame, &step.deformation);
+                built = inverted(built, &frame, &step.deformation, meter)?;
             }
             if i > 0 {
                 out.after.push(Arc::clone(&built.map));
@@ -263,20 +270,28 @@ fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), E
 }
 
 impl BuiltRecipe {
-    fn with_capacity(steps: usize) -> Self {
+    fn new(steps: usize, meter: &Arc<Meter>) -> Self {
         Self {
             map: Chain::default(),
             steps: Vec::with_capacity(steps),
             placement: Placement::default(),
             after: Chain::default(),
             frames: Vec::with_capacity(steps),
+            meter: Arc::clone(meter),
         }
     }
 
-    /// Returns the failure of a step's map, if one has failed. Results computed with it are not to be used.
+    /// Returns the failure of a step's map, if one has failed, or the limit that searches for an inverse have exceeded. Results computed
+    /// with it are not to be used.
     #[must_use]
     pub fn failure(&self) -> Option<Error> {
-        self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()))
+        let failed = self.steps.iter().find_map(|s| s.failure.as_ref().and_then(|failed| failed()));
+        failed.or_else(|| self.meter.exceeded().map(|e| GeometryError::Limit(e).into()))
+    }
+
+    /// Stops counting the searches of inverses in the budget that the recipe was built within: for maps that are used on and on.
+    pub fn stop_counting(&self) {
+        self.meter.release();
     }
 
     /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
@@ -309,17 +324,22 @@ impl BuiltRecipe {
     }
 }
 
+/// What is called before the artwork's image under the steps so far is sampled, and the meter of the inverses.
+type Counting<'a> = (&'a dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>, &'a Arc<Meter>);
+
 /// The inverse of a map: its closed form, or Newton's method over the frame.
-fn inverse(built: &Built, frame: &Frame) -> Arc<dyn Map> {
+fn inverse(built: &Built, frame: &Frame, meter: &Arc<Meter>) -> Arc<dyn Map> {
     /// Distance beyond the frame at which a solution is accepted, as a share of its diagonal: strokes and handles extend past it.
     const REACH: f64 = 0.25;
     let newton = || Arc::new(NewtonInverse::over(Arc::clone(&built.map), frame.rect, REACH)) as Arc<dyn Map>;
-    built.map.inverse().unwrap_or_else(newton)
+    metered(built.map.inverse().unwrap_or_else(newton), meter)
 }
 
 /// Inverts a deformation, with a warning if it folds.
-fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
-    let map = inverse(&built, frame);
+fn inverted(mut built: Built, frame: &Frame, deformation: &str, meter: &Arc<Meter>) -> Result<Built, GeometryError> {
+    let map = inverse(&built, frame, meter);
+    let work = INVERTED * built.map.work() + SAMPLES as f64 * map.work();
+    meter.budget().spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)?;
     if let Some(a) = ambiguity(&*built.map, &*map, frame.rect) {
         built.warn(format!(
             "{deformation}: undoing it is ambiguous: {} and {} have the same image, {}, of which only one can come back; artwork \
@@ -337,7 +357,7 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str) -> Built {
             Role::Cage => Role::Cage,
         };
     }
-    Built { map, ..built }
+    Ok(Built { map, ..built })
 }
 
 /// Intervals between the samples of a segment.
@@ -351,6 +371,9 @@ const TURNS: usize = 64;
 
 /// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.
 const MEASURED: u64 = 4000;
+
+/// The work of building an inverse, in evaluations of the map: its starting points.
+const INVERTED: f64 = 150.0;
 
 /// The work of a sample, which is taken in a batch, in evaluations of the budget.
 const SAMPLE: f64 = 0.25;

@@ -33,11 +33,17 @@ impl Counted {
 
     /// Fails if there were too many evaluations.
     pub(crate) fn check(&self) -> Result<(), Exceeded> {
-        self.budget.spend_cut(Limit::Evaluations, 0)
+        self.budget.spend_cut(Limit::Evaluations, self.searched())
     }
 
     fn count(&self, evaluations: usize) -> bool {
-        self.budget.spend(Limit::Evaluations, (evaluations as f64 * self.work) as u64).is_ok()
+        let work = (evaluations as f64 * self.work) as u64 + self.searched();
+        self.budget.spend(Limit::Evaluations, work).is_ok()
+    }
+
+    /// What the last evaluations searched in vain.
+    fn searched(&self) -> u64 {
+        self.map.take_overrun().unwrap_or(0)
     }
 }
 

@@ -6,6 +6,8 @@ use crate::options::{Given, reading_args, rect};
 use crate::status::Status;
 use crate::{input, output, references, steps};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::GeometryError;
+use pathwarp::budget::{Budget, Limit};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Creases, Jet, Map};
@@ -15,8 +17,12 @@ use pathwarp::recipe::Recipe;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 pub(super) const NAME: &str = "map";
+
+/// The work of a point, in evaluations of the map with all that a fit does.
+const POINT: f64 = 0.25;
 
 pub(super) fn command(registry: &Registry) -> Command {
     let mut c = Command::new(NAME)
@@ -78,8 +84,12 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         Some(t) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
         None => cloud.bounding_box().unwrap_or(Rect::ZERO),
     };
-    let built = recipe.build(registry, Frame::new(frame), &std::iter::once(&cloud)).map_err(Failure::of_recipe)?;
+    let budget = Arc::new(Budget::new(reading.limits.for_input(bytes.len())));
+    let built = recipe.build_within(registry, Frame::new(frame), &std::iter::once(&cloud), &budget);
+    let built = built.map_err(Failure::of_recipe)?;
     let map = &built.map;
+    let work = POINT * map.work() * points.len() as f64;
+    budget.spend(Limit::Evaluations, work as u64).map_err(|e| Failure::of_recipe(GeometryError::Limit(e).into()))?;
     let mut creases = Creases::default();
     map.creases(&mut creases);
     let mut jets = vec![Jet::default(); points.len()];

@@ -174,8 +174,11 @@ impl Warper {
             let frame = plain_frame(&options, bounds)?;
             let alone = self.typed.steps.len() == 1 && !self.typed.steps.iter().any(|s| s.inverse);
             let outline = if alone { Outline::default() } else { cloud() };
-            let budget = Budget::new(options.reading.limits);
-            Ok(PointMap::new(self.build(&frame, &outline, &budget)?.map))
+            let budget = Arc::new(Budget::new(options.reading.limits));
+            let built = self.build(&frame, &outline, &budget)?;
+            // Points are mapped as often as the program around this likes.
+            built.stop_counting();
+            Ok(PointMap::new(built.map))
         })
     }
 
@@ -212,6 +215,7 @@ impl Warper {
             let survey = Survey::new(&built.map, repeated.bounding_box(), repeated.segs().count());
             let orientation = survey.orientation_of_copies(outline, copies, true);
             let folds = Fold::of(&orientation, &orientation).count;
+            built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;
             let warnings = built.steps.into_iter().flat_map(|s| s.explanation.warnings).collect();
             Ok(Path { path, folds, warnings })
         })
@@ -233,7 +237,7 @@ impl Warper {
     }
 
     /// Builds the recipe without a drawing.
-    fn build(&self, frame: &Frame, outline: &Outline, budget: &Budget) -> Result<BuiltRecipe, Failure> {
+    fn build(&self, frame: &Frame, outline: &Outline, budget: &Arc<Budget>) -> Result<BuiltRecipe, Failure> {
         let mut recipe = self.resolved.clone();
         references::resolve_names(&self.registry, &mut recipe, |name| Err(no_document(name)))?;
         let outlines = std::iter::once(outline);

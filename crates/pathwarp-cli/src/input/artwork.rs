@@ -10,6 +10,7 @@ use pathwarp::param::Frame;
 use pathwarp::recipe::BuiltRecipe;
 use pathwarp::{Error, Outline};
 use pathwarp_svg::Overhang;
+use std::sync::Arc;
 
 /// Artwork of one kind, read and ready to be warped.
 pub(crate) trait Artwork {
@@ -42,7 +43,7 @@ pub(crate) trait Artwork {
     fn outlines(&self) -> Vec<&Outline>;
 
     /// The limits on the work that the artwork causes, and what is used of them.
-    fn budget(&self) -> &Budget;
+    fn budget(&self) -> &Arc<Budget>;
 
     /// Warps the artwork.
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure>;

@@ -142,7 +142,7 @@ impl Artwork for GimpArtwork {
         }
     }
 
-    fn budget(&self) -> &Budget {
+    fn budget(&self) -> &Arc<Budget> {
         &self.budget
     }
 

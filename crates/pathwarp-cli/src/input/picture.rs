@@ -91,7 +91,7 @@ impl Artwork for PictureArtwork {
         }
     }
 
-    fn budget(&self) -> &Budget {
+    fn budget(&self) -> &Arc<Budget> {
         &self.budget
     }
 

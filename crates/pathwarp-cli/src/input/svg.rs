@@ -266,7 +266,7 @@ impl Artwork for SvgArtwork {
         units_per_px(&self.doc)
     }
 
-    fn budget(&self) -> &Budget {
+    fn budget(&self) -> &Arc<Budget> {
         self.doc.budget()
     }
 

@@ -86,6 +86,10 @@ impl Map for Chain {
         self.steps.iter().map(Map::work).sum::<f64>().max(1.0)
     }
 
+    fn take_overrun(&self) -> Option<u64> {
+        self.steps.iter().filter_map(Map::take_overrun).reduce(|a, b| a + b)
+    }
+
     fn jet(&self, p: Point) -> Jet {
         let mut it = self.steps.iter();
         let Some(first) = it.next() else { return AffineMap::IDENTITY.jet(p) };

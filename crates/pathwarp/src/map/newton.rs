@@ -17,6 +17,7 @@
 use super::rounds::by_rounds;
 use super::secant::{Target, approach};
 use super::{Jet, Map};
+use crate::meter::{Effort, Overrun};
 use kurbo::{Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -32,6 +33,10 @@ const MAX_STEPS: usize = 40;
 const MIN_DAMPING: f64 = 1e-4;
 /// Starting points tried for one point.
 const MAX_TRIES: usize = 16;
+/// Looks at a starting point that comparing it with those tried takes.
+const COMPARED: usize = 6;
+/// By how much more a jet takes alone than with others, for a map of many parts.
+const SINGLY: f64 = 3.0;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
 ///
@@ -54,6 +59,10 @@ pub struct NewtonInverse {
     lipschitz: f64,
     /// Rounding error of an image coordinate.
     rounding: f64,
+    /// The work of the map, and of one of its jets in a search.
+    map_work: f64,
+    pub(crate) jet_work: f64,
+    overrun: Overrun,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -121,6 +130,9 @@ impl NewtonInverse {
         let side = nx.max(ny);
         let orientation = map.jet(core.center()).det().signum();
         let mut out = Self {
+            map_work: map.work(),
+            jet_work: 1.0 + SINGLY * (map.work() - 1.0).max(0.0),
+            overrun: Overrun::default(),
             map,
             core,
             orientation,
@@ -156,13 +168,25 @@ impl NewtonInverse {
     /// The preimage of `q` and the derivatives of the inverse there; `None` if there is no preimage in the box.
     #[must_use]
     pub fn solve(&self, q: Point) -> Option<Jet> {
-        self.solve_by(&*self.map, q, |_| true)
+        self.solve_where(q, |_| true)
     }
 
     /// As [`NewtonInverse::solve`], among the preimages that `accept` accepts.
     #[must_use]
     pub(crate) fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
-        self.solve_by(&*self.map, q, accept)
+        self.counted(self.search(q, accept))
+    }
+
+    /// As [`NewtonInverse::solve_where`], with the effort it took, for callers that count it themselves.
+    #[must_use]
+    pub(crate) fn search(&self, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Effort) {
+        self.search_by(&*self.map, q, accept)
+    }
+
+    /// Counts the work of a search.
+    fn counted(&self, (found, effort): (Option<Jet>, Effort)) -> Option<Jet> {
+        self.overrun.add(effort, 1, self.jet_work);
+        found
     }
 
     /// The next starting point for `q` in its bucket: those in the core first, then in the order of their images' distances from q.
@@ -180,22 +204,31 @@ impl NewtonInverse {
     }
 
     /// The same with the jets of `map`, which is this inverse's map or a memory of it.
-    fn solve_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
+    fn search_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Effort) {
+        let mut effort = Effort::default();
+        let found = self.solve_by(map, q, accept, &mut effort);
+        (found, effort)
+    }
+
+    fn solve_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool, effort: &mut Effort) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() {
             return None;
         }
         let (i, j) = self.bucket(q);
-        if self.buckets[j * self.side + i].is_empty() {
+        let near = self.buckets[j * self.side + i].len();
+        if near == 0 {
+            effort.starts += self.starts.len();
             let off = |s: &Start| (s.jet.p - q).hypot2();
             let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.newton(map, start.at, q).filter(|found| self.counts(found) && accept(found.p));
+            return self.newton(map, start.at, q, effort).filter(|found| self.counts(found) && accept(found.p));
         }
         let mut tried = [u32::MAX; MAX_TRIES];
         let mut best: Option<(f64, Jet)> = None;
         for n in 0..MAX_TRIES {
+            effort.starts += COMPARED * near;
             let Some(k) = self.next_start(q, &tried) else { break };
             tried[n] = k;
-            let Some(found) = self.newton(map, self.starts[k as usize].at, q).filter(|f| accept(f.p)) else {
+            let Some(found) = self.newton(map, self.starts[k as usize].at, q, effort).filter(|f| accept(f.p)) else {
                 continue;
             };
             let distance = self.distance_from_core(found.p);
@@ -243,8 +276,15 @@ impl NewtonInverse {
         };
         let found: Vec<Option<Jet>> = places.iter().zip(qs).map(polished).collect();
         let left: Vec<Point> = found.iter().zip(qs).filter(|(f, _)| f.is_none()).map(|(_, q)| *q).collect();
-        let mut rest = by_rounds(&*self.map, &left, |map, q| self.solve_by(map, *q, |_| true)).into_iter();
-        found.into_iter().map(|f| f.or_else(|| rest.next().flatten()).unwrap_or(Jet::UNDEFINED)).collect()
+        let mut rest = self.jets_by_rounds(&left).into_iter();
+        found.into_iter().map(|f| f.or_else(|| rest.next()).unwrap_or(Jet::UNDEFINED)).collect()
+    }
+
+    /// The jets of the inverse at `qs` by Newton's method for all of them at once.
+    fn jets_by_rounds(&self, qs: &[Point]) -> Vec<Jet> {
+        // Of what is done again in each round, the last time counts.
+        let found = by_rounds(&*self.map, qs, |map, q| self.search_by(map, *q, |_| true));
+        found.into_iter().map(|f| self.counted(f).unwrap_or(Jet::UNDEFINED)).collect()
     }
 
     /// Distance from the core along the axis where it is larger; 0 inside.
@@ -259,10 +299,11 @@ impl NewtonInverse {
     }
 
     /// Newton's method from one starting point.
-    fn newton(&self, map: &dyn Map, start: Point, q: Point) -> Option<Jet> {
+    fn newton(&self, map: &dyn Map, start: Point, q: Point, effort: &mut Effort) -> Option<Jet> {
         let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
         let mut jet = map.jet(x);
+        effort.jets += 1;
         let mut residual = q - jet.p;
         for _ in 0..MAX_STEPS {
             let step = solve(&jet, residual)?;
@@ -273,6 +314,7 @@ impl NewtonInverse {
                 to = x + step * damping;
                 to = Point::new(to.x.clamp(room.x0, room.x1), to.y.clamp(room.y0, room.y1));
                 at = map.jet(to);
+                effort.jets += 1;
                 r = q - at.p;
                 if r.hypot2() < residual.hypot2() || r.hypot() <= self.rounding {
                     break;
@@ -312,14 +354,18 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
     out.is_finite().then_some(out)
 }
 
-/// Work of a point of the inverse, as a multiple of the map's: a dozen jets, which take a fifth of what an evaluation stands for in the
-/// budget, with the fit around it (the hairpin of `tests/cli/report.rs` takes 7 ns for each, an evaluation 80); and as much again for
-/// places without a source, which are searched for from several starts: half of a twist by 1000 %.
+/// Work of a point of the inverse, as a multiple of the map's: a dozen jets with the steps around them, where there is a source. What a
+/// search takes beyond this is counted afterwards ([`Map::take_overrun`]).
 pub(crate) const INVERSE_WORK: f64 = 5.0;
 
 impl Map for NewtonInverse {
     fn work(&self) -> f64 {
-        INVERSE_WORK * self.map.work()
+        INVERSE_WORK * self.map_work
+    }
+
+    fn take_overrun(&self) -> Option<u64> {
+        // The map may be an inverse itself.
+        Some(self.overrun.take() + self.map.take_overrun().unwrap_or(0))
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -327,13 +373,12 @@ impl Map for NewtonInverse {
     }
 
     fn jets(&self, qs: &[Point], out: &mut [Jet]) {
-        let one = |map: &dyn Map, q: &Point| self.solve_by(map, *q, |_| true).unwrap_or(Jet::UNDEFINED);
         if self.map.prefers_batches() && self.map.differentiates() {
             out.copy_from_slice(&self.jets_by_values(qs));
         } else if self.map.prefers_batches() {
-            out.copy_from_slice(&by_rounds(&*self.map, qs, one));
+            out.copy_from_slice(&self.jets_by_rounds(qs));
         } else {
-            qs.iter().zip(out).for_each(|(q, o)| *o = one(&*self.map, q));
+            qs.iter().zip(out).for_each(|(q, o)| *o = self.jet(*q));
         }
     }
 
@@ -356,6 +401,7 @@ impl Map for NewtonInverse {
 mod tests {
     use super::*;
     use crate::map::{Formula, Real};
+    use std::sync::atomic::{AtomicU64, Ordering};
 
     struct Fold;
     impl Formula for Fold {
@@ -382,6 +428,35 @@ mod tests {
         assert!(inv.point(Point::new(-1.0, 0.0)).is_nan());
         assert!(inv.point(Fold.point(Point::new(0.4, 0.0))).is_nan());
         assert!(inv.point(Fold.point(Point::new(2.0, 2.5))).is_nan());
+    }
+
+    /// Counts its jets.
+    #[derive(Default)]
+    struct Counting(AtomicU64);
+    impl Map for Counting {
+        fn jet(&self, p: Point) -> Jet {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            Map::jet(&Fold, p)
+        }
+    }
+
+    #[test]
+    fn what_is_searched_in_vain_is_counted() {
+        let map = Arc::new(Counting::default());
+        let inverse =
+            NewtonInverse::new(Arc::clone(&map) as Arc<dyn Map>, Rect::new(-1.0, -1.0, 1.0, 1.0), 1e-9, [1, 1]);
+        let of = |q: Point| {
+            map.0.store(0, Ordering::Relaxed);
+            let found = inverse.jet(q).is_finite();
+            (found, map.0.load(Ordering::Relaxed), inverse.take_overrun().unwrap())
+        };
+        let (found, jets, beyond) = of(Fold.point(Point::new(0.7, 0.2)));
+        assert!(found && jets <= 12 && beyond <= 5, "{jets} {beyond}");
+        // On the fold every starting point is tried.
+        let (found, jets, beyond) = of(Point::new(0.0, 0.3));
+        assert!(!found && jets > 100, "{jets}");
+        assert!((0.3..0.8).contains(&(beyond as f64 / jets as f64)), "{jets} {beyond}");
+        assert_eq!(inverse.take_overrun(), Some(0));
     }
 
     #[test]

@@ -74,6 +74,13 @@ pub trait Map: Send + Sync {
         1.0
     }
 
+    /// Takes the work, in evaluations of the budget, by which evaluations since the last call exceeded [`work`](Map::work). `None`:
+    /// none ever does. Inverses that search exceed it where they search in vain, which is known only afterwards.
+    #[doc(hidden)]
+    fn take_overrun(&self) -> Option<u64> {
+        None
+    }
+
     /// Returns `true` if a call costs much and a point little, as where another program is asked. Callers then collect the points
     /// they need.
     fn prefers_batches(&self) -> bool {
@@ -163,6 +170,9 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     fn work(&self) -> f64 {
         (**self).work()
     }
+    fn take_overrun(&self) -> Option<u64> {
+        (**self).take_overrun()
+    }
     fn prefers_batches(&self) -> bool {
         (**self).prefers_batches()
     }
@@ -239,6 +249,9 @@ mod tests {
         fn work(&self) -> f64 {
             self.record("work", 3.0)
         }
+        fn take_overrun(&self) -> Option<u64> {
+            self.record("take_overrun", Some(4))
+        }
         fn prefers_batches(&self) -> bool {
             self.record("prefers_batches", true)
         }
@@ -277,6 +290,7 @@ mod tests {
         let _ = map.denominator(p);
         let _ = map.inverse();
         let _ = map.work();
+        let _ = map.take_overrun();
         let _ = map.prefers_batches();
         let _ = map.differentiates();
         let _ = map.remembers();

@@ -5,8 +5,9 @@ use super::options::Options;
 use super::path;
 use super::piece::PathWriter;
 use super::report::{self, RefittedPath};
+use crate::budget::Limit;
 use crate::error::GeometryError;
-use crate::map::{Class, Creases, Gathered, Map};
+use crate::map::{Class, Creases, Gathered, Map, Metered};
 use crate::outline::Outline;
 use std::sync::Arc;
 
@@ -82,11 +83,15 @@ fn refit(
         path::affine(outline, m, options, &mut out)?;
     } else {
         let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
+        let metered = Metered::borrowed(map, &options.budget);
+        let map = metered.as_ref().map_or(map, |m| m as &dyn Map);
         let mut creases = Creases::default();
         map.creases(&mut creases);
         let announced = path::announce_short(outline, map, &creases, options);
         for sub in &outline.subpaths {
-            path::subpath(sub, map, &creases, (options, announced), memory, &mut out)?;
+            // A map that counts in the budget is undefined once the limit is exceeded.
+            let limit = |e| options.budget.spend_cut(Limit::Evaluations, 0).err().map_or(e, GeometryError::Limit);
+            path::subpath(sub, map, &creases, (options, announced), memory, &mut out).map_err(limit)?;
         }
     }
     out.report.segments_in = outline.segs().count();

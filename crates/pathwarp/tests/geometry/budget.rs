@@ -56,13 +56,80 @@ fn the_limit_holds_within_a_single_segment() {
     assert!(warp_path(&line, &*oscillating, &Options::new(1e-3)).is_ok());
 }
 
+/// A quilt of two by two patches, the identity but for a control point far out, undone.
+fn far_quilt() -> Recipe {
+    let mut points: Vec<Vec<[f64; 2]>> =
+        (0..7).map(|j| (0..7).map(|i| [f64::from(i) * 100.0 / 6.0, f64::from(j) * 100.0 / 6.0]).collect()).collect();
+    points[1][1] = [1e6, -1e6];
+    let json = format!("{{\"region\": [0, 0, 100, 100], \"points\": {points:?}}}");
+    let registry = Registry::builtin();
+    let mut args = Args::from_pairs(&[("mesh", "f.json")]);
+    args.resolve_files(registry.get("mesh").unwrap().info().params, |_| Ok(json.clone())).unwrap();
+    let mut step = Step::new("mesh", args);
+    step.inverse = true;
+    Recipe { steps: vec![step] }
+}
+
+/// Found by fuzzing: it took 20 seconds. Counted wherever the budget comes from, and whatever asks the inverse.
+#[test]
+fn searching_in_vain_is_counted() {
+    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+    let small = || Arc::new(Budget::new(Limits::default().with(Limit::Evaluations, 1e6)));
+    let limited = |e: &GeometryError| matches!(e, GeometryError::Limit(e) if e.limit == Limit::Evaluations);
+    // By the refit alone.
+    let free = map(&far_quilt());
+    let e = warp_path(&path(), &*free, &Options::new(0.01).with_budget(small())).unwrap_err();
+    assert!(limited(&e), "{e:?}");
+    // By the recipe: then every use of the map counts, and says so.
+    let budget = small();
+    let outline = path();
+    let built =
+        far_quilt().build_within(&Registry::builtin(), frame.clone(), &std::iter::once(&outline), &budget).unwrap();
+    assert!(built.failure().is_none());
+    let place = |i: u32| kurbo::Point::new(f64::from(i % 100), f64::from(i / 100 % 100));
+    let asked = (0..1_000_000).take_while(|i| {
+        let _ = built.map.point(place(*i));
+        built.failure().is_none()
+    });
+    let asked = asked.count() as f64;
+    // Fewer than if all of them had a source.
+    assert!(asked < 1e6 / built.map.work(), "{asked}");
+    assert!(matches!(built.failure(), Some(Error::Geometry(e)) if limited(&e)));
+    assert!(built.map.point(place(0)).is_nan());
+}
+
+/// Values are those of the same map without a budget, bit by bit.
+#[test]
+fn counting_changes_no_value() {
+    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+    let outline = path();
+    let recipes = [
+        far_quilt(),
+        recipe(&[("warp", &[("style", "twist"), ("bend", "100%")])]).inverted(),
+        recipe(&[("wordart", &[("preset", "ring-inside")]), ("wave", &[])]).inverted(),
+        recipe(&[("mls", &[("pair", "50,15:60,5"), ("pin", "10,90")])]).inverted(),
+    ];
+    for recipe in recipes {
+        let build = |budget: Budget| {
+            let budget = Arc::new(budget);
+            recipe.build_within(&Registry::builtin(), frame.clone(), &std::iter::once(&outline), &budget).unwrap().map
+        };
+        let (free, counted) = (build(Budget::new(Limits::none())), build(Budget::default()));
+        for i in 0..400 {
+            let p = kurbo::Point::new(f64::from(i % 20) * 6.0 - 10.0, f64::from(i / 20) * 6.0 - 10.0);
+            let bits = |q: kurbo::Point| (q.x.to_bits(), q.y.to_bits());
+            assert_eq!(bits(free.point(p)), bits(counted.point(p)), "{recipe:?} at {p:?}");
+        }
+    }
+}
+
 #[test]
 fn placing_the_steps_of_a_recipe_is_counted() {
     let no_args: &[(&str, &str)] = &[];
     let waves = [("wave", no_args); 40];
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
     let build = |limit: f64| {
-        let budget = Budget::new(Limits::default().with(Limit::Evaluations, limit));
+        let budget = Arc::new(Budget::new(Limits::default().with(Limit::Evaluations, limit)));
         recipe(&waves).build_within(&Registry::builtin(), frame.clone(), &std::iter::once(&path()), &budget)
     };
     assert!(build(1e6).is_ok());

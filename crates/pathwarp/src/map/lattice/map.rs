@@ -246,6 +246,10 @@ impl Map for LatticeInverse {
         2.0 * self.inner.work()
     }
 
+    fn take_overrun(&self) -> Option<u64> {
+        self.inner.take_overrun()
+    }
+
     fn jet(&self, q: Point) -> Jet {
         match self.inner.solve(q) {
             Some(found) => found,

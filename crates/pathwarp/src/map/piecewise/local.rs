@@ -151,6 +151,13 @@ impl Map for LocalInverse {
         }
     }
 
+    fn take_overrun(&self) -> Option<u64> {
+        match &self.back {
+            InnerInverse::Closed(m) => m.take_overrun(),
+            InnerInverse::Newton(m) => m.take_overrun(),
+        }
+    }
+
     fn jet(&self, q: Point) -> Jet {
         match self.within(q, self.of.reach) {
             Some(found) => found,
@@ -188,6 +195,10 @@ struct Inside(LocalInverse);
 impl Map for Inside {
     fn work(&self) -> f64 {
         self.0.work()
+    }
+
+    fn take_overrun(&self) -> Option<u64> {
+        self.0.take_overrun()
     }
 
     fn jet(&self, q: Point) -> Jet {

@@ -4,6 +4,7 @@
 //! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
 
 use crate::map::{Crease, CreaseKind, Creases, INVERSE_WORK, Jet, Level, Map, NewtonInverse, RationalBezier};
+use crate::meter::{Effort, Overrun};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
@@ -30,6 +31,8 @@ const REACH: f64 = 1e3;
 /// Margin, as a share of a tile's rectangle, within which answers of its inverse count: for the ends of parts on the border, and
 /// their rounding.
 const MARGIN: f64 = 1e-9;
+/// Tiles that are searched for a point, most often.
+const FORESEEN: usize = 2;
 /// Distance beyond the region over which the inverse searches, as a multiple of its size.
 const INVERSE_REACH: f64 = 0.5;
 
@@ -164,6 +167,8 @@ struct TiledInverse {
     of: Tiled,
     /// The inverse of every tile, and the rectangle in which its answers must lie.
     tiles: Vec<(Rect, Arc<NewtonInverse>)>,
+    jet_work: f64,
+    overrun: Overrun,
 }
 
 impl TiledInverse {
@@ -176,30 +181,38 @@ impl TiledInverse {
             let (map, core) = (of.rows[j].maps[i].clone(), of.rect(j, i));
             (domain.inflate(margin, margin), Arc::new(NewtonInverse::with_core(map, core, domain, 0.0, [1, 1])))
         });
-        Self { of: of.clone(), tiles: tiles.collect() }
+        let tiles: Vec<(Rect, Arc<NewtonInverse>)> = tiles.collect();
+        let jet_work = tiles.iter().map(|t| t.1.jet_work).fold(1.0, f64::max);
+        Self { of: of.clone(), tiles, jet_work, overrun: Overrun::default() }
     }
 
     /// The tile and jet of the first preimage in the region, or else of the first one beyond it.
     fn solve(&self, q: Point) -> Option<(usize, Jet)> {
-        let found = |k: usize| {
-            let (rect, inverse) = &self.tiles[k];
-            inverse.solve_where(q, |p| rect.contains(p)).map(|j| (k, j))
-        };
-        let mut beyond = None;
-        for k in 0..self.tiles.len() {
-            match found(k) {
-                Some((k, jet)) if self.of.region.contains(jet.p) => return Some((k, jet)),
-                Some(other) if beyond.is_none() => beyond = Some(other),
-                _ => {}
+        let (mut best, mut effort) = (None, Effort::default());
+        for (k, (rect, inverse)) in self.tiles.iter().enumerate() {
+            let (found, more) = inverse.search(q, |p| rect.contains(p));
+            effort.add(more);
+            match found {
+                Some(jet) if self.of.region.contains(jet.p) => {
+                    best = Some((k, jet));
+                    break;
+                }
+                Some(jet) => best = best.or(Some((k, jet))),
+                None => {}
             }
         }
-        beyond
+        self.overrun.add(effort, FORESEEN, self.jet_work);
+        best
     }
 }
 
 impl Map for TiledInverse {
     fn work(&self) -> f64 {
-        2.0 * INVERSE_WORK * self.of.work()
+        FORESEEN as f64 * INVERSE_WORK * self.of.work()
+    }
+
+    fn take_overrun(&self) -> Option<u64> {
+        Some(self.overrun.take())
     }
 
     fn jet(&self, q: Point) -> Jet {
