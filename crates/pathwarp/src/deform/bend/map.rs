@@ -38,6 +38,9 @@ impl ToStrip {
     }
 }
 
+/// The work of a point of a strip: its de Casteljau steps with derivatives take twice as long as a net.
+const STRIP: f64 = 2.0;
+
 /// The map: pieces side by side.
 #[derive(Clone)]
 pub(super) struct BendMap {
@@ -119,6 +122,10 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 }
 
 impl Map for BendMap {
+    fn work(&self) -> f64 {
+        STRIP
+    }
+
     fn jet(&self, p: Point) -> Jet {
         let (piece, begin) = self.piece(self.to_strip.s(p.x));
         self.to_strip.jet(piece, begin, p)
@@ -173,6 +180,10 @@ impl OnPiece {
 }
 
 impl Map for OnPiece {
+    fn work(&self) -> f64 {
+        STRIP
+    }
+
     fn jet(&self, p: Point) -> Jet {
         self.to_strip.jet(&self.piece, self.begin, p)
     }

@@ -117,6 +117,13 @@ pub(crate) fn source_coordinates(pre: Affine) -> [[f64; 3]; 2] {
 }
 
 impl Formula for Quotient {
+    /// By the number of terms of a polynomial.
+    fn work(&self) -> f64 {
+        const TERMS: f64 = 32.0;
+        let terms = (self.degree + 1) * (self.degree + 2) / 2;
+        (terms as f64 / TERMS).max(1.0)
+    }
+
     #[inline]
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let [k0, k1, k2, k3, k4, k5] = self.pre.as_coeffs();
