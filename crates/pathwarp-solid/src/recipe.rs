@@ -2,11 +2,13 @@
 
 use crate::box3::Box3;
 use crate::deform::{Built3, Registry3};
-use crate::map::{Chain3, Creases3, Map3, NewtonInverse3};
+use crate::map::{Chain3, Creases3, Map3, NewtonInverse3, metered};
 use crate::settings::Frame3;
 use glam::DVec3;
-use pathwarp::Error;
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
+use pathwarp::meter::Meter;
 use pathwarp::recipe::Recipe;
+use pathwarp::{Error, GeometryError};
 use std::sync::Arc;
 
 /// A recipe with every parameter settled.
@@ -18,6 +20,25 @@ pub struct BuiltRecipe3 {
     pub steps: Vec<Built3>,
     /// What percentages of each step referred to.
     pub frames: Vec<Frame3>,
+    /// Counts the searches of inverses.
+    meter: Arc<Meter>,
+}
+
+impl BuiltRecipe3 {
+    fn new(steps: usize, meter: &Arc<Meter>) -> Self {
+        Self {
+            map: Chain3::default(),
+            steps: Vec::with_capacity(steps),
+            frames: Vec::with_capacity(steps),
+            meter: Arc::clone(meter),
+        }
+    }
+
+    /// Returns the limit that searches for an inverse have exceeded. Results computed with the map are then not to be used.
+    #[must_use]
+    pub fn exceeded(&self) -> Option<Exceeded> {
+        self.meter.exceeded()
+    }
 }
 
 /// Distance beyond the frame at which a solution of Newton's method is accepted, as a share of its diagonal.
@@ -25,9 +46,11 @@ const REACH: f64 = 0.25;
 /// Smooth pieces of a map along an axis that Newton's method is prepared for.
 const PIECES: [usize; 3] = [4; 3];
 
+/// Places along an axis of a box.
+const GRID: usize = 12;
+
 /// Places all over a box, with its corners.
 fn places(bounds: &Box3) -> impl Iterator<Item = DVec3> {
-    const GRID: usize = 12;
     let at = |i: usize| i as f64 / (GRID - 1) as f64;
     let place = move |k: usize| DVec3::new(at(k % GRID), at(k / GRID % GRID), at(k / (GRID * GRID)));
     let (from, size) = (bounds.min, bounds.size());
@@ -51,11 +74,46 @@ fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
 /// # Errors
 /// An unknown deformation, or any error from building a step.
 pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVec3]) -> Result<BuiltRecipe3, Error> {
-    let n = recipe.steps.len();
-    if n > 1 && recipe.steps.iter().all(|s| s.inverse) {
-        return undo(&recipe.inverted(), registry, frame, points);
-    }
-    let mut out = BuiltRecipe3 { map: Chain3::default(), steps: Vec::with_capacity(n), frames: Vec::with_capacity(n) };
+    build_within(recipe, registry, frame, points, &Arc::new(Budget::new(Limits::none())))
+}
+
+/// As [`build`], within a budget, which counts the evaluations that find out where the points are after each step, and those of one
+/// more run of the map at all points. Inverses that search count in it what each search takes beyond [`Map3::work`], for as long as they
+/// are used: once that exceeds the limit they are undefined everywhere, and [`BuiltRecipe3::exceeded`] says so.
+///
+/// # Errors
+/// As for [`build`], and [`GeometryError::Limit`] if the budget does not allow so many.
+pub fn build_within(
+    recipe: &Recipe,
+    registry: &Registry3,
+    frame: Frame3,
+    points: &[DVec3],
+    budget: &Arc<Budget>,
+) -> Result<BuiltRecipe3, Error> {
+    let meter = Meter::new(Arc::clone(budget));
+    let out = if recipe.steps.len() > 1 && recipe.steps.iter().all(|s| s.inverse) {
+        undo(&recipe.inverted(), registry, frame, points, &meter)?
+    } else {
+        built(recipe, registry, frame, points, &meter)?
+    };
+    count(&meter, &out.map, points.len())?;
+    Ok(out)
+}
+
+/// Counts evaluations of a map.
+fn count(meter: &Meter, map: &dyn Map3, places: usize) -> Result<(), GeometryError> {
+    let work = (places as f64 * map.work()) as u64;
+    meter.budget().spend_cut(Limit::Evaluations, work).map_err(GeometryError::Limit)
+}
+
+fn built(
+    recipe: &Recipe,
+    registry: &Registry3,
+    frame: Frame3,
+    points: &[DVec3],
+    meter: &Arc<Meter>,
+) -> Result<BuiltRecipe3, Error> {
+    let mut out = BuiltRecipe3::new(recipe.steps.len(), meter);
     let mut frame = frame;
     let mut images = if recipe.steps.len() > 1 { points.to_vec() } else { Vec::new() };
     for (i, step) in recipe.steps.iter().enumerate() {
@@ -70,9 +128,10 @@ pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVe
         }
         let mut built = entry.build_from(&step.args, &frame)?;
         if step.inverse {
-            built = inverted(built, &frame.bounds);
+            built = inverted(built, &frame.bounds, meter)?;
         }
         if i + 1 < recipe.steps.len() {
+            count(meter, &*built.map, points.len())?;
             built.map.points(&mut images);
         }
         out.map.push(Arc::clone(&built.map));
@@ -83,11 +142,17 @@ pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVe
 }
 
 /// Builds the inverse of a recipe of several steps: boxes give the source's points, and these the boxes on their way, until they settle.
-fn undo(recipe: &Recipe, registry: &Registry3, frame: Frame3, images: &[DVec3]) -> Result<BuiltRecipe3, Error> {
+fn undo(
+    recipe: &Recipe,
+    registry: &Registry3,
+    frame: Frame3,
+    images: &[DVec3],
+    meter: &Arc<Meter>,
+) -> Result<BuiltRecipe3, Error> {
     /// Boxes that differ by less than this share of their size are the same.
     const SETTLED: f64 = 1e-12;
     const TURNS: usize = 64;
-    let mut there = build(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>())?;
+    let mut there = built(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>(), meter)?;
     let mut off = f64::INFINITY;
     for _ in 0..TURNS {
         if off <= SETTLED {
@@ -95,16 +160,18 @@ fn undo(recipe: &Recipe, registry: &Registry3, frame: Frame3, images: &[DVec3]) 
         }
         let mut sources = images.to_vec();
         for (step, frame) in there.steps.iter().zip(&there.frames).rev() {
-            inverse(&step.map, &frame.bounds).points(&mut sources);
+            let back = inverse(&step.map, &frame.bounds, meter);
+            count(meter, &*back, sources.len())?;
+            back.points(&mut sources);
         }
         sources.retain(|p| p.is_finite());
-        let next = build(recipe, registry, frame, &sources)?;
+        let next = built(recipe, registry, frame, &sources, meter)?;
         off = next.frames.iter().zip(&there.frames).map(|(a, b)| apart(&a.bounds, &b.bounds)).fold(0.0, f64::max);
         there = next;
     }
-    let mut out = BuiltRecipe3 { map: Chain3::default(), steps: Vec::new(), frames: Vec::new() };
+    let mut out = BuiltRecipe3::new(there.steps.len(), meter);
     for (step, frame) in there.steps.into_iter().zip(there.frames).rev() {
-        let step = inverted(step, &frame.bounds);
+        let step = inverted(step, &frame.bounds, meter)?;
         out.map.push(Arc::clone(&step.map));
         out.steps.push(step);
         out.frames.push(frame);
@@ -124,7 +191,8 @@ fn apart(a: &Box3, b: &Box3) -> f64 {
 }
 
 /// Inverts a step over its box, with a warning if it folds.
-fn inverted(mut built: Built3, bounds: &Box3) -> Built3 {
+fn inverted(mut built: Built3, bounds: &Box3, meter: &Arc<Meter>) -> Result<Built3, GeometryError> {
+    count(meter, &*built.map, GRID.pow(3))?;
     if let Some(at) = fold(&*built.map, bounds) {
         let DVec3 { x, y, z } = at;
         built.warn(format!(
@@ -132,14 +200,14 @@ fn inverted(mut built: Built3, bounds: &Box3) -> Built3 {
              sources, and one of them is taken"
         ));
     }
-    built.map = inverse(&built.map, bounds);
-    built
+    built.map = inverse(&built.map, bounds, meter);
+    Ok(built)
 }
 
 /// The inverse of a map: its own, or by Newton's method over a box.
-fn inverse(map: &Arc<dyn Map3>, bounds: &Box3) -> Arc<dyn Map3> {
+fn inverse(map: &Arc<dyn Map3>, bounds: &Box3, meter: &Arc<Meter>) -> Arc<dyn Map3> {
     let newton = || -> Arc<dyn Map3> {
         Arc::new(NewtonInverse3::new(Arc::clone(map), *bounds, REACH * bounds.diagonal(), PIECES))
     };
-    map.inverse().unwrap_or_else(newton)
+    metered(map.inverse().unwrap_or_else(newton), meter)
 }

@@ -199,6 +199,17 @@ impl Map3 for LatticeMap3 {
         let inner = NewtonInverse3::with_core(Arc::new(smooth), self.region, domain, reach, self.cells);
         Some(Arc::new(LatticeInverse { map: self.clone(), inner }))
     }
+
+    /// By the control points of a piece, all of which a point depends on, besides what is done once.
+    fn work(&self) -> f64 {
+        const EACH: f64 = 1.0 / 16.0;
+        let degrees = |piece: &Piece| match piece {
+            Piece::Displacement(t) => t.degrees(),
+            Piece::Quotient(t) => t.degrees(),
+        };
+        let points = |(_, piece): &(Local, Piece)| degrees(piece).iter().map(|d| d + 1).product::<usize>() as f64;
+        self.pieces.first().map_or(1.0, |piece| 1.0 + EACH * points(piece))
+    }
 }
 
 /// The inverse of a [`LatticeMap3`].
@@ -218,5 +229,13 @@ impl Map3 for LatticeInverse {
 
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
         Some(Arc::new(self.map.clone()))
+    }
+
+    fn work(&self) -> f64 {
+        self.inner.work()
+    }
+
+    fn take_overrun(&self) -> Option<u64> {
+        self.inner.take_overrun()
     }
 }

@@ -71,6 +71,14 @@ impl Map3 for Chain3 {
         }
     }
 
+    fn work(&self) -> f64 {
+        self.steps.iter().map(Map3::work).sum::<f64>().max(1.0)
+    }
+
+    fn take_overrun(&self) -> Option<u64> {
+        self.steps.iter().filter_map(Map3::take_overrun).reduce(|a, b| a + b)
+    }
+
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
         let mut out = Self::default();
         for s in self.steps.iter().rev() {

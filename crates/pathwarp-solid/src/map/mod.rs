@@ -15,6 +15,7 @@ mod crease;
 mod jet;
 mod lane;
 mod local;
+mod metered;
 mod newton;
 mod poly;
 mod tensor;
@@ -30,6 +31,7 @@ pub use traits::Map3;
 
 pub(crate) use batch::{Displaced, Quotient, Radial, Swept, for_all};
 pub(crate) use local::Local;
+pub(crate) use metered::metered;
 #[cfg(test)]
 use pathwarp::map::Real;
 pub(crate) use poly::Poly3;

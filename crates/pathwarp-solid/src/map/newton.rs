@@ -14,6 +14,7 @@ use super::jet::Jet3;
 use super::traits::Map3;
 use crate::box3::Box3;
 use glam::{DMat3, DVec3};
+use pathwarp::meter::{Effort, Overrun};
 use std::sync::Arc;
 
 /// Fewest starting points along a side of the box.
@@ -28,6 +29,9 @@ const MAX_STEPS: usize = 40;
 const MIN_DAMPING: f64 = 1e-4;
 /// Starting points tried for one point.
 const MAX_TRIES: usize = 12;
+/// Work of a point of the inverse, as a multiple of the map's: where there is a source. What a search takes beyond this is counted
+/// afterwards ([`Map3::take_overrun`]).
+const INVERSE_WORK: f64 = 5.0;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
 pub struct NewtonInverse3 {
@@ -46,6 +50,9 @@ pub struct NewtonInverse3 {
     lipschitz: f64,
     /// Rounding error of an image coordinate.
     rounding: f64,
+    /// The work of the map.
+    map_work: f64,
+    overrun: Overrun,
 }
 
 impl NewtonInverse3 {
@@ -89,6 +96,8 @@ impl NewtonInverse3 {
         let largest = bounds.min.abs().max(bounds.max.abs()).max_element().max(1e-300);
         let orientation = map.jet(core.center()).det().signum();
         let mut out = Self {
+            map_work: map.work(),
+            overrun: Overrun::default(),
             map,
             domain,
             core,
@@ -123,6 +132,15 @@ impl NewtonInverse3 {
     /// The preimage of `q` and the derivatives of the inverse there; `None` if there is no certified preimage in the box.
     #[must_use]
     pub fn solve(&self, q: DVec3) -> Option<Jet3> {
+        let mut effort = Effort::default();
+        let found = self.search(q, &mut effort);
+        self.overrun.add(effort, 1, self.map_work);
+        found
+    }
+
+    fn search(&self, q: DVec3, effort: &mut Effort) -> Option<Jet3> {
+        /// Looks at a starting point that it takes to find the nearest.
+        const SELECTING: usize = 30;
         if !q.is_finite() {
             return None;
         }
@@ -134,12 +152,18 @@ impl NewtonInverse3 {
         };
         let mut order: Vec<(bool, f64, usize)> = near.iter().map(|s| off(*s as usize)).collect();
         if order.is_empty() {
+            effort.starts += self.starts.len();
             order.extend((0..self.starts.len()).map(off).min_by(|a, b| a.1.total_cmp(&b.1)));
+        }
+        effort.starts += SELECTING * order.len();
+        if order.len() > MAX_TRIES {
+            order.select_nth_unstable_by(MAX_TRIES, less);
+            order.truncate(MAX_TRIES);
         }
         order.sort_by(less);
         let mut best: Option<(f64, Jet3)> = None;
-        for (_, _, s) in order.iter().take(MAX_TRIES) {
-            let Some(found) = self.newton(self.starts[*s].0, q) else { continue };
+        for (_, _, s) in &order {
+            let Some(found) = self.newton(self.starts[*s].0, q, effort) else { continue };
             let distance = self.distance_from_core(found.p);
             if distance <= self.reach {
                 return Some(found);
@@ -158,10 +182,11 @@ impl NewtonInverse3 {
     }
 
     /// Newton's method from one starting point.
-    fn newton(&self, start: DVec3, q: DVec3) -> Option<Jet3> {
+    fn newton(&self, start: DVec3, q: DVec3, effort: &mut Effort) -> Option<Jet3> {
         let room = self.domain.inflate(0.25 * self.domain.size());
         let mut x = start;
         let mut jet = self.map.jet(x);
+        effort.jets += 1;
         let mut residual = q - jet.p;
         for _ in 0..MAX_STEPS {
             let step = jet.d.inverse() * residual;
@@ -174,6 +199,7 @@ impl NewtonInverse3 {
             while damping > MIN_DAMPING {
                 to = (x + step * damping).clamp(room.min, room.max);
                 at = self.map.jet(to);
+                effort.jets += 1;
                 r = q - at.p;
                 if r.length_squared() < residual.length_squared() || r.length() <= self.rounding {
                     break;
@@ -214,6 +240,15 @@ impl Map3 for NewtonInverse3 {
 
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
         Some(Arc::clone(&self.map))
+    }
+
+    fn work(&self) -> f64 {
+        INVERSE_WORK * self.map_work
+    }
+
+    fn take_overrun(&self) -> Option<u64> {
+        // The map may be an inverse itself.
+        Some(self.overrun.take() + self.map.take_overrun().unwrap_or(0))
     }
 }
 

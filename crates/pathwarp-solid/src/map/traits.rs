@@ -59,6 +59,18 @@ pub trait Map3: Send + Sync {
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
         None
     }
+
+    /// The cost of one evaluation, relative to that of a bend, for the [budget](pathwarp::budget). 1 or more.
+    fn work(&self) -> f64 {
+        1.0
+    }
+
+    /// Takes the work, in evaluations of the budget, by which evaluations since the last call exceeded [`work`](Map3::work). `None`:
+    /// none ever does. Inverses that search exceed it where they search in vain, which is known only afterwards.
+    #[doc(hidden)]
+    fn take_overrun(&self) -> Option<u64> {
+        None
+    }
 }
 
 /// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
@@ -89,5 +101,11 @@ impl<M: Map3 + ?Sized> Map3 for Arc<M> {
     }
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
         (**self).inverse()
+    }
+    fn work(&self) -> f64 {
+        (**self).work()
+    }
+    fn take_overrun(&self) -> Option<u64> {
+        (**self).take_overrun()
     }
 }

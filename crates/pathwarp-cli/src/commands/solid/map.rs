@@ -7,6 +7,8 @@ use crate::options::{Given, reading_args};
 use crate::status::Status;
 use crate::{input, output, references, steps};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use pathwarp::GeometryError;
+use pathwarp::budget::Budget;
 use pathwarp::recipe::Recipe;
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
@@ -15,6 +17,7 @@ use pathwarp_solid::{Box3, Frame3, recipe};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 pub(super) const NAME: &str = "map";
 
@@ -62,11 +65,16 @@ pub(super) fn run(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -
     let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
     let around = Box3::around(points.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
     let frame = Frame3::new(args::frame(m)?.unwrap_or(around));
-    let map = recipe::build(&steps, registry, frame, &points).map_err(Failure::of_recipe)?.map;
+    let budget = Arc::new(Budget::new(reading.limits.for_input(bytes.len())));
+    let built = recipe::build_within(&steps, registry, frame, &points, &budget).map_err(Failure::of_recipe)?;
+    let map = &built.map;
     let mut creases = Creases3::default();
     map.creases(&mut creases);
     let mut jets = vec![Jet3::default(); points.len()];
     map.jets(&points, &mut jets);
+    if let Some(e) = built.exceeded() {
+        return Err(Failure::of_recipe(GeometryError::Limit(e).into()));
+    }
     let mut out = String::new();
     let mut status = Status::Complete;
     for (p, j) in points.iter().zip(&jets) {

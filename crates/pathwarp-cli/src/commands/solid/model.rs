@@ -11,6 +11,7 @@ use pathwarp::budget::Budget;
 use pathwarp_solid::mesh::{Mesh, MeshError, MeshFault, gltf, obj, ply, stl};
 use pathwarp_solid::patch::{Surface, bpt, json};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A model that was read.
 pub(super) struct Model {
@@ -18,7 +19,7 @@ pub(super) struct Model {
     pub(super) name: String,
     pub(super) content: Content,
     /// Counts the work that the file causes.
-    pub(super) budget: Budget,
+    pub(super) budget: Arc<Budget>,
     pub(super) format: ModelFormat,
     /// A drawing, the names of whose objects are those of shapes.
     pub(super) drawn: bool,
@@ -35,7 +36,7 @@ impl Model {
     pub(super) fn read(file: &Path, reading: &Reading, depth: Option<f64>) -> Result<Self, Failure> {
         let name = input::display(file);
         let bytes = input::bytes(file)?;
-        let budget = Budget::new(reading.limits.for_input(bytes.len()));
+        let budget = Arc::new(Budget::new(reading.limits.for_input(bytes.len())));
         if is_drawing(&bytes) {
             if file.as_os_str() == "-" {
                 return Err(Failure::Input(format!("{name}: a drawing must be a file; name it instead")));

@@ -4,7 +4,7 @@ use super::format::{ModelFormat, NAMES};
 use super::model::{mesh_file, pending, unread};
 use super::preview::Preview;
 use super::report::Run;
-use super::work::{Done, Work, shown, undefined};
+use super::work::{Done, Work, check, shown, undefined};
 use crate::failure::Failure;
 use crate::output::PendingFile;
 use crate::pipeline::Job;
@@ -12,6 +12,7 @@ use pathwarp::budget::Budget;
 use pathwarp::param::Axis;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::mesh::{Deformed, Mesh, MeshFault, deform, refine};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A mesh as read, and the format to write.
@@ -24,7 +25,7 @@ pub(super) struct Source {
 }
 
 /// Deforms a mesh.
-pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -> Result<Done, Failure> {
+pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Arc<Budget>) -> Result<Done, Failure> {
     let started = Instant::now();
     let options = work.options;
     let Source { name, mut mesh, format, drawn } = source;
@@ -33,7 +34,7 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
         mesh_file(&mesh, format, None)?;
     }
     let before = (options.report.is_some() || job.preview.is_some()).then(|| mesh.clone());
-    let (frame, built) = work.build(mesh.bounds(), &mesh.positions)?;
+    let (frame, built) = work.build(&name, mesh.bounds(), &mesh.positions, budget)?;
     if let Some(length) = work.own.refine {
         let within = length.in_units(Axis::X, &frame.front());
         refine(&mut mesh, &built.map, within, budget).map_err(|e| match &e.problem {
@@ -44,8 +45,9 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
             _ => unread(&name, &e),
         })?;
     }
-    let deformed =
-        deform(&mut mesh, &built.map).map_err(|e| undefined(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
+    let deformed = deform(&mut mesh, &built.map);
+    check(&name, &built)?;
+    let deformed = deformed.map_err(|e| undefined(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
 
     let mut warnings: Vec<String> = mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
     let partial = !warnings.is_empty();

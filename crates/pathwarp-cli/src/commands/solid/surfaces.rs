@@ -4,7 +4,7 @@ use super::format::ModelFormat;
 use super::model::{mesh_file, pending};
 use super::preview::Preview;
 use super::report::SurfaceRun;
-use super::work::{Done, Work, shown, undefined};
+use super::work::{Done, Work, check, shown, undefined};
 use crate::advice;
 use crate::failure::Failure;
 use crate::output::PendingFile;
@@ -17,6 +17,7 @@ use pathwarp_solid::mesh::Mesh;
 use pathwarp_solid::patch::{
     DeformedPatches, PatchError, Surface, bpt, deform_patches, json, tessellate, tessellate_image,
 };
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The largest distance of a refitted surface, as a share of the model's size, unless one is given.
@@ -33,7 +34,7 @@ pub(super) struct Source {
 }
 
 /// Deforms surfaces; written as a mesh, they are cut into polygons after that.
-pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -> Result<Done, Failure> {
+pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Arc<Budget>) -> Result<Done, Failure> {
     let started = Instant::now();
     let options = work.options;
     let Source { name, mut surfaces, format } = source;
@@ -42,20 +43,20 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
     }
     let points: Vec<DVec3> = surfaces.iter().flat_map(|s| s.points.iter().copied()).collect();
     let bounds = Box3::around(points.iter().copied());
-    let (frame, built) = work.build(bounds, &points)?;
+    let (frame, built) = work.build(&name, bounds, &points, budget)?;
     let within = work.own.refine.map(|l| l.in_units(Axis::X, &frame.front()));
     let tolerance = within.unwrap_or_else(|| TOLERANCE * bounds.map_or(1.0, |b| b.diagonal()));
     let before = surfaces.clone();
-    let done = deform_patches(&mut surfaces, &built.map, tolerance, budget).map_err(|e| match e {
-        PatchError::Undefined { surface, at } => undefined(&name, &format!("surface {}", surface + 1), at),
-        PatchError::Limit(e) => too_much(&name, &e),
-    })?;
+    let done = deform_patches(&mut surfaces, &built.map, tolerance, budget);
+    check(&name, &built)?;
+    let done = done.map_err(|e| failed(&name, &e))?;
     let mut warnings = work.warnings(&built);
     let shape = shape_warnings(&done, format.is_curved().then_some(tolerance));
     warnings.extend(shape.into_iter().map(|w| work.flags.in_text(&w)));
     // Polygons are those of the source, with the images of its points: surfaces that are closed stay closed.
     let image = |within: Option<f64>| -> Result<Mesh, Failure> {
         let mesh = tessellate_image(&before, &built.map, within, budget).map_err(|e| too_much(&name, &e))?;
+        check(&name, &built)?;
         match mesh.positions.iter().all(|p| p.is_finite()) {
             true => Ok(mesh),
             false => Err(Failure::Input(format!("{name}: a place of the surfaces has no image"))),
@@ -112,6 +113,13 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Budget) -
     }
     let partial = format.is_curved() && done.distance > tolerance;
     Ok(Done { files, warnings, notes, report, partial })
+}
+
+fn failed(name: &str, e: &PatchError) -> Failure {
+    match e {
+        PatchError::Undefined { surface, at } => undefined(name, &format!("surface {}", surface + 1), *at),
+        PatchError::Limit(e) => too_much(name, e),
+    }
 }
 
 fn too_much(name: &str, e: &Exceeded) -> Failure {

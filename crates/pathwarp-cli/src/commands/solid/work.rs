@@ -1,16 +1,19 @@
 //! The shared state of a run over models, and the outcome for one model.
 
 use super::args::Own;
-use crate::advice::Flags;
+use crate::advice::{self, Flags};
 use crate::failure::Failure;
 use crate::options::CommonOptions;
 use crate::output::PendingFile;
+use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::recipe::Recipe;
+use pathwarp::{Error, GeometryError};
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::recipe::{self, BuiltRecipe3};
 use pathwarp_solid::{Box3, Frame3};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A run with everything looked up.
 pub(super) struct Work<'a> {
@@ -33,11 +36,20 @@ pub(super) struct Done {
 }
 
 impl Work<'_> {
-    /// Builds the recipe for a model with these points.
-    pub(super) fn build(&self, bounds: Option<Box3>, points: &[DVec3]) -> Result<(Frame3, BuiltRecipe3), Failure> {
+    /// Builds the recipe for a model called `name` with these points.
+    pub(super) fn build(
+        &self,
+        name: &str,
+        bounds: Option<Box3>,
+        points: &[DVec3],
+        budget: &Arc<Budget>,
+    ) -> Result<(Frame3, BuiltRecipe3), Failure> {
         let bounds = bounds.unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
         let frame = Frame3::new(self.own.frame.unwrap_or(bounds));
-        let built = recipe::build(self.recipe, self.registry, frame, points).map_err(Failure::of_recipe)?;
+        let built = recipe::build_within(self.recipe, self.registry, frame, points, budget).map_err(|e| match e {
+            Error::Geometry(GeometryError::Limit(e)) => too_much(name, &e),
+            other => Failure::of_recipe(other),
+        })?;
         Ok((frame, built))
     }
 
@@ -59,6 +71,16 @@ impl Work<'_> {
         let save = |f: &pathwarp::deform::SavedFile| PendingFile::new(Path::new(&f.name), f.text.as_bytes());
         built.steps.iter().flat_map(|s| &s.saves).map(save).collect()
     }
+}
+
+/// Fails if searches for an inverse have exceeded the limit. Nothing that was computed with it is used, not even another error.
+pub(super) fn check(name: &str, built: &BuiltRecipe3) -> Result<(), Failure> {
+    built.exceeded().map_or(Ok(()), |e| Err(too_much(name, &e)))
+}
+
+/// The failure of a map that takes too much work.
+fn too_much(name: &str, e: &Exceeded) -> Failure {
+    Failure::Geometry(format!("{name}: deforming takes {e}; {}", advice::raise(e)))
 }
 
 /// The failure of a point without image.
