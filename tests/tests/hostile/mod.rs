@@ -5,6 +5,7 @@ mod bounded;
 mod crowded;
 mod exports;
 mod formulas;
+mod inverses;
 mod lists;
 mod markup;
 mod numbers;
