@@ -94,7 +94,7 @@ impl Picture {
     }
 
     fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
-        let mut decoder = decoder(bytes)?;
+        let mut decoder = decoder(bytes, limits)?;
         let (width, height) = decoder.dimensions();
         let (w, h) = (f64::from(width), f64::from(height));
         let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
@@ -169,14 +169,21 @@ impl Picture {
 /// # Errors
 /// [`Error::Decode`] for other and damaged files.
 pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
-    decoder(bytes).map(|d| d.dimensions())
+    decoder(bytes, &Limits::default().for_input(bytes.len())).map(|d| d.dimensions())
 }
 
-fn decoder(bytes: &[u8]) -> Result<impl ImageDecoder, Error> {
+/// The number of pixels is limited by the caller. What a decoder holds besides them is limited here: unpacked profiles and texts, and a
+/// frame of an animation, which may be larger than the picture.
+fn decoder(bytes: &[u8], limits: &Limits) -> Result<impl ImageDecoder, Error> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(undecodable)?;
-    // The number of pixels is limited by the caller instead.
-    reader.no_limits();
-    reader.into_decoder().map_err(undecodable)
+    let mut held = image::Limits::no_limits();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    let most = limits.of(Limit::ImageBytes) as u64;
+    held.max_alloc = Some(most);
+    reader.limits(held.clone());
+    let mut decoder = reader.into_decoder().map_err(undecodable)?;
+    decoder.set_limits(held).map_err(undecodable)?;
+    Ok(decoder)
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "for map_err")]
