@@ -94,11 +94,15 @@ impl Picture {
     }
 
     fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
+        let check = |(width, height): (u32, u32)| {
+            let (w, h) = (f64::from(width), f64::from(height));
+            let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
+            limits.check(Limit::Pixels, COPIES * w * h).map_err(too_large)
+        };
+        // Opening a PNG takes memory for a row.
+        png_size(bytes).map_or(Ok(()), check)?;
         let mut decoder = decoder(bytes, limits)?;
-        let (width, height) = decoder.dimensions();
-        let (w, h) = (f64::from(width), f64::from(height));
-        let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
-        limits.check(Limit::Pixels, COPIES * w * h).map_err(too_large)?;
+        check(decoder.dimensions())?;
         let profile = decoder.icc_profile().ok().flatten();
         let orientation = decoder.orientation().ok().filter(|_| upright).unwrap_or(Orientation::NoTransforms);
         let mut image = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
@@ -162,6 +166,13 @@ impl Picture {
         }
         encoder.write_image(pixels, self.pixmap.width(), self.pixmap.height(), kind).map_err(wrong)
     }
+}
+
+/// Width and height in the header of a PNG.
+fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
+    let header = bytes.strip_prefix(Picture::PNG_SIGNATURE)?.get(4..)?.strip_prefix(b"IHDR")?;
+    let (&[a, b, c, d, e, f, g, h], _) = header.split_first_chunk()?;
+    Some((u32::from_be_bytes([a, b, c, d]), u32::from_be_bytes([e, f, g, h])))
 }
 
 /// Width and height that the header of a picture announces.
