@@ -250,6 +250,15 @@ impl Load {
         let mut layer = *canvas;
         for p in f.primitives() {
             layer = self.hold(&layer, 2.0 * area)?;
+            let moved = match p.kind() {
+                Kind::Offset(o) => [o.dx() * sx, o.dy() * sy],
+                Kind::DropShadow(s) => [s.dx() * sx, s.dy() * sy],
+                _ => [0.0; 2],
+            };
+            // The renderer computes where a picture ends in 32 bits.
+            if !moved.iter().all(|v| v.abs() <= FARTHEST) {
+                return Err(Error::TooFar);
+            }
             let more = match p.kind() {
                 Kind::Turbulence(t) if t.num_octaves() > MOST_OCTAVES => return Err(Error::Octaves(t.num_octaves())),
                 Kind::Turbulence(t) => OCTAVE * f64::from(t.num_octaves()),

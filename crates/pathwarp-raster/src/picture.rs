@@ -94,11 +94,15 @@ impl Picture {
     }
 
     fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
-        let mut decoder = decoder(bytes)?;
-        let (width, height) = decoder.dimensions();
-        let (w, h) = (f64::from(width), f64::from(height));
-        let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
-        limits.check(Limit::Pixels, COPIES * w * h).map_err(too_large)?;
+        let check = |(width, height): (u32, u32)| {
+            let (w, h) = (f64::from(width), f64::from(height));
+            let too_large = |exceeded| Error::TooLarge { width: w, height: h, exceeded };
+            limits.check(Limit::Pixels, COPIES * w * h).map_err(too_large)
+        };
+        // Opening a PNG takes memory for a row.
+        png_size(bytes).map_or(Ok(()), check)?;
+        let mut decoder = decoder(bytes, limits)?;
+        check(decoder.dimensions())?;
         let profile = decoder.icc_profile().ok().flatten();
         let orientation = decoder.orientation().ok().filter(|_| upright).unwrap_or(Orientation::NoTransforms);
         let mut image = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
@@ -164,19 +168,33 @@ impl Picture {
     }
 }
 
+/// Width and height in the header of a PNG.
+fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
+    let header = bytes.strip_prefix(Picture::PNG_SIGNATURE)?.get(4..)?.strip_prefix(b"IHDR")?;
+    let (&[a, b, c, d, e, f, g, h], _) = header.split_first_chunk()?;
+    Some((u32::from_be_bytes([a, b, c, d]), u32::from_be_bytes([e, f, g, h])))
+}
+
 /// Width and height that the header of a picture announces.
 ///
 /// # Errors
 /// [`Error::Decode`] for other and damaged files.
 pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
-    decoder(bytes).map(|d| d.dimensions())
+    decoder(bytes, &Limits::default().for_input(bytes.len())).map(|d| d.dimensions())
 }
 
-fn decoder(bytes: &[u8]) -> Result<impl ImageDecoder, Error> {
+/// The number of pixels is limited by the caller. What a decoder holds besides them is limited here: unpacked profiles and texts, and a
+/// frame of an animation, which may be larger than the picture.
+fn decoder(bytes: &[u8], limits: &Limits) -> Result<impl ImageDecoder, Error> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(undecodable)?;
-    // The number of pixels is limited by the caller instead.
-    reader.no_limits();
-    reader.into_decoder().map_err(undecodable)
+    let mut held = image::Limits::no_limits();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    let most = limits.of(Limit::ImageBytes) as u64;
+    held.max_alloc = Some(most);
+    reader.limits(held.clone());
+    let mut decoder = reader.into_decoder().map_err(undecodable)?;
+    decoder.set_limits(held).map_err(undecodable)?;
+    Ok(decoder)
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "for map_err")]

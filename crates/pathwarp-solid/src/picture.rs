@@ -67,6 +67,21 @@ const GUIDE: [f64; 3] = [0.80, 0.10, 0.35];
 /// Samples of a pixel along each side.
 const SAMPLES: usize = 2;
 
+/// The samples that [`draw`] looks at for a mesh: those in the boxes of its triangles, many times over where triangles cover each other.
+#[must_use]
+pub fn samples(mesh: &Mesh, camera: &Camera3, side: usize) -> f64 {
+    let fine = (side * SAMPLES) as f64;
+    let places: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine)).collect();
+    let triangles = mesh.polygons().flat_map(|(_, corners)| {
+        corners.windows(2).skip(1).map(move |w| [corners[0], w[0], w[1]].map(|c| c.vertex as usize))
+    });
+    let length = |v: [f64; 3]| {
+        let [least, most] = [v.iter().copied().fold(fine, f64::min), v.iter().copied().fold(0.0, f64::max)];
+        (most.min(fine) - least.max(0.0)).max(0.0)
+    };
+    triangles.map(|t| length(t.map(|v| places[v].x)) * length(t.map(|v| places[v].y))).sum()
+}
+
 /// Draws a mesh with guides over it as a square of `side` × `side` pixels: red, green, blue, opaque, on white.
 #[must_use]
 pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -> Vec<u8> {

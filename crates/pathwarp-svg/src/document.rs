@@ -18,7 +18,7 @@ use crate::source::tags::{ElementId, is_shape};
 use crate::source::undrawn::undrawn;
 use crate::write;
 use crate::write::input::WriteInput;
-use pathwarp::budget::{Budget, Exceeded};
+use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::Map;
 use pathwarp::{Error, Outline, refit};
@@ -175,7 +175,14 @@ impl Document {
     /// # Errors
     /// Returns [`Error::Input`] with the first selector that matches no element, or selects nothing painted, and similar names.
     pub fn check_selection(&self, selection: &Selection) -> Result<(), Error> {
+        /// Comparisons of an element with a selector, which selects alone, too; and with one that excludes.
+        const SELECTED: usize = 3;
+        const EXCLUDED: usize = 2;
         let source = &self.drawing.source;
+        let each = SELECTED * selection.select.len() + EXCLUDED * selection.exclude.len();
+        let comparisons = each.saturating_mul(source.elements.len()) as u64;
+        let counted = self.budget().spend(Limit::Comparisons, comparisons);
+        counted.map_err(|e| Error::limit(self.name(), "selecting by so many names takes", e))?;
         for selector in selection.select.iter().chain(&selection.exclude) {
             if !matches_any(source, selector) {
                 let hint = similar(candidates(source, selector), selector, "names");

@@ -8,6 +8,7 @@ use crate::source::read::ReadOptions;
 use crate::source::tree;
 use crate::source::xml::escape_content;
 use pathwarp::Error;
+use pathwarp::budget::Limit;
 use pathwarp::kurbo::Rect;
 use std::fmt::Write as _;
 use usvg::WriteOptions;
@@ -60,8 +61,9 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     let width = GAP + columns as f64 * (w + GAP);
     let height = GAP + TITLE + rows as f64 * (h + GAP);
     let mut drawn = Vec::with_capacity(cells.len());
+    let shared = shared(cells, read);
     for (k, c) in cells.iter().enumerate() {
-        let tree = tree::parse(c.svg.as_bytes(), &c.label, read)?.0;
+        let tree = tree::parse_counted(c.svg.as_bytes(), &c.label, &shared)?.0;
         let b = tree.root().abs_layer_bounding_box();
         let (x, y) = (f64::from(b.x()), f64::from(b.y()));
         let seen = Rect::new(x, y, x + f64::from(b.width()), y + f64::from(b.height()));
@@ -111,6 +113,18 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     let own = WriteOptions { id_prefix: Some("label-".into()), ..WriteOptions::default() };
     let _ = write!(out, "<g id=\"labels\">{}</g>\n</svg>\n", inside(&outlines.to_string(&own)));
     Ok(out)
+}
+
+/// Options with one budget for all cells: that of the largest one, except that many small drawings hold more than one large drawing may.
+fn shared(cells: &[Cell], read: &ReadOptions) -> ReadOptions {
+    /// Together they take as long as a large drawing.
+    const DRAWINGS: f64 = 6.0;
+    let sizes = || cells.iter().map(|c| c.svg.len());
+    let largest = read.limits.for_input(sizes().max().unwrap_or_default());
+    let counted = [Limit::Elements, Limit::Segments, Limit::Letters];
+    let limits = counted.into_iter().fold(largest, |all, l| all.with(l, DRAWINGS * largest.of(l)));
+    let limits = limits.with(Limit::Bytes, read.limits.for_input(sizes().sum()).of(Limit::Bytes));
+    read.clone().with_limits(limits).begin(0)
 }
 
 /// Content of the root element.

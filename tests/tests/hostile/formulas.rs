@@ -74,3 +74,23 @@ fn long_formulas_and_chains_end_by_the_budget() {
         assert!([0, 1, 4].contains(&code) || said.contains("--limit") || code == 2, "{}: {code} {said}", args[0]);
     }
 }
+
+#[test]
+fn names_in_recipes_are_counted() {
+    let recipe = |names: usize| {
+        let list = "'rect',".repeat(names);
+        format!("pathwarp=1\n[options]\nselect=[{list}]\n[[step]]\ndeformation='wave'\n")
+    };
+    let many = svg(&RECT.repeat(9000));
+    let (long, short) = (recipe(100_000), recipe(3));
+    let folder = Folder::with(&[
+        ("long.toml", long.as_bytes()),
+        ("short.toml", short.as_bytes()),
+        ("few.svg", &svg(RECT)),
+        ("many.svg", &many),
+    ]);
+    let (code, said) = folder.run(&["run", "long.toml", "many.svg", "-o", "o.svg"]);
+    assert_eq!((code, said.contains("--limit comparisons=")), (3, true), "{said}");
+    folder.run(&["run", "long.toml", "few.svg", "-o", "o.svg"]);
+    assert_eq!(folder.run(&["run", "short.toml", "many.svg", "-o", "o.svg"]).0, 0);
+}

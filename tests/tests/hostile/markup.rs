@@ -102,3 +102,24 @@ fn letters_are_counted() {
     assert_eq!(folder.run(&["text", &"a".repeat(100_000), "-o", "o.svg"]).0, 3);
     folder.run(&["text", &format!("A{}", "\u{301}".repeat(19_000)), "-o", "o.svg"]);
 }
+
+#[test]
+fn text_that_is_shown_again_is_counted() {
+    let text = |letters: usize| format!("<text id='t' y='9'>{}</text>", "abc".repeat(letters / 3));
+    let again = |n: usize| format!("<text y='20'>{}</text>", "<tref href='#t'/>".repeat(n));
+    expect(&format!("{}{}", text(900), again(3000)), [3, 3], "comparisons");
+    expect(&format!("{}{}", text(3000), again(1).repeat(30)), [3, 3], "letters");
+    // Each reference is looked up among all elements.
+    expect(&format!("{}{}{}", RECT.repeat(9000), text(3), again(1).repeat(3000)), [3, 3], "comparisons");
+    let used = "<use href='#u'/>".repeat(200);
+    expect(&format!("{}<g id='u'>{}</g>{used}", text(300), again(1)), [3, 3], "letters");
+    expect(&format!("{}{}", text(9), again(2)), [0, 0], "");
+}
+
+/// Fonts are asked for each of the letters, and none has them.
+#[test]
+fn letters_that_no_font_has_are_looked_up_once() {
+    let letters = ('\u{a000}'..'\u{a400}').cycle().take(9000);
+    let texts: String = letters.map(|c| format!("<text>{c}</text>")).collect();
+    Folder::with(&[("a.svg", &svg(&texts))]).run_all("a.svg");
+}

@@ -55,3 +55,37 @@ fn the_renderer_stands_what_it_is_given() {
     }
     expect("<path d='M0 0L1e8 9L5 5Z'/><path d='M0 0L9e8 9L5 5Z'/>", [0, 3], "");
 }
+
+/// Longer than any width in a format string.
+#[test]
+fn numbers_may_have_any_number_of_digits() {
+    let digits = "1".repeat(70_000);
+    let folder = Folder::with(&[("a.svg", &svg(&format!("<path d='M0 0L{digits} 0.{digits}L9 9'/>{RECT}")))]);
+    let all = folder.run_all("a.svg");
+    assert_eq!((all[0].0, all[0].1.contains("is out of range")), (1, true), "{}", all[0].1);
+}
+
+#[test]
+fn filters_move_pictures_within_range() {
+    for moved in ["<feOffset dx='1e30'/>", "<feDropShadow dy='-4e7' stdDeviation='1'/>"] {
+        let body = format!("<filter id='f'>{moved}</filter><g filter='url(#f)'>{RECT}</g>");
+        let folder = Folder::with(&[("a.svg", &svg(&body))]);
+        folder.run_all("a.svg");
+        for args in [
+            &["render", "a.svg", "-o", "o.png", "--width", "1000"][..],
+            &["convert", "a.svg", "-o", "o.pdf"],
+            &["compare", "a.svg", "a.svg"],
+            &["swirl", "a.svg", "-o", "o.svg", "--preview", "o.png"],
+        ] {
+            let (code, said) = folder.run(args);
+            assert!(code == 3 && said.contains("pixels from the picture"), "{args:?}: {code} {said}");
+        }
+    }
+}
+
+#[test]
+fn far_out_a_closed_skeleton_ends() {
+    let page = String::from_utf8(svg(RECT)).unwrap().replace("0 0 100 100", "0 0 1e30 1e30");
+    let folder = Folder::with(&[("a.svg", page.as_bytes())]);
+    folder.run(&["bend", "a.svg", "--along", "circle:r=30", "--stretch", "repeat", "-o", "o.svg"]);
+}

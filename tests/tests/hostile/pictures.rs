@@ -1,6 +1,9 @@
 //! Pictures, links, layers, masks and filters.
 
 use super::bounded::{Folder, RECT, expect, svg};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use std::io::Write as _;
 
 /// The checksum of a chunk (PNG specification, annex D).
 fn crc(chunk: &[u8]) -> u32 {
@@ -18,6 +21,18 @@ fn announcing(width: u32, height: u32) -> Vec<u8> {
     let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[8, 0, 0, 0, 0]].concat();
     [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &header), chunk(b"IDAT", &[120, 156, 3, 0]), chunk(b"IEND", b"")]
         .concat()
+}
+
+/// A PNG of one pixel with a colour profile of so many zeros.
+fn with_profile(zeros: usize) -> Vec<u8> {
+    let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
+    (0..zeros >> 20).for_each(|_| zlib.write_all(&[0; 1 << 20]).unwrap());
+    let content = [&b"iCCPname\0\0"[..], &zlib.finish().unwrap()].concat();
+    let length = u32::try_from(content.len() - 4).unwrap().to_be_bytes();
+    let mut png = resvg::tiny_skia::Pixmap::new(1, 1).unwrap().encode_png().unwrap();
+    // After the signature and the header.
+    png.splice(33..33, [&length[..], &content, &crc(&content).to_be_bytes()].concat());
+    png
 }
 
 const IMAGE: &str = "<image width='80' height='80' href='p.png'/>";
@@ -87,4 +102,41 @@ fn layers_masks_and_filters_are_drawn_within_bounds() {
     let folder = Folder::with(&[("a.svg", &svg(RECT))]);
     assert_eq!(folder.run(&["render", "a.svg", "-o", "o.png", "--width", "100000"]).0, 3);
     assert_eq!(folder.run(&["render", "a.svg", "-o", "o.png", "--width", "3000"]).0, 0);
+}
+
+#[test]
+fn packed_profiles_are_counted() {
+    let folder = Folder::with(&[("p.png", &with_profile(300 << 20)), ("a.svg", &svg(IMAGE))]);
+    folder.expect("a.svg", [3, 3], "image-bytes");
+    assert_eq!(folder.run(&["swirl", "p.png", "-o", "o.png"]).0, 0, "the picture itself is small");
+    // Thirty together.
+    Folder::with(&[("p.png", &with_profile(3 << 20)), ("a.svg", &svg(&IMAGE.repeat(30)))]).expect(
+        "a.svg",
+        [3, 3],
+        "image-bytes",
+    );
+    Folder::with(&[("p.png", &with_profile(1 << 20)), ("a.svg", &svg(IMAGE))]).expect("a.svg", [0, 0], "");
+}
+
+/// A page of one pixel, and a frame of 65,535 × 65,535.
+#[test]
+fn frames_larger_than_their_page_are_not_held() {
+    let gif = b"GIF89a\x01\0\x01\0\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\xff\xff\xff\xff\0\x02\x02\x4c\x01\0;";
+    let folder = Folder::with(&[("p.png", gif), ("a.svg", &svg(&format!("{IMAGE}{RECT}")))]);
+    folder.expect("a.svg", [1, 1], "p.png");
+    assert_eq!(folder.run(&["convert", "a.svg", "-o", "o.pdf"]).0, 1);
+}
+
+#[test]
+fn pictures_are_counted_before_each_is_decoded() {
+    let png = resvg::tiny_skia::Pixmap::new(3000, 3000).unwrap().encode_png().unwrap();
+    let folder = Folder::with(&[("p.png", &png), ("a.svg", &svg(&IMAGE.repeat(60)))]);
+    let all = folder.run_all("a.svg");
+    assert!(all[0].0 == 1 && all[0].1.contains("painting"), "{}", all[0].1);
+    folder.run(&["swirl", "a.svg", "-o", "o.pdf"]);
+    // A strip, most of whose pixels have no place in the source.
+    let strip = resvg::tiny_skia::Pixmap::new(1, 65_535).unwrap().encode_png().unwrap();
+    let folder = Folder::with(&[("p.png", &strip), ("a.svg", &svg(IMAGE))]);
+    folder.run(&["warp", "p.png", "--style", "flag", "-o", "o.jpg"]);
+    folder.run_all("a.svg");
 }

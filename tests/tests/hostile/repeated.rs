@@ -112,3 +112,46 @@ fn curves_that_are_near_each_other_are_compared_within_bounds() {
         );
     }
 }
+
+#[test]
+fn dashes_of_strokes_that_stay_are_counted() {
+    let dashes: String = (0..1300).map(|i| format!(".{} ", i % 9 + 1)).collect();
+    let body =
+        format!("<g fill='none' stroke='red' stroke-dasharray='{dashes}'>{}</g>", "<circle r='90'/>".repeat(3000));
+    let folder = Folder::with(&[("a.svg", &svg(&body))]);
+    let (code, said) = folder.run(&["wave", "a.svg", "-o", "o.svg", "--strokes", "keep"]);
+    assert!(code == 4 && said.contains("--limit segments="), "{code}: {said}");
+}
+
+#[test]
+fn faces_that_cover_each_other_are_counted_before_they_are_drawn() {
+    let square = "v 0 0 0\nv 9 0 0\nv 9 9 3\n";
+    let folder = Folder::with(&[
+        ("many.obj", format!("{square}{}", "f 1 2 3\n".repeat(100_000)).as_bytes()),
+        ("one.obj", format!("{square}f 1 2 3\n").as_bytes()),
+    ]);
+    let bend = |file: &str| {
+        folder.run(&["solid", "bend", file, "--preset", "taper", "--along", "x", "--preview", "o.png", "-o", "o.stl"])
+    };
+    let (code, said) = bend("many.obj");
+    assert!(code == 3 && said.contains("--limit painting="), "{code}: {said}");
+    assert_eq!(bend("one.obj").0, 0);
+}
+
+/// All cells of a sheet together are one drawing.
+#[test]
+fn cells_of_a_sheet_are_counted_together() {
+    let marker = "<marker id='m' viewBox='0 0 1 1' markerWidth='1' markerHeight='1'><circle r='1'/></marker>";
+    let path = format!("<path marker-mid='url(#m)' fill='none' stroke='red' d='M0 0{}'/>", "l1 1l1-1".repeat(3000));
+    let deep = format!("<style>*{{fill:{}red{}}}</style>{RECT}", "var(--x,".repeat(9000), ")".repeat(9000));
+    let empty = format!("{RECT}{}", "<g id='a'/>".repeat(25_000));
+    for body in [format!("{marker}{path}"), deep, empty] {
+        let folder = Folder::with(&[("a.svg", &svg(&body))]);
+        folder.run(&["gallery", "a.svg", "-o", "o.svg"]);
+        folder.run(&["gallery", "a.svg", "--all", "-o", "o.png"]);
+    }
+    // What a cell lacks is said.
+    let folder = Folder::with(&[("a.svg", &svg(&format!("<image width='9' height='9' href='no.png'/>{RECT}")))]);
+    let (code, said) = folder.run(&["gallery", "a.svg", "-o", "o.svg"]);
+    assert_eq!((code, said.contains("no.png")), (1, true), "{said}");
+}

@@ -123,3 +123,45 @@ fn an_embedded_source_larger_than_the_limit_is_refused_whole() {
     assert_eq!((code, said.contains("bytes")), (3, true), "{said}");
     assert!(!folder.path().join("cut.svg").exists());
 }
+
+/// Elements, paths and texts of other files are not read, and filters show no pictures from elsewhere. All of that is reported.
+#[test]
+fn parts_of_other_files_are_reported() {
+    let outside = Folder::with(&[("b.svg", &svg("<path id='p' d='M0 0H9'/>")), ("p.png", &pixel())]);
+    let file = |name: &str| outside.path().join(name).display().to_string();
+    let other = file("b.svg");
+    for body in [
+        format!("<use href='{other}#p'/>"),
+        "<use href='c.svg#p'/>".into(),
+        format!("<text y='9'><textPath href='{other}#p'>abc</textPath></text>"),
+        format!("<filter id='f'><feImage href='{}'/></filter><g filter='url(#f)'>{RECT}</g>", file("p.png")),
+    ] {
+        let folder =
+            Folder::with(&[("a.svg", &svg(&format!("{body}{RECT}"))), ("c.svg", &svg("<path id='p' d='M0 0H9'/>"))]);
+        for args in [
+            &["wave", "a.svg", "-o", "o.svg"][..],
+            &["wave", "a.svg", "-o", "o.svg", "--structure", "flatten"],
+            &["render", "a.svg", "-o", "o.png"],
+            &["convert", "a.svg", "-o", "o.pdf"],
+        ] {
+            let (code, said) = folder.run(args);
+            assert_eq!(code, 1, "{body} {args:?}: {said}");
+        }
+    }
+}
+
+/// Whether a file behind a symbolic link exists makes no difference.
+#[cfg(unix)]
+#[test]
+fn links_do_not_tell_what_is_elsewhere() {
+    let outside = Folder::with(&[("there.png", &pixel())]);
+    let folder = Folder::with(&[]);
+    std::os::unix::fs::symlink(outside.path(), folder.path().join("f")).unwrap();
+    let said = |name: &str| {
+        let body = format!("<image width='9' height='9' href='f/{name}.png'/>{RECT}");
+        fs::write(folder.path().join("a.svg"), svg(&body)).unwrap();
+        ["swirl", "render"].map(|c| folder.run(&[c, "a.svg", "-o", if c == "swirl" { "o.svg" } else { "o.png" }]))
+    };
+    let absent = said("absent").map(|(code, text)| (code, text.replace("absent", "there")));
+    assert_eq!(said("there"), absent);
+}

@@ -1,14 +1,14 @@
 //! [`Bender`]: warps the bitmaps in drawings and paints bent gradients.
 
-use super::counted::{Counted, count_pixels};
+use super::counted::{count_decoded, count_warped};
 use super::inverse::{ROUNDING, inverse};
 use crate::advice;
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
 use pathwarp::kurbo::Rect;
 use pathwarp::map::Map;
 use pathwarp_raster::{
-    ImageWarp, Picture, PictureFormat, SeenColor, ShadeTolerance, SmoothShade, encode_smooth_png, extent, shown,
-    warp_image,
+    ImageWarp, Picture, PictureFormat, SeenColor, ShadeTolerance, SmoothShade, encode_smooth_png, extent, header_size,
+    shown, warp_image,
 };
 use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
 use std::sync::Arc;
@@ -66,9 +66,10 @@ impl ImageWarper for Bender {
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
+        self.count(PICTURE).map_err(too_much)?;
+        count_decoded(&self.budget, header_size(r.data).map_err(|e| e.to_string())?).map_err(too_much)?;
         let picture = Picture::read_stored_within(r.data, &self.budget.limits().for_input(r.data.len()))
             .map_err(|e| e.to_string())?;
-        self.count(PICTURE).map_err(too_much)?;
         let area = Rect::new(0.0, 0.0, f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let nowhere = "the map is undefined on part of it";
         let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
@@ -88,9 +89,8 @@ impl ImageWarper for Bender {
         let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
         let size = (pixels(width), pixels(height));
         let size = (size.0 as u32, size.1 as u32);
-        count_pixels(&self.budget, &picture.pixmap, size).map_err(too_much)?;
-        let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area));
-        let inverse = Counted::new(inverse, Arc::clone(&self.budget));
+        count_warped(&self.budget, size).map_err(too_much)?;
+        let inverse = inverse(&self.map, r.placed.transform_rect_bbox(area), &self.budget);
         let warp = ImageWarp {
             source: &picture.pixmap,
             placed: r.placed,

@@ -1,5 +1,7 @@
 //! The inverse map over a bitmap's area: every pixel of a result asks it for its place in the source.
 
+use super::counted::{Counted, Tried};
+use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Rect, Vec2};
 use pathwarp::map::{Map, NewtonInverse};
 use std::sync::Arc;
@@ -7,8 +9,8 @@ use std::sync::Arc;
 /// A length that exceeds whole pixels by less than this is rounding error.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-/// Returns the map's own inverse if it holds on all of `area`, else Newton's method over it.
-pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
+/// Returns the map's own inverse if it holds on all of `area`, else Newton's method over it. Either counts its evaluations.
+pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> Counted {
     /// Reach beyond the area as a fraction of its diagonal: the source footprint of the pixels along its edge.
     const REACH: f64 = 0.02;
     /// Test points per side.
@@ -21,5 +23,9 @@ pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
         places.filter(|p| map.point(*p).is_finite()).all(|p| inverse.point(map.point(p)).distance(p) < 1e-3 * diagonal)
     };
     let own = map.inverse().filter(returns);
-    own.unwrap_or_else(|| Arc::new(NewtonInverse::over(Arc::clone(map), area, REACH)))
+    let newton = || {
+        let tried = Arc::new(Tried::new(Arc::clone(map), Arc::clone(budget)));
+        Arc::new(NewtonInverse::over(tried, area, REACH)) as Arc<dyn Map>
+    };
+    Counted::new(own.unwrap_or_else(newton), Arc::clone(budget))
 }

@@ -6,6 +6,6 @@ mod encode;
 mod inverse;
 
 pub use bender::Bender;
-pub(crate) use counted::{Counted, count_pixels};
+pub(crate) use counted::{count_decoded, count_warped};
 pub(crate) use encode::encode;
 pub(crate) use inverse::{ROUNDING, inverse};

@@ -7,15 +7,16 @@ use crate::failure::Failure;
 use crate::format::{Choice, Format};
 use crate::options::{Given, reading_args, some_options};
 use crate::status::Status;
-use crate::{input, output};
+use crate::{input, output, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Kind};
 use pathwarp::refit;
 use pathwarp_raster::{RenderOptions, Size};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
-use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
+use pathwarp_svg::{Document, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument, usvg_tree};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The formats of sheets.
@@ -129,8 +130,13 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     let lettering = doc.lettering(&Selection::default());
     let frame = Frame::new(frame);
     let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
-    let draw = |p: &Preset<'_>| Ok(Cell { svg: p.warp(&doc, &frame)?, label: p.name.to_owned() });
-    let mut cells: Vec<Cell> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
+    let draw = |p: &Preset<'_>| {
+        let WarpedDocument { svg, skipped, .. } = p.warp(&doc, &frame)?;
+        Ok((Cell { svg, label: p.name.to_owned() }, skipped))
+    };
+    let drawn: Vec<(Cell, Vec<Skipped>)> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
+    let (mut cells, skipped): (Vec<Cell>, Vec<_>) = drawn.into_iter().unzip();
+    let skipped = reasons(skipped.iter().flatten());
     // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
     if sets.iter().any(|(_, g)| g.bend.is_some()) {
         let svg = doc.text().to_owned();
@@ -151,8 +157,21 @@ pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure
     } else {
         export::drawing(svg, format, &plain, &options, None)?.bytes
     };
+    for reason in &skipped {
+        terminal::warning(&format!("{}: {reason}", input::display(file)));
+    }
     output::write(target, &bytes)?;
-    Ok(Status::Complete)
+    Ok(Status::partial_if(!skipped.is_empty()))
+}
+
+/// Lists what is not warped, or is left out, in some cell: the first ones, and how many more there are.
+fn reasons<'a>(skipped: impl Iterator<Item = &'a Skipped>) -> Vec<String> {
+    const NAMED: usize = 10;
+    let all: BTreeSet<String> = skipped.map(|s| format!("{} is not warped: {}", s.id, s.why)).collect();
+    let more = all.len().saturating_sub(NAMED);
+    let mut out: Vec<String> = all.into_iter().take(NAMED).collect();
+    out.extend((more > 0).then(|| format!("and {more} more")));
+    out
 }
 
 /// The title of the sheet: the file, and the sets with the bend where it applies.
@@ -195,11 +214,10 @@ fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: 
 
 impl Preset<'_> {
     /// The artwork under the preset.
-    fn warp(&self, doc: &Document, frame: &Frame) -> Result<String, Failure> {
+    fn warp(&self, doc: &Document, frame: &Frame) -> Result<WarpedDocument, Failure> {
         let built = self.entry.build_from(&self.args, frame)?;
         let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
-        Ok(doc
-            .warp(&built.map, &WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone())))?
-            .svg)
+        let options = WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone()));
+        Ok(doc.warp(&built.map, &options)?)
     }
 }

@@ -4,7 +4,7 @@ use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult
 use super::read::display;
 use super::reference_name::no_document;
 use crate::advice;
-use crate::bitmap::{Counted, ROUNDING, count_pixels, inverse};
+use crate::bitmap::{ROUNDING, count_decoded, count_warped, inverse};
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::{CommonOptions, FrameChoice};
@@ -49,16 +49,12 @@ impl PictureArtwork {
             }
         }
         let limits = options.reading.limits.for_input(bytes.len());
+        let budget = Budget::new(limits);
         let picture = Picture::read_within(bytes, &limits)?;
+        count_decoded(&budget, (picture.pixmap.width(), picture.pixmap.height())).map_err(|e| too_much(&e))?;
         let (width, height) = (f64::from(picture.pixmap.width()), f64::from(picture.pixmap.height()));
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)].map(Point::from);
-        Ok(Self {
-            name,
-            picture,
-            format,
-            budget: Arc::new(Budget::new(limits)),
-            outline: Outline::from_points(&corners, true),
-        })
+        Ok(Self { name, picture, format, budget: Arc::new(budget), outline: Outline::from_points(&corners, true) })
     }
 
     fn area(&self) -> Rect {
@@ -120,8 +116,8 @@ impl Artwork for PictureArtwork {
             warnings.push(undefined_at(p));
         }
         let (visible, size) = size(bounds, options.image_size, self.budget.limits())?;
-        count_pixels(&self.budget, &self.picture.pixmap, size).map_err(|e| too_much(&e))?;
-        let inverse = Counted::new(inverse(&map, area), Arc::clone(&self.budget));
+        count_warped(&self.budget, size).map_err(|e| too_much(&e))?;
+        let inverse = inverse(&map, area, &self.budget);
         let warp = ImageWarp {
             source: &self.picture.pixmap,
             placed: Affine::IDENTITY,

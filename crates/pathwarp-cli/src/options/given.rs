@@ -73,9 +73,15 @@ impl Given {
     pub(crate) fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
         let option = OPTIONS.iter().find(|o| o.name == name).ok_or_else(|| unknown(name))?;
         option.check(value).map_err(|e| format!("{name}: {e}"))?;
-        let mut all = std::mem::take(self);
-        all.values.push((option, vec![value.into()]));
-        *self = Self::default().overridden_by(&all);
+        match self.values.iter_mut().find(|(o, _)| o.name == option.name) {
+            Some((_, values)) if option.repeats() => values.push(value.into()),
+            Some((_, values)) => *values = vec![value.into()],
+            None => {
+                let place = |o: &CommonOption| OPTIONS.iter().position(|other| other.name == o.name);
+                self.values.push((option, vec![value.into()]));
+                self.values.sort_by_key(|(o, _)| place(o));
+            }
+        }
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use super::outcome::StrokeOutcome;
 use super::task::PartTask;
 use super::width::StrokeWidth;
 use crate::scene::affine::stretch;
-use crate::scene::expand::{stroke_outline, stroke_segments};
+use crate::scene::expand::{dash_segments, stroke_outline, stroke_segments};
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::refit::{self, Assurance, PathReport};
@@ -76,6 +76,9 @@ pub(super) fn stroke(
         return Ok(BentStroke::outlined(path.clone(), None));
     }
     let Some(s) = p.stroke.as_ref().filter(|_| !p.fixed_width) else { return Ok(BentStroke::scaled(1.0, None)) };
+    // The box of a stroke that stays one is measured with its dashes.
+    let dashes = dash_segments(&p.local, s) as u64;
+    t.options().refit.budget.spend_cut(Limit::Segments, dashes).map_err(GeometryError::Limit)?;
     let mode = t.options().strokes;
     if mode == Strokes::Keep {
         return Ok(BentStroke::scaled(1.0, None));

@@ -74,13 +74,27 @@ const PER_DASH: f64 = 3.0 * 8.0;
 const PER_SEGMENT: f64 = 3.0 * 2.0;
 const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 
+/// Segments whose work that of expanding a dash is.
+const MEASURED: f64 = 2.0;
+
+/// The work of expanding the dashes of a stroke, in segments. They are held only until the stroke is measured.
+pub(crate) fn dash_segments(local: &Outline, stroke: &Stroke) -> f64 {
+    MEASURED * drawn_dashes(local, stroke)
+}
+
 /// A bound for the segments into which a stroke is expanded.
 pub(crate) fn stroke_segments(local: &Outline, stroke: &Stroke) -> f64 {
-    let dashes: Vec<f64> = stroke.dasharray().unwrap_or_default().iter().map(|d| f64::from(*d)).collect();
-    let count = dash_count(local, &dashes);
-    let dashes = if count < MOST_DASHES { count } else { 0.0 };
+    let dashes = drawn_dashes(local, stroke);
     let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
     PER_DASH * (dashes + local.subpaths.len() as f64) + each * local.segs().count() as f64
+}
+
+/// A bound for the number of dashes that are drawn of a stroke.
+fn drawn_dashes(local: &Outline, stroke: &Stroke) -> f64 {
+    let Some(dashes) = stroke.dasharray() else { return 0.0 };
+    let dashes: Vec<f64> = dashes.iter().map(|d| f64::from(*d)).collect();
+    let count = dash_count(local, &dashes);
+    if count < MOST_DASHES { count } else { 0.0 }
 }
 
 /// A bound for the number of dashes along an outline; infinite if they have no length.

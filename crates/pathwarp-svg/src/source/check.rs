@@ -1,5 +1,6 @@
 //! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
 
+use super::quoted::{self, Quoted};
 use super::{range, selectors, unfold};
 use memchr::{memchr2, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -42,15 +43,17 @@ impl Features {
 pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<Features, Error> {
     let features = Features::of(xml);
     selectors::count(xml, budget).map_err(|e| Error::limit(name, "its style sheet takes", e))?;
+    let mut quoted = Quoted::default();
     if features.text {
-        let texts = spans(xml, budget).and_then(|()| text_paths(xml, budget));
-        texts.map_err(|e| Error::limit(name, "its texts take", e))?;
+        let too_much = |e| Error::limit(name, "its texts take", e);
+        quoted = Quoted::of(xml, budget).map_err(too_much)?;
+        spans(xml, &quoted, budget).and_then(|()| text_paths(xml, budget)).map_err(too_much)?;
     }
     wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
     if unfold::may_be_large(xml, features.markers, features.references) {
-        unfold::check(xml, name, budget)?;
+        unfold::check(xml, &quoted, name, budget)?;
     } else {
-        unfold::count_plain(xml, name, budget)?;
+        unfold::count_plain(xml, &quoted, name, budget)?;
     }
     wide_arcs(xml, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
     Ok(features)
@@ -128,7 +131,7 @@ fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Ex
 }
 
 /// Counts the letters that are compared with every span of their text.
-fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+fn spans(xml: &roxmltree::Document<'_>, quoted: &Quoted<'_>, budget: &Budget) -> Result<(), Exceeded> {
     const AT_A_TIME: u64 = 64;
     let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
     for text in texts {
@@ -136,9 +139,8 @@ fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded>
         for n in text.descendants() {
             if n.is_element() {
                 spans += 1;
-            } else {
-                letters += n.text().map_or(0, |t| t.chars().count()) as u64;
             }
+            letters += quoted::letters(n) + quoted.letters(n);
         }
         // The text itself is no span. Its letters are also compared with each other, some at a time.
         let compared = letters.min(budget.limits().of(Limit::Letters) as u64);

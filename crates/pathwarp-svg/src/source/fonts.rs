@@ -2,9 +2,10 @@
 
 use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
 use skrifa::{FontRef, MetadataProvider as _};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs;
-use std::path::PathBuf;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
@@ -82,13 +83,40 @@ fn fallback(letter: char, used: &[ID], db: &Database) -> Option<ID> {
     others.into_iter().map(|(_, id)| id).find(|id| has_letter(*id, letter, db))
 }
 
+/// Ranges of the letters that a font has, in order.
+type Letters = Vec<RangeInclusive<u32>>;
+
 fn has_letter(face: ID, letter: char, db: &Database) -> bool {
-    db.with_face_data(face, |data, index| {
-        let font = FontRef::from_index(data, index).ok()?;
-        font.charmap().map(letter)
-    })
-    .flatten()
-    .is_some()
+    let asked = |data: &[u8], index: u32| Some(FontRef::from_index(data, index).ok()?.charmap().map(letter).is_some());
+    match db.face(face).map(|f| (&f.source, f.index)) {
+        Some((Source::File(path), index)) => {
+            let letters = letters_of(path, index, || db.with_face_data(face, letters_in).unwrap_or_default());
+            let (letter, after) = (u32::from(letter), letters.partition_point(|r| *r.start() <= u32::from(letter)));
+            after > 0 && letters[after - 1].contains(&letter)
+        }
+        _ => db.with_face_data(face, asked).flatten().unwrap_or(false),
+    }
+}
+
+/// What `read` finds in a font file: a drawing may ask all fonts for thousands of letters, and opening a file takes longer than asking.
+fn letters_of(path: &Path, index: u32, read: impl FnOnce() -> Letters) -> Arc<Letters> {
+    static KNOWN: Mutex<BTreeMap<(PathBuf, u32), Arc<Letters>>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    known.entry((path.to_owned(), index)).or_insert_with(|| Arc::new(read())).clone()
+}
+
+fn letters_in(data: &[u8], index: u32) -> Letters {
+    let Ok(font) = FontRef::from_index(data, index) else { return Letters::new() };
+    let mut all: Vec<u32> = font.charmap().mappings().map(|(letter, _)| letter).collect();
+    all.sort_unstable();
+    let mut out = Letters::new();
+    for letter in all {
+        match out.last_mut() {
+            Some(last) if letter <= last.end() + 1 => *last = *last.start()..=letter,
+            _ => out.push(letter..=letter),
+        }
+    }
+    out
 }
 
 /// Bytes of a font.

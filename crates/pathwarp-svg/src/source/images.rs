@@ -3,7 +3,7 @@
 
 use super::fonts::Missing;
 use super::read::{self, ReadOptions};
-use super::{check, range, xml};
+use super::{bitmap, check, range, xml};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
@@ -91,11 +91,12 @@ const SVG: &str = "image/svg+xml";
 /// `None` for damaged images.
 fn checked(mime: &str, data: Arc<Vec<u8>>, place: &str, options: &ReadOptions) -> Result<Option<Arc<Vec<u8>>>, Error> {
     let budget = &options.budget;
-    let counted = budget.spend_cut(Limit::ImageBytes, data.len() as u64);
+    let profile = bitmap::unpacked_profile(&data, budget.left(Limit::ImageBytes) as u64);
+    let counted = budget.spend_cut(Limit::ImageBytes, data.len() as u64 + profile);
     counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))?;
     if mime != SVG {
         match imagesize::blob_size(&data) {
-            Ok(_) if is_png_without_header(&data) => return Ok(None),
+            Ok(_) if is_png_without_header(&data) || bitmap::is_unreadable(&data) => return Ok(None),
             Ok(size) => {
                 let pixels = COPIES * size.width as f64 * size.height as f64;
                 let limits = budget.limits().for_input(data.len());
@@ -161,8 +162,19 @@ fn allowed(link: &Path, options: &ReadOptions) -> Place {
     match (file.canonicalize(), base.canonicalize()) {
         (Ok(file), Ok(base)) if file.starts_with(&base) => Place::Inside(file),
         (Ok(_), Ok(_)) => Place::Outside,
+        // What a symbolic link leads to may exist or not; a message does not tell.
+        _ if is_through_symlink(base, link) => Place::Outside,
         _ => Place::Nowhere,
     }
+}
+
+/// Returns `true` if a relative link passes a symbolic link.
+fn is_through_symlink(base: &Path, link: &Path) -> bool {
+    let mut places = link.components().scan(base.to_owned(), |at, c| {
+        at.push(c);
+        Some(at.symlink_metadata())
+    });
+    places.any(|m| m.is_ok_and(|m| m.is_symlink()))
 }
 
 /// Returns `true` if a relative link goes above the folder where it starts.

@@ -1,6 +1,7 @@
 //! The source text: its elements and their positions, edits to it, style sheets, fonts, and usvg's tree of it.
 
 pub(crate) mod ahead;
+mod bitmap;
 pub(crate) mod cascade;
 mod check;
 pub(crate) mod css;
@@ -18,6 +19,7 @@ pub(crate) mod number;
 pub(crate) mod parallel;
 mod precheck;
 mod prefixes;
+mod quoted;
 pub(crate) mod range;
 pub(crate) mod read;
 pub(crate) mod select;

@@ -147,7 +147,10 @@ pub(super) fn in_range(value: &str) -> Cow<'_, str> {
 fn with_instead(text: &str, found: Vec<Range<usize>>) -> String {
     let mut out = text.to_owned();
     for r in found {
-        out.replace_range(r.clone(), &format!("{INSTEAD:0>width$}", width = r.len()));
+        // A width in a format string ends at 65,535.
+        let zeros = r.end - INSTEAD.len();
+        out.replace_range(r.start..zeros, &"0".repeat(zeros - r.start));
+        out.replace_range(zeros..r.end, INSTEAD);
     }
     out
 }

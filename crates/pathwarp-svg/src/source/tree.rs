@@ -104,7 +104,15 @@ fn resolve(
 
 /// Reads SVG or svgz data into usvg's tree.
 pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<(Arc<usvg::Tree>, Missed), Error> {
-    let options = &options.begin(data.len());
+    parse_counted(data, name, &options.begin(data.len()))
+}
+
+/// The same, with what is left of the options' budget.
+pub(crate) fn parse_counted(
+    data: &[u8],
+    name: &str,
+    options: &ReadOptions,
+) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let text = read::text(data, name, &options.budget)?;
     xml::check(&text, name, &options.budget)?;
     let resolved = css::resolved(&text, &options.budget).map_err(|e| Error::limit(name, "its style takes", e))?;

@@ -2,6 +2,7 @@
 
 use super::tags::ElementId;
 use super::text::SourceText;
+use memchr::memmem;
 
 /// Content that usvg does not know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,6 +11,8 @@ pub(crate) enum Unknown {
     FlowedText,
     /// HTML.
     Foreign,
+    /// An element, a path or a text of another file.
+    Elsewhere,
 }
 
 /// Classifies an element that usvg does not render.
@@ -18,6 +21,9 @@ pub(crate) fn unknown(source: &SourceText, e: ElementId) -> Option<Unknown> {
         "flowRoot" => Some(Unknown::FlowedText),
         // Private data of an editor is not shown.
         "foreignObject" if source.attr(e, "requiredExtensions").is_none() => Some(Unknown::Foreign),
+        "use" | "textPath" | "tref" if source.link(e).is_some_and(|link| is_elsewhere(&link)) => {
+            Some(Unknown::Elsewhere)
+        }
         _ => None,
     }
 }
@@ -29,7 +35,17 @@ pub(crate) fn is_definition(source: &SourceText, e: ElementId) -> bool {
 
 /// Returns `false` if nothing in a text is unknown, style aside.
 pub(super) fn may_be_unknown(text: &str) -> bool {
-    ["flowRoot", "foreignObject"].iter().any(|tag| text.contains(tag))
+    let values = memmem::find_iter(text.as_bytes(), "href").filter_map(|at| {
+        let value = text[at + "href".len()..].trim_start().strip_prefix('=')?;
+        value.trim_start().strip_prefix(['"', '\''])
+    });
+    ["flowRoot", "foreignObject"].iter().any(|tag| text.contains(tag)) || { values }.any(is_elsewhere)
+}
+
+/// Returns `true` if a link, or a text that begins with one, leads to another file.
+fn is_elsewhere(link: &str) -> bool {
+    let link = link.trim_start();
+    !link.is_empty() && !link.starts_with('#')
 }
 
 /// Lists what a picture of the drawing lacks: content, and style.
@@ -39,6 +55,7 @@ pub(crate) fn undrawn(source: &SourceText) -> Vec<String> {
         let what = match unknown(source, e)? {
             Unknown::FlowedText => "text that flows in a frame (flowRoot), which only Inkscape lays out",
             Unknown::Foreign => "foreign content (HTML in a foreignObject)",
+            Unknown::Elsewhere => "what it refers to is in another file",
         };
         Some(format!("{} is not drawn: {what}", source.display_name(e)))
     });

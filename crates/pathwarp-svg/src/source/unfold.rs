@@ -6,6 +6,7 @@
 //! declaration is never overridden, not even by an important one of higher precedence. `cascade` resolves properties that usvg
 //! does not know, and follows CSS.
 
+use super::quoted::{Quoted, letters};
 use super::tags::is_shape;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -37,8 +38,13 @@ pub(crate) fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referr
 ///
 /// # Errors
 /// Returns [`Error::Input`] if it exceeds the budget as it is.
-pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
-    let sizes = doc.descendants().filter(Node::is_element).map(Size::of);
+pub(crate) fn count_plain(
+    doc: &roxmltree::Document<'_>,
+    quoted: &Quoted<'_>,
+    name: &str,
+    budget: &Budget,
+) -> Result<(), Error> {
+    let sizes = doc.descendants().filter(Node::is_element).map(|n| Size::of(n, quoted));
     let sum = sizes.fold(Size::default(), Size::plus);
     sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
     sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))
@@ -48,8 +54,13 @@ pub(crate) fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Bu
 ///
 /// # Errors
 /// Returns [`Error::Input`] that names the element.
-pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<(), Error> {
-    let counted = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
+pub(crate) fn check(
+    doc: &roxmltree::Document<'_>,
+    quoted: &Quoted<'_>,
+    name: &str,
+    budget: &Budget,
+) -> Result<(), Error> {
+    let counted = Unfolding::of(doc, quoted).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
@@ -85,14 +96,13 @@ struct Size {
 
 impl Size {
     /// The size of an element without its children.
-    fn of(node: Node<'_, '_>) -> Self {
+    fn of(node: Node<'_, '_>, quoted: &Quoted<'_>) -> Self {
         let tag = node.tag_name().name();
         let is_text = is_painted(tag) && !is_shape(tag);
-        let letters = |n: Node<'_, '_>| n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count());
         Self {
             elements: 1,
             segments: if is_shape(tag) { vertices(node) } else { 0 },
-            letters: if is_text { node.children().map(letters).sum::<usize>() as u64 } else { 0 },
+            letters: if is_text { node.children().map(letters).sum::<u64>() + quoted.letters(node) } else { 0 },
         }
     }
 
@@ -168,6 +178,7 @@ struct Inside {
 
 struct Unfolding<'a, 'i> {
     doc: &'a roxmltree::Document<'i>,
+    quoted: &'a Quoted<'a>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
     sheet: StyleSheet<'a>,
     /// Number of elements and depth by body; `None` while the body is being counted.
@@ -175,7 +186,7 @@ struct Unfolding<'a, 'i> {
 }
 
 impl<'a, 'i> Unfolding<'a, 'i> {
-    fn of(doc: &'a roxmltree::Document<'i>) -> Self {
+    fn of(doc: &'a roxmltree::Document<'i>, quoted: &'a Quoted<'a>) -> Self {
         let mut by_id = HashMap::new();
         let mut sheet = StyleSheet::new();
         for node in doc.descendants().filter(Node::is_element) {
@@ -191,7 +202,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         // Keep only rules with relevant properties.
         let is_relevant = |d: &Declaration<'_>| matches!(d.name, "marker" | "filter") || PROPERTIES.contains(&d.name);
         sheet.rules.retain(|r| r.declarations.iter().any(is_relevant));
-        Self { doc, by_id, sheet, known: HashMap::new() }
+        Self { doc, quoted, by_id, sheet, known: HashMap::new() }
     }
 
     /// Sums up everything with repetitions, and finds the deepest nesting.
@@ -243,7 +254,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         let placed = |node: NodeId| Body { node, inherited: None, context: [None; PAINTS] };
         let mut todo = vec![(top, body.inherited.unwrap_or_else(|| self.place(top)), 1)];
         while let Some((node, mut inherited, depth)) = todo.pop() {
-            out.size = out.size.plus(Size::of(node));
+            out.size = out.size.plus(Size::of(node, self.quoted));
             out.depth = out.depth.max(depth);
             let tag = node.tag_name().name();
             if node != top && is_defined(tag) {
@@ -420,7 +431,8 @@ mod tests {
             format!("<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink'>{body}</svg>");
         let doc = roxmltree::Document::parse(&svg).unwrap();
         let budget = Budget::new(Limits::default().with(Limit::Elements, 1e6));
-        let counted = Unfolding::of(&doc).count(&budget).map(|(size, depth)| (size.elements, depth));
+        let quoted = Quoted::default();
+        let counted = Unfolding::of(&doc, &quoted).count(&budget).map(|(size, depth)| (size.elements, depth));
         counted.map_err(|(node, _)| node.attribute("id").unwrap_or("").to_owned())
     }
 

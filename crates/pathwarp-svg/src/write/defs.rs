@@ -23,6 +23,8 @@ pub(super) struct Definitions {
     pub(super) text: String,
     /// Ids in use.
     pub(super) taken: HashSet<String>,
+    /// The last numbers appended to ids, by id.
+    numbers: HashMap<String, usize>,
     /// Ids of clip paths and masks by index, once they have one.
     pub(super) clip_ids: Vec<Option<String>>,
     pub(super) mask_ids: Vec<Option<String>>,
@@ -56,6 +58,7 @@ impl Definitions {
         Self {
             text: String::new(),
             taken: if in_source { source.by_id().keys().cloned().collect() } else { HashSet::new() },
+            numbers: HashMap::new(),
             clip_ids: vec![None; scene.clips.len()],
             mask_ids: vec![None; scene.masks.len()],
             servers: HashMap::new(),
@@ -68,13 +71,18 @@ impl Definitions {
 
     /// Returns `id` if it is free, else with a number appended.
     pub(super) fn new_id(&mut self, id: &str) -> String {
-        let mut out = id.to_owned();
-        let mut n = 1;
-        while !self.taken.insert(out.clone()) {
-            n += 1;
-            out = format!("{id}-{n}");
+        if self.taken.insert(id.to_owned()) {
+            return id.to_owned();
         }
-        out
+        // An id is never free again, so the search goes on where the last one ended.
+        let n = self.numbers.entry(id.to_owned()).or_insert(1);
+        loop {
+            *n += 1;
+            let numbered = format!("{id}-{n}");
+            if self.taken.insert(numbered.clone()) {
+                return numbered;
+            }
+        }
     }
 
     /// The id of a source element as an attribute, for the element that takes its place; empty if the id is not free.

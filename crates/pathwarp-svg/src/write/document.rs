@@ -7,6 +7,7 @@ use crate::bend::outcome::{Notes, Skipped, WarpedDocument};
 use crate::bend::warning::Warning;
 use crate::scene::drawing::Drawing;
 use crate::source::images::{is_same_link, shown};
+use crate::source::tags::ElementId;
 use pathwarp::Error;
 
 /// Writes the document to `out`, with warnings and everything skipped.
@@ -55,7 +56,8 @@ fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item
     let source = &drawing.source;
     let missed = &drawing.missed.images;
     let selected = if missed.is_empty() { Vec::new() } else { options.selection.resolve(source) };
-    let images = selected.into_iter().enumerate().filter(|(e, s)| *s && source.elements[*e].tag == "image");
+    let is_image = move |e: ElementId| matches!(source.elements[e].tag.as_ref(), "image" | "feImage");
+    let images = selected.into_iter().enumerate().filter(move |(e, s)| *s && is_image(*e));
     images.filter_map(|(e, _)| {
         let own = source.link(e)?;
         let link = missed.iter().find(|link| is_same_link(&own, link))?;

@@ -25,6 +25,7 @@ fn content(source: &SourceText, e: ElementId) -> Option<&'static str> {
              paths there"
         }
         Unknown::Foreign => "foreign content (HTML in a foreignObject) cannot be warped",
+        Unknown::Elsewhere => "what it refers to is in another file, which is not read",
     })
 }
 

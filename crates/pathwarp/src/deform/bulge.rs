@@ -12,7 +12,7 @@
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
 use crate::error::{Error, within};
-use crate::map::{AffineMap, Class, Crease, Creases, Formula, Jet, Level, Map, Real};
+use crate::map::{AffineMap, Class, Crease, Creases, Formula, INVERSE_WORK, Jet, Level, Map, Real};
 use crate::param::{Axis, Kind, Param, Settings};
 use kurbo::{Affine, Point, Vec2};
 use std::f64::consts::LN_2;
@@ -228,7 +228,7 @@ impl SoftInverse {
             }
             let next = q - g / (1.0 / q - 4.0 * ln_m * (1.0 - q));
             let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-            if (next - q).abs() <= 1e-16 * q {
+            if (next - q).abs() <= 2.0 * f64::EPSILON * q {
                 break;
             }
             q = next;
@@ -251,6 +251,11 @@ impl Map for SoftInverse {
 
     fn point(&self, p: Point) -> Point {
         self.source(p)
+    }
+
+    /// A few Newton steps with a logarithm each.
+    fn work(&self) -> f64 {
+        INVERSE_WORK
     }
 
     fn class(&self) -> Class {

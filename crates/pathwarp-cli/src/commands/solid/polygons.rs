@@ -82,7 +82,7 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Arc<Budge
         let guides: Vec<Vec<DVec3>> = built.steps.last().map(|s| s.guides.clone()).unwrap_or_default();
         let eye = built.steps.iter().find_map(|s| s.eye);
         let preview = Preview { before, after: &mesh, guides: &guides, eye };
-        files.push(PendingFile::new(file, &preview.file(file, options.quality)?)?);
+        files.push(PendingFile::new(file, &preview.file(file, options.quality, budget)?)?);
     }
     Ok(Done { files, warnings, notes: work.notes(&frame, &built), report, partial })
 }

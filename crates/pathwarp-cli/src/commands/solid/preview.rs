@@ -1,13 +1,15 @@
 //! `--preview` of a solid: before (above) and after (below), each from two cameras.
 
+use crate::advice;
 use crate::bitmap::encode;
 use crate::failure::Failure;
 use crate::input::PREVIEW;
+use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp_raster::Pixmap;
 use pathwarp_solid::Box3;
 use pathwarp_solid::glam::DVec3;
 use pathwarp_solid::mesh::Mesh;
-use pathwarp_solid::picture::{Camera3, draw};
+use pathwarp_solid::picture::{Camera3, draw, samples};
 use std::path::Path;
 
 /// Pixels along a side of a panel.
@@ -26,7 +28,9 @@ pub(super) struct Preview<'a> {
 
 impl Preview<'_> {
     /// The picture, in the format of the file's extension.
-    pub(super) fn file(&self, file: &Path, quality: Option<u8>) -> Result<Vec<u8>, Failure> {
+    pub(super) fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<Vec<u8>, Failure> {
+        /// Work for a sample, in pixels painted.
+        const SAMPLE: f64 = 2.0;
         let format = PREVIEW.format(Some(file), None)?;
         let whole = 2 * SIDE + GAP;
         let size = u32::try_from(whole).unwrap_or(u32::MAX);
@@ -41,6 +45,8 @@ impl Preview<'_> {
         let second = Camera3::towards(DVec3::new(1.0, 0.4, 0.35), scene);
         for (row, (mesh, guides)) in [(self.before, &[][..]), (self.after, self.guides)].into_iter().enumerate() {
             for (column, camera) in [first, second].into_iter().flatten().enumerate() {
+                let counted = budget.spend_cut(Limit::Painting, (SAMPLE * samples(mesh, &camera, SIDE)) as u64);
+                counted.map_err(|e| too_much(&e))?;
                 let panel = draw(mesh, guides, &camera, SIDE);
                 for (y, line) in panel.chunks(4 * SIDE).enumerate() {
                     let at = 4 * ((row * (SIDE + GAP) + y) * whole + column * (SIDE + GAP));
@@ -50,4 +56,8 @@ impl Preview<'_> {
         }
         encode(picture, format, quality)
     }
+}
+
+fn too_much(e: &Exceeded) -> Failure {
+    Failure::Input(format!("the preview takes {e}; leave it out, or {}", advice::raise(e)))
 }

@@ -99,7 +99,7 @@ pub(super) fn run(work: &Work<'_>, job: &Job, source: Source, budget: &Arc<Budge
         let before = tessellate(&before, fine, budget).map_err(|e| too_much(&name, &e))?;
         let after = image(fine)?;
         let preview = Preview { before: &before, after: &after, guides: &guides, eye };
-        files.push(PendingFile::new(file, &preview.file(file, options.quality)?)?);
+        files.push(PendingFile::new(file, &preview.file(file, options.quality, budget)?)?);
     }
     let mut notes = work.notes(&frame, &built);
     notes.push(match done.refitted {

@@ -142,14 +142,16 @@ impl Map for BendMap {
         const MAX_TURNS: f64 = 64.0;
         let (a, b) = (self.to_strip.s(self.reach.0), self.to_strip.s(self.reach.1));
         let turns = |s: f64| if self.closed { (s / self.length).floor() } else { 0.0 };
-        let (mut turn, last) = (turns(a), turns(b));
-        let last = last.min(turn + MAX_TURNS);
-        while turn <= last {
+        let (first, last) = (turns(a), turns(b));
+        if first > last || (first - last).is_nan() {
+            return;
+        }
+        // Far out, a turn more is the same number.
+        for turn in (0..=(last - first).min(MAX_TURNS) as usize).map(|n| first + n as f64) {
             for s in self.pieces.iter().map(|p| p.from).filter(|s| s.is_finite()) {
                 let c = self.to_strip.origin - s - turn * self.length;
                 out.push(Crease::kink(Level::Line { a: self.to_strip.k, b: 0.0, c }));
             }
-            turn += 1.0;
         }
     }
 

@@ -1,0 +1,122 @@
+//! What the headers of bitmaps do not tell: packed colour profiles, and pixels that are missing.
+
+use flate2::read::ZlibDecoder;
+use std::io::{self, Read as _};
+
+const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// Bytes of a chunk's length and name, and of its checksum.
+const HEAD: usize = 8;
+const CHECKSUM: usize = 4;
+
+/// A chunk of a PNG.
+struct Chunk<'a> {
+    name: [u8; 4],
+    content: &'a [u8],
+    /// The file does not end before the chunk does.
+    whole: bool,
+}
+
+fn chunks(png: &[u8]) -> impl Iterator<Item = Chunk<'_>> {
+    let mut rest = png.strip_prefix(SIGNATURE).unwrap_or_default();
+    std::iter::from_fn(move || {
+        let (&[a, b, c, d, e, f, g, h], after) = rest.split_first_chunk::<HEAD>()?;
+        let length = u32::from_be_bytes([a, b, c, d]) as usize;
+        let next = after.get(length.saturating_add(CHECKSUM)..);
+        rest = next.unwrap_or_default();
+        Some(Chunk { name: [e, f, g, h], content: &after[..length.min(after.len())], whole: next.is_some() })
+    })
+}
+
+/// The bytes of the colour profile of a PNG, unpacked up to one byte more than `most`. Decoders unpack it whenever they open the file.
+pub(super) fn unpacked_profile(png: &[u8], most: u64) -> u64 {
+    let mut before_pixels = chunks(png).take_while(|c| &c.name != b"IDAT");
+    let Some(Chunk { content, .. }) = before_pixels.find(|c| &c.name == b"iCCP") else { return 0 };
+    // A name that ends with a zero, and the method.
+    let Some(end) = content.iter().position(|b| *b == 0) else { return 0 };
+    let packed = content.get(end + 2..).unwrap_or_default();
+    let mut counted = Counted(0);
+    let _ = io::copy(&mut ZlibDecoder::new(packed).take(most.saturating_add(1)), &mut counted);
+    counted.0
+}
+
+/// Returns `true` for a PNG that ends within its pixels, and for a GIF whose first frame is larger than its page: the renderer shows
+/// nothing of them, and does not say so.
+pub(super) fn is_unreadable(data: &[u8]) -> bool {
+    let is_cut = chunks(data).any(|c| &c.name == b"IDAT" && !c.whole);
+    is_cut || is_beyond_page(data).unwrap_or(false)
+}
+
+/// `None` for other files, and where the first frame is not found.
+fn is_beyond_page(gif: &[u8]) -> Option<bool> {
+    let size = |at: &[u8]| Some([0, 2].map(|i| u16::from_le_bytes([at[i], at[i + 1]]))).filter(|_| at.len() >= 4);
+    let (head, mut rest) = gif.strip_prefix(b"GIF8")?.get(2..)?.split_at_checked(7)?;
+    let page = size(head)?;
+    if head[4] & 0x80 != 0 {
+        rest = rest.get(3 << ((head[4] & 7) + 1)..)?;
+    }
+    // Extensions, each of blocks with their lengths up to an empty one.
+    while let Some(blocks) = rest.strip_prefix(b"!") {
+        rest = blocks.get(1..)?;
+        while *rest.first()? > 0 {
+            rest = rest.get(usize::from(rest[0]) + 1..)?;
+        }
+        rest = &rest[1..];
+    }
+    let frame = size(rest.strip_prefix(b",")?.get(4..8)?)?;
+    Some(frame[0] > page[0] || frame[1] > page[1])
+}
+
+/// Counts what is written, also before an error.
+struct Counted(u64);
+
+impl io::Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write as _;
+
+    fn chunk(name: &[u8], content: &[u8]) -> Vec<u8> {
+        let length = u32::try_from(content.len()).unwrap().to_be_bytes();
+        [&length, name, content, &[0; CHECKSUM]].concat()
+    }
+
+    #[test]
+    fn profiles_are_unpacked_up_to_the_limit() {
+        let mut zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+        zlib.write_all(&[7; 5000]).unwrap();
+        let profile = chunk(b"iCCP", &[&b"name\0\0"[..], &zlib.finish().unwrap()].concat());
+        let png = |chunks: &[Vec<u8>]| [SIGNATURE, &chunks.concat()].concat();
+        let header = chunk(b"IHDR", &[0; 13]);
+        let with = png(&[header.clone(), profile.clone()]);
+        assert_eq!([unpacked_profile(&with, 9000), unpacked_profile(&with, 100)], [5000, 101]);
+        // Of a damaged profile, what can be unpacked; after the pixels, decoders look for none.
+        assert!(unpacked_profile(&with[..with.len() - 9], 9000) <= 5000);
+        assert_eq!(unpacked_profile(&png(&[header, chunk(b"IDAT", b"x"), profile]), 9000), 0);
+        assert_eq!(unpacked_profile(b"GIF89a", 9000), 0);
+    }
+
+    #[test]
+    fn missing_pixels_are_noticed() {
+        let png = [SIGNATURE, &chunk(b"IHDR", &[0; 13]), &chunk(b"IDAT", b"pixels")].concat();
+        let cut = [0, 1, CHECKSUM + 1].map(|n| is_unreadable(&png[..png.len() - n]));
+        assert_eq!(cut, [false, true, true]);
+        let gif = |page: [u8; 2], frame: [u8; 2]| {
+            let comment = b"!\xfe\x02hi\0";
+            let frame = [b',', 0, 0, 0, 0, frame[0], 0, frame[1], 0, 0];
+            [b"GIF89a", &[page[0], 0, page[1], 0, 0x80, 0, 0][..], &[0; 6], comment, &frame].concat()
+        };
+        let found = [([3, 3], [3, 3]), ([3, 3], [1, 2]), ([3, 3], [3, 4])].map(|(p, f)| is_unreadable(&gif(p, f)));
+        assert_eq!(found, [false, false, true]);
+        assert!((0..30).all(|n| !is_unreadable(&gif([3, 3], [2, 2])[..n.min(29)])));
+    }
+}
