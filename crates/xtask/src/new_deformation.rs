@@ -235,12 +235,12 @@ mod tests {
     fn reduced(manifest: &str) -> String {
         let members = manifest.lines().find(|l| l.starts_with("members")).unwrap();
         let own = manifest.lines().filter(|l| !l.contains("crates/pathwarp-") && !l.starts_with("default-members"));
-        let profile = "[profile.dev.package.pathwarp]\n";
+        let profile = "[profile.dev.package]\n";
         assert!(manifest.contains(profile));
         own.collect::<Vec<&str>>()
             .join("\n")
             .replace(members, "members = [\"crates/pathwarp\", \"all\"]")
-            .replace(profile, &format!("{profile}opt-level = 0\ndebug = false\n"))
+            .replace(profile, &format!("{profile}pathwarp.opt-level = 0\n"))
     }
 
     /// The manifest of a crate that depends on all that the workspace depends on: with the same features of the same crates,

@@ -72,16 +72,18 @@ fn crashes() {
 
 #[test]
 fn hangs() {
-    fails_in_use("at build", &then("exec sh -c 'read x; sleep 1000; : MARK'"), &["`build` within 2 seconds"]);
-    fails_in_use("at points", &script("bad", "sh -c 'sleep 1000; : MARK'"), &["points within 2 seconds"]);
-    fails_at_start(
-        "before its entry",
-        "#!/bin/sh\nsh -c 'sleep 1000; : MARK'\n",
-        0o755,
-        &["entry as JSON", "2 seconds"],
-    );
+    let at_build = then("exec sh -c 'read x; sleep 1000; : MARK'");
+    let at_points = script("bad", "sh -c 'sleep 1000; : MARK'");
+    let before_its_entry = "#!/bin/sh\nsh -c 'sleep 1000; : MARK'\n";
     // Signals that can be caught do not matter.
-    fails_in_use("stubbornly", &then("trap '' TERM INT HUP; sh -c 'sleep 1000; : MARK'"), &["within 2 seconds"]);
+    let stubborn = then("trap '' TERM INT HUP; sh -c 'sleep 1000; : MARK'");
+    // All of them wait, so they wait together.
+    std::thread::scope(|s| {
+        s.spawn(|| fails_in_use("at build", &at_build, &["`build` within 2 seconds"]));
+        s.spawn(|| fails_in_use("at points", &at_points, &["points within 2 seconds"]));
+        s.spawn(|| fails_at_start("before its entry", before_its_entry, 0o755, &["entry as JSON", "2 seconds"]));
+        s.spawn(|| fails_in_use("stubbornly", &stubborn, &["within 2 seconds"]));
+    });
 }
 
 #[test]
