@@ -4,6 +4,7 @@ use super::listed::listed;
 use super::piece::{SkeletonPiece, Strip};
 use crate::error::show;
 use crate::map::{AffineMap, Class, Crease, Creases, Jet, Level, Map, RationalBezier};
+use crate::outline::Seg;
 use crate::param::Letter;
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
@@ -119,13 +120,13 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 }
 
 impl Map for BendMap {
-    /// The piece is looked for, and on it each place by its distance along it.
+    /// A place on an arc takes several sines and cosines.
     fn work(&self) -> f64 {
-        const SEARCHED: f64 = 2.0;
-        match &self.pieces[..] {
-            [only] if matches!(only.strip, Strip::Straight { .. }) => 1.0,
-            _ => SEARCHED,
-        }
+        const ARC: f64 = 2.0;
+        /// One of the first pieces stands for all.
+        const FIRST: usize = 16;
+        let is_arc = |p: &Arc<SkeletonPiece>| matches!(&p.strip, Strip::Normals { spine, .. } if matches!(spine.seg, Seg::Arc(_)));
+        if self.pieces.iter().take(FIRST).any(is_arc) { ARC } else { 1.0 }
     }
 
     fn jet(&self, p: Point) -> Jet {
