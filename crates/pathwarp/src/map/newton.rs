@@ -35,8 +35,6 @@ const MIN_DAMPING: f64 = 1e-4;
 const MAX_TRIES: usize = 16;
 /// Looks at a starting point that comparing it with those tried takes.
 const COMPARED: usize = 6;
-/// By how much more a jet takes alone than with others, for a map of many parts.
-const SINGLY: f64 = 3.0;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
 ///
@@ -130,8 +128,8 @@ impl NewtonInverse {
         let side = nx.max(ny);
         let orientation = map.jet(core.center()).det().signum();
         let mut out = Self {
-            map_work: map.work(),
-            jet_work: 1.0 + SINGLY * (map.work() - 1.0).max(0.0),
+            map_work: map.work().min(map.jet_work()),
+            jet_work: map.jet_work(),
             overrun: Overrun::default(),
             map,
             core,

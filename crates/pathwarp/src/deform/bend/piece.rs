@@ -31,6 +31,15 @@ pub(super) struct SkeletonPiece {
 }
 
 impl SkeletonPiece {
+    /// The work of a point: one on an arc takes several sines and cosines, and the de Casteljau steps of a ribbon take twice as long as a net.
+    pub(super) fn work(&self) -> f64 {
+        match &self.strip {
+            Strip::Normals { spine, .. } if matches!(spine.seg, Seg::Arc(_)) => 2.0,
+            Strip::Straight { .. } | Strip::Normals { .. } => 1.0,
+            Strip::Ribbon { .. } => 2.0,
+        }
+    }
+
     /// Returns F at distance `s` from the piece's start and height `d`.
     pub(super) fn point(&self, s: f64, d: f64) -> Point {
         match &self.strip {
