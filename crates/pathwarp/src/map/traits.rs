@@ -260,6 +260,9 @@ mod tests {
         fn work(&self) -> f64 {
             self.record("work", 3.0)
         }
+        fn jet_work(&self) -> f64 {
+            self.record("jet_work", 5.0)
+        }
         fn take_overrun(&self) -> Option<u64> {
             self.record("take_overrun", Some(4))
         }
@@ -301,6 +304,7 @@ mod tests {
         let _ = map.denominator(p);
         let _ = map.inverse();
         let _ = map.work();
+        let _ = map.jet_work();
         let _ = map.take_overrun();
         let _ = map.prefers_batches();
         let _ = map.differentiates();
