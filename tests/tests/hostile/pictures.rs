@@ -50,12 +50,22 @@ fn sizes_are_refused_before_decoding() {
 
 #[test]
 fn damaged_bitmaps_are_reported() {
-    let whole = announcing(3, 3);
-    for damaged in [&b"\x89PNG\r\n\x1a\njunk, junk, junk, junk, junk"[..], b"\x89PN", &whole[..20], &whole] {
+    let without_pixels = announcing(3, 3);
+    let mut flipped = resvg::tiny_skia::Pixmap::new(30, 30).unwrap().encode_png().unwrap();
+    // Within the pixels, after the signature, the header, and the head of their chunk.
+    flipped[33 + 8 + 9] ^= 0x10;
+    let junk = &b"\x89PNG\r\n\x1a\njunk, junk, junk, junk, junk"[..];
+    for damaged in [junk, b"\x89PN", &without_pixels[..20], &without_pixels, &flipped] {
         let folder = Folder::with(&[("p.png", damaged), ("a.svg", &svg(&format!("{IMAGE}{RECT}")))]);
-        let (code, said) = folder.run(&["swirl", "a.svg", "-o", "o.svg"]);
-        assert_eq!(code, 1, "{said}");
-        assert!(said.contains("image at 1:"), "{said}");
+        for args in [
+            &["swirl", "a.svg", "-o", "o.svg"][..],
+            &["render", "a.svg", "-o", "o.png"],
+            &["convert", "a.svg", "-o", "o.pdf"],
+        ] {
+            let (code, said) = folder.run(args);
+            assert_eq!(code, 1, "{args:?}: {said}");
+            assert!(said.contains(if args[0] == "swirl" { "image at 1:" } else { "p.png" }), "{args:?}: {said}");
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What the headers of bitmaps do not tell: packed colour profiles, and pixels that are missing.
 
+use flate2::Crc;
 use flate2::read::ZlibDecoder;
 use std::io::{self, Read as _};
 
@@ -12,8 +13,18 @@ const CHECKSUM: usize = 4;
 struct Chunk<'a> {
     name: [u8; 4],
     content: &'a [u8],
-    /// The file does not end before the chunk does.
-    whole: bool,
+    /// As the file states it; `None` if the file ends before the chunk does.
+    checksum: Option<u32>,
+}
+
+impl Chunk<'_> {
+    /// Returns `true` if the content is as it was written.
+    fn is_intact(&self) -> bool {
+        let mut computed = Crc::new();
+        computed.update(&self.name);
+        computed.update(self.content);
+        self.checksum == Some(computed.sum())
+    }
 }
 
 fn chunks(png: &[u8]) -> impl Iterator<Item = Chunk<'_>> {
@@ -21,9 +32,10 @@ fn chunks(png: &[u8]) -> impl Iterator<Item = Chunk<'_>> {
     std::iter::from_fn(move || {
         let (&[a, b, c, d, e, f, g, h], after) = rest.split_first_chunk::<HEAD>()?;
         let length = u32::from_be_bytes([a, b, c, d]) as usize;
-        let next = after.get(length.saturating_add(CHECKSUM)..);
-        rest = next.unwrap_or_default();
-        Some(Chunk { name: [e, f, g, h], content: &after[..length.min(after.len())], whole: next.is_some() })
+        let (content, next) = after.split_at(length.min(after.len()));
+        let checksum = next.split_first_chunk::<CHECKSUM>();
+        rest = checksum.map_or(&[], |(_, rest)| rest);
+        Some(Chunk { name: [e, f, g, h], content, checksum: checksum.map(|(sum, _)| u32::from_be_bytes(*sum)) })
     })
 }
 
@@ -39,11 +51,37 @@ pub(super) fn unpacked_profile(png: &[u8], most: u64) -> u64 {
     counted.0
 }
 
-/// Returns `true` for a PNG that ends within its pixels, and for a GIF whose first frame is larger than its page: the renderer shows
-/// nothing of them, and does not say so.
+/// Returns `true` for a PNG that is damaged or lacks pixels, and for a GIF whose first frame is larger than its page: the renderer shows
+/// nothing of them, and does not say so. Takes time in proportion to the pixels that the header announces.
 pub(super) fn is_unreadable(data: &[u8]) -> bool {
-    let is_cut = chunks(data).any(|c| &c.name == b"IDAT" && !c.whole);
-    is_cut || is_beyond_page(data).unwrap_or(false)
+    let is_damaged = || chunks(data).any(|c| matches!(&c.name, b"IHDR" | b"PLTE" | b"IDAT") && !c.is_intact());
+    let lacks_pixels = || pixel_bytes(data).is_some_and(|needed| unpacked_pixels(data, needed) < needed);
+    data.starts_with(SIGNATURE) && (is_damaged() || lacks_pixels()) || is_beyond_page(data).unwrap_or(false)
+}
+
+/// The bytes that the pixels of a PNG take at least, without the filters of the rows; `None` if its header is none.
+fn pixel_bytes(png: &[u8]) -> Option<u64> {
+    let header = chunks(png).find(|c| &c.name == b"IHDR")?.content;
+    let (width, rest) = header.split_first_chunk::<4>()?;
+    let (height, rest) = rest.split_first_chunk::<4>()?;
+    let [depth, kind, ..] = *rest else { return None };
+    let channels = match kind {
+        0 | 3 => 1,
+        4 => 2,
+        2 => 3,
+        6 => 4,
+        _ => return None,
+    };
+    let [width, height] = [*width, *height].map(|n| u64::from(u32::from_be_bytes(n)));
+    Some(width.checked_mul(height)?.checked_mul(u64::from(depth) * channels)? / 8)
+}
+
+/// The bytes of a PNG's pixels that can be unpacked, up to `most`.
+fn unpacked_pixels(png: &[u8], most: u64) -> u64 {
+    let packed: Vec<u8> = chunks(png).filter(|c| &c.name == b"IDAT").flat_map(|c| c.content).copied().collect();
+    let mut counted = Counted(0);
+    let _ = io::copy(&mut ZlibDecoder::new(&packed[..]).take(most), &mut counted);
+    counted.0
 }
 
 /// `None` for other files, and where the first frame is not found.
@@ -87,7 +125,10 @@ mod tests {
 
     fn chunk(name: &[u8], content: &[u8]) -> Vec<u8> {
         let length = u32::try_from(content.len()).unwrap().to_be_bytes();
-        [&length, name, content, &[0; CHECKSUM]].concat()
+        let mut sum = Crc::new();
+        sum.update(name);
+        sum.update(content);
+        [&length, name, content, &sum.sum().to_be_bytes()].concat()
     }
 
     #[test]
@@ -106,10 +147,26 @@ mod tests {
     }
 
     #[test]
-    fn missing_pixels_are_noticed() {
-        let png = [SIGNATURE, &chunk(b"IHDR", &[0; 13]), &chunk(b"IDAT", b"pixels")].concat();
-        let cut = [0, 1, CHECKSUM + 1].map(|n| is_unreadable(&png[..png.len() - n]));
+    fn missing_and_damaged_pixels_are_noticed() {
+        let packed = |pixels: &[u8]| {
+            let mut zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+            zlib.write_all(pixels).unwrap();
+            zlib.finish().unwrap()
+        };
+        // Three rows of two pixels in red, green and blue, each after its filter.
+        let header = chunk(b"IHDR", &[0, 0, 0, 2, 0, 0, 0, 3, 8, 2, 0, 0, 0]);
+        let png = |pixels: &[u8]| [SIGNATURE, &header, &chunk(b"IDAT", pixels)].concat();
+        let good = png(&packed(&[0; 21]));
+        let cut = [0, 1, CHECKSUM + 1].map(|n| is_unreadable(&good[..good.len() - n]));
         assert_eq!(cut, [false, true, true]);
+        assert!(is_unreadable(&png(&packed(&[0; 9]))) && is_unreadable(&png(b"no pixels")) && is_unreadable(&png(b"")));
+        for at in SIGNATURE.len() + HEAD..good.len() {
+            // Lengths, and the names by which chunks are known.
+            let is_frame = (SIGNATURE.len() + header.len()..).take(HEAD).any(|i| i == at);
+            let mut bytes = good.clone();
+            bytes[at] ^= 0x10;
+            assert!(is_frame || is_unreadable(&bytes), "{at}");
+        }
         let gif = |page: [u8; 2], frame: [u8; 2]| {
             let comment = b"!\xfe\x02hi\0";
             let frame = [b',', 0, 0, 0, 0, frame[0], 0, frame[1], 0, 0];

@@ -96,13 +96,13 @@ fn checked(mime: &str, data: Arc<Vec<u8>>, place: &str, options: &ReadOptions) -
     counted.map_err(|e| Error::limit(place, "with the images before it, it takes", e))?;
     if mime != SVG {
         match imagesize::blob_size(&data) {
-            Ok(_) if is_png_without_header(&data) || bitmap::is_unreadable(&data) => return Ok(None),
+            Ok(_) if is_png_without_header(&data) => return Ok(None),
             Ok(size) => {
                 let pixels = COPIES * size.width as f64 * size.height as f64;
                 let limits = budget.limits().for_input(data.len());
                 let what = format!("a picture of {} x {} pixels takes", size.width, size.height);
                 limits.check(Limit::Pixels, pixels).map_err(|e| Error::limit(place, what, e))?;
-                return Ok(Some(data));
+                return Ok(Some(data).filter(|data| !bitmap::is_unreadable(data)));
             }
             Err(_) if mime != ANY => return Ok(None),
             Err(_) => {}
