@@ -12,7 +12,7 @@ const START: f64 = 0.01;
 /// Jets that find a source where there is one, which the work of an inverse stands for.
 const FORESEEN: usize = 12;
 
-/// What a search has done.
+/// The work of a search.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Effort {
     /// Jets of the map that is inverted.

@@ -150,7 +150,7 @@ fn cells_of_a_sheet_are_counted_together() {
         folder.run(&["gallery", "a.svg", "-o", "o.svg"]);
         folder.run(&["gallery", "a.svg", "--all", "-o", "o.png"]);
     }
-    // What a cell lacks is said.
+    // The sheet reports content missing from a cell.
     let folder = Folder::with(&[("a.svg", &svg(&format!("<image width='9' height='9' href='no.png'/>{RECT}")))]);
     let (code, said) = folder.run(&["gallery", "a.svg", "-o", "o.svg"]);
     assert_eq!((code, said.contains("no.png")), (1, true), "{said}");

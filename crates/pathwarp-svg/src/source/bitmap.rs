@@ -1,4 +1,4 @@
-//! What the headers of bitmaps do not tell: packed colour profiles, and pixels that are missing.
+//! Checks bitmaps beyond their headers: packed colour profiles, damage, and missing pixels.
 
 use flate2::Crc;
 use flate2::read::ZlibDecoder;

@@ -162,7 +162,7 @@ fn allowed(link: &Path, options: &ReadOptions) -> Place {
     match (file.canonicalize(), base.canonicalize()) {
         (Ok(file), Ok(base)) if file.starts_with(&base) => Place::Inside(file),
         (Ok(_), Ok(_)) => Place::Outside,
-        // What a symbolic link leads to may exist or not; a message does not tell.
+        // Do not reveal whether the target of a symbolic link exists.
         _ if is_through_symlink(base, link) => Place::Outside,
         _ => Place::Nowhere,
     }

@@ -64,7 +64,7 @@ impl<'a> Metered<'a> {
                 let own = Metered { map: Held::Shared(Arc::clone(map)), meter };
                 Level::Field(Arc::new(move |p| own.counted(FAR, |_| field(p))))
             }
-            // What it searches is counted when the map is asked next.
+            // The next call of the map counts these searches.
             Held::Borrowed(_) => Level::Field(Arc::new(move |p| if meter.is_over() { FAR } else { field(p) })),
         }
     }
