@@ -2,6 +2,7 @@
 
 use crate::support::pathwarp_program;
 use cpu_time::ThreadTime;
+use pathwarp::budget::{Limit, Limits};
 use pathwarp::kurbo::{CubicBez, ParamCurveArclen as _};
 use std::fs;
 use std::hint::black_box;
@@ -16,6 +17,11 @@ use wait4::Wait4 as _;
 /// The promise: seconds of processor time on the reference machine, and bytes of memory in use.
 const SECONDS: f64 = 5.0;
 const MEMORY: u64 = 500_000_000;
+/// The limits that take longest to reach. Runs get a part of them, and must have refused after the same part of the time.
+const PARTLY: [Limit; 3] = [Limit::Comparisons, Limit::Segments, Limit::Evaluations];
+const PART: f64 = 0.3;
+/// Seconds for reading an input up to where its work is counted.
+const READING: f64 = 1.0;
 /// The seconds after which the program ends by itself.
 const LAST_RESORT: f64 = 4.5;
 /// Address space may be reserved without being used, for the stacks of threads.
@@ -43,7 +49,11 @@ fn slowness() -> f64 {
 }
 
 /// A folder with files.
-pub struct Folder(TempDir);
+pub struct Folder {
+    dir: TempDir,
+    /// The part of the limits that runs get; all of them if there is none.
+    part: Option<f64>,
+}
 
 impl Folder {
     pub fn with(files: &[(&str, &[u8])]) -> Self {
@@ -53,11 +63,16 @@ impl Folder {
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, content).unwrap();
         }
-        Self(dir)
+        Self { dir, part: Some(PART) }
+    }
+
+    /// With the default limits.
+    pub fn whole(self) -> Self {
+        Self { part: None, ..self }
     }
 
     pub fn path(&self) -> &Path {
-        self.0.path()
+        self.dir.path()
     }
 
     /// Runs the program here. It must end by itself, within the promise.
@@ -70,6 +85,11 @@ impl Folder {
         let mut command = Command::new("sh");
         command.arg("-c").arg(limited).arg(pathwarp_program()).args(args).current_dir(self.path());
         command.args(["--limit", &format!("seconds={}", LAST_RESORT * slowness)]);
+        if let Some(part) = self.part {
+            for limit in PARTLY {
+                command.args(["--limit", &format!("{limit}={}", part * Limits::default().of(limit))]);
+            }
+        }
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut said = String::new();
@@ -77,7 +97,9 @@ impl Folder {
         let done = child.wait4().unwrap();
         let (time, memory) = (done.rusage.utime + done.rusage.stime, done.rusage.maxrss);
         let code = done.status.code().unwrap_or_else(|| panic!("{args:?} was killed after {time:?}: {said}"));
-        assert!(time.as_secs_f64() < SECONDS * slowness, "{args:?} took {time:?}: {said}");
+        let refused = PARTLY.iter().any(|limit| said.contains(&format!("--limit {limit}=")));
+        let promised = self.part.filter(|_| refused).map_or(SECONDS, |part| part * SECONDS + READING);
+        assert!(time.as_secs_f64() < promised * slowness, "{args:?} took {time:?}: {said}");
         assert!(memory < MEMORY, "{args:?} took {memory} bytes: {said}");
         assert!([0, 1, 2, 3, 4, 5].contains(&code), "{args:?} ended with {code}: {said}");
         assert!(!said.contains("panicked"), "{args:?}: {said}");

@@ -93,11 +93,12 @@ fn style_sheets_are_matched_within_bounds() {
 
 #[test]
 fn letters_are_counted() {
-    expect(&format!("<text y='20'>{}</text>", "Abc ".repeat(30_000)), [3, 3], "letters");
+    let drawing = |texts: &str| Folder::with(&[("a.svg", &svg(texts))]).whole();
+    drawing(&format!("<text y='20'>{}</text>", "Abc ".repeat(30_000))).expect("a.svg", [3, 3], "letters");
     expect(&format!("<text y='20'>{}</text>", "<tspan fill='red'>A</tspan>".repeat(28_000)), [3, 3], "comparisons");
     // Below the limits: one long text, and marks stacked on one letter.
-    Folder::with(&[("a.svg", &svg(&format!("<text y='20'>{}</text>", "Abc ".repeat(5000))))]).run_all("a.svg");
-    Folder::with(&[("a.svg", &svg(&format!("<text y='20'>A{}</text>", "\u{301}".repeat(29_000))))]).run_all("a.svg");
+    drawing(&format!("<text y='20'>{}</text>", "Abc ".repeat(5000))).run_all("a.svg");
+    drawing(&format!("<text y='20'>A{}</text>", "\u{301}".repeat(29_000))).run_all("a.svg");
     let folder = Folder::with(&[]);
     assert_eq!(folder.run(&["text", &"a".repeat(100_000), "-o", "o.svg"]).0, 3);
     folder.run(&["text", &format!("A{}", "\u{301}".repeat(19_000)), "-o", "o.svg"]);
