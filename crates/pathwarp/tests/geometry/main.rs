@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod budget;
+mod exact;
 mod figures;
 mod lattice;
 mod limits;
