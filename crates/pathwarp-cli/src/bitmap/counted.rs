@@ -25,83 +25,76 @@ fn count_pixels(budget: &Budget, work: f64, (width, height): (u32, u32)) -> Resu
 }
 
 /// A map that counts its evaluations and, once there are too many, is undefined everywhere.
-///
-/// For the inverse of a map, which a bitmap asks about once in a while, or for every pixel: the number is known only afterwards.
-pub(crate) struct Counted {
+pub(crate) struct Counted<R> {
     map: Arc<dyn Map>,
     work: f64,
     budget: Arc<Budget>,
+    rule: R,
 }
 
-impl Counted {
-    pub(crate) fn new(map: Arc<dyn Map>, budget: Arc<Budget>) -> Self {
-        Self { work: map.work(), map, budget }
-    }
+/// What evaluations are counted as.
+pub(crate) trait Rule: Send + Sync {
+    /// The part of the work of an evaluation that others should count.
+    const LEFT: f64;
 
-    /// Fails if there were too many evaluations.
-    pub(crate) fn check(&self) -> Result<(), Exceeded> {
-        self.budget.spend_cut(Limit::Evaluations, self.searched())
-    }
-
-    fn count(&self, evaluations: usize) -> bool {
-        let work = (evaluations as f64 * self.work) as u64 + self.searched();
-        self.budget.spend(Limit::Evaluations, work).is_ok()
-    }
-
-    /// What the last evaluations searched in vain.
-    fn searched(&self) -> u64 {
-        self.map.take_overrun().unwrap_or(0)
-    }
+    /// Counts evaluations of a map, of which each takes `work`.
+    fn count(&self, map: &dyn Map, budget: &Budget, evaluations: usize, work: f64) -> Result<(), Exceeded>;
 }
 
-impl Map for Counted {
-    fn jet(&self, p: Point) -> Jet {
-        if self.count(1) { self.map.jet(p) } else { Jet::UNDEFINED }
-    }
+/// For the inverse of a map, which a bitmap asks about once in a while, or for every pixel: the number is known only afterwards.
+pub(crate) struct Inverse;
 
-    fn point(&self, p: Point) -> Point {
-        if self.count(1) { self.map.point(p) } else { Jet::UNDEFINED.p }
-    }
+impl Rule for Inverse {
+    const LEFT: f64 = 1.0;
 
-    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        if self.count(ps.len()) { self.map.jets(ps, out) } else { out.fill(Jet::UNDEFINED) }
-    }
-
-    fn points(&self, ps: &[Point], out: &mut [Point]) {
-        if self.count(ps.len()) { self.map.points(ps, out) } else { out.fill(Jet::UNDEFINED.p) }
-    }
-
-    fn work(&self) -> f64 {
-        self.work
+    fn count(&self, map: &dyn Map, budget: &Budget, evaluations: usize, work: f64) -> Result<(), Exceeded> {
+        budget.spend(Limit::Evaluations, (evaluations as f64 * work) as u64 + searched(map))
     }
 }
 
-/// A map that Newton's method inverts. It counts its evaluations, of which a pixel takes a few, or hundreds where it has no place in
-/// the source; once there are too many, it is undefined everywhere.
+/// What the last evaluations searched in vain.
+fn searched(map: &dyn Map) -> u64 {
+    map.take_overrun().unwrap_or(0)
+}
+
+/// For a map that Newton's method inverts, which a pixel asks a few times, or hundreds where it has no place in the source.
+#[derive(Default)]
 pub(super) struct Tried {
-    map: Arc<dyn Map>,
-    budget: Arc<Budget>,
     evaluations: AtomicU64,
 }
 
-impl Tried {
-    pub(super) fn new(map: Arc<dyn Map>, budget: Arc<Budget>) -> Self {
-        Self { map, budget, evaluations: AtomicU64::new(0) }
-    }
+impl Rule for Tried {
+    const LEFT: f64 = 0.0;
 
-    fn count(&self, evaluations: usize) -> bool {
+    fn count(&self, _: &dyn Map, budget: &Budget, evaluations: usize, work: f64) -> Result<(), Exceeded> {
         /// Evaluations that are counted together.
         const TOGETHER: u64 = 64;
         /// What an evaluation without a fit around it counts as.
         const ALONE: f64 = 0.8;
         let (before, more) = (self.evaluations.fetch_add(evaluations as u64, Ordering::Relaxed), evaluations as u64);
         let rounds = (before + more) / TOGETHER - before / TOGETHER;
-        let work = ALONE * (rounds * TOGETHER) as f64 * self.map.work();
-        self.budget.spend_cut(Limit::Evaluations, work as u64).is_ok()
+        budget.spend_cut(Limit::Evaluations, (ALONE * (rounds * TOGETHER) as f64 * work) as u64)
     }
 }
 
-impl Map for Tried {
+impl<R: Rule> Counted<R> {
+    pub(super) fn new(map: Arc<dyn Map>, budget: Arc<Budget>, rule: R) -> Self {
+        Self { work: map.work(), map, budget, rule }
+    }
+
+    fn count(&self, evaluations: usize) -> bool {
+        self.rule.count(&*self.map, &self.budget, evaluations, self.work).is_ok()
+    }
+}
+
+impl Counted<Inverse> {
+    /// Fails if there were too many evaluations.
+    pub(crate) fn check(&self) -> Result<(), Exceeded> {
+        self.budget.spend_cut(Limit::Evaluations, searched(&*self.map))
+    }
+}
+
+impl<R: Rule> Map for Counted<R> {
     fn jet(&self, p: Point) -> Jet {
         if self.count(1) { self.map.jet(p) } else { Jet::UNDEFINED }
     }
@@ -118,9 +111,8 @@ impl Map for Tried {
         if self.count(ps.len()) { self.map.points(ps, out) } else { out.fill(Jet::UNDEFINED.p) }
     }
 
-    /// Nothing besides what is counted here.
     fn work(&self) -> f64 {
-        0.0
+        R::LEFT * self.work
     }
 
     fn prefers_batches(&self) -> bool {
