@@ -10,6 +10,7 @@ use pathwarp_raster::{Error, Picture, PictureFormat, Pixmap, header_size};
 use std::fs;
 use std::io::Write;
 use std::path::Path;
+use tiny_skia::PremultipliedColorU8;
 
 type Rgba = [u8; 4];
 
@@ -22,7 +23,7 @@ fn file(name: &str) -> Vec<u8> {
 
 /// All pixels with straight alpha.
 fn pixels(pixmap: &Pixmap) -> Vec<Rgba> {
-    let straight = pixmap.pixels().iter().map(|p| p.demultiply());
+    let straight = pixmap.pixels().iter().map(PremultipliedColorU8::demultiply);
     straight.map(|c| [c.red(), c.green(), c.blue(), c.alpha()]).collect()
 }
 

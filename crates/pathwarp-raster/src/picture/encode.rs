@@ -122,7 +122,6 @@ fn straight(pixmap: &Pixmap) -> Vec<u8> {
     pixels.collect()
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn unencodable(why: impl Display) -> Error {
     Error::Encode(why.to_string())
 }

@@ -57,7 +57,6 @@ impl Bitmap for Gif<'_> {
     }
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn wrong(why: DecodingError) -> Error {
     undecodable("GIF", why)
 }

@@ -55,7 +55,6 @@ impl Bitmap for Jpeg<'_> {
     }
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn wrong(why: DecodeErrors) -> Error {
     undecodable("JPEG", why)
 }

@@ -83,7 +83,6 @@ fn eight(high: u8, low: u8) -> u8 {
     ((u32::from(u16::from_be_bytes([high, low])) + 128) / 257) as u8
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn wrong(why: DecodingError) -> Error {
     undecodable("PNG", why)
 }

@@ -77,7 +77,6 @@ fn chunks(mut bytes: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
     })
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn wrong(why: DecodingError) -> Error {
     undecodable("WebP", why)
 }
