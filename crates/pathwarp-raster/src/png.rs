@@ -4,7 +4,7 @@
 //! every pair of colour and alpha). Decoding and encoding a PNG may lose precision in nearly transparent colours.
 
 use crate::error::Error;
-use crate::picture::Picture;
+use crate::picture::{PNG_SIGNATURE, Picture};
 use tiny_skia::Pixmap;
 
 /// Encodes a picture as RGBA PNG.
@@ -21,7 +21,7 @@ pub fn encode_png(pixmap: &Pixmap) -> Result<Vec<u8>, Error> {
 /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the default limits, before any
 /// memory is allocated for the pixels.
 pub fn decode_png(bytes: &[u8]) -> Result<Pixmap, Error> {
-    if !bytes.starts_with(Picture::PNG_SIGNATURE) {
+    if !bytes.starts_with(PNG_SIGNATURE) {
         return Err(Error::Decode("not a PNG file".to_owned()));
     }
     Picture::read_stored(bytes).map(|picture| picture.pixmap)

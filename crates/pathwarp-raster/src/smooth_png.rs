@@ -4,7 +4,7 @@
 //! everything else for pictures of fifty pixels. Here many rows are filtered and compressed together.
 
 use crate::error::Error;
-use crate::picture::Picture;
+use crate::picture::PNG_SIGNATURE;
 use flate2::write::ZlibEncoder;
 use flate2::{Compression, Crc};
 use std::io::{self, Write};
@@ -38,7 +38,7 @@ pub fn encode_smooth_png(pixmap: &Pixmap) -> Result<Vec<u8>, Error> {
     // Eight bits per channel; the only methods of compression and filtering; not interlaced.
     header.extend([8, color_type, 0, 0, 0]);
     let data = data.map_err(|e| Error::Encode(e.to_string()))?;
-    let mut out = Picture::PNG_SIGNATURE.to_vec();
+    let mut out = PNG_SIGNATURE.to_vec();
     chunk(&mut out, b"IHDR", &header);
     chunk(&mut out, b"IDAT", &data);
     chunk(&mut out, b"IEND", &[]);
@@ -90,6 +90,7 @@ fn demultiplied(p: &PremultipliedColorU8) -> [u8; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::Picture;
     use tiny_skia::ColorU8;
 
     #[test]

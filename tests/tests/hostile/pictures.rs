@@ -3,6 +3,7 @@
 use super::bounded::{Folder, RECT, expect, svg};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use pathwarp_raster::{Picture, PictureFormat};
 use std::io::Write as _;
 
 /// The checksum of a chunk (PNG specification, annex D).
@@ -126,6 +127,19 @@ fn packed_profiles_are_counted() {
         "image-bytes",
     );
     Folder::with(&[("p.png", &with_profile(1 << 20)), ("a.svg", &svg(IMAGE))]).expect("a.svg", [0, 0], "");
+}
+
+/// A WebP of one pixel whose profile, at the end of the file, is said to have two gigabytes.
+#[test]
+fn profiles_longer_than_the_file_are_not_held() {
+    let picture = Picture { pixmap: resvg::tiny_skia::Pixmap::new(1, 1).unwrap(), profile: None };
+    let plain = picture.write(PictureFormat::WebP).unwrap();
+    let size = [0x20, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+    let chunks = [b"WEBPVP8X\x0a\0\0\0", &size[..], &plain[12..], b"ICCP\xfe\xff\xff\x7fprofile "].concat();
+    let webp = [b"RIFF", &u32::try_from(chunks.len()).unwrap().to_le_bytes()[..], &chunks].concat();
+    let folder = Folder::with(&[("p.webp", &webp), ("a.svg", &svg(&IMAGE.replace("png", "webp")))]);
+    assert_eq!(folder.run(&["swirl", "p.webp", "-o", "o.png"]).0, 0);
+    folder.run_all("a.svg");
 }
 
 /// A page of one pixel, and a frame of 65,535 × 65,535.

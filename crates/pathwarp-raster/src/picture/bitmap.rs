@@ -1,0 +1,57 @@
+//! What the decoders of all formats have in common, and how their samples become pixels.
+
+use crate::error::Error;
+use std::fmt::Display;
+use tiny_skia::{ColorU8, Pixmap};
+
+/// A file whose header has been read.
+pub(super) trait Bitmap {
+    /// Width and height in pixels.
+    fn size(&self) -> (u32, u32);
+
+    /// The ICC profile.
+    fn profile(&mut self) -> Option<Vec<u8>>;
+
+    /// The EXIF metadata, from the header of its TIFF file on.
+    fn exif(&mut self) -> Option<Vec<u8>> {
+        None
+    }
+
+    /// Decodes the pixels to a transparent picture of the same size.
+    fn decode(self: Box<Self>, to: &mut Pixmap) -> Result<(), Error>;
+}
+
+/// The error of a decoder.
+pub(super) fn undecodable(format: &str, why: impl Display) -> Error {
+    Error::Decode(format!("{format}: {why}"))
+}
+
+/// Sets opaque pixels, of `N` samples each.
+pub(super) fn set_opaque<const N: usize>(to: &mut Pixmap, samples: &[u8], rgb: impl Fn([u8; N]) -> [u8; 3]) {
+    let (to, _) = to.data_mut().as_chunks_mut::<4>();
+    for (to, from) in to.iter_mut().zip(samples.as_chunks::<N>().0) {
+        let [r, g, b] = rgb(*from);
+        *to = [r, g, b, u8::MAX];
+    }
+}
+
+/// Sets pixels with straight alpha, of `N` samples each.
+pub(super) fn set_straight<const N: usize>(to: &mut Pixmap, samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) {
+    let (to, _) = to.data_mut().as_chunks_mut::<4>();
+    for (to, from) in to.iter_mut().zip(samples.as_chunks::<N>().0) {
+        *to = premultiplied(rgba(*from));
+    }
+}
+
+/// Premultiplies pixels that were decoded in place, with straight alpha.
+pub(super) fn premultiply(pixmap: &mut Pixmap) {
+    for pixel in pixmap.data_mut().as_chunks_mut::<4>().0 {
+        *pixel = premultiplied(*pixel);
+    }
+}
+
+#[inline]
+fn premultiplied([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    let c = ColorU8::from_rgba(r, g, b, a).premultiply();
+    [c.red(), c.green(), c.blue(), c.alpha()]
+}

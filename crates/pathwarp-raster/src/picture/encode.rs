@@ -1,0 +1,127 @@
+//! Writes bitmaps as PNG, JPEG and WebP.
+
+use crate::error::Error;
+use image_webp::WebPEncoder;
+use jpeg_encoder::{ImageBuffer, JpegColorType, SamplingFactor, rgb_to_ycbcr};
+use png::{BitDepth, ColorType, Compression, Filter, Info};
+use std::fmt::Display;
+use tiny_skia::Pixmap;
+
+/// A file format to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum PictureFormat {
+    /// PNG with transparency.
+    #[default]
+    Png,
+    /// JPEG on white, since it has no transparency.
+    Jpeg {
+        /// From 1 (small) to 100 (fine).
+        quality: u8,
+    },
+    /// WebP with transparency, without loss.
+    WebP,
+}
+
+impl PictureFormat {
+    /// A quality of JPEGs at which artefacts are hard to see.
+    pub const QUALITY: u8 = 92;
+}
+
+/// Encodes a picture with its ICC profile.
+pub(super) fn encode(pixmap: &Pixmap, profile: Option<&[u8]>, format: PictureFormat) -> Result<Vec<u8>, Error> {
+    match format {
+        PictureFormat::Png => encode_png(pixmap, profile),
+        PictureFormat::Jpeg { quality } => encode_jpeg(pixmap, profile, quality),
+        PictureFormat::WebP => encode_webp(pixmap, profile),
+    }
+}
+
+fn encode_png(pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error> {
+    let mut info = Info::with_size(pixmap.width(), pixmap.height());
+    info.icc_profile = profile.map(Into::into);
+    let mut out = Vec::new();
+    let mut encoder = png::Encoder::with_info(&mut out, info).map_err(unencodable)?;
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    // After the compression, which has a filter of its own.
+    encoder.set_filter(Filter::Adaptive);
+    let mut writer = encoder.write_header().map_err(unencodable)?;
+    writer.write_image_data(&straight(pixmap)).map_err(unencodable)?;
+    writer.finish().map_err(unencodable)?;
+    Ok(out)
+}
+
+fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error> {
+    let mut out = Vec::new();
+    let mut encoder = WebPEncoder::new(&mut out);
+    encoder.set_icc_profile(profile.unwrap_or_default().to_vec());
+    let (width, height) = (pixmap.width(), pixmap.height());
+    encoder.encode(&straight(pixmap), width, height, image_webp::ColorType::Rgba8).map_err(unencodable)?;
+    Ok(out)
+}
+
+fn encode_jpeg(pixmap: &Pixmap, profile: Option<&[u8]>, quality: u8) -> Result<Vec<u8>, Error> {
+    let mut out = Vec::new();
+    let mut encoder = jpeg_encoder::Encoder::new(&mut out, quality.clamp(1, 100));
+    // Colours as fine as brightness: red on white has no fringes.
+    encoder.set_sampling_factor(SamplingFactor::F_1_1);
+    encoder.add_icc_profile(profile.unwrap_or_default()).map_err(unencodable)?;
+    encoder.encode_image(OnWhite::new(pixmap)?).map_err(unencodable)?;
+    Ok(out)
+}
+
+/// A picture on white for the JPEG encoder.
+struct OnWhite<'a> {
+    pixmap: &'a Pixmap,
+    size: [u16; 2],
+}
+
+impl<'a> OnWhite<'a> {
+    fn new(pixmap: &'a Pixmap) -> Result<Self, Error> {
+        let side = |n: u32| {
+            let wrong = |_| unencodable(format!("a JPEG has at most {} pixels on a side, not {n}", u16::MAX));
+            u16::try_from(n).map_err(wrong)
+        };
+        Ok(Self { pixmap, size: [side(pixmap.width())?, side(pixmap.height())?] })
+    }
+}
+
+impl ImageBuffer for OnWhite<'_> {
+    fn get_jpeg_color_type(&self) -> JpegColorType {
+        JpegColorType::Ycbcr
+    }
+
+    fn width(&self) -> u16 {
+        self.size[0]
+    }
+
+    fn height(&self) -> u16 {
+        self.size[1]
+    }
+
+    fn fill_buffers(&self, y: u16, [luma, blue, red, _]: &mut [Vec<u8>; 4]) {
+        let mut rows = self.pixmap.pixels().chunks_exact(usize::from(self.size[0]));
+        for p in rows.nth(usize::from(y)).into_iter().flatten() {
+            let white = u8::MAX - p.alpha();
+            let (y, cb, cr) = rgb_to_ycbcr(p.red() + white, p.green() + white, p.blue() + white);
+            luma.push(y);
+            blue.push(cb);
+            red.push(cr);
+        }
+    }
+}
+
+/// The samples with straight alpha.
+fn straight(pixmap: &Pixmap) -> Vec<u8> {
+    let pixels = pixmap.pixels().iter().flat_map(|p| {
+        let c = p.demultiply();
+        [c.red(), c.green(), c.blue(), c.alpha()]
+    });
+    pixels.collect()
+}
+
+fn unencodable(why: impl Display) -> Error {
+    Error::Encode(why.to_string())
+}
