@@ -70,7 +70,8 @@ fn number(tiff: &[u8]) -> Option<u16> {
     let entries = (0..usize::from(short(directory)?)).map(|i| directory.saturating_add(2 + 12 * i));
     let is_it = |at: usize| Some((short(at)?, short(at + 2)?, long(at + 4)?) == (TAG, SHORT, 1));
     let at = entries.take_while(|at| *at < tiff.len()).find(|at| is_it(*at) == Some(true))?;
-    short(at + 8)
+    // The value is followed by two bytes of nothing; an entry that is cut short is none.
+    long(at + 8).and(short(at + 8))
 }
 
 #[cfg(test)]
@@ -105,8 +106,8 @@ mod tests {
             assert_eq!(number(&tiff(is_little, &[(0x0112, 4, 1, 6)])), None);
             assert_eq!(number(&tiff(is_little, &[(0x0112, 3, 2, 6)])), None);
             let whole = tiff(is_little, &[other, (0x0112, 3, 1, 6)]);
-            for end in 0..whole.len() - 4 {
-                assert_eq!(number(&whole[..end + 1]), None, "{end}");
+            for end in 0..whole.len() {
+                assert_eq!(number(&whole[..end]), None, "{end}");
             }
         }
         assert_eq!(number(b"MM\0\x2a\xff\xff\xff\xff\0\x01\x01\x12"), None);
