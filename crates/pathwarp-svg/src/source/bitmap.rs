@@ -56,7 +56,15 @@ pub(super) fn unpacked_profile(png: &[u8], most: u64) -> u64 {
 pub(super) fn is_unreadable(data: &[u8]) -> bool {
     let is_damaged = || chunks(data).any(|c| matches!(&c.name, b"IHDR" | b"PLTE" | b"IDAT") && !c.is_intact());
     let lacks_pixels = || pixel_bytes(data).is_some_and(|needed| unpacked_pixels(data, needed) < needed);
-    data.starts_with(SIGNATURE) && (is_damaged() || lacks_pixels()) || is_beyond_page(data).unwrap_or(false)
+    data.starts_with(SIGNATURE) && (is_damaged() || cuts_colors(data) || lacks_pixels())
+        || is_beyond_page(data).unwrap_or(false)
+}
+
+/// Returns `true` if the palette that the pixels refer to ends within a colour. The decoder (png 0.18) panics at it.
+fn cuts_colors(png: &[u8]) -> bool {
+    let find = |name: &[u8; 4]| chunks(png).find(|c| &c.name == name).map(|c| c.content);
+    let is_indexed = find(b"IHDR").is_some_and(|header| header.get(9) == Some(&3));
+    is_indexed && find(b"PLTE").is_some_and(|colors| colors.len() % 3 != 0)
 }
 
 /// The bytes that the pixels of a PNG take at least, without the filters of the rows; `None` if its header is none.
@@ -167,6 +175,11 @@ mod tests {
             bytes[at] ^= 0x10;
             assert!(is_frame || is_unreadable(&bytes), "{at}");
         }
+        let indexed = |colors: &[u8]| {
+            let header = chunk(b"IHDR", &[0, 0, 0, 1, 0, 0, 0, 1, 8, 3, 0, 0, 0]);
+            is_unreadable(&[SIGNATURE, &header, &chunk(b"PLTE", colors), &chunk(b"IDAT", &packed(&[0; 2]))].concat())
+        };
+        assert_eq!([6, 5, 4].map(|n| indexed(&[9; 6][..n])), [false, true, true]);
         let gif = |page: [u8; 2], frame: [u8; 2]| {
             let comment = b"!\xfe\x02hi\0";
             let frame = [b',', 0, 0, 0, 0, frame[0], 0, frame[1], 0, 0];
