@@ -85,11 +85,16 @@ pub(super) fn resolver<'a>(
 }
 
 /// Media type of drawings.
-const SVG: &str = "image/svg+xml";
+pub(super) const SVG: &str = "image/svg+xml";
 
 /// Counts an image in the budget. A drawing among them is returned as usvg may read it: unpacked, with numbers in range. Returns
 /// `None` for damaged images.
-fn checked(mime: &str, data: Arc<Vec<u8>>, place: &str, options: &ReadOptions) -> Result<Option<Arc<Vec<u8>>>, Error> {
+pub(super) fn checked(
+    mime: &str,
+    data: Arc<Vec<u8>>,
+    place: &str,
+    options: &ReadOptions,
+) -> Result<Option<Arc<Vec<u8>>>, Error> {
     let budget = &options.budget;
     let profile = bitmap::unpacked_profile(&data, budget.left(Limit::ImageBytes) as u64);
     let counted = budget.spend_cut(Limit::ImageBytes, data.len() as u64 + profile);
