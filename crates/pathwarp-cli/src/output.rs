@@ -158,6 +158,7 @@ impl Place {
             Ok(m) if m.is_dir() => Self::Folder,
             Ok(m) if !m.is_file() => Self::Device,
             // Of a file behind a descriptor, the content so far is kept, and it may have no name any more.
+            _ if is_link && is_descriptor(&behind(to)) && behind(to).ends_with("1") => Self::Stdout,
             _ if is_link && is_descriptor(&behind(to)) => Self::Device,
             Ok(_) if is_link => Self::File(to.canonicalize().unwrap_or_else(|_| behind(to))),
             _ if is_link => Self::File(behind(to)),
@@ -221,7 +222,7 @@ pub(crate) fn behind(link: &Path) -> PathBuf {
 
 /// Returns `true` for a name of an open file, such as that behind `/dev/stdout`.
 fn is_descriptor(file: &Path) -> bool {
-    cfg!(target_os = "linux") && file.starts_with("/proc") && folder(file).file_name().is_some_and(|f| f == "fd")
+    cfg!(unix) && ["/proc/self/fd", "/dev/fd"].iter().any(|fds| folder(file) == Path::new(fds))
 }
 
 /// A file in place.

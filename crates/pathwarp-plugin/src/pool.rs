@@ -34,7 +34,7 @@ impl Program {
     /// The work of an answer for this side alone, in evaluations of a net.
     pub(crate) fn work(&self) -> f64 {
         match self.protocol {
-            Protocol::Text => 8.0,
+            Protocol::Text => 16.0,
             Protocol::Binary => 2.0,
         }
     }

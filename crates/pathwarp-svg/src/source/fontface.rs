@@ -53,7 +53,8 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
 /// Counts the outlines of all letters of the text in each of the fonts.
 fn count_letters(xml: &Document<'_>, faces: &[Face], budget: &Budget) -> Result<(), Exceeded> {
     let mut letters: BTreeMap<char, u64> = BTreeMap::new();
-    for text in xml.descendants().filter(Node::is_text).filter_map(|n| n.text()) {
+    let shown = xml.descendants().filter(|n| n.is_element() && n.tag_name().name() == "text");
+    for text in shown.flat_map(|n| n.descendants()).filter(Node::is_text).filter_map(|n| n.text()) {
         text.chars().for_each(|c| *letters.entry(c).or_default() += 1);
     }
     for face in faces {
