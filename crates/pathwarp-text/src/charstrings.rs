@@ -17,8 +17,8 @@ pub(crate) struct Charstrings<'a>(CffFontRef<'a>);
 impl<'a> Charstrings<'a> {
     /// `None` if the font has none.
     pub(crate) fn new(font: &FontRef<'a>) -> Option<Self> {
-        let cff = || Some(CffFontRef::new_cff(font.cff().ok()?.offset_data().as_bytes(), 0, None).ok()?);
-        let cff2 = || Some(CffFontRef::new_cff2(font.cff2().ok()?.offset_data().as_bytes(), None).ok()?);
+        let cff = || CffFontRef::new_cff(font.cff().ok()?.offset_data().as_bytes(), 0, None).ok();
+        let cff2 = || CffFontRef::new_cff2(font.cff2().ok()?.offset_data().as_bytes(), None).ok();
         cff2().or_else(cff).map(Self)
     }
 

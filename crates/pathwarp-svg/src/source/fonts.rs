@@ -2,8 +2,9 @@
 
 use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
 use super::fontguard::{FontGuard, listing};
+use super::images::Missing;
 use skrifa::{FontRef, MetadataProvider as _};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::io::Read as _;
 use std::ops::RangeInclusive;
@@ -11,9 +12,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
-
-/// Names that were asked for and not found.
-pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
 /// The given files and folders whose fonts were loaded last: a batch reads them once.
 type Loaded = (bool, Vec<PathBuf>, Arc<Database>);

@@ -2,8 +2,8 @@
 
 use super::check::{self, Features};
 use super::fontguard::FontGuard;
-use super::fonts::{self, Missing};
-use super::images::{self, Rejected, Unread};
+use super::fonts;
+use super::images::{self, Missing, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::text::SourceText;
