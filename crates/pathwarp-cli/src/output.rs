@@ -74,7 +74,7 @@ impl PendingFile {
         match self.content {
             Content::Stdout(bytes) => to_stdout(&bytes),
             Content::Device(bytes) => {
-                let opened = std::fs::OpenOptions::new().write(true).open(&self.to);
+                let opened = std::fs::OpenOptions::new().append(true).open(&self.to);
                 let written = opened.and_then(|mut to| to.write_all(&bytes));
                 written.map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))
             }
@@ -157,7 +157,11 @@ impl Place {
         match if is_link { to.metadata() } else { found } {
             Ok(m) if m.is_dir() => Self::Folder,
             Ok(m) if !m.is_file() => Self::Device,
-            Ok(_) if is_link => Self::File(to.canonicalize().unwrap_or_else(|_| to.to_owned())),
+            // Of a file behind a descriptor, the content so far is kept, and it may have no name any more.
+            _ if is_link && is_descriptor(&behind(to)) && behind(to).ends_with("1") => Self::Stdout,
+            _ if is_link && is_descriptor(&behind(to)) => Self::Device,
+            Ok(_) if is_link => Self::File(to.canonicalize().unwrap_or_else(|_| behind(to))),
+            _ if is_link => Self::File(behind(to)),
             _ => Self::File(to.to_owned()),
         }
     }
@@ -173,11 +177,52 @@ impl Place {
         };
         let folder = folder(&file);
         match Temporary::create_in(folder) {
-            Ok((temporary, content)) => Ok((file, temporary, content)),
+            Ok((temporary, content)) => {
+                like_the_old(&file, &content).map_err(|e| Failure::output(&file, cannot_be_written(&e)))?;
+                Ok((file, temporary, content))
+            }
             Err(_) if !folder.is_dir() => Err(Failure::output(folder, "does not exist; create the folder first")),
             Err(e) => Err(Failure::output(&file, cannot_be_written(&e))),
         }
     }
+}
+
+/// Gives a new file the permissions of the one that it will replace, which may be private.
+#[cfg(unix)]
+fn like_the_old(old: &Path, new: &File) -> io::Result<()> {
+    use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};
+    /// Without the bits that let a program run as its owner.
+    const PERMISSIONS: u32 = 0o777;
+    let Ok(old) = old.metadata() else { return Ok(()) };
+    let own = new.metadata()?;
+    if (old.uid(), old.gid()) != (own.uid(), own.gid()) {
+        // Only some users may give files away. Others own what they write.
+        let _ = fchown(new, Some(old.uid()), Some(old.gid()));
+    }
+    new.set_permissions(std::fs::Permissions::from_mode(old.mode() & PERMISSIONS))
+}
+
+#[cfg(not(unix))]
+fn like_the_old(_: &Path, _: &File) -> io::Result<()> {
+    Ok(())
+}
+
+/// The file that a chain of symbolic links leads to, which may not exist.
+pub(crate) fn behind(link: &Path) -> PathBuf {
+    /// The system follows no more.
+    const MOST_LINKS: usize = 40;
+    let mut at = link.to_owned();
+    for _ in 0..MOST_LINKS {
+        // A descriptor is a link to the name that its file once had.
+        let Some(next) = at.read_link().ok().filter(|_| !is_descriptor(&at)) else { break };
+        at = folder(&at).join(next);
+    }
+    at
+}
+
+/// Returns `true` for a name of an open file, such as that behind `/dev/stdout`.
+fn is_descriptor(file: &Path) -> bool {
+    cfg!(unix) && ["/proc/self/fd", "/dev/fd"].iter().any(|fds| folder(file) == Path::new(fds))
 }
 
 /// A file in place.

@@ -10,7 +10,7 @@ const HEAD: usize = 1400;
 
 /// A name for a table: control characters are written as escapes.
 pub(crate) fn name(name: &str) -> Cow<'_, str> {
-    escaped(name, char::is_control)
+    escaped(name, is_unsafe_in_names)
 }
 
 /// A message, whose lines and tabs are kept, and which has a gap in its middle if it is very long.
@@ -25,8 +25,22 @@ pub(crate) fn message(message: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{} … ({left_out} characters) … {}", escaped(&head, is_unsafe), escaped(&tail, is_unsafe)))
 }
 
+/// JSON in which control characters that JSON allows as they are, are escaped. They stand in texts only.
+pub(crate) fn json(mut json: String) -> String {
+    if json.contains(is_unsafe) {
+        let escaped = |c: char| if is_unsafe(c) { format!("\\u{:04x}", u32::from(c)) } else { c.into() };
+        json = json.chars().map(escaped).collect();
+    }
+    json
+}
+
 fn is_unsafe(c: char) -> bool {
-    c.is_control() && c != '\n' && c != '\t'
+    is_unsafe_in_names(c) && c != '\n' && c != '\t'
+}
+
+/// Control characters, and those that change the order of what is shown (Unicode annex 9, table 4).
+fn is_unsafe_in_names(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 fn escaped(text: &str, is_escaped: fn(char) -> bool) -> Cow<'_, str> {
@@ -49,6 +63,8 @@ mod tests {
         assert_eq!(name("plain “ünï” name"), "plain “ünï” name");
         assert_eq!(name("\x1b[31mred\nline\u{9b}2J"), "\\u{1b}[31mred\\nline\\u{9b}2J");
         assert_eq!(message("a\nb\tc\x07"), "a\nb\tc\\u{7}");
+        assert_eq!(name("a\u{202e}gvs.svg"), "a\\u{202e}gvs.svg");
+        assert_eq!(json("{\"a\": \"\u{9b}31m\u{7f}ä\"\n}".into()), "{\"a\": \"\\u009b31m\\u007fä\"\n}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::input::{display, split_reference};
-use crate::output::{is_device, is_stdout};
+use crate::output::{behind, is_device, is_stdout};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
@@ -97,7 +97,8 @@ impl Folders {
     /// The real path of a file that is no link, by that of its folder. Elsewhere than on Unix, a file may have two names.
     fn real(&mut self, file: &Path) -> Option<PathBuf> {
         if !cfg!(unix) || file.symlink_metadata().is_ok_and(|m| m.is_symlink()) {
-            return None;
+            // The target may not exist yet.
+            return (!file.exists()).then(|| real(&behind(file)));
         }
         let (folder, name) = (file.parent()?, file.file_name()?);
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

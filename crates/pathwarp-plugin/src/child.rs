@@ -11,6 +11,9 @@ static LIVE: Mutex<Vec<Shared>> = Mutex::new(Vec::new());
 /// A process until it is ended: its number may then belong to another.
 type Shared = Arc<Mutex<Option<Child>>>;
 
+/// Set for programs that are started: a plug-in that calls pathwarp with itself as a plug-in would start programs without an end.
+const WITHIN: &str = "PATHWARP_WITHIN_PLUGIN";
+
 /// A running program, in a process group of its own where the system has them. Killed and waited for when dropped.
 pub(crate) struct Running {
     child: Shared,
@@ -19,8 +22,12 @@ pub(crate) struct Running {
 impl Running {
     /// Starts the program, with pipes for its three streams.
     pub(crate) fn start(path: &Path) -> Result<Self, Fault> {
+        if std::env::var_os(WITHIN).is_some() {
+            return Err(Fault::Nested);
+        }
         check_file(path)?;
         let mut command = Command::new(path);
+        command.env(WITHIN, "1");
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         #[cfg(unix)]
         {

@@ -139,6 +139,9 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
         Some(v) => return Err(Fault::Version { found: v.to_string(), known: VERSION }),
         None => return Err(wrong(format!("it lacks \"pathwarp-plugin\": {VERSION}"))),
     }
+    if let Some(text) = with_controls(&json) {
+        return Err(wrong(format!("`{}` holds control characters", text.escape_debug())));
+    }
     // From the text again, for the line of an error.
     let written: Written = serde_json::from_slice(bytes).map_err(|e| wrong(e.to_string()))?;
     if !is_kebab(&written.name) {
@@ -169,6 +172,16 @@ pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault>
     let partial = written.domain == Domain::Partial;
     let abilities = Abilities { jacobian: written.jacobian, inverse: written.inverse, partial };
     Ok(Entry { info: Box::leak(Box::new(info)), protocol: written.protocol, abilities })
+}
+
+/// The first text that could do something to a terminal.
+fn with_controls(json: &Value) -> Option<&str> {
+    match json {
+        Value::String(text) => text.contains(|c: char| c.is_control() && c != '\n').then_some(text),
+        Value::Array(all) => all.iter().find_map(with_controls),
+        Value::Object(all) => all.values().find_map(with_controls),
+        _ => None,
+    }
 }
 
 /// Keeps a text until the process ends.

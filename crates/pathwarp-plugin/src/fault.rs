@@ -19,6 +19,9 @@ pub enum Fault {
     /// The system cannot start it.
     #[error("cannot be started: {0}; a script needs a first line such as #!/usr/bin/env python3")]
     NotStarted(String),
+    /// A plug-in has started this program.
+    #[error("is not started, since a plug-in has called pathwarp, and one could call the other without an end")]
+    Nested,
     /// It ended while an answer was expected.
     #[error("ended ({status}) without giving {expected}{}", quoted(.said))]
     Ended {

@@ -112,6 +112,10 @@ impl Map for ProgramMap {
         self.points_by(Ask::Points, ps, out);
     }
 
+    fn work(&self) -> f64 {
+        self.program.work()
+    }
+
     fn points_and_jets(&self, (ps, images): (&[Point], &mut [Point]), (qs, jets): (&[Point], &mut [Jet])) {
         if !self.abilities.jacobian {
             self.points(ps, images);
@@ -189,6 +193,10 @@ impl Map for Beside {
 
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         self.map.points(&ps.iter().map(|p| self.moved(*p)).collect::<Vec<_>>(), out);
+    }
+
+    fn work(&self) -> f64 {
+        self.map.work()
     }
 
     fn prefers_batches(&self) -> bool {

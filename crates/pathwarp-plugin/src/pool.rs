@@ -31,6 +31,14 @@ struct State {
 }
 
 impl Program {
+    /// The work of an answer for this side alone, in evaluations of a net.
+    pub(crate) fn work(&self) -> f64 {
+        match self.protocol {
+            Protocol::Text => 16.0,
+            Protocol::Binary => 2.0,
+        }
+    }
+
     /// A program, with a process that runs already.
     pub(crate) fn new(path: PathBuf, protocol: Protocol, running: Option<Session>) -> Self {
         let idle = Vec::from_iter(running);

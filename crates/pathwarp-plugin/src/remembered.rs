@@ -63,6 +63,10 @@ impl Remembered {
 
     /// Remembers an entry or a fault.
     pub(crate) fn set(&mut self, path: &Path, entry: Result<&str, &Fault>) {
+        // That says nothing about the program.
+        if entry == Err(&Fault::Nested) {
+            return;
+        }
         let (Some(name), Some(stamp)) = (path.to_str(), Stamp::of(path)) else { return };
         let entry = entry.map(ToOwned::to_owned).map_err(Clone::clone);
         self.data.programs.insert(name.to_owned(), Known { stamp, entry });

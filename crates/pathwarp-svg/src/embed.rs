@@ -1,6 +1,6 @@
 //! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
 
-use crate::source::read::bytes_unpacked;
+use crate::source::read::{bytes_unpacked, text};
 use crate::source::tags::PATHWARP as NAMESPACE;
 use crate::source::xml::{self, escape_content};
 use base64::Engine as _;
@@ -27,12 +27,13 @@ impl Origin {
     pub fn embed(&self, svg: &str) -> Result<String, Error> {
         let packed = self.pack().map_err(|e| Error::input("the source", format!("cannot be packed: {e}")))?;
         let element = format!(
-            "<metadata><pathwarp xmlns=\"{NAMESPACE}\"><recipe>{}</recipe><source encoding=\"gzip base64\">{packed}</source></pathwarp></metadata>",
+            "<pathwarp xmlns=\"{NAMESPACE}\"><recipe>{}</recipe><source encoding=\"gzip base64\">{packed}</source></pathwarp>",
             escape_content(&self.recipe)
         );
         let doc = parse(svg)?;
-        let mut out = String::with_capacity(svg.len() + element.len() + 1);
-        if let Some(old) = metadata(&doc) {
+        let mut out = String::with_capacity(svg.len() + element.len() + 30);
+        // What else stands beside it, such as a licence, is kept.
+        if let Some(old) = own(&doc) {
             let range = old.range();
             out.push_str(&svg[..range.start]);
             out.push_str(&element);
@@ -47,7 +48,7 @@ impl Origin {
         }
         out.push_str(&svg[..end]);
         out.push('\n');
-        out.push_str(&element);
+        out.extend(["<metadata>", &element, "</metadata>"]);
         out.push_str(&svg[end..]);
         Ok(out)
     }
@@ -60,6 +61,14 @@ impl Origin {
         Self::read_within(svg, &Limits::default().for_input(svg.len()))
     }
 
+    /// Reads the origin embedded in a file, which may be compressed or in another encoding. `name` identifies it in errors.
+    ///
+    /// # Errors
+    /// As for [`Origin::read_within`]; also [`Error::Input`] if the file cannot be decoded.
+    pub fn of_file(data: &[u8], name: &str, limits: &Limits) -> Result<Option<Self>, Error> {
+        Self::read_within(&text(data, name, &Budget::new(*limits))?, limits)
+    }
+
     /// Reads the origin embedded in `svg` like [`Origin::read`], within limits.
     ///
     /// # Errors
@@ -68,9 +77,9 @@ impl Origin {
         let budget = Budget::new(*limits);
         xml::check(svg, "the drawing", &budget)?;
         let doc = parse(svg)?;
-        let Some(metadata) = metadata(&doc) else { return Ok(None) };
+        let Some(own) = own(&doc) else { return Ok(None) };
         let text = |name: &str| {
-            let node = metadata.descendants().find(|n| n.has_tag_name((NAMESPACE, name)));
+            let node = own.descendants().find(|n| n.has_tag_name((NAMESPACE, name)));
             node.map(|n| n.children().filter_map(|c| c.text()).collect::<String>()).unwrap_or_default()
         };
         let damaged = |e: &dyn std::fmt::Display| Error::input("the embedded source", format!("is damaged: {e}"));
@@ -95,10 +104,10 @@ fn parse(svg: &str) -> Result<roxmltree::Document<'_>, Error> {
     roxmltree::Document::parse_with_options(svg, options).map_err(|e| Error::input("the drawing", e.to_string()))
 }
 
-/// Finds the `<metadata>` with the embedded origin.
-fn metadata<'a>(doc: &'a roxmltree::Document<'a>) -> Option<roxmltree::Node<'a, 'a>> {
-    let ours = doc.root_element().descendants().find(|n| n.has_tag_name((NAMESPACE, "pathwarp")))?;
-    ours.parent().filter(|p| p.tag_name().name() == "metadata")
+/// Finds the embedded origin, in a `<metadata>`.
+fn own<'a>(doc: &'a roxmltree::Document<'a>) -> Option<roxmltree::Node<'a, 'a>> {
+    let own = doc.root_element().descendants().find(|n| n.has_tag_name((NAMESPACE, "pathwarp")))?;
+    own.parent().is_some_and(|p| p.tag_name().name() == "metadata").then_some(own)
 }
 
 /// Finds the end of an opening tag: the first `>` outside of quotes.
@@ -126,10 +135,12 @@ mod tests {
         let with = origin.embed(svg).unwrap();
         assert_eq!(Origin::read(&with).unwrap().as_ref(), Some(&origin));
         assert_eq!(Origin::read(svg).unwrap(), None);
-        let newer = Origin { recipe: "b".into(), ..origin };
+        let newer = Origin { recipe: "b".into(), ..origin.clone() };
         let again = newer.embed(&with).unwrap();
         assert_eq!(Origin::read(&again).unwrap(), Some(newer));
         assert_eq!(again.matches("<metadata>").count(), 1);
+        let licensed = with.replace("</metadata>", "<licence/></metadata>");
+        assert!(origin.embed(&licensed).unwrap().contains("<licence/></metadata>"));
         assert!(Origin::read(&with.replace("gzip base64\">", "gzip base64\">!")).is_err());
     }
 }

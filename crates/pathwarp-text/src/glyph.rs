@@ -1,6 +1,8 @@
 //! Outlines of glyphs: the exact curves of the font in font units, with y pointing down.
 
+use crate::charstrings::Charstrings;
 use crate::error::Error;
+use crate::work::MOST_WORK;
 use kurbo::{BezPath, Point};
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::pen::PathStyle;
@@ -19,6 +21,7 @@ const MOST_PARTS: usize = 10_000;
 pub(crate) struct Outlines<'a> {
     glyphs: OutlineGlyphCollection<'a>,
     composites: Option<(Glyf<'a>, Loca<'a>)>,
+    charstrings: Option<Charstrings<'a>>,
 }
 
 impl<'a> Outlines<'a> {
@@ -31,7 +34,8 @@ impl<'a> Outlines<'a> {
             Some(OutlineGlyphFormat::Glyf) => font.glyf().ok().zip(font.loca(None).ok()),
             _ => None,
         };
-        Ok(Self { glyphs, composites })
+        let charstrings = composites.is_none().then(|| Charstrings::new(font)).flatten();
+        Ok(Self { glyphs, composites, charstrings })
     }
 
     /// Returns the outline of a glyph; empty for spaces.
@@ -39,6 +43,9 @@ impl<'a> Outlines<'a> {
         let damaged = |problem: String| Error::Glyph { glyph: glyph.to_u32(), problem };
         if self.parts(glyph, 0, &mut HashMap::new())? > MOST_PARTS {
             return Err(damaged(format!("it has more than {MOST_PARTS} parts")));
+        }
+        if self.charstrings.as_ref().is_some_and(|c| c.work(glyph, MOST_WORK) >= MOST_WORK) {
+            return Err(damaged(format!("it has {MOST_WORK} bytes or more, with all of its subroutines")));
         }
         let mut pen = GlyphPen::default();
         if let Some(outline) = self.glyphs.get(glyph) {

@@ -24,6 +24,7 @@
 //! ```
 
 mod align;
+mod charstrings;
 mod error;
 mod font;
 mod glyph;
@@ -37,6 +38,7 @@ mod setting;
 mod shape;
 mod style;
 mod synthesis;
+mod work;
 
 pub use error::{Error, Quantity};
 pub use font::Font;
@@ -46,3 +48,4 @@ pub use limits::TextLimits;
 pub use metrics::{FontAxis, FontMetrics};
 pub use setting::{Feature, Variation, features, variations};
 pub use style::{Align, Direction, Ligatures, TextStyle};
+pub use work::{GlyphWork, MOST_WORK};

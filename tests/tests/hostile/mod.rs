@@ -4,11 +4,13 @@
 mod bounded;
 mod crowded;
 mod exports;
+mod fonts;
 mod formulas;
 mod inverses;
 mod lists;
 mod markup;
 mod numbers;
+mod outputs;
 mod packed;
 mod pictures;
 mod repeated;

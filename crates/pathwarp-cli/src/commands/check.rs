@@ -2,9 +2,9 @@
 
 use crate::advice;
 use crate::failure::Failure;
-use crate::output;
 use crate::plugins::{Plugins, is_file_name};
 use crate::status::Status;
+use crate::{output, readable};
 use clap::{Arg, ArgMatches, Command};
 use pathwarp::check::{Check, frame, report};
 use pathwarp::deform::{Deformation, Registry};
@@ -69,9 +69,9 @@ pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Res
 /// The lines of one check.
 fn show(check: &Check, out: &mut String) {
     let word = if check.faults.is_empty() { "ok  " } else { "FAIL" };
-    let _ = writeln!(out, "  {word}  {:<10}  {}", check.name, check.detail);
+    let _ = writeln!(out, "  {word}  {:<10}  {}", check.name, readable::message(&check.detail));
     for fault in &check.faults {
-        let _ = writeln!(out, "        {:<10}  {fault}", "");
+        let _ = writeln!(out, "        {:<10}  {}", "", readable::message(fault));
     }
 }
 

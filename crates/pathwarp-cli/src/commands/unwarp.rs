@@ -24,11 +24,15 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let file = file_args::given(m, "FILE")?;
     let target = file_args::target(m, [file])?;
     let name = input::display(file);
-    let text = String::from_utf8(input::bytes(file)?).map_err(|_| Failure::file(file, "is not UTF-8 text"))?;
-    let origin = Origin::read_within(&text, &Given::reading(m)?.limits.for_input(text.len()))
-        .map_err(|e| Failure::from(e).about(&name))?;
-    let origin =
-        origin.ok_or_else(|| Failure::file(file, "holds no source; only drawings written with --embed-recipe do"))?;
+    let bytes = input::bytes(file)?;
+    let limits = Given::reading(m)?.limits.for_input(bytes.len());
+    let origin = Origin::of_file(&bytes, &name, &limits).map_err(|e| Failure::from(e).about(&name))?;
+    let lacks =
+        |what: &str| Failure::Input(format!("{name}: holds no {what}; only drawings written with --embed-recipe do"));
+    let origin = origin.ok_or_else(|| lacks("source"))?;
+    if m.get_flag("recipe") && origin.recipe.trim().is_empty() {
+        return Err(lacks("recipe"));
+    }
     let bytes = if m.get_flag("recipe") { origin.recipe.into_bytes() } else { origin.source };
     output::write(target, &bytes)?;
     Ok(Status::Complete)

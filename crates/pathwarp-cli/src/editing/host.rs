@@ -47,10 +47,8 @@ impl EditorHost {
     fn open_drawing(&self, file: &Path, bytes: &[u8]) -> Result<Opened, Failure> {
         let reading = self.given.read()?.reading;
         reading.check()?;
-        let origin = match std::str::from_utf8(bytes) {
-            Ok(text) => Origin::read_within(text, &reading.limits.for_input(bytes.len())).unwrap_or(None),
-            Err(_) => None,
-        };
+        let limits = reading.limits.for_input(bytes.len());
+        let origin = Origin::of_file(bytes, "the drawing", &limits).unwrap_or(None);
         let folder = file.parent().unwrap_or(Path::new(""));
         let (source, saved) = match &origin {
             Some(origin) => {

@@ -6,6 +6,7 @@ use super::restoring::{Restoration, Returned, as_by_hand, remembering, restored}
 use super::stage::{Scope, Stage, temporary};
 use super::{quoting, words};
 use crate::failure::Failure;
+use crate::readable;
 use pathwarp_svg::objects::{self, Guides, Object, objects};
 use std::collections::{BTreeMap, HashSet};
 
@@ -24,7 +25,7 @@ pub(super) fn edit(stage: &Stage<'_>) -> Result<String, Failure> {
     let all = objects(&drawing, &stage.limits())?;
     let ids = targets(stage, &all)?;
     if call.is_on(SHOW) {
-        anstream::eprintln!("{}", settings(&all, &ids));
+        anstream::eprintln!("{}", readable::message(&settings(&all, &ids)));
         return Ok(String::new());
     }
     let Restoration { mut svg, objects: returned } = restored(stage, &drawing, &ids, call.is_on(DISCARD))?;

@@ -22,6 +22,6 @@ pub(crate) use gimp_file::GimpFile;
 pub(crate) use gimp_format::{file_name, svg_name};
 pub(crate) use kind::Input;
 pub(crate) use preview::PREVIEW;
-pub(crate) use read::{bytes, display, document, read_options};
+pub(crate) use read::{bytes, display, document, document_of, read_options};
 pub(crate) use reference_name::{no_document, split_reference};
 pub(crate) use svg::SvgArtwork;

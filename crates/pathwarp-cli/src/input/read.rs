@@ -72,13 +72,17 @@ pub(crate) fn ordinary_bytes(input: &Path) -> Result<Option<Vec<u8>>, Failure> {
 
 /// Reads an SVG document. Linked images are looked up relative to its folder.
 pub(crate) fn document(input: &Path, reading: &Reading) -> Result<Document, Failure> {
-    let bytes = bytes(input)?;
+    document_of(&bytes(input)?, input, reading)
+}
+
+/// Reads an SVG document with this content. `input` is its name.
+pub(crate) fn document_of(bytes: &[u8], input: &Path, reading: &Reading) -> Result<Document, Failure> {
     if bytes.starts_with(XCF_MAGIC) {
         let advice =
             "an XCF holds paths, not a drawing; `pathwarp paths` lists them, `pathwarp convert` copies them to an SVG";
         return Err(Failure::file(input, advice));
     }
-    Ok(Document::read(&bytes, &display(input), &read_options(input, reading))?)
+    Ok(Document::read(bytes, &display(input), &read_options(input, reading))?)
 }
 
 /// Options for reading `input` as SVG: linked images are looked up relative to its folder.

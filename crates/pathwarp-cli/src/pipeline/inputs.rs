@@ -12,12 +12,14 @@ pub(crate) struct InputFile {
     pub(crate) path: PathBuf,
     /// The folder of a file found in a folder, relative to it; else empty.
     pub(crate) below: PathBuf,
+    /// The reason why a file found in a folder is not read.
+    pub(crate) refused: Option<&'static str>,
 }
 
 impl InputFile {
     /// A file that is named itself.
     pub(crate) fn named(path: impl Into<PathBuf>) -> Self {
-        Self { path: path.into(), below: PathBuf::new() }
+        Self { path: path.into(), below: PathBuf::new(), refused: None }
     }
 }
 
@@ -56,10 +58,25 @@ fn drawings_in(folder: &Path, options: &CommonOptions, out: &mut Vec<InputFile>)
         let path = entry.path();
         let is_drawing =
             path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
-        if is_drawing && path.is_file() {
+        if is_drawing && !path.is_dir() {
             let below = path.strip_prefix(folder).ok().and_then(Path::parent).unwrap_or(Path::new(""));
-            out.push(InputFile { path: path.to_owned(), below: below.to_owned() });
+            let refused = refused(&entry, folder, options.reading.external);
+            out.push(InputFile { path: path.to_owned(), below: below.to_owned(), refused });
         }
     }
     Ok(())
+}
+
+/// The reason why a file in `folder` is not read, nor written with `--in-place`. Only the folder was named.
+fn refused(entry: &DirEntry, folder: &Path, external: bool) -> Option<&'static str> {
+    let path = entry.path();
+    if !path.is_file() {
+        return Some("is no regular file");
+    }
+    let leaves = || match (path.canonicalize(), folder.canonicalize()) {
+        (Ok(file), Ok(folder)) => !file.starts_with(folder),
+        _ => true,
+    };
+    let is_elsewhere = entry.path_is_symlink() && !external && leaves();
+    is_elsewhere.then_some("is a symbolic link that leads out of the folder; --allow-external follows it")
 }

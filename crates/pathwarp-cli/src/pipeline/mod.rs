@@ -120,6 +120,10 @@ fn run_jobs(batch: &Batch<'_>, jobs: &[Job], session: &mut Session<'_>) -> Resul
 fn one(batch: &Batch<'_>, job: &Job, files_wait: bool, bar: &ProgressBar) -> Result<FileRun, Failure> {
     let name = display(&job.input);
     let _watched = watch::InBatch::begin();
+    if let Some(why) = job.refused {
+        bar.inc(1);
+        return Err(Failure::file(&job.input, why));
+    }
     let run = catch_unwind(AssertUnwindSafe(|| batch.run(job))).unwrap_or_else(|_| {
         Err(Failure::Input("the program failed on this input (see the message above); please report it".into()))
     });

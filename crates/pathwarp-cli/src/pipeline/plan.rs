@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::CommonOptions;
 use crate::output::is_device;
+use crate::readable;
 use crate::references::{files_read, files_written};
 use crate::sources::Files;
 use pathwarp::recipe::Recipe;
@@ -19,6 +20,8 @@ pub(crate) struct Job {
     /// `None`: standard output, or the copy that `--into` names.
     pub(crate) target: Option<PathBuf>,
     pub(crate) preview: Option<PathBuf>,
+    /// The reason why the input is not read.
+    pub(crate) refused: Option<&'static str>,
 }
 
 /// Inputs of one kind.
@@ -103,7 +106,7 @@ impl Inputs<'_> {
     }
 
     fn job(&self, options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
-        let InputFile { path, below } = input;
+        let InputFile { path, below, refused } = input;
         let unnamed = |option: &str| Failure::usage(format!("{option} needs named {}s", self.kind));
         let expanded = |pattern: &PathBuf, option: &str| -> Result<PathBuf, Failure> {
             if is_pattern(pattern) {
@@ -125,14 +128,20 @@ impl Inputs<'_> {
             (None, None) => None,
         };
         let preview = options.preview.as_ref().map(|p| expanded(p, "--preview")).transpose()?;
-        Ok(Job { input: path.clone(), target, preview })
+        Ok(Job { input: path.clone(), target, preview, refused: *refused })
     }
 }
 
 /// The list that `--dry-run` prints: every input with its output.
 pub(super) fn listing(options: &CommonOptions, jobs: &[Job]) -> String {
     let mut out = String::new();
+    let name = |path: &Path| readable::name(&path.display().to_string()).into_owned();
     for job in jobs {
+        let input = name(&job.input);
+        if let Some(why) = job.refused {
+            let _ = writeln!(out, "{input} -> nothing: it {why}");
+            continue;
+        }
         let target = job.target.as_ref().or(options.into.as_ref());
         for to in target.into_iter().chain(&job.preview) {
             let state = if job.input == *to {
@@ -142,10 +151,10 @@ pub(super) fn listing(options: &CommonOptions, jobs: &[Job]) -> String {
             } else {
                 ""
             };
-            let _ = writeln!(out, "{} -> {}{state}", job.input.display(), to.display());
+            let _ = writeln!(out, "{input} -> {}{state}", name(to));
         }
         if target.is_none() {
-            let _ = writeln!(out, "{} -> standard output", job.input.display());
+            let _ = writeln!(out, "{input} -> standard output");
         }
     }
     out

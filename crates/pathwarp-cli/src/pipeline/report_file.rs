@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{Draft, PendingFile};
+use crate::readable;
 use crate::report::{FileReport, Totals};
 use pathwarp::recipe::Recipe;
 use serde::Serialize;
@@ -48,7 +49,8 @@ impl ReportFile {
 }
 
 fn json(value: &impl Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(value).map_err(|e| Failure::Output(format!("the report: {e}")))
+    let json = serde_json::to_string_pretty(value).map_err(|e| Failure::Output(format!("the report: {e}")));
+    json.map(readable::json)
 }
 
 /// JSON that stands `levels` deep in other JSON. Texts in it hold no raw newlines.

@@ -1,7 +1,7 @@
 //! Families: their fonts, by name, weight and slant, for programs that set text themselves.
 
 use super::faces::Look;
-use super::fonts::database;
+use super::fonts::{database, load_file};
 use super::read::ReadOptions;
 use pathwarp::Error;
 use std::collections::BTreeSet;
@@ -65,7 +65,7 @@ pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
         if path.is_dir() {
             db.load_fonts_dir(path);
         } else {
-            db.load_font_file(path).map_err(|e| Error::input(&name, format!("cannot be read: {e}")))?;
+            load_file(&mut db, path).map_err(|problem| Error::input(&name, problem))?;
         }
         if db.is_empty() {
             return Err(Error::input(&name, if path.is_dir() { "holds no font" } else { "is not a font" }));

@@ -1,12 +1,16 @@
 //! Fonts embedded in a drawing: `@font-face` rules in its style sheets (CSS Fonts 4, section 4) with a `data:` URL of a
 //! TrueType, OpenType or WOFF 1.0 font.
 
+use super::fontguard::listing;
 use super::style::declarations;
 use base64::Engine as _;
 use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp_text::GlyphWork;
+use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::sync::Arc;
 use usvg::fontdb::{Database, FaceInfo, Language, Source, Style, Weight};
+use usvg::roxmltree::{Document, Node};
 
 #[derive(Debug)]
 struct Face {
@@ -20,12 +24,13 @@ struct Face {
 /// Adds a drawing's embedded fonts. They replace other fonts of the same name.
 ///
 /// # Errors
-/// Unpacked, the fonts exceed the budget.
-pub(crate) fn add(mut db: Arc<Database>, text: &str, budget: &Budget) -> Result<Arc<Database>, Exceeded> {
-    let faces = faces(text, budget)?;
+/// Unpacked, or with the letters of the text, the fonts exceed the budget.
+pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) -> Result<Arc<Database>, Exceeded> {
+    let faces = faces(xml.input_text(), budget)?;
     if faces.is_empty() {
         return Ok(db);
     }
+    count_letters(xml, &faces, budget)?;
     let all = Arc::make_mut(&mut db);
     let same = |f: &&FaceInfo| f.families.iter().any(|n| faces.iter().any(|face| face.family == n.0));
     let taken: Vec<_> = all.faces().filter(same).map(|f| f.id).collect();
@@ -43,6 +48,21 @@ pub(crate) fn add(mut db: Arc<Database>, text: &str, budget: &Budget) -> Result<
         }
     }
     Ok(db)
+}
+
+/// Counts the outlines of all letters of the text in each of the fonts.
+fn count_letters(xml: &Document<'_>, faces: &[Face], budget: &Budget) -> Result<(), Exceeded> {
+    let mut letters: BTreeMap<char, u64> = BTreeMap::new();
+    let shown = xml.descendants().filter(|n| n.is_element() && n.tag_name().name() == "text");
+    for text in shown.flat_map(|n| n.descendants()).filter(Node::is_text).filter_map(|n| n.text()) {
+        text.chars().for_each(|c| *letters.entry(c).or_default() += 1);
+    }
+    for face in faces {
+        let Some(mut work) = GlyphWork::new(&face.data, 0) else { continue };
+        let total: u64 = letters.iter().map(|(c, n)| n * work.of_letter(*c)).sum();
+        budget.check(Limit::Segments, total as f64)?;
+    }
+    Ok(())
 }
 
 fn faces(text: &str, budget: &Budget) -> Result<Vec<Face>, Exceeded> {
@@ -88,6 +108,10 @@ fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
         Some(b"wOFF") => {
             budget.spend(Limit::ImageBytes, unpacked_size(&data).unwrap_or(0))?;
             Ok(unpacked(&data))
+        }
+        Some(b"ttcf") => {
+            budget.spend_cut(Limit::ImageBytes, listing(&data, budget.left(Limit::ImageBytes) as u64))?;
+            Ok(Some(data))
         }
         Some(b"wOF2") | None => Ok(None),
         Some(_) => Ok(Some(data)),

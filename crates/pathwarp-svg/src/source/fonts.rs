@@ -1,17 +1,17 @@
 //! Fonts for text: installed ones if wanted, given files, and a bundled fallback.
 
 use super::faces::{BUNDLED, BUNDLED_FAMILY, GenericFamilies, Look, asked_for, of_interface};
+use super::fontguard::{FontGuard, listing};
+use super::images::Missing;
 use skrifa::{FontRef, MetadataProvider as _};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::fs;
+use std::io::Read as _;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
-
-/// Names that were asked for and not found.
-pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
 /// The given files and folders whose fonts were loaded last: a batch reads them once.
 type Loaded = (bool, Vec<PathBuf>, Arc<Database>);
@@ -46,25 +46,46 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
             db.load_fonts_dir(p);
         } else {
             // A file that is not a font leaves the database unchanged; its family is then reported as missing.
-            let _ = db.load_font_file(p);
+            let _ = load_file(db, p);
         }
     }
     *last = Some((system, paths.to_vec(), db.clone()));
     db
 }
 
+/// Loads a font file.
+pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
+    /// Far more than the collections of any maker.
+    const MOST: u64 = 32_000_000;
+    let unreadable = |e: std::io::Error| format!("cannot be read: {e}");
+    let is_collection = |file: &Path| -> std::io::Result<bool> {
+        let mut tag = Vec::new();
+        fs::File::open(file)?.take(4).read_to_end(&mut tag)?;
+        Ok(tag == b"ttcf")
+    };
+    if is_collection(path).map_err(unreadable)? && listing(&fs::read(path).map_err(unreadable)?, MOST) > MOST {
+        return Err("has more fonts, or longer names, than can be listed".into());
+    }
+    db.load_font_file(path).map_err(unreadable)
+}
+
 /// Finds fonts like usvg's own resolver, but always returns one, and records the families that were not found.
-pub(crate) fn resolver(generic: GenericFamilies, missing: Missing) -> FontResolver<'static> {
-    let held = Arc::new(Held::default());
+pub(super) fn resolver(generic: GenericFamilies, missing: Missing, guard: FontGuard) -> FontResolver<'static> {
+    let held = Arc::new((Held::default(), guard));
     let also_held = held.clone();
+    let admitted = |(held, guard): &(Held, FontGuard), face: ID, db: &mut Arc<Database>| {
+        let face = guard.admits(face, db).then(|| held.face(face, db))?;
+        guard.trust(face);
+        Some(face)
+    };
     FontResolver {
         select_font: Box::new(move |font, db| {
             let face = select(font, db, &generic, &missing)?;
-            Some(held.face(face, db))
+            admitted(&held, face, db)
         }),
         select_fallback: Box::new(move |c, used, db| {
             let face = fallback(c, used, db)?;
-            let face = also_held.face(face, db);
+            let face = admitted(&also_held, face, db)?;
             (!used.contains(&face)).then_some(face)
         }),
     }

@@ -1,13 +1,13 @@
 //! Images in a drawing: embedded and linked ones, bitmaps and drawings. All of them share the budget of the drawing, and links
 //! are followed only where the user allows it.
 
-use super::fonts::Missing;
 use super::read::{self, ReadOptions};
 use super::{bitmap, check, range, xml};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
 use pathwarp::budget::Limit;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
@@ -19,6 +19,9 @@ const BASE64: &str = ";base64,";
 
 /// Pixels held for each pixel of a picture that is warped: decoded, reduced, the result, and its file.
 const COPIES: f64 = 4.0;
+
+/// Names that were asked for and not found.
+pub(crate) type Missing = Arc<Mutex<BTreeSet<String>>>;
 
 /// The links that were not followed.
 #[derive(Debug, Clone, Default)]
@@ -85,11 +88,16 @@ pub(super) fn resolver<'a>(
 }
 
 /// Media type of drawings.
-const SVG: &str = "image/svg+xml";
+pub(super) const SVG: &str = "image/svg+xml";
 
 /// Counts an image in the budget. A drawing among them is returned as usvg may read it: unpacked, with numbers in range. Returns
 /// `None` for damaged images.
-fn checked(mime: &str, data: Arc<Vec<u8>>, place: &str, options: &ReadOptions) -> Result<Option<Arc<Vec<u8>>>, Error> {
+pub(super) fn checked(
+    mime: &str,
+    data: Arc<Vec<u8>>,
+    place: &str,
+    options: &ReadOptions,
+) -> Result<Option<Arc<Vec<u8>>>, Error> {
     let budget = &options.budget;
     let profile = bitmap::unpacked_profile(&data, budget.left(Limit::ImageBytes) as u64);
     let counted = budget.spend_cut(Limit::ImageBytes, data.len() as u64 + profile);

@@ -11,6 +11,7 @@ mod encoding;
 pub(crate) mod faces;
 pub(crate) mod families;
 mod fontface;
+mod fontguard;
 pub(crate) mod fonts;
 pub(crate) mod images;
 pub(crate) mod live;

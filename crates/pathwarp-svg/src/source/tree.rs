@@ -1,8 +1,9 @@
 //! usvg's tree of a drawing: its fonts and images, and limits on its size.
 
 use super::check::{self, Features};
-use super::fonts::{self, Missing};
-use super::images::{self, Rejected, Unread};
+use super::fontguard::FontGuard;
+use super::fonts;
+use super::images::{self, Missing, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::text::SourceText;
@@ -63,19 +64,19 @@ fn resolve(
     name: &str,
     options: &ReadOptions,
 ) -> Result<(usvg::Tree, Missed), Error> {
-    let (missing, unread) = (Missing::default(), Unread::default());
+    let (missing, unread, rejected) = (Missing::default(), Unread::default(), Rejected::default());
     // Reading the installed fonts takes longer than most drawings do.
     let base = if features.text {
         let installed = fonts::database(options.system_fonts, &options.fonts);
-        let fontdb = fontface::add(installed, xml.input_text(), &options.budget)
-            .map_err(|e| Error::limit(name, "unpacked, its fonts take", e))?;
-        let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone());
+        let fontdb = fontface::add(installed, xml, &options.budget)
+            .map_err(|e| Error::limit(name, "with its text, its fonts take", e))?;
+        let guard = FontGuard::new(options, &rejected);
+        let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone(), guard);
         usvg::Options { fontdb, font_resolver, font_size: MEDIUM, ..usvg::Options::default() }
     } else {
         usvg::Options::default()
     };
     let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..base };
-    let rejected = Rejected::default();
     if features.images {
         usvg.image_href_resolver = images::resolver(name, options, &rejected, &unread);
     }

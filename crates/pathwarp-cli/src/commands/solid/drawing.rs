@@ -16,8 +16,8 @@ use std::path::Path;
 const TOLERANCE: f64 = 0.01;
 
 /// Reads a drawing: x from the left edge of the page, y from its bottom edge.
-pub(super) fn read(file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, Failure> {
-    let doc = input::document(file, reading)?;
+pub(super) fn read(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, Failure> {
+    let doc = input::document_of(bytes, file, reading)?;
     let page = doc.user_to_px().transform_rect_bbox(doc.view_box());
     let to_mm =
         Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();

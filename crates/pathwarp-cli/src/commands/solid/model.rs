@@ -41,7 +41,7 @@ impl Model {
             if file.as_os_str() == "-" {
                 return Err(Failure::Input(format!("{name}: a drawing must be a file; name it instead")));
             }
-            let mesh = drawing::read(file, reading, depth.unwrap_or(0.0))?;
+            let mesh = drawing::read(&bytes, file, reading, depth.unwrap_or(0.0))?;
             return Ok(Self { name, content: Content::Mesh(mesh), budget, format: ModelFormat::Obj, drawn: true });
         }
         if depth.is_some() {

@@ -1,6 +1,7 @@
 //! The report on a solid, `--report FILE`. The field names are the JSON's.
 
 use crate::failure::Failure;
+use crate::readable;
 use pathwarp::recipe::Recipe;
 use pathwarp_solid::Box3;
 use pathwarp_solid::mesh::{Deformed, Mesh, Topology, topology};
@@ -98,7 +99,8 @@ impl Run<'_> {
 }
 
 fn text(report: &impl Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("the report: {e}")))
+    let json = serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("the report: {e}")));
+    json.map(readable::json)
 }
 
 /// The report on a model that could not be deformed.

@@ -95,7 +95,7 @@ pub(super) fn with_variations<'a>(
         if let Some(w) = wanted.weight
             && let Some(axis) = font.axes().iter().find(|a| a.tag == "wght")
         {
-            own.extend(Variation::new("wght", f64::from(w).clamp(axis.min, axis.max)).ok());
+            own.extend(Variation::new("wght", f64::from(w).max(axis.min).min(axis.max)).ok());
         }
         let slant = font.axes().into_iter().find(|a| wanted.italic && matches!(a.tag.as_str(), "ital" | "slnt"));
         if let Some(axis) = slant {

@@ -1,0 +1,97 @@
+//! The work of CFF and CFF2 charstrings. A subroutine that calls another one a hundred times, ten levels deep, would occupy the reader
+//! for ever.
+
+use skrifa::raw::TableProvider as _;
+use skrifa::raw::ps::cff::CffFontRef;
+use skrifa::raw::ps::cff::blend::BlendState;
+use skrifa::raw::ps::cff::index::Index;
+use skrifa::raw::ps::cs::{CharstringContext, CharstringKind, CommandSink, evaluate};
+use skrifa::raw::ps::error::Error;
+use skrifa::raw::types::Fixed;
+use skrifa::{FontRef, GlyphId};
+use std::cell::Cell;
+
+/// The charstrings of a font.
+pub(crate) struct Charstrings<'a>(CffFontRef<'a>);
+
+impl<'a> Charstrings<'a> {
+    /// `None` if the font has none.
+    pub(crate) fn new(font: &FontRef<'a>) -> Option<Self> {
+        let cff = || CffFontRef::new_cff(font.cff().ok()?.offset_data().as_bytes(), 0, None).ok();
+        let cff2 = || CffFontRef::new_cff2(font.cff2().ok()?.offset_data().as_bytes(), None).ok();
+        cff2().or_else(cff).map(Self)
+    }
+
+    /// Bytes that the reader evaluates for a glyph, those of subroutines at each call; `most` or more if it never ends.
+    pub(crate) fn work(&self, glyph: GlyphId, most: u64) -> u64 {
+        let used = Cell::new(0);
+        // A damaged charstring takes what it took up to the damage.
+        let _ = self.evaluated(glyph, most, &used);
+        used.get()
+    }
+
+    fn evaluated(&self, glyph: GlyphId, most: u64, used: &Cell<u64>) -> Result<(), Error> {
+        let Self(font) = self;
+        let part = font.subfont_index(glyph).ok_or(Error::MissingFdArray)?;
+        let part = font.subfont(part, &[])?;
+        let local = match part.subrs_offset() {
+            0 => Index::Empty,
+            at => {
+                let data = font.data().get(at as usize..).ok_or(Error::MissingSubroutines)?;
+                Index::new(data, font.version() == 2)?
+            }
+        };
+        let blend = font.var_store().and_then(|s| BlendState::new(s.clone(), &[], part.vs_index()).ok());
+        let all = font.charstrings();
+        let context = Counting { inner: (font.data(), all, font.global_subrs(), &local), used, most };
+        let own = context.counted(all.get(glyph.to_u32() as usize)?)?;
+        evaluate(&context, blend, own, &mut Nothing)?;
+        Ok(())
+    }
+}
+
+/// What the reader looks up, counted.
+struct Counting<'a> {
+    inner: (&'a [u8], &'a Index<'a>, &'a Index<'a>, &'a Index<'a>),
+    used: &'a Cell<u64>,
+    most: u64,
+}
+
+impl Counting<'_> {
+    fn counted<'b>(&self, charstring: &'b [u8]) -> Result<&'b [u8], Error> {
+        self.used.set(self.used.get() + 1 + charstring.len() as u64);
+        if self.used.get() < self.most { Ok(charstring) } else { Err(Error::CharstringNestingDepthLimitExceeded) }
+    }
+}
+
+impl CharstringContext for Counting<'_> {
+    fn kind(&self) -> CharstringKind {
+        CharstringKind::Type2
+    }
+
+    fn seac_components(&self, base: i32, accent: i32) -> Result<[&[u8]; 2], Error> {
+        let [base, accent] = self.inner.seac_components(base, accent)?;
+        Ok([self.counted(base)?, self.counted(accent)?])
+    }
+
+    fn global_subr(&self, index: i32) -> Result<&[u8], Error> {
+        self.counted(self.inner.global_subr(index)?)
+    }
+
+    fn subr(&self, index: i32) -> Result<&[u8], Error> {
+        self.counted(self.inner.subr(index)?)
+    }
+}
+
+/// Takes an outline and keeps nothing of it.
+struct Nothing;
+
+impl CommandSink for Nothing {
+    fn move_to(&mut self, _: Fixed, _: Fixed) {}
+
+    fn line_to(&mut self, _: Fixed, _: Fixed) {}
+
+    fn curve_to(&mut self, _: Fixed, _: Fixed, _: Fixed, _: Fixed, _: Fixed, _: Fixed) {}
+
+    fn close(&mut self) {}
+}

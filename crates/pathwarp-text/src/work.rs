@@ -1,0 +1,187 @@
+//! The work that a glyph takes to be read and drawn, found without doing it. A font of a few kilobytes can describe glyphs without an
+//! end: parts of parts, subroutines of subroutines, colours over colours.
+
+use crate::charstrings::Charstrings;
+use crate::error::guarded;
+use skrifa::charmap::Charmap;
+use skrifa::raw::TableProvider as _;
+use skrifa::raw::tables::colr::{Colr, Paint};
+use skrifa::raw::tables::glyf::{Glyf, Glyph};
+use skrifa::raw::tables::loca::Loca;
+use skrifa::{FontRef, GlyphId};
+use std::collections::HashMap;
+
+/// Most work of one glyph. Ornaments and coloured glyphs of sound fonts take some ten thousand.
+pub const MOST_WORK: u64 = 200_000;
+
+/// Levels of parts and paints, more than readers follow.
+const DEEP: usize = 64;
+
+/// The work of the glyphs of a font: points of outlines with those of their parts, bytes of charstrings with those of their subroutines,
+/// layers of colour.
+pub struct GlyphWork<'a> {
+    charmap: Charmap<'a>,
+    glyphs: u32,
+    glyf: Option<(Glyf<'a>, Loca<'a>)>,
+    charstrings: Option<Charstrings<'a>>,
+    colr: Option<Colr<'a>>,
+    outlines: HashMap<u32, u64>,
+    /// By the address of the paint.
+    paints: HashMap<usize, u64>,
+    coloured: HashMap<u32, u64>,
+}
+
+impl<'a> GlyphWork<'a> {
+    /// Looks at a font; `index` counts the fonts of a collection from 0. `None` if it cannot be read.
+    #[must_use]
+    pub fn new(bytes: &'a [u8], index: u32) -> Option<Self> {
+        Self::of(&FontRef::from_index(bytes, index).ok()?)
+    }
+
+    pub(crate) fn of(font: &FontRef<'a>) -> Option<Self> {
+        Some(Self {
+            charmap: Charmap::new(font),
+            glyphs: font.maxp().ok()?.num_glyphs().into(),
+            glyf: font.glyf().ok().zip(font.loca(None).ok()),
+            charstrings: Charstrings::new(font),
+            colr: font.colr().ok(),
+            outlines: HashMap::new(),
+            paints: HashMap::new(),
+            coloured: HashMap::new(),
+        })
+    }
+
+    /// The work of a letter, without what the shaper puts in its place; at most [`MOST_WORK`].
+    pub fn of_letter(&mut self, letter: char) -> u64 {
+        let glyph = self.charmap.map(letter).unwrap_or_default();
+        guarded(|| Ok(self.glyph(glyph))).unwrap_or(MOST_WORK)
+    }
+
+    /// The first glyph that takes [`MOST_WORK`] or more.
+    pub fn endless(&mut self) -> Option<u32> {
+        let found = guarded(|| Ok((0..self.glyphs).find(|g| self.glyph(GlyphId::new(*g)) >= MOST_WORK)));
+        // A font that makes its reader panic is none to use.
+        found.unwrap_or(Some(0))
+    }
+
+    fn glyph(&mut self, glyph: GlyphId) -> u64 {
+        self.outline(glyph, 0).max(self.colours(glyph, 0))
+    }
+
+    fn outline(&mut self, glyph: GlyphId, depth: usize) -> u64 {
+        if let Some(known) = self.outlines.get(&glyph.to_u32()) {
+            return *known;
+        }
+        // A glyph inside itself has no end.
+        self.outlines.insert(glyph.to_u32(), MOST_WORK);
+        let work = self.outline_anew(glyph, depth).min(MOST_WORK);
+        self.outlines.insert(glyph.to_u32(), work);
+        work
+    }
+
+    fn outline_anew(&mut self, glyph: GlyphId, depth: usize) -> u64 {
+        if depth > DEEP {
+            return MOST_WORK;
+        }
+        if let Some(charstrings) = &self.charstrings {
+            return charstrings.work(glyph, MOST_WORK);
+        }
+        let found = self.glyf.as_ref().and_then(|(glyf, loca)| loca.get_glyf(glyph, glyf).ok().flatten());
+        match found {
+            Some(Glyph::Simple(s)) => 1 + s.num_points() as u64,
+            Some(Glyph::Composite(c)) => {
+                sum(c.components(), |part| 1 + self.outline(GlyphId::from(part.glyph), depth + 1))
+            }
+            None => 1,
+        }
+    }
+
+    /// The layers of a glyph, with the outlines that they fill.
+    fn colours(&mut self, glyph: GlyphId, depth: usize) -> u64 {
+        let Some(colr) = self.colr.clone() else { return 0 };
+        if let Some(known) = self.coloured.get(&glyph.to_u32()) {
+            return *known;
+        }
+        self.coloured.insert(glyph.to_u32(), MOST_WORK);
+        let mut work = 0;
+        if let Ok(Some((paint, _))) = colr.v1_base_glyph(glyph) {
+            work = self.paint(&colr, &paint, depth);
+        }
+        if let Ok(Some(layers)) = colr.v0_base_glyph(glyph) {
+            let layers = layers.map_while(|i| colr.v0_layer(i).ok());
+            work += sum(layers, |(filled, _)| LAYER + self.outline(filled.into(), 0));
+        }
+        let work = work.min(MOST_WORK);
+        self.coloured.insert(glyph.to_u32(), work);
+        work
+    }
+
+    fn paint(&mut self, colr: &Colr<'a>, paint: &Paint<'a>, depth: usize) -> u64 {
+        let place = paint.offset_data().as_bytes().as_ptr() as usize;
+        if let Some(known) = self.paints.get(&place) {
+            return *known;
+        }
+        if depth > DEEP {
+            return MOST_WORK;
+        }
+        self.paints.insert(place, MOST_WORK);
+        let mut below = |p: Result<Paint<'a>, _>| p.map_or(0, |p: Paint<'a>| self.paint(colr, &p, depth + 1));
+        let own = match paint {
+            Paint::Composite(p) => below(p.source_paint()) + below(p.backdrop_paint()),
+            Paint::ColrLayers(p) => {
+                let first = p.first_layer_index() as usize;
+                let layers = (first..first.saturating_add(p.num_layers().into())).map_while(|i| colr.v1_layer(i).ok());
+                sum(layers, |(layer, _)| below(Ok(layer)))
+            }
+            Paint::Glyph(p) => below(p.paint()) + self.outline(p.glyph_id().into(), 0),
+            Paint::ColrGlyph(p) => self.colours(p.glyph_id().into(), depth + 1),
+            other => child(other).map_or(0, |p| below(Ok(p))),
+        };
+        let work = (LAYER + own).min(MOST_WORK);
+        self.paints.insert(place, work);
+        work
+    }
+}
+
+/// A layer is worth this many points: it becomes an element.
+const LAYER: u64 = 20;
+
+/// Adds work up to the limit.
+fn sum<T>(items: impl Iterator<Item = T>, mut work: impl FnMut(T) -> u64) -> u64 {
+    let mut total = 0;
+    for item in items {
+        total += work(item);
+        if total >= MOST_WORK {
+            break;
+        }
+    }
+    total
+}
+
+/// The paint that another one moves; `None` for one that fills.
+fn child<'a>(paint: &Paint<'a>) -> Option<Paint<'a>> {
+    let found = match paint {
+        Paint::Transform(p) => p.paint(),
+        Paint::VarTransform(p) => p.paint(),
+        Paint::Translate(p) => p.paint(),
+        Paint::VarTranslate(p) => p.paint(),
+        Paint::Scale(p) => p.paint(),
+        Paint::VarScale(p) => p.paint(),
+        Paint::ScaleAroundCenter(p) => p.paint(),
+        Paint::VarScaleAroundCenter(p) => p.paint(),
+        Paint::ScaleUniform(p) => p.paint(),
+        Paint::VarScaleUniform(p) => p.paint(),
+        Paint::ScaleUniformAroundCenter(p) => p.paint(),
+        Paint::VarScaleUniformAroundCenter(p) => p.paint(),
+        Paint::Rotate(p) => p.paint(),
+        Paint::VarRotate(p) => p.paint(),
+        Paint::RotateAroundCenter(p) => p.paint(),
+        Paint::VarRotateAroundCenter(p) => p.paint(),
+        Paint::Skew(p) => p.paint(),
+        Paint::VarSkew(p) => p.paint(),
+        Paint::SkewAroundCenter(p) => p.paint(),
+        Paint::VarSkewAroundCenter(p) => p.paint(),
+        _ => return None,
+    };
+    found.ok()
+}
