@@ -157,13 +157,19 @@ impl Place {
         match if is_link { to.metadata() } else { found } {
             Ok(m) if m.is_dir() => Self::Folder,
             Ok(m) if !m.is_file() => Self::Device,
-            // Of a file behind a descriptor, the content so far is kept, and it may have no name any more.
-            _ if is_link && is_descriptor(&behind(to)) && behind(to).ends_with("1") => Self::Stdout,
-            _ if is_link && is_descriptor(&behind(to)) => Self::Device,
-            Ok(_) if is_link => Self::File(to.canonicalize().unwrap_or_else(|_| behind(to))),
-            _ if is_link => Self::File(behind(to)),
+            _ if is_link => Self::of_link(to),
             _ => Self::File(to.to_owned()),
         }
+    }
+
+    /// The place behind a link to a file, or to nothing yet.
+    fn of_link(link: &Path) -> Self {
+        let file = behind(link);
+        if is_descriptor(&file) {
+            // Keep what the open file holds so far; it may have no name any more.
+            return if file.ends_with("1") { Self::Stdout } else { Self::Device };
+        }
+        Self::File(link.canonicalize().unwrap_or(file))
     }
 
     /// A temporary file beside the file, and the file.

@@ -1,6 +1,7 @@
 //! Text that came from files, made fit for a terminal: without control characters, which could move the cursor or rename the window,
 //! and not as long as a file.
 
+use serde::Serialize;
 use std::borrow::Cow;
 
 /// Most characters of a message that are shown. An id or a name in it can be as long as its file.
@@ -25,8 +26,13 @@ pub(crate) fn message(message: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{} … ({left_out} characters) … {}", escaped(&head, is_unsafe), escaped(&tail, is_unsafe)))
 }
 
-/// JSON in which control characters that JSON allows as they are, are escaped. They stand in texts only.
-pub(crate) fn json(mut json: String) -> String {
+/// Writes JSON, indented, and escapes the control characters that JSON allows as they are.
+pub(crate) fn json(value: &impl Serialize) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(value).map(escaped_json)
+}
+
+/// Control characters stand in the texts of JSON only.
+fn escaped_json(mut json: String) -> String {
     if json.contains(is_unsafe) {
         let escaped = |c: char| if is_unsafe(c) { format!("\\u{:04x}", u32::from(c)) } else { c.into() };
         json = json.chars().map(escaped).collect();
@@ -64,7 +70,7 @@ mod tests {
         assert_eq!(name("\x1b[31mred\nline\u{9b}2J"), "\\u{1b}[31mred\\nline\\u{9b}2J");
         assert_eq!(message("a\nb\tc\x07"), "a\nb\tc\\u{7}");
         assert_eq!(name("a\u{202e}gvs.svg"), "a\\u{202e}gvs.svg");
-        assert_eq!(json("{\"a\": \"\u{9b}31m\u{7f}ä\"\n}".into()), "{\"a\": \"\\u009b31m\\u007fä\"\n}");
+        assert_eq!(escaped_json("{\"a\": \"\u{9b}31m\u{7f}ä\"\n}".into()), "{\"a\": \"\\u009b31m\\u007fä\"\n}");
     }
 
     #[test]

@@ -113,7 +113,7 @@ fn frames_of_webps_are_as_large_as_they_say() {
     }
 }
 
-/// What is said to be longer than the file is neither read nor waited for.
+/// Chunks that announce more bytes than the file has are ignored.
 #[test]
 fn metadata_cut_short_are_left_out() {
     let still = file("lossy-alpha.webp");
@@ -214,7 +214,7 @@ fn palettes_and_transparent_colours_of_pngs() {
     let palette: &[u8] = &[255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255];
     let colors: [Rgba; 4] = [[255, 0, 0, 0], [0, 255, 0, 128], [0, 0, 255, 255], [255, 255, 255, 255]];
     let mut shown = colors;
-    // What cannot be seen has no colour.
+    // Premultiplied, transparent pixels are black.
     shown[0] = [0; 4];
     let extra: [(&[u8; 4], &[u8]); 2] = [(b"PLTE", palette), (b"tRNS", &[0, 128])];
     assert_eq!(row(4, 2, 3, &extra, &[0b0001_1011]), shown);

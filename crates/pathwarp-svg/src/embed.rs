@@ -32,7 +32,7 @@ impl Origin {
         );
         let doc = parse(svg)?;
         let mut out = String::with_capacity(svg.len() + element.len() + 30);
-        // What else stands beside it, such as a licence, is kept.
+        // Keep its neighbours, such as a licence.
         if let Some(old) = own(&doc) {
             let range = old.range();
             out.push_str(&svg[..range.start]);

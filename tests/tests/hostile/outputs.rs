@@ -33,7 +33,7 @@ fn private_files_stay_private() {
     }
 }
 
-/// What was printed before is kept: the file behind standard output is not replaced.
+/// `-o /dev/stdout` appends to the file behind standard output; it does not replace it.
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_is_added_to() {

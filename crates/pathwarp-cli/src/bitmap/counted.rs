@@ -32,7 +32,7 @@ pub(crate) struct Counted<R> {
     rule: R,
 }
 
-/// What evaluations are counted as.
+/// Counts evaluations of one kind of map.
 pub(crate) trait Rule: Send + Sync {
     /// The part of the work of an evaluation that others should count.
     const LEFT: f64;

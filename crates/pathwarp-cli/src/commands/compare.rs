@@ -83,7 +83,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let size = Size::Width(m.get_one::<u32>("width").copied().unwrap_or(1000));
     let result = compare(&a, &b, size)?;
     let text = if m.get_flag("json") {
-        readable::json(serde_json::to_string_pretty(&result).map_err(|e| Failure::usage(e.to_string()))? + "\n")
+        readable::json(&result).map_err(|e| Failure::usage(e.to_string()))? + "\n"
     } else {
         table(&result)
     };

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::output;
 use crate::plugins::Plugins;
+use crate::readable;
 use crate::status::Status;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use pathwarp::deform::{Info, Registry};
@@ -65,8 +66,7 @@ fn json(registry: &Registry, plugins: &Plugins) -> Value {
 
 pub(super) fn run(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
     if m.get_flag("json") {
-        let text =
-            serde_json::to_string_pretty(&json(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
+        let text = readable::json(&json(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
         output::to_stdout((text + "\n").as_bytes())?;
         return Ok(Status::Complete);
     }

@@ -76,7 +76,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
             // For GIMP files the JSON holds only stored data.
             paths.iter_mut().for_each(|p| p.bounds = None);
         }
-        readable::json(serde_json::to_string_pretty(&PathList { paths }).map_err(|e| Failure::file(file, e))? + "\n")
+        readable::json(&PathList { paths }).map_err(|e| Failure::file(file, e))? + "\n"
     } else {
         table(&paths)
     };

@@ -49,8 +49,7 @@ impl ReportFile {
 }
 
 fn json(value: &impl Serialize) -> Result<String, Failure> {
-    let json = serde_json::to_string_pretty(value).map_err(|e| Failure::Output(format!("the report: {e}")));
-    json.map(readable::json)
+    readable::json(value).map_err(|e| Failure::Output(format!("the report: {e}")))
 }
 
 /// JSON that stands `levels` deep in other JSON. Texts in it hold no raw newlines.

@@ -1,4 +1,4 @@
-//! What the decoders of all formats have in common, and how their samples become pixels.
+//! The interface of all decoders, and conversion of their samples to pixels.
 
 use crate::error::Error;
 use std::fmt::Display;

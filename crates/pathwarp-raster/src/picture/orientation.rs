@@ -1,4 +1,4 @@
-//! How a camera was held: a number in the EXIF metadata of a photograph.
+//! The EXIF orientation of a photograph: reads it, and turns the picture upright.
 
 use crate::error::Error;
 use crate::pixmap::new_pixmap;

@@ -99,8 +99,7 @@ impl Run<'_> {
 }
 
 fn text(report: &impl Serialize) -> Result<String, Failure> {
-    let json = serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("the report: {e}")));
-    json.map(readable::json)
+    readable::json(report).map_err(|e| Failure::Output(format!("the report: {e}")))
 }
 
 /// The report on a model that could not be deformed.
