@@ -69,6 +69,12 @@ pub(crate) fn overhang(o: Overhang) -> String {
     let names = ["left", "top", "right", "bottom"];
     let sides: Vec<&str> = names.iter().zip(o.by).filter(|(_, by)| *by > 0.0).map(|(name, _)| *name).collect();
     let most = o.by.into_iter().fold(0.0, f64::max);
+    if o.gone {
+        return format!(
+            "nothing is left on the page: all artwork lies past its {}; --fit page makes the page follow",
+            sides.join(", ")
+        );
+    }
     format!(
         "the artwork extends past the page by up to {} units ({} %; {}); --fit grow enlarges the page, --fit page fits it to the artwork",
         three_figures(most),

@@ -75,6 +75,8 @@ pub struct Overhang {
     pub by: [f64; 4],
     /// The largest overhang as a fraction of the page's width (left, right) or height (top, bottom).
     pub share: f64,
+    /// Nothing of the artwork is left on the page.
+    pub gone: bool,
 }
 
 impl WarpedDocument {

@@ -3,12 +3,13 @@
 use super::boxes::{bound, box_under, painted_box, path};
 use super::filter_region;
 use super::input::WriteInput;
+use crate::bend::bends::Bend;
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::options::PageFit;
 use crate::bend::outcome::{Overhang, PartOutcome};
 use crate::scene::affine::stretch;
 use crate::scene::filter_area;
-use crate::scene::model::{Group, Node, Part, PartRole};
+use crate::scene::model::{Group, Node, PartRole};
 use crate::scene::seen::{clip_box, is_seen, overlap};
 use crate::source::number::short;
 use crate::source::select::Selection;
@@ -89,12 +90,14 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     let sides = [page.width(), page.height(), page.width(), page.height()];
     let beyond = |b: Rect| [page.x0 - b.x0, page.y0 - b.y0, b.x1 - page.x1, b.y1 - page.y1];
     let is_visible = |by: &[f64; 4]| by.iter().zip(sides).any(|(by, side)| *by > VISIBLE * side);
-    let after = beyond(artwork(input, Some(page))?);
+    let all = artwork(input, Some(page))?;
+    let after = beyond(all);
     if !is_visible(&after) {
         return None;
     }
     let before = original(input, Some(page)).map_or([0.0; 4], beyond);
-    let mut out = Overhang::default();
+    let gone = |b: Rect| overlap(b, page).is_none_or(|seen| seen.width() <= 0.0 && seen.height() <= 0.0);
+    let mut out = Overhang { gone: gone(all) && !original(input, Some(page)).is_none_or(gone), ..Overhang::default() };
     for i in 0..4 {
         if after[i] > before[i].max(0.0) + VISIBLE * sides[i] {
             out.by[i] = after[i];
@@ -128,23 +131,22 @@ fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
 }
 
 /// Bounds the image of what the page showed of a part; unbounded if it showed all that can be seen. `None` if it showed nothing.
-fn from_page(input: &WriteInput<'_>, p: &Part, page: Rect) -> Option<Rect> {
+fn from_page(input: &WriteInput<'_>, i: usize, page: Rect) -> Option<Rect> {
     /// Less than this fraction of the page beyond its edge, as icons have it for rounding, makes no visible difference.
     const SLIVER: f64 = 0.1 * VISIBLE;
     let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
+    let p = input.part(i);
     let Some(all) = p.outline().bounding_box() else { return Some(everything) };
     let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get()) * stretch(p.frame));
     let shown = overlap(all.inflate(reach, reach), page)?;
     // Letters placed one by one do not go through the whole map.
     let nearly = page.inflate(SLIVER * page.width(), SLIVER * page.height());
-    if nearly.union(all) == nearly || !input.options.letters.places.is_empty() {
-        return Some(everything);
-    }
-    image_box(input, shown)
+    let bend = input.bend(i..i + 1).filter(|b| nearly.union(all) != nearly && b.options.letters.places.is_empty());
+    bend.map_or(Some(everything), |bend| image_box(bend, shown))
 }
 
 /// Bounding box of the image of an area of root user space.
-fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
+fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
     /// Samples along a side. Between them, the image bulges by less than is noticed.
     const N: u32 = 64;
     /// Steps between samples inside, which can be extreme only where the map folds.
@@ -156,14 +158,14 @@ fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
         is_edge(*i) || is_edge(*j) || i % INSIDE == 0 && j % INSIDE == 0
     };
     let copies = |q: Point| {
-        let all = &input.options.copies;
+        let all = &bend.options.copies;
         let first = all.is_empty().then_some(Affine::IDENTITY);
         all.iter().copied().chain(first).map(move |c| c * q)
     };
     let grid = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j))).filter(is_sampled);
     let places: Vec<Point> = grid.flat_map(|k| copies(point(k))).collect();
     let mut images = places.clone();
-    input.map.points(&places, &mut images);
+    bend.map.points(&places, &mut images);
     images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
 }
 
@@ -183,7 +185,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
             let near = |r: Rect| Some(bound(p, warped, frame)).filter(|b| r.union(*b) == r);
             let all = seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, warped, frame)))?;
             match (m.page, warped) {
-                (Some(page), Some(_)) => overlap(all, from_page(input, p, page)?),
+                (Some(page), Some(_)) => overlap(all, from_page(input, *i, page)?),
                 (Some(page), None) => overlap(all, page),
                 (None, _) => Some(all),
             }
@@ -229,7 +231,13 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         });
         all = overlap(all, boxes.reduce(|a, b| a.union(b))?)?;
         let region = m.frame.transform_rect_bbox(m.rect);
-        all = overlap(all, if input.changes(m.parts.clone()) { image_box(input, region)? } else { region })?;
+        all = overlap(
+            all,
+            match input.bend(m.parts.clone()).filter(|_| input.changes(m.parts.clone())) {
+                Some(bend) => image_box(bend, region)?,
+                None => region,
+            },
+        )?;
     }
     (all.width() >= 0.0 && all.height() >= 0.0).then_some(all)
 }
