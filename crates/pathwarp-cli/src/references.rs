@@ -76,7 +76,7 @@ pub(crate) fn files_written<'a>(
 }
 
 /// Looks up `FILE#NAME` or `FILE`.
-fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
+pub(crate) fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
     let (file, name) = split_reference(reference);
     if let Some(gimp) = GimpFile::read(&file, false, &reading.limits)? {
         return Ok(match name {
@@ -88,7 +88,7 @@ fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
     let bytes = std::fs::read(&file).map_err(|e| {
         let problem = format!(
             "{}; a path reference is FILE#NAME, #NAME, path data, \
-                       points, circle:r=R or arc:r=R,from=A,to=B",
+                       points, circle:r=R, arc:r=R,from=A,to=B or spiral:turns=N,inner=R,outer=R",
             unreadable(&file, &e)
         );
         Error::input(shown.to_string(), problem)

@@ -76,4 +76,4 @@ pub use source::faces::{GenericFamilies, bundled_font};
 pub use source::families::{FontFile, check_fonts, family_styles, find_font};
 pub use source::read::{ReadOptions, compressed};
 pub use source::select::{Division, Elements, Selection};
-pub use write::lettering::{LetteringOptions, write_lettering};
+pub use write::lettering::{LetteringOptions, SetLine, write_lettering, write_set_lines};

@@ -46,6 +46,7 @@ const AFTER: &str = "Path references (PATHREF), for every option that takes a pa
   'M 0,0 C …'     SVG path data
   circle:r=60mm   a circle about the middle of the frame, or about cx=X,cy=Y
   arc:r=60mm,from=180,to=360   an arc of it; angles clockwise from the right, so this is the upper half
+  spiral:turns=3,inner=20mm,outer=80mm   outwards from the left, clockwise; also from=ANGLE, ccw, cx=X, cy=Y
   'x,y x,y …'     points; percentages count from the left and top of the frame: 50%,0%
 
 Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
@@ -105,7 +106,7 @@ const OTHERS: [(&str, Declare); 18] = [
     (solid::NAME, |_| solid::command()),
     (unwarp::NAME, |_| unwarp::command()),
     (schema::NAME, |_| schema::command()),
-    (text::NAME, |_| text::command()),
+    (text::NAME, text::command),
     (paths::NAME, |_| paths::command()),
     (convert::NAME, |_| convert::command()),
     (render::NAME, |_| render::command()),
@@ -166,7 +167,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         solid::NAME => solid::run(m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
-        text::NAME => text::run(m, first),
+        text::NAME => text::run(registry, m, first),
         paths::NAME => paths::run(m),
         convert::NAME => convert::run(m),
         render::NAME => render::run(m),

@@ -1,8 +1,10 @@
 //! Lettering as an SVG drawing with data attributes for baselines, heights and letters.
 
+use crate::bend::plain::WarpedPath;
 use crate::source::number::{path_data, push};
 use crate::source::xml::escape;
 use pathwarp::Error;
+use pathwarp::kurbo::{Rect, Shape as _};
 use pathwarp::param::LengthUnit;
 use pathwarp_text::OutlinedText;
 use std::fmt::Write as _;
@@ -57,59 +59,119 @@ const DIGITS: i32 = 10;
 /// # Errors
 /// Returns [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
 pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> Result<String, Error> {
-    let fill = match &options.fill {
-        Some(fill) if svgtypes::Color::from_str(fill).is_ok() || fill == "none" || fill == "currentColor" => {
-            format!(" fill=\"{}\"", escape(fill))
-        }
-        Some(fill) => {
-            return Err(Error::usage(
-                "fill",
-                fill,
-                "is not a CSS colour such as #c00, navy, rgb(0,0,0) or currentColor",
-            ));
-        }
-        None => String::new(),
-    };
-    if !(options.margin >= 0.0 && options.margin.is_finite()) {
-        return Err(Error::usage("margin", options.margin.to_string(), "is not valid; a margin is at least 0"));
-    }
-    let page = lettering.page().inflate(options.margin, options.margin);
-    let largest = [page.x0, page.y0, page.x1, page.y1].into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));
-    let decimals = (DIGITS - largest.log10().ceil() as i32).clamp(0, DIGITS) as u8;
-    let number = |v: f64| {
-        let mut out = String::new();
-        push(&mut out, v, decimals);
-        out
-    };
-    let numbers = |v: &[f64]| v.iter().map(|v| number(*v)).collect::<Vec<_>>().join(" ");
-
-    let (w, h) = (number(page.width()), number(page.height()));
-    let (m, unit) = (&lettering.metrics, options.unit.map_or("", page_unit));
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}{unit}\" height=\"{h}{unit}\" viewBox=\"{}\">\n<title>{}</title>\n\
-         <g aria-label=\"{}\" data-ascent=\"{}\" data-descent=\"{}\" data-cap-height=\"{}\" data-x-height=\"{}\"{fill}>\n",
-        numbers(&[page.x0, page.y0, page.width(), page.height()]),
-        escape(&lettering.text.replace('\n', " ")),
-        escape(&lettering.text),
+    let mut sheet = Sheet::new(lettering.page(), &lettering.text, options)?;
+    let number = |v: f64| sheet.numbers(&[v]);
+    let m = &lettering.metrics;
+    let heights = format!(
+        " data-ascent=\"{}\" data-descent=\"{}\" data-cap-height=\"{}\" data-x-height=\"{}\"",
         number(m.ascent),
         number(m.descent),
         number(m.cap_height),
         number(m.x_height),
     );
+    sheet.begin(&lettering.text, &heights);
     for line in &lettering.lines {
-        let _ =
-            writeln!(out, "<g data-baseline=\"{}\">", numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]));
+        let baseline = sheet.numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]);
+        let _ = writeln!(sheet.out, "<g data-baseline=\"{baseline}\">");
         for c in line.clusters.iter().filter(|c| !c.outline.is_empty()) {
-            let _ = writeln!(
-                out,
-                "<path aria-label=\"{}\" data-glyph=\"{}\" d=\"{}\"/>",
-                escape(&c.text),
-                numbers(&[c.origin.x, c.origin.y, c.advance]),
-                path_data(&c.outline, decimals)
-            );
+            let place = format!(" data-glyph=\"{}\"", sheet.numbers(&[c.origin.x, c.origin.y, c.advance]));
+            sheet.letter(&c.text, &place, &path_data(&c.outline, sheet.decimals));
         }
-        out.push_str("</g>\n");
+        sheet.out.push_str("</g>\n");
     }
-    out.push_str("</g>\n</svg>\n");
-    Ok(out)
+    sheet.out.push_str("</g>\n");
+    Ok(sheet.finish())
+}
+
+/// Text whose letters are in their last place, where they have no level baseline any more.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetLine {
+    /// The text.
+    pub text: String,
+    /// The letters with their characters.
+    pub letters: Vec<(String, WarpedPath)>,
+}
+
+/// Writes lines as a drawing, as large as their ink and the margin around it: a group with an `aria-label` for every line, in it a
+/// path for every letter.
+///
+/// # Errors
+/// As for [`write_lettering`].
+pub fn write_set_lines(lines: &[SetLine], options: &LetteringOptions) -> Result<String, Error> {
+    let paths = lines.iter().flat_map(|l| &l.letters).map(|(_, p)| &p.path).filter(|p| !p.is_empty());
+    let page = paths.map(|p| p.bounding_box()).reduce(|a, b| a.union(b)).unwrap_or_default();
+    let title: Vec<&str> = lines.iter().map(|l| l.text.as_str()).collect();
+    let mut sheet = Sheet::new(page, &title.join(" "), options)?;
+    for line in lines {
+        sheet.begin(&line.text, "");
+        for (text, path) in &line.letters {
+            sheet.letter(text, "", &path.data);
+        }
+        sheet.out.push_str("</g>\n");
+    }
+    Ok(sheet.finish())
+}
+
+/// A drawing of lettering while it is written.
+struct Sheet {
+    out: String,
+    fill: String,
+    decimals: u8,
+}
+
+impl Sheet {
+    /// Begins the drawing of a page with its title.
+    fn new(page: Rect, title: &str, options: &LetteringOptions) -> Result<Self, Error> {
+        let fill = match &options.fill {
+            Some(fill) if svgtypes::Color::from_str(fill).is_ok() || fill == "none" || fill == "currentColor" => {
+                format!(" fill=\"{}\"", escape(fill))
+            }
+            Some(fill) => {
+                return Err(Error::usage(
+                    "fill",
+                    fill,
+                    "is not a CSS colour such as #c00, navy, rgb(0,0,0) or currentColor",
+                ));
+            }
+            None => String::new(),
+        };
+        if !(options.margin >= 0.0 && options.margin.is_finite()) {
+            return Err(Error::usage("margin", options.margin.to_string(), "is not valid; a margin is at least 0"));
+        }
+        let page = page.inflate(options.margin, options.margin);
+        let largest = [page.x0, page.y0, page.x1, page.y1].into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+        let decimals = (DIGITS - largest.log10().ceil() as i32).clamp(0, DIGITS) as u8;
+        let mut sheet = Self { out: String::new(), fill, decimals };
+        let (w, h) = (sheet.numbers(&[page.width()]), sheet.numbers(&[page.height()]));
+        let (view, unit) =
+            (sheet.numbers(&[page.x0, page.y0, page.width(), page.height()]), options.unit.map_or("", page_unit));
+        sheet.out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}{unit}\" height=\"{h}{unit}\" viewBox=\"{view}\">\n<title>{}</title>\n",
+            escape(&title.replace('\n', " "))
+        );
+        Ok(sheet)
+    }
+
+    fn numbers(&self, v: &[f64]) -> String {
+        let number = |v: &f64| {
+            let mut out = String::new();
+            push(&mut out, *v, self.decimals);
+            out
+        };
+        v.iter().map(number).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Begins the group of a text.
+    fn begin(&mut self, text: &str, attributes: &str) {
+        let _ = writeln!(self.out, "<g aria-label=\"{}\"{attributes}{}>", escape(text), self.fill);
+    }
+
+    fn letter(&mut self, text: &str, attributes: &str, data: &str) {
+        let _ = writeln!(self.out, "<path aria-label=\"{}\"{attributes} d=\"{data}\"/>", escape(text));
+    }
+
+    fn finish(mut self) -> String {
+        self.out.push_str("</svg>\n");
+        self.out
+    }
 }

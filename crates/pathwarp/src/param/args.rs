@@ -132,7 +132,7 @@ impl Args {
     }
 }
 
-/// Returns `true` if a path reference is the path itself, as path data, points, a circle or an arc, and not a name.
+/// Returns `true` if a path reference is the path itself, as path data, points, a circle, an arc or a spiral, and not a name.
 #[must_use]
 pub fn is_inline(text: &str) -> bool {
     is_path_data(text) || is_circle(text) || value::looks_like_points(text)

@@ -1,79 +1,197 @@
-//! Circles and arcs as path references: `circle:r=60mm`, `arc:r=60mm,from=180,to=360`.
+//! Circles, arcs and spirals as path references: `circle:r=60mm`, `arc:r=60mm,from=180,to=360`,
+//! `spiral:turns=3,inner=20mm,outer=80mm`.
 //!
 //! The centre is that of the frame, unless `cx` and `cy` give it, as lengths; percentages of them count from the left and top of
-//! the frame, those of `r` refer to its width. Angles count clockwise on the screen from the right (three o'clock); an arc runs
-//! from `from` to `to`, clockwise if `to` is larger. The outlines are true arcs.
+//! the frame, those of radii refer to its width. Angles count clockwise on the screen from the right (three o'clock); an arc runs
+//! from `from` to `to`, clockwise if `to` is larger. Circles and arcs are true arcs.
+//!
+//! A spiral is Archimedean, r = inner + (outer − inner)·φ/(360°·turns): it begins at the angle `from`, by default 180°, at the
+//! inner radius, and runs outwards, clockwise (`cw`) or counter-clockwise (`ccw`). Its cubics are within
+//! [`SPIRAL_WITHIN`]·outer of it.
 
 use super::number::ValueError;
 use super::{Axis, Frame, value};
 use crate::outline::{EllipticArc, Outline, Seg, Subpath};
-use kurbo::{Point, Vec2};
-use std::f64::consts::PI;
+use kurbo::{BezPath, CurveFitSample, ParamCurveFit, Point, Vec2};
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
-/// Returns `true` if a path reference is a circle or an arc.
+/// Distance of a spiral's cubics from the true curve, relative to its outer radius.
+const SPIRAL_WITHIN: f64 = 1e-7;
+/// Most turns of a spiral: the work grows with them, and letters on more could not be read.
+const MOST_TURNS: f64 = 100.0;
+/// The angle at which a spiral begins: lettering there begins at the left and goes over the top.
+const LEFT: f64 = 180.0;
+
+/// Returns `true` if a path reference is a circle, an arc or a spiral.
 pub(super) fn is_circle(text: &str) -> bool {
     split(text).is_some()
 }
 
+/// Returns `true` if a path reference is a spiral, which says by itself which way it runs.
+pub(crate) fn is_spiral(text: &str) -> bool {
+    split(text).is_some_and(|(word, _)| word == "spiral")
+}
+
 /// The word before the colon, and the values after it.
 fn split(text: &str) -> Option<(&str, &str)> {
-    text.trim().split_once(':').filter(|(word, _)| matches!(*word, "circle" | "arc"))
+    text.trim().split_once(':').filter(|(word, _)| matches!(*word, "circle" | "arc" | "spiral"))
 }
 
-/// Reads a circle or an arc; `None` if the text is neither. The error continues a sentence about the text.
+/// Reads a circle, an arc or a spiral; `None` if the text is none of them. The error continues a sentence about the text.
 pub(super) fn circle(text: &str, frame: &Frame) -> Option<Result<Outline, String>> {
     let (word, values) = split(text)?;
-    Some(read(word, values, frame))
+    Some(Typed::new(word, values, frame).and_then(|t| if word == "spiral" { t.spiral() } else { t.arc() }))
 }
 
-fn read(word: &str, values: &str, frame: &Frame) -> Result<Outline, String> {
-    let names: &[&str] = if word == "arc" { &["r", "from", "to", "cx", "cy"] } else { &["r", "cx", "cy"] };
-    let mut given: Vec<(&str, &str)> = Vec::new();
-    for part in values.split(',').map(str::trim).filter(|p| !p.is_empty()) {
-        let Some((name, value)) = part.split_once('=').map(|(n, v)| (n.trim(), v.trim())) else {
-            return Err(format!("contains `{part}`, which is not NAME=VALUE"));
+/// The values as typed.
+struct Typed<'a> {
+    word: &'a str,
+    given: Vec<(&'a str, &'a str)>,
+    frame: &'a Frame,
+}
+
+impl<'a> Typed<'a> {
+    fn new(word: &'a str, values: &'a str, frame: &'a Frame) -> Result<Self, String> {
+        /// The name under which a direction is kept.
+        const WAY: &str = "direction";
+        let names: &[&str] = match word {
+            "arc" => &["r", "from", "to", "cx", "cy"],
+            "spiral" => &["turns", "inner", "outer", "from", "cx", "cy"],
+            _ => &["r", "cx", "cy"],
         };
-        if !names.contains(&name) {
-            return Err(format!("has a value for `{name}`; {word} takes {}", names.join(", ")));
+        let mut given: Vec<(&str, &str)> = Vec::new();
+        for part in values.split(',').map(str::trim).filter(|p| !p.is_empty()) {
+            let (name, value) = match part.split_once('=').map(|(n, v)| (n.trim(), v.trim())) {
+                Some(pair) => pair,
+                None if word == "spiral" && matches!(part, "cw" | "ccw") => (WAY, part),
+                None if word == "spiral" => {
+                    return Err(format!("contains `{part}`, which is not NAME=VALUE, cw or ccw"));
+                }
+                None => return Err(format!("contains `{part}`, which is not NAME=VALUE")),
+            };
+            if !names.contains(&name) && (name != WAY || part.contains('=')) {
+                return Err(format!("has a value for `{name}`; {word} takes {}", names.join(", ")));
+            }
+            if given.iter().any(|(n, _)| *n == name) {
+                return Err(format!("has two values for {name}"));
+            }
+            given.push((name, value));
         }
-        if given.iter().any(|(n, _)| *n == name) {
-            return Err(format!("has two values for {name}"));
-        }
-        given.push((name, value));
+        Ok(Self { word, given, frame })
     }
-    let typed = |name: &str| given.iter().find(|(n, _)| *n == name).map(|(_, v)| *v);
-    let wrong = |name: &str, e: ValueError| format!("has a wrong {name}: `{}` {e}", typed(name).unwrap_or_default());
-    let needed = |name: &str| typed(name).ok_or_else(|| format!("has no {name}: write {word}:{}", example(word)));
-    let length = |name: &str, axis| value::length(needed(name)?, axis, frame).map_err(|e| wrong(name, e));
-    let angle = |name: &str| value::angle(needed(name)?).map_err(|e| wrong(name, e));
 
-    let radius = length("r", Axis::X)?;
-    if !(radius > 0.0 && radius.is_finite()) {
-        return Err(format!("has the radius {radius}; it must be larger than 0"));
+    fn text(&self, name: &str) -> Option<&'a str> {
+        self.given.iter().find(|(n, _)| *n == name).map(|(_, v)| *v)
     }
-    // A percentage is a place in the frame, a length one on the page.
-    let place = |name: &str, axis, start: f64, middle: f64| match typed(name) {
-        None => Ok(middle),
-        Some(v) => length(name, axis).map(|d| if v.ends_with('%') { start + d } else { d }),
-    };
-    let (rect, middle) = (frame.rect, frame.rect.center());
-    let centre = Point::new(place("cx", Axis::X, rect.x0, middle.x)?, place("cy", Axis::Y, rect.y0, middle.y)?);
-    let (from, to) = if word == "arc" { (angle("from")?, angle("to")?) } else { (0.0, 360.0) };
-    let sweep = to - from;
-    if !(sweep.abs() > 0.0 && sweep.abs() <= 360.0) {
-        return Err(format!("runs through {sweep}°; from and to must differ by at most 360°"));
+
+    /// Reads a value that may not be missing.
+    fn needed(&self, name: &str, read: impl Fn(&str) -> Result<f64, ValueError>) -> Result<f64, String> {
+        let example = match self.word {
+            "arc" => "r=60mm,from=180,to=360",
+            "spiral" => "turns=3,inner=20mm,outer=80mm",
+            _ => "r=60mm",
+        };
+        let text = self.text(name).ok_or_else(|| format!("has no {name}: write {}:{example}", self.word))?;
+        read(text).map_err(|e| format!("has a wrong {name}: `{text}` {e}"))
     }
-    let seg = |first: f64, sweep: f64| {
+
+    fn radius(&self, name: &str) -> Result<f64, String> {
+        self.needed(name, |t| value::length(t, Axis::X, self.frame))
+    }
+
+    fn centre(&self) -> Result<Point, String> {
+        // A percentage is a place in the frame, a length one on the page.
+        let place = |name: &str, axis, start: f64, middle: f64| -> Result<f64, String> {
+            match self.text(name) {
+                None => Ok(middle),
+                Some(v) => {
+                    let d = self.needed(name, |t| value::length(t, axis, self.frame))?;
+                    Ok(if v.ends_with('%') { start + d } else { d })
+                }
+            }
+        };
+        let (rect, middle) = (self.frame.rect, self.frame.rect.center());
+        Ok(Point::new(place("cx", Axis::X, rect.x0, middle.x)?, place("cy", Axis::Y, rect.y0, middle.y)?))
+    }
+
+    fn arc(&self) -> Result<Outline, String> {
+        let (whole, radius) = (self.word == "circle", self.radius("r")?);
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(format!("has the radius {radius}; it must be larger than 0"));
+        }
+        let centre = self.centre()?;
+        let angle = |name| self.needed(name, value::angle);
+        let (from, to) = if whole { (0.0, 360.0) } else { (angle("from")?, angle("to")?) };
+        let sweep = to - from;
+        if !(sweep.abs() > 0.0 && sweep.abs() <= 360.0) {
+            return Err(format!("runs through {sweep}°; from and to must differ by at most 360°"));
+        }
         let (u, v) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
-        Seg::Arc(EllipticArc::new(centre, u, v, first * PI / 180.0, sweep * PI / 180.0))
-    };
-    let start = centre + Vec2::from_angle(from.to_radians()) * radius;
-    let subpath = Subpath { start, segs: vec![seg(from, sweep)], closed: word == "circle" };
-    Ok(Outline { subpaths: vec![subpath] })
+        let seg = Seg::Arc(EllipticArc::new(centre, u, v, from * PI / 180.0, sweep * PI / 180.0));
+        let start = centre + Vec2::from_angle(from.to_radians()) * radius;
+        Ok(Outline { subpaths: vec![Subpath { start, segs: vec![seg], closed: whole }] })
+    }
+
+    fn spiral(&self) -> Result<Outline, String> {
+        let turns = self.needed("turns", value::number)?;
+        if !(turns > 0.0 && turns <= MOST_TURNS) {
+            return Err(format!("has {turns} turns; it takes more than 0 and at most {MOST_TURNS}"));
+        }
+        let (inner, outer) = (self.radius("inner")?, self.radius("outer")?);
+        if !(inner >= 0.0 && outer > inner && outer.is_finite()) {
+            return Err(format!("runs from the radius {inner} to {outer}; inner must be at least 0, and outer larger"));
+        }
+        let from = self.text("from").map_or(Ok(LEFT), |_| self.needed("from", value::angle))?;
+        let sweep = if self.text("direction") == Some("ccw") { -turns * TAU } else { turns * TAU };
+        let spiral = Spiral { centre: self.centre()?, inner, growth: outer - inner, from: from.to_radians(), sweep };
+        let mut path = BezPath::new();
+        // Fits of a whole turn or more would only be tried in vain.
+        let parts = (QUARTERS * turns).ceil() as u32;
+        for i in 0..parts {
+            let at = |i: u32| f64::from(i) / f64::from(parts);
+            let part = kurbo::fit_to_bezpath(&spiral.part(at(i)..at(i + 1)), SPIRAL_WITHIN * outer);
+            path.extend(part.elements().iter().skip(usize::from(i > 0)).copied());
+        }
+        Ok(Outline::from(&path))
+    }
 }
 
-fn example(word: &str) -> &'static str {
-    if word == "arc" { "r=60mm,from=180,to=360" } else { "r=60mm" }
+/// Parts of a turn that are fitted on their own.
+const QUARTERS: f64 = 4.0;
+
+/// An Archimedean spiral, evenly from t = 0 to 1.
+struct Spiral {
+    centre: Point,
+    inner: f64,
+    growth: f64,
+    /// Radians, clockwise on the screen.
+    from: f64,
+    sweep: f64,
+}
+
+impl Spiral {
+    fn part(&self, t: Range<f64>) -> Self {
+        let (inner, width) = (self.inner + self.growth * t.start, t.end - t.start);
+        let (growth, sweep) = (self.growth * width, self.sweep * width);
+        Self { centre: self.centre, inner, growth, from: self.from + self.sweep * t.start, sweep }
+    }
+}
+
+impl ParamCurveFit for Spiral {
+    fn sample_pt_tangent(&self, t: f64, _: f64) -> CurveFitSample {
+        let (p, tangent) = self.sample_pt_deriv(t);
+        CurveFitSample { p, tangent }
+    }
+
+    fn sample_pt_deriv(&self, t: f64) -> (Point, Vec2) {
+        let (r, out) = (self.inner + self.growth * t, Vec2::from_angle(self.from + self.sweep * t));
+        (self.centre + out * r, out * self.growth + Vec2::new(-out.y, out.x) * (r * self.sweep))
+    }
+
+    fn break_cusp(&self, _: Range<f64>) -> Option<f64> {
+        None
+    }
 }
 
 #[cfg(test)]
@@ -105,6 +223,44 @@ mod tests {
     }
 
     #[test]
+    fn spirals_follow_their_formula() {
+        for (text, from, sign) in [
+            ("spiral:turns=3,inner=20,outer=80,cx=7,cy=9", 180.0, 1.0),
+            ("spiral:turns=2.3,inner=0,outer=80,from=-0.25turn,ccw,cx=7,cy=9", -90.0, -1.0),
+            ("spiral:turns=0.2,inner=79,outer=80,from=30,cw,cx=7,cy=9", 30.0, 1.0),
+        ] {
+            let spiral = read(text).unwrap();
+            let number = |name: &str| {
+                let value = text.split([',', ':']).find_map(|p| p.strip_prefix(name));
+                value.unwrap().parse::<f64>().unwrap()
+            };
+            let (turns, inner, outer) = (number("turns="), number("inner="), number("outer="));
+            let at = |share: f64| {
+                let angle = (from + sign * 360.0 * turns * share).to_radians();
+                Point::new(7.0, 9.0) + Vec2::from_angle(angle) * (inner + (outer - inner) * share)
+            };
+            let sub = &spiral.subpaths[0];
+            assert!(!sub.closed && sub.start.distance(at(0.0)) < 1e-9 && sub.end().distance(at(1.0)) < 1e-9);
+            let mut last = 0.0;
+            let mut worst: f64 = 0.0;
+            for p in sub.segs.iter().flat_map(|s| (0..40).map(|i| s.eval(f64::from(i) / 40.0))) {
+                // The nearest point of the true spiral, from the place of the last one on.
+                let near = (0..200)
+                    .map(|i| last + f64::from(i) * 1e-4)
+                    .min_by(|a, b| at(*a).distance(p).total_cmp(&at(*b).distance(p)));
+                let (mut a, mut b) = (near.unwrap() - 1e-4, near.unwrap() + 1e-4);
+                for _ in 0..80 {
+                    let (c, d) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+                    if at(c).distance(p) < at(d).distance(p) { b = d } else { a = c }
+                }
+                worst = worst.max(at(a).distance(p));
+                last = a.max(0.0);
+            }
+            assert!(worst < 1.1 * SPIRAL_WITHIN * outer && last > 0.9, "{text}: {worst} {last}");
+        }
+    }
+
+    #[test]
     fn errors_name_the_value() {
         for (text, part) in [
             ("circle:", "no r"),
@@ -115,6 +271,14 @@ mod tests {
             ("arc:r=3,from=0", "no to"),
             ("arc:r=3,from=0,to=400", "at most 360"),
             ("arc:r=3,r=4", "two values for r"),
+            ("spiral:turns=3,inner=2", "no outer: write spiral:turns=3"),
+            ("spiral:turns=3,inner=2,outer=1", "from the radius 2 to 1"),
+            ("spiral:turns=1e9,inner=2,outer=3", "at most 100"),
+            ("spiral:turns=0,inner=2,outer=3", "more than 0"),
+            ("spiral:turns=3,inner=2,outer=3,left", "`left`, which is not NAME=VALUE, cw or ccw"),
+            ("spiral:turns=3,inner=2,outer=3,cw,ccw", "two values for direction"),
+            ("spiral:turns=3,inner=2,outer=3,direction=cw", "takes turns, inner"),
+            ("spiral:turns=3,inner=2,outer=3,r=1", "takes turns, inner"),
         ] {
             let message = read(text).unwrap_err();
             assert!(message.contains(part), "{text}: {message}");

@@ -34,6 +34,7 @@ mod settings;
 mod value;
 
 pub use args::{Args, NamedPath, NamedText, is_inline};
+pub(crate) use circle::is_spiral;
 pub use declaration::{Axis, Kind, Param};
 pub use frame::Frame;
 pub use length::{Length, LengthError, LengthUnit};

@@ -1,8 +1,10 @@
 //! The options of `pathwarp text`.
 
 use super::super::file_args;
+use super::on_path;
 use crate::options::{reading_args, some_options};
 use clap::{Arg, ArgAction, value_parser};
+use pathwarp::deform::Registry;
 use std::path::PathBuf;
 
 const SPACING: &str = "Spacing and lines";
@@ -18,6 +20,8 @@ Examples:
   pathwarp text 'The Old\\nBakery' --align center --line-height 110% --letter-spacing 4% -o sign.svg
   pathwarp text Flow --font Variable.ttf --variation wght=650,wdth=90 --features ss01 -o word.svg
   pathwarp text Welcome --size 40mm -o sign.dxf
+  pathwarp text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm --letter-spacing 8% -o badge.svg
+  pathwarp text 'Round and round it goes' --on spiral:turns=2,inner=20mm,outer=60mm --size 8mm -o spiral.svg
   pathwarp text Welcome | pathwarp bend - --along 'M0,90 Q170,0 340,90' --fit grow -o arc.svg";
 
 /// An option with a value that is parsed later, and may start with a minus.
@@ -36,8 +40,9 @@ fn choice(name: &'static str, words: &'static [&'static str], help: &'static str
 }
 
 /// All options, in the order of help.
-pub(super) fn args() -> Vec<Arg> {
+pub(super) fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
+    all.extend(on_path::args(registry));
     all.extend(some_options(&["format", "dxf-curves", "tolerance"]));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
     all.extend(shaping().map(|a| a.help_heading(SHAPING)));

@@ -2,6 +2,7 @@
 
 mod args;
 mod fonts;
+mod on_path;
 mod style;
 mod words;
 
@@ -16,29 +17,31 @@ use crate::{advice, output, terminal};
 use clap::{ArgMatches, Command};
 use fonts::Wanted;
 use pathwarp::budget::{Exceeded, Limit};
-use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
+use pathwarp::deform::Registry;
+use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering, write_set_lines};
 use pathwarp_text::{Font, Quantity, TextLimits, layout_within};
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use style::Em;
 
 pub(super) const NAME: &str = "text";
 
-pub(super) fn command() -> Command {
+pub(super) fn command(registry: &Registry) -> Command {
     Command::new(NAME)
         .about("Set text as outlines, the artwork of any deformation")
-        .args(args::args())
+        .args(args::args(registry))
         .after_help(args::AFTER)
 }
 
 /// Sets the text and writes the drawing.
-pub(super) fn run(m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
+pub(super) fn run(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
     let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
     let target = file_args::target(m, read.chain(names.iter().map(Path::new)))?;
     let options = Given::options(m).read()?;
     let format = Choice { what: "lettering is", among: DRAWINGS }.format(target, options.format)?;
-    let text = words::words(m)?;
+    let texts = words::both(m)?;
     let em = Em::given(m)?;
     let style = style::style(m, &em)?;
     let weight = m.get_one::<String>("weight").map(|w| fonts::weight_of(w)).transpose()?;
@@ -60,23 +63,34 @@ pub(super) fn run(m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure>
     }
     let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
-    let limits = options.reading.limits.for_input(text.len());
+    let limits = options.reading.limits.for_input(texts.iter().flatten().map(String::len).sum());
     let most =
         TextLimits { letters: limits.of(Limit::Letters) as usize, segments: limits.of(Limit::Segments) as usize };
-    let set = layout_within(&text, &chosen, &style, &most).map_err(|e| failure(&e, &most))?;
+    let set = |text: &String| layout_within(text, &chosen, &style, &most).map_err(|e| failure(&e, &most));
+    let [text, below] = texts.map(|t| t.as_ref().map(set).transpose());
+    let (text, below) = (text?, below?);
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
     let margin = em.length(m, "margin")?.unwrap_or(0.0);
-    let svg = write_lettering(&set, &LetteringOptions { fill, margin, unit: em.unit })?;
+    let lettering = LetteringOptions { fill, margin, unit: em.unit };
     let lines: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
-    if let Some(warning) = mistakes::unit_as_text(words, &lines).filter(|_| !m.get_flag("quiet")) {
-        terminal::warning(&warning);
-    }
-    if !set.missing.is_empty() && !m.get_flag("quiet") {
-        terminal::warning(&missing(&set.missing, &names));
+    let mut warnings: Vec<String> = mistakes::unit_as_text(words, &lines).into_iter().collect();
+    let svg = match &text {
+        Some(text) if !on_path::is_asked_for(m) => write_lettering(text, &lettering)?,
+        _ => {
+            let on_path = on_path::set(registry, m, [text.as_ref(), below.as_ref()], &em, &options)?;
+            warnings.extend(on_path.warnings);
+            write_set_lines(&on_path.lines, &lettering)?
+        }
+    };
+    let lacking: BTreeSet<char> = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
+    let lacking: Vec<char> = lacking.into_iter().collect();
+    warnings.extend((!lacking.is_empty()).then(|| missing(&lacking, &names)));
+    if !m.get_flag("quiet") {
+        warnings.iter().for_each(|w| terminal::warning(w));
     }
     let result = export::drawing(svg, format, &read, &options, None)?;
     output::write(target, &result.bytes)?;
-    Ok(Status::partial_if(!set.missing.is_empty()))
+    Ok(Status::partial_if(!lacking.is_empty()))
 }
 
 /// Maps an error of the layout: a bad option is wrong usage, anything else a problem of the font or the text.

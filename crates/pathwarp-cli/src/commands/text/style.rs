@@ -1,5 +1,6 @@
 //! The style options.
 
+use super::on_path;
 use crate::failure::Failure;
 use clap::ArgMatches;
 use pathwarp::kurbo::Rect;
@@ -8,7 +9,7 @@ use pathwarp_text::{Align, Direction, Ligatures, TextStyle, features};
 
 /// The size of the em, and the unit that it and the whole page have.
 pub(super) struct Em {
-    size: f64,
+    pub(super) size: f64,
     /// `None`: px.
     pub(super) unit: Option<LengthUnit>,
     /// Percentages refer to it.
@@ -31,6 +32,11 @@ impl Em {
         let px = unit.and_then(LengthUnit::px).unwrap_or(1.0);
         let frame = Frame::new(Rect::new(0.0, 0.0, size, size)).with_units_per_px([1.0 / px; 2]);
         Ok(Self { size, unit, frame })
+    }
+
+    /// User units of the page per px.
+    pub(super) fn units_per_px(&self) -> [f64; 2] {
+        self.frame.units_per_px
     }
 
     /// The length given for the option `name`, in user units of the page.
@@ -57,6 +63,7 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
             Some("center") => Align::Center,
             Some("right") => Align::Right,
             Some("justify") => Align::Justify,
+            None if on_path::is_asked_for(m) => Align::Center,
             _ => Align::Start,
         },
         direction: match word("direction") {

@@ -5,8 +5,16 @@ use crate::input;
 use clap::ArgMatches;
 use std::path::PathBuf;
 
+/// The text and the one of `--below`. Only the latter may be alone.
+pub(super) fn both(m: &ArgMatches) -> Result<[Option<String>; 2], Failure> {
+    let below = m.get_one::<String>("below").map(|t| unescaped(t));
+    let given = m.contains_id("file") || m.get_many::<String>("WORDS").is_some_and(|mut w| w.any(|w| !w.is_empty()));
+    let text = (given || below.is_none()).then(|| words(m)).transpose()?;
+    Ok([text, below])
+}
+
 /// The text of the arguments, a file or standard input.
-pub(super) fn words(m: &ArgMatches) -> Result<String, Failure> {
+fn words(m: &ArgMatches) -> Result<String, Failure> {
     let words: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
     let file = match (m.get_one::<PathBuf>("file"), &words[..]) {
         (Some(file), _) => file.clone(),

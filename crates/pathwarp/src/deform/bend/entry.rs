@@ -5,7 +5,7 @@ use super::{Align, Bend, Stretch};
 use crate::deform::built::Built;
 use crate::deform::entry::{Case, Deformation, Example, Info, Law, Pairs};
 use crate::error::Error;
-use crate::param::{Axis, Kind, NamedText, Param, Settings};
+use crate::param::{Axis, Kind, NamedText, Param, Settings, is_spiral};
 use kurbo::Vec2;
 use std::sync::Arc;
 
@@ -19,8 +19,9 @@ pub(super) static INFO: Info = Info::new("bend", "bend artwork along a path")
 have any number of lines, curves and arcs, open or closed. Nothing is stretched unless you ask: --stretch scale sizes the artwork \
 to the skeleton, fit stretches it lengthwise only. --stretch repeat sets copies of it side by side, as many as fit on the skeleton, \
 spread evenly.\n\nAn open skeleton is run left to right and a closed one clockwise, so that the artwork \
-stands on its upper or outer side; --as-drawn and --reverse overrule that. On a closed skeleton the artwork's middle stands on its highest point. \
-Beyond the ends of an open one everything continues straight. --spline 3 makes a smooth skeleton of a \
+stands on its upper or outer side, with its middle on the highest point of a closed one. --reverse runs a skeleton the other way: artwork on a closed \
+one then stands upright on its lowest point, inside. --as-drawn takes it as it was drawn, as is always done with spirals and \
+with open paths that go around more than once. Beyond the ends of an open one everything continues straight. --spline 3 makes a smooth skeleton of a \
 few points: it is pulled towards them and has no corners; an open one begins at the first and ends at the last.\n\n\
 Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by \
 one instead of bent: rotate turns them, skew keeps their verticals vertical, ribbon keeps their horizontals horizontal, stair only moves them. \
@@ -31,7 +32,7 @@ its sides are handles on the control polygon instead of normals of the curve. FI
 omitted). A handle is the image of the artwork's height.")
     .source("Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994")
     .params(&[
-        Param::path("along", "The skeleton: one connected path, such as circle:r=60mm or arc:r=60mm,from=200,to=340.").needed(),
+        Param::path("along", "The skeleton: one connected path, such as circle:r=60mm, arc:r=60mm,from=200,to=340 or spiral:turns=3,inner=20mm,outer=80mm.").needed(),
         Param::new(
             "stretch",
             Kind::Choice(&["keep", "scale", "fit", "repeat"]),
@@ -99,6 +100,10 @@ omitted). A handle is the image of the artwork's height.")
             command: "bend samples/logo.svg --along 'M100,400 A300,300 0 1 1 700,400 A300,300 0 1 1 100,400 Z' --stretch repeat --gap 10% --baseline 0 --fit page -o out.svg",
         },
         Example {
+            what: "Once round and further out on a spiral, from the inside",
+            command: "bend samples/lettering.svg --along spiral:turns=1.5,inner=30mm,outer=60mm --fit page -o out.svg",
+        },
+        Example {
             what: "Lettering whose letters turn but keep their shape",
             command: "bend samples/headline.svg --along 'M120,220 A120,120 0 0 1 360,220' --glyphs rotate --spacing even --stretch fit -o out.svg",
         },
@@ -159,7 +164,7 @@ impl Deformation for Entry {
             frame: frame.rect,
             along: s.path_if("along")?.ok_or_else(missing)?,
             spline: s.number_if("spline")?.map(|d| d as usize),
-            as_drawn: s.flag("as-drawn")?,
+            as_drawn: s.flag("as-drawn")? || s.texts("along").last().is_some_and(|t| is_spiral(t)),
             reverse: s.flag("reverse")?,
             stretch: match s.choice("stretch")? {
                 "scale" => Stretch::Scale,

@@ -99,7 +99,7 @@ pub enum Stretch {
 pub enum Align {
     /// Left edge to start.
     Start,
-    /// Middle to middle; of a closed skeleton, to its highest point.
+    /// Middle to middle; of a closed skeleton, to its highest point, or to its lowest if it is run in reverse.
     Middle,
     /// Right edge to end.
     End,
@@ -232,7 +232,7 @@ impl Bend {
         self.check()?;
         let skeleton = self.measured(skeleton, size)?;
         let (length, closed) = (skeleton.length, skeleton.closed);
-        let middle = if closed && !self.is_as_drawn() { skeleton.top() } else { 0.5 * length };
+        let middle = if closed && !self.is_as_drawn() { skeleton.extreme(self.reverse) } else { 0.5 * length };
         let Joined { pieces, corners, notes } = self.joined(skeleton)?;
 
         let k = if matches!(self.stretch, Stretch::Keep | Stretch::Repeat) { 1.0 } else { length / rect.width() };

@@ -41,11 +41,14 @@ pub(super) struct Joined {
 }
 
 impl Skeleton {
-    /// Takes the only connected run of `path`. Unless `as_drawn`, an open one is oriented left to right, a closed one clockwise
-    /// (up is then outside). `reverse` turns it around after that.
+    /// Takes the only connected run of `path`. Unless `as_drawn`, an open one is oriented left to right, except if it goes around more
+    /// than once, a closed one clockwise (up is then outside). `reverse` turns it around after that.
     pub(super) fn new(path: &NamedPath, as_drawn: bool, reverse: bool) -> Result<Self, Error> {
         let mut sub = anchors::only_subpath(path, "a single connected run of them")?;
-        let backwards = if sub.closed { turns_left(&sub) } else { sub.end().x < sub.start.x };
+        let backwards = match sub.closed {
+            true => turns_left(&sub),
+            false => sub.end().x < sub.start.x && !winds(&sub),
+        };
         if reverse != (backwards && !as_drawn) {
             sub = sub.reversed();
         }
@@ -127,8 +130,8 @@ artwork's height; a smaller `width` helps too",
         self
     }
 
-    /// Returns the distance of the highest point on the screen.
-    pub(super) fn top(&self) -> f64 {
+    /// Returns the distance of the highest point on the screen, or of the lowest.
+    pub(super) fn extreme(&self, lowest: bool) -> f64 {
         /// Samples of a piece. They decide the position of the artwork, not its shape.
         const SAMPLES: u32 = 256;
         let (mut best, mut start) = ((f64::INFINITY, 0.0), 0.0);
@@ -136,6 +139,7 @@ artwork's height; a smaller `width` helps too",
             for i in 0..=SAMPLES {
                 let s = table.length() * f64::from(i) / f64::from(SAMPLES);
                 let y = spine.seg.eval(table.parameter(s)).y;
+                let y = if lowest { -y } else { y };
                 if y < best.0 {
                     best = (y, start + s);
                 }
@@ -298,6 +302,22 @@ fn turns_left(sub: &Subpath) -> bool {
         at(i).cross(at(i + 1))
     };
     sub.segs.iter().map(|s| (0..CHORDS).map(|i| chord(s, i)).sum::<f64>()).sum::<f64>() < 0.0
+}
+
+/// Returns `true` if the tangent of an open run turns through more than a whole turn from its start to its end.
+fn winds(sub: &Subpath) -> bool {
+    /// Chords of a piece. They turn through a little less than the piece itself.
+    const CHORDS: u32 = 32;
+    let points = sub.segs.iter().flat_map(|s| (0..=CHORDS).map(|i| s.eval(f64::from(i) / f64::from(CHORDS))));
+    let (mut last, mut chord, mut turn) = (sub.start, Vec2::ZERO, 0.0);
+    for p in points.filter(|p| p.is_finite()) {
+        let next = p - last;
+        if next != Vec2::ZERO {
+            turn += if chord == Vec2::ZERO { 0.0 } else { chord.cross(next).atan2(chord.dot(next)) };
+            (last, chord) = (p, next);
+        }
+    }
+    turn.abs() > std::f64::consts::TAU
 }
 
 fn control_points(seg: &Seg) -> Vec<Point> {

@@ -1,0 +1,341 @@
+//! `--on`: lines on a path, each bent onto it by the deformation `bend`.
+//!
+//! A line above stands on the path with its baseline, on the outer side of a closed path, its middle at the top. A line below hangs
+//! from the path by the height of its capitals, its middle at the bottom, and reads from left to right as well: both are in one
+//! ring. `--inside` swaps what touches the path, so that the ring is within it.
+
+use super::style::Em;
+use crate::advice::Flags;
+use crate::failure::Failure;
+use crate::options::CommonOptions;
+use crate::{input, references, steps};
+use clap::{Arg, ArgAction, ArgMatches};
+use pathwarp::budget::Budget;
+use pathwarp::deform::Registry;
+use pathwarp::kurbo::{Affine, Point, Rect, Shape as _, Vec2};
+use pathwarp::map::AffineMap;
+use pathwarp::outline::EllipticArc;
+use pathwarp::param::{Args, Frame, Kind, Letter, NamedPath, Param, Settings};
+use pathwarp::recipe::{Recipe, Step};
+use pathwarp::{GeometryError, Outline, Seg, Subpath, refit};
+use pathwarp_svg::SetLine;
+use pathwarp_text::OutlinedText;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// The deformation that sets the lines, and those of its parameters that are options here.
+const BEND: &str = "bend";
+const OF_BEND: [&str; 6] = ["glyphs", "stretch", "spacing", "offset", "gap", "reverse"];
+
+const HEADING: &str = "On a path";
+const ON: &str = "on";
+const AT: &str = "at";
+const PARAMS: &[Param] = &[Param::path(ON, ""), Param::new(AT, Kind::Angle, "")];
+
+/// Middles of lines on a circle, in degrees clockwise from the right: its top and its bottom.
+const TOP: f64 = 270.0;
+const BOTTOM: f64 = 90.0;
+
+pub(super) fn args(registry: &Registry) -> Vec<Arg> {
+    let text = |name: &'static str, value: &'static str| {
+        Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help_heading(HEADING)
+    };
+    let mut all = vec![
+        text(ON, "PATHREF").help(
+            "Set the text on this path, such as circle:r=60mm, arc:r=60mm,from=180,to=360, spiral:turns=3,inner=20mm,outer=80mm or \
+             FILE#NAME: its baseline lies on the path, at the top of a closed one. The middle of a circle is at 0,0",
+        ),
+        text("below", "WORDS").requires(ON).help(
+            "A line on the lower side of the path, in one ring with the other: the height of its capitals lies on the path, its \
+             middle at the bottom of a closed one",
+        ),
+        Arg::new("inside").long("inside").action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
+            "Set the lines within the path: the height of capitals lies on it above, the baseline below",
+        ),
+        text(AT, "ANGLE").requires(ON).action(ArgAction::Append).help(
+            "Middle of the line on a circle or an arc, clockwise from the right, as in arc: [default: 270, the top]; --below is \
+             opposite, or where a second --at says",
+        ),
+    ];
+    let info = registry.get(BEND).map(|e| e.info());
+    let of_bend = info.into_iter().flat_map(steps::args).filter(|a| OF_BEND.contains(&a.get_id().as_str()));
+    all.extend(of_bend.map(|a| a.requires(ON).help_heading(HEADING)));
+    all
+}
+
+/// Returns `true` if the text is set on a path.
+pub(super) fn is_asked_for(m: &ArgMatches) -> bool {
+    m.contains_id(ON)
+}
+
+/// The lines on the path, and warnings.
+pub(super) struct OnPath {
+    pub(super) lines: Vec<SetLine>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// Sets a text above and one below on the path that `--on` names.
+pub(super) fn set(
+    registry: &Registry,
+    m: &ArgMatches,
+    [above, below]: [Option<&OutlinedText>; 2],
+    em: &Em,
+    options: &CommonOptions,
+) -> Result<OnPath, Failure> {
+    let texts: Vec<(bool, &OutlinedText)> =
+        above.map(|t| (false, t)).into_iter().chain(below.map(|t| (true, t))).collect();
+    let frames: Vec<Frame> = texts.iter().map(|(_, t)| frame(t, em)).collect();
+    let (path, at) = path_and_middles(m, frames.first().map_or(0.0, |f| f.rect.width()), em, options)?;
+    let curve = Curve::of(&path.outline);
+    let stretches = m.get_one::<String>("stretch").is_some_and(|s| s != "keep");
+    let both = texts.len() > 1;
+    curve.check(m, &path.name, both, stretches)?;
+
+    let first = at.first().copied();
+    let second = at.get(1).copied().or(first.map(|a| a + 180.0));
+    let middles = if above.is_some() { [first, second] } else { [first, None] };
+    let mut out = OnPath { lines: Vec::new(), warnings: Vec::new() };
+    if let ([a, b], false) = (&frames[..], stretches) {
+        let middles = [middles[0].unwrap_or(TOP), middles[1].unwrap_or(BOTTOM)];
+        out.warnings.extend(curve.crowded(middles, [a.rect.width(), b.rect.width()]));
+    }
+    for (((is_below, text), frame), middle) in texts.into_iter().zip(frames).zip(middles) {
+        let share = (both && stretches).then_some(em.size);
+        let laid = curve.laid(is_below, m.get_flag("reverse"), middle, share);
+        let mut args = laid.args;
+        if is_below != m.get_flag("inside") {
+            args.push("baseline", (frame.rect.y1 - cap_height(text)).to_string());
+        }
+        for name in OF_BEND.iter().filter(|n| !["reverse", "offset"].contains(n)) {
+            if let Some(value) = m.get_one::<String>(name) {
+                args.push(*name, value);
+            }
+        }
+        let shift = m.get_one::<String>("offset").map_or(Ok(0.0), |t| length(&frame, "offset", t))?;
+        args.push("offset", (laid.shift + shift).to_string());
+        let (set, warnings) = line(registry, text, frame, args, &laid.path, options)?;
+        out.lines.push(set);
+        out.warnings.extend(warnings);
+    }
+    Ok(out)
+}
+
+/// A path on which lines are set, with what it is if it is round.
+struct Curve<'a> {
+    path: &'a Outline,
+    round: Option<Round>,
+    closed: bool,
+}
+
+/// A circle or an arc of one.
+struct Round {
+    centre: Point,
+    radius: f64,
+    /// The middle of an open arc, radians.
+    middle: f64,
+    /// The direction in which `bend` runs an open arc: 1 is clockwise.
+    way: f64,
+}
+
+/// A path as a line needs it, the values of `bend` that go with it, and the shift of the line.
+struct Laid {
+    path: Outline,
+    args: Args,
+    shift: f64,
+}
+
+impl<'a> Curve<'a> {
+    fn of(path: &'a Outline) -> Self {
+        let closed = matches!(&path.subpaths[..], [only] if only.closed);
+        Self { path, round: Round::of(path), closed }
+    }
+
+    /// Refuses what does not go with this path.
+    fn check(&self, m: &ArgMatches, name: &str, both: bool, stretches: bool) -> Result<(), Failure> {
+        let problem = if self.round.is_none() && m.contains_id(AT) {
+            "--at goes with circles and arcs; on another path --offset moves the line along"
+        } else if both && !self.closed && m.get_flag("inside") {
+            "--inside with --below goes with closed paths: on an open one both lines would be on the wrong side"
+        } else if both && stretches && self.closed && self.round.is_none() {
+            "--stretch of two lines goes with circles and open paths: here both would take the whole path"
+        } else {
+            return Ok(());
+        };
+        Err(Failure::usage(format!("{problem} (--{name} {})", m.get_one::<String>(ON).map_or("", String::as_str))))
+    }
+
+    /// Warns of two lines of these widths that run into each other.
+    fn crowded(&self, middles: [f64; 2], widths: [f64; 2]) -> Option<String> {
+        let half = 0.5 * (widths[0] + widths[1]);
+        let room = match &self.round {
+            _ if !self.closed => return None,
+            Some(r) => r.radius * (wrapped((middles[0] - middles[1]).to_radians())).abs(),
+            None => 0.5 * self.path.to_bez_path(1e-6 * half).perimeter(1e-6 * half),
+        };
+        (half > room * (1.0 + 1e-9)).then(|| {
+            format!(
+                "the lines run into each other: half of both is {half:.6} long, and their middles are {room:.6} apart on the path; make \
+                 it longer, or --size smaller"
+            )
+        })
+    }
+
+    /// The path for a line: of a circle from opposite its `middle` (degrees) around to there again, or the half of it around the middle
+    /// without a `gap` at both ends together.
+    fn laid(&self, is_below: bool, reverse: bool, middle: Option<f64>, gap: Option<f64>) -> Laid {
+        let mut args = Args::new();
+        let (mut path, mut shift) = (self.path.clone(), 0.0);
+        match &self.round {
+            Some(r) if self.closed => {
+                let middle = middle.unwrap_or(if is_below { BOTTOM } else { TOP }).to_radians();
+                let way = if is_below == reverse { 1.0 } else { -1.0 };
+                path = r.around(middle, way, gap);
+                args.push("as-drawn", "true");
+            }
+            _ => {
+                // A closed path runs clockwise; lines below read from left to right against that.
+                if reverse != (is_below && self.closed) {
+                    args.push("reverse", "true");
+                }
+                if let (Some(r), Some(middle)) = (&self.round, middle) {
+                    let way = if reverse { -r.way } else { r.way };
+                    shift = way * r.radius * wrapped(middle.to_radians() - r.middle);
+                }
+            }
+        }
+        Laid { path, args, shift }
+    }
+}
+
+impl Round {
+    fn of(path: &Outline) -> Option<Self> {
+        /// Radii and centres that differ by less, relative to the radius, are the same.
+        const SAME: f64 = 1e-9;
+        let [only] = &path.subpaths[..] else { return None };
+        let arcs = only.segs.iter().map(|s| if let Seg::Arc(a) = s { Some(a) } else { None });
+        let arcs: Vec<&EllipticArc> = arcs.collect::<Option<_>>()?;
+        let (first, last) = (*arcs.first()?, *arcs.last()?);
+        let (centre, radius) = (first.center, first.a.hypot());
+        let near = |d: f64| d.abs() <= SAME * radius;
+        let same = |a: &&EllipticArc| {
+            near(a.center.distance(centre))
+                && near(a.a.hypot() - radius)
+                && near(a.b.hypot() - radius)
+                && near(a.a.dot(a.b) / radius)
+        };
+        if !arcs.iter().all(same) {
+            return None;
+        }
+        let turn = |a: &EllipticArc| a.sweep.copysign(a.sweep * a.a.cross(a.b));
+        let sweep: f64 = arcs.iter().map(|a| turn(a)).sum();
+        let middle = (first.p0 - centre).atan2() + 0.5 * sweep;
+        let way = if (last.p1.x < first.p0.x) == (sweep < 0.0) { 1.0 } else { -1.0 };
+        Some(Self { centre, radius, middle, way })
+    }
+
+    fn around(&self, middle: f64, way: f64, gap: Option<f64>) -> Outline {
+        /// Most of a half that is left free at each of its ends, radians.
+        const MOST_FREE: f64 = PI / 6.0;
+        let half = gap.map_or(PI, |g| 0.5 * PI - (0.5 * g / self.radius).min(MOST_FREE));
+        let (u, v) = (Vec2::new(self.radius, 0.0), Vec2::new(0.0, self.radius));
+        let arc = EllipticArc::new(self.centre, u, v, middle - way * half, 2.0 * way * half);
+        Outline { subpaths: vec![Subpath { start: arc.p0, segs: vec![Seg::Arc(arc)], closed: gap.is_none() }] }
+    }
+}
+
+/// An angle between −π and π.
+fn wrapped(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
+}
+
+fn length(frame: &Frame, name: &str, text: &str) -> Result<f64, Failure> {
+    let args = Args::new();
+    Ok(Settings::new(&[], &args, frame)?.length_in(name, text, pathwarp::param::Axis::X)?)
+}
+
+/// The path that `--on` names, and the angles of `--at`.
+fn path_and_middles(
+    m: &ArgMatches,
+    width: f64,
+    em: &Em,
+    options: &CommonOptions,
+) -> Result<(NamedPath, Vec<f64>), Failure> {
+    let mut args = Args::new();
+    args.push(ON, m.get_one::<String>(ON).map_or("", String::as_str));
+    let find = |reference: &str| match reference.strip_prefix('#') {
+        Some(name) => Err(input::no_document(name)),
+        None => references::in_file(reference, &options.reading).map(Some),
+    };
+    args.resolve_paths(PARAMS, find).map_err(Failure::of_recipe)?;
+    let frame = Frame::new(Rect::from_center_size(Point::ORIGIN, (width, width)));
+    let frame = frame.with_units_per_px(em.units_per_px());
+    let settings = Settings::new(PARAMS, &args, &frame).map_err(Failure::of_recipe)?;
+    let angles = m.get_many::<String>(AT).into_iter().flatten().map(|t| settings.angle_in(AT, t));
+    let angles: Vec<f64> = angles.collect::<Result<_, _>>()?;
+    if angles.len() > 2 {
+        return Err(Failure::usage("--at: there are two lines at most, and so two angles"));
+    }
+    let path = settings.path_if(ON).map_err(Failure::of_recipe)?;
+    let path = path.ok_or_else(|| Failure::usage("--on: name a path"))?;
+    Ok((path, angles))
+}
+
+/// The box from the lowest baseline to the highest ascent, with the letters.
+fn frame(text: &OutlinedText, em: &Em) -> Frame {
+    let (top, bottom) = (text.lines.first(), text.lines.last());
+    let y = bottom.map_or(0.0, |l| l.start.y);
+    let lines = text.line_box();
+    let rect = Rect::new(lines.x0, top.map_or(0.0, |l| l.start.y) - text.metrics.ascent, lines.x1, y);
+    let letters = text.lines.iter().flat_map(|l| &l.clusters).filter(|c| !c.outline.is_empty());
+    let letters: Vec<Letter> = letters
+        .map(|c| Letter {
+            name: c.text.clone(),
+            origin: c.origin,
+            advance: c.advance,
+            outline: Outline::from(&c.outline),
+        })
+        .collect();
+    Frame::new(rect).on_baseline(y).with_letters(letters.into()).with_units_per_px(em.units_per_px())
+}
+
+/// The y of the top of capitals in the first line.
+fn cap_height(text: &OutlinedText) -> f64 {
+    text.lines.first().map_or(0.0, |l| l.start.y) - text.metrics.cap_height
+}
+
+/// Bends a text onto a path.
+fn line(
+    registry: &Registry,
+    text: &OutlinedText,
+    frame: Frame,
+    mut args: Args,
+    path: &Outline,
+    options: &CommonOptions,
+) -> Result<(SetLine, Vec<String>), Failure> {
+    let letters = Arc::clone(&frame.letters);
+    let tolerance = options.tolerance_for(text.ink(), &frame)?;
+    let budget = Arc::new(Budget::new(options.reading.limits));
+    let params = registry.get(BEND).map_or(&[][..], |e| e.info().params);
+    args.push("along", ON);
+    args.resolve_paths(params, |_| Ok(Some(path.clone()))).map_err(Failure::of_recipe)?;
+    let recipe = Recipe { steps: vec![Step::new(BEND, args)] };
+    let outlines = letters.iter().map(|l| &l.outline);
+    let built = recipe.build_within(registry, frame, &outlines, &budget).map_err(Failure::of_recipe)?;
+
+    let refit = refit::Options::new(tolerance).with_certify(options.certify).with_merge(options.merge);
+    let refit = refit.with_budget(budget);
+    let (copies, places) = (&built.placement.copies, &built.placement.letters);
+    let set = |i: usize, letter: &Letter| {
+        let repeated = if copies.is_empty() { letter.outline.clone() } else { letter.outline.repeated(copies) };
+        let Some(placed) = places.get(i) else {
+            return pathwarp_svg::warp_path(&repeated, &built.map, &refit, options.precision);
+        };
+        let placed = letter.outline.repeated(placed);
+        pathwarp_svg::warp_path(&placed, &AffineMap(Affine::IDENTITY), &refit, options.precision)
+    };
+    let set = letters.iter().enumerate().map(|(i, l)| Ok((l.name.clone(), set(i, l)?)));
+    let letters = set.collect::<Result<_, GeometryError>>().map_err(pathwarp::Error::from)?;
+    let flags = Flags::of(registry);
+    let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(|w| flags.in_text(w));
+    Ok((SetLine { text: text.text.clone(), letters }, warnings.collect()))
+}
