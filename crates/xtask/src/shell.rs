@@ -74,6 +74,13 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
     for stage in stages {
         drawing = pipe(root, program, &stage, &drawing)?;
     }
+    if last[0] == "text" {
+        // Text has no picture from before.
+        let lettering = pipe(root, program, &last, &drawing)?;
+        let file = png.display().to_string();
+        let render = ["render", "-", "--width", "800", "--background", "white", "-o", &file].map(str::to_owned);
+        return pipe(root, program, &render, &lettering).map(drop);
+    }
     // Replace any preview that the example itself asks for.
     if let Some(i) = last.iter().position(|w| w == "--preview") {
         last.drain(i..(i + 2).min(last.len()));

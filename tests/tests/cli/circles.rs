@@ -1,7 +1,10 @@
-//! Circles and arcs as path references.
+//! Circles, arcs and spirals as path references, and text set on them.
 
 use super::common::text;
-use crate::support::pathwarp_in;
+use crate::support::{expect_code, pathwarp_in};
+use pathwarp::Outline;
+use pathwarp::kurbo::Point;
+use std::f64::consts::TAU;
 
 #[track_caller]
 fn mapped(along: &str, points: &str) -> Vec<[f64; 2]> {
@@ -77,9 +80,153 @@ fn errors_name_the_wrong_value() {
         ("arc:r=2,from=0", "has no to"),
         ("arc:r=2,from=0,to=500", "at most 360°"),
         ("arc:r=2,from=here,to=5", "wrong from: `here`"),
+        ("spiral:turns=2,inner=3", "has no outer: write spiral:turns=3"),
+        ("spiral:turns=2,inner=3,outer=2", "inner must be at least 0, and outer larger"),
+        ("spiral:turns=2000,inner=3,outer=9", "at most 100"),
+        ("spiral:turns=2,inner=3,outer=9,inwards", "which is not NAME=VALUE, cw or ccw"),
     ] {
         let out = pathwarp_in(dir.path(), &["bend", "-", "--along", along], super::common::SQUARE.as_bytes());
         let said = text(&out.stderr);
         assert!(out.status.code() == Some(2) && said.contains(part) && said.contains("--along"), "{along}: {said}");
     }
+}
+
+/// The baseline starts at the inner end of r = inner + growth·angle and stays on it, whichever way the ends lie to each other.
+#[test]
+fn artwork_bends_along_spirals_in_the_direction_they_name() {
+    for (turns, from, ccw) in [(2.0, 180.0, false), (0.75, 0.0, false), (1.3, 200.0, true), (0.4, 90.0, false)] {
+        let way = if ccw { -1.0 } else { 1.0 };
+        let direction = if ccw { "ccw" } else { "cw" };
+        let along = format!("spiral:turns={turns},inner=10,outer=30,from={from},{direction},cx=0,cy=0");
+        let dir = tempfile::tempdir().unwrap();
+        let args =
+            ["map", "bend", "--along", &along, "--align", "start", "--baseline", "0", "--frame", "0,0,100,50"];
+        let points: String = (0..=40).map(|i| format!("{i} 50\n")).collect();
+        let out = pathwarp_in(dir.path(), &args, points.as_bytes());
+        let (mut last, mut angle) = (Point::ORIGIN, 0.0);
+        for (i, line) in text(&out.stdout).lines().enumerate() {
+            let (x, y) = line.split_once(' ').unwrap();
+            let p = Point::new(x.parse().unwrap(), y.parse().unwrap());
+            if i > 0 {
+                let turn = last.to_vec2().cross(p.to_vec2()).atan2(last.to_vec2().dot(p.to_vec2()));
+                assert!(turn * way > 0.0, "{along}: {p}");
+                angle += turn.abs();
+            }
+            let expected = 10.0 + 20.0 * angle / (turns * TAU);
+            assert!((p.to_vec2().hypot() - expected).abs() < 1e-5, "{along}: {p} {expected}");
+            if i == 0 {
+                let begin = f64::to_radians(from);
+                assert!(p.distance(Point::new(10.0 * begin.cos(), 10.0 * begin.sin())) < 1e-6, "{along}: {p}");
+            }
+            last = p;
+            if angle > turns * TAU - 0.2 {
+                break;
+            }
+        }
+        assert!(angle > turns * TAU - 0.6, "{along}: {angle}");
+    }
+}
+
+/// A closed path in reverse: upright on the lowest point, inside.
+#[test]
+fn artwork_stands_upright_in_a_circle_in_reverse() {
+    let dir = tempfile::tempdir().unwrap();
+    let args = ["map", "bend", "--along", "circle:r=10,cx=0,cy=0", "--reverse", "--baseline", "0", "--frame", "0,0,100,50"];
+    let out = text(&pathwarp_in(dir.path(), &args, b"50 50\n50 45\n51 50").stdout);
+    let points: Vec<Vec<f64>> = out.lines().map(|l| l.split(' ').map(|n| n.parse().unwrap()).collect()).collect();
+    assert!(points[0][0].abs() < 1e-9 && (points[0][1] - 10.0).abs() < 1e-9, "{out}");
+    assert!((points[1][1] - 5.0).abs() < 1e-9 && points[2][0] > 0.9, "{out}");
+}
+
+/// The letters of every group of a drawing, as points on their outlines about 0,0: radius, angle clockwise from the right in degrees.
+fn letters(svg: &str) -> Vec<Vec<Vec<(f64, f64)>>> {
+    let letter = |path: &str| {
+        let outline = Outline::from_svg(path.split('"').next().unwrap()).unwrap();
+        let points = outline.segs().flat_map(|s| (0..64).map(|i| s.eval(f64::from(i) / 64.0).to_vec2()));
+        points.map(|v| (v.hypot(), v.atan2().to_degrees().rem_euclid(360.0))).collect()
+    };
+    svg.split("<g ").skip(1).map(|g| g.split(" d=\"").skip(1).map(letter).collect()).collect()
+}
+
+fn range(letters: &[Vec<(f64, f64)>], of: fn(&(f64, f64)) -> f64) -> (f64, f64) {
+    let all = || letters.iter().flatten().map(of);
+    (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max))
+}
+
+/// H has straight feet and reaches the height of capitals, 0.714 em in the bundled font, and is symmetric.
+#[test]
+fn two_lines_are_in_one_ring() {
+    const CAP: f64 = 0.714 * 20.0;
+    let near = |(a, b): (f64, f64), (c, d): (f64, f64), what: &str| {
+        assert!((a - c).abs() < 0.02 && (b - d).abs() < 0.02, "{what}: {a} {b}, expected {c} {d}");
+    };
+    let set = |more: &[&str]| {
+        let words = ["text", "HHH", "--below", "HHHH", "--on", "circle:r=60mm", "--size", "20mm", "-q"];
+        let (svg, _) = expect_code(0, &[&words, more].concat());
+        assert!(svg.contains("mm\" height=") && svg.contains("aria-label=\"HHHH\""), "{svg}");
+        letters(&svg)
+    };
+    for (more, ring) in [(&[][..], (60.0, 60.0 + CAP)), (&["--inside"], (60.0 - CAP, 60.0))] {
+        let both = set(more);
+        assert_eq!(both.iter().map(Vec::len).collect::<Vec<_>>(), [3, 4]);
+        for (letters, middle) in both.iter().zip([270.0, 90.0]) {
+            near(range(letters, |p| p.0), ring, "the ring");
+            let (from, to) = range(letters, |p| p.1);
+            assert!((0.5 * (from + to) - middle).abs() < 0.01 && to - from > 30.0, "{from} {to}");
+        }
+        // From left to right: clockwise above, counter-clockwise below.
+        let middle = |letter: &Vec<(f64, f64)>| letter.iter().map(|p| p.1).sum::<f64>() / letter.len() as f64;
+        assert!(middle(&both[0][0]) < middle(&both[0][2]) && middle(&both[1][0]) > middle(&both[1][3]));
+    }
+    // The middles turn together, or each to its own place.
+    for (more, middles) in [(&["--at", "300"][..], [300.0, 120.0]), (&["--at", "250", "--at", "0.5turn"], [250.0, 180.0])] {
+        for (letters, middle) in set(more).iter().zip(middles) {
+            let (from, to) = range(letters, |p| p.1);
+            assert!((0.5 * (from + to) - middle).abs() < 0.01, "{more:?}: {from} {to}");
+        }
+    }
+    // The letters are upright: the foot of an L is below its stem.
+    let (svg, _) = expect_code(0, &["text", "--below", "L", "--on", "circle:r=60mm", "--size", "20mm"]);
+    let all = letters(&svg);
+    let foot = all[0][0].iter().filter(|p| p.1 < 88.0).map(|p| p.0);
+    assert!(foot.fold(f64::INFINITY, f64::min) > 60.0 + 0.5 * CAP, "{svg}");
+}
+
+#[test]
+fn text_on_open_paths_takes_the_options_of_bend() {
+    let upper = "arc:r=60mm,from=180,to=360";
+    let on = |more: &[&str]| letters(&expect_code(0, &[&["text", "HHHH", "--size", "10mm", "-q", "--on"], more].concat()).0);
+    // Turned letters keep their size; --at is the middle on an arc, in either direction of it.
+    for (path, at) in [(upper, "240"), ("arc:r=60mm,from=360,to=180", "240"), ("arc:r=60mm,from=160,to=20", "100")] {
+        let set = on(&[path, "--at", at, "--glyphs", "rotate"]);
+        let (from, to) = range(&set[0], |p| p.1);
+        assert!((0.5 * (from + to) - at.parse::<f64>().unwrap()).abs() < 0.01, "{path}: {from} {to}");
+    }
+    // Over the whole arc, without its sidebearings.
+    let (from, to) = range(&on(&[upper, "--stretch", "scale"])[0], |p| p.1);
+    assert!((180.0..190.0).contains(&from) && (350.0..360.0).contains(&to), "{from} {to}");
+    let both = on(&["circle:r=60mm", "--below", "HH", "--stretch", "fit"]);
+    let (above, below) = (range(&both[0], |p| p.1), range(&both[1], |p| p.1));
+    assert!(above.0 > 180.0 && above.0 < 195.0 && below.0 > 0.0 && below.0 < 15.0, "{above:?} {below:?}");
+    let there = |offset: &str| range(&on(&["circle:r=60mm", "--offset", offset])[0], |p| p.1).0;
+    assert!((there("10mm") - there("0") - (10.0_f64 / 60.0).to_degrees()).abs() < 0.01);
+}
+
+#[test]
+fn what_does_not_go_on_a_path_says_so() {
+    for (args, part) in [
+        (&["--below", "B"][..], "--on"),
+        (&["--on", "spiral:turns=2,inner=20,outer=50", "--at", "5"], "--offset moves the line"),
+        (&["--on", "M0,0 H100", "--below", "B", "--inside"], "closed paths"),
+        (&["--on", "circle:r=60", "--at", "1", "--at", "2", "--at", "3"], "two angles"),
+        (&["--on", "circle:r=sixty"], "--on"),
+        (&["--on", "circle:r=60", "--at", "north"], "--at"),
+        (&["--on", "circle:r=60", "--glyphs", "turn"], "rotate"),
+        (&["--glyphs", "rotate"], "--on"),
+    ] {
+        let (_, said) = expect_code(2, &[&["text", "A"], args].concat());
+        assert!(said.contains(part), "{args:?}: {said}");
+    }
+    let long = ["text", "A long line above", "--below", "and a long one below", "--on", "circle:r=60"];
+    assert!(expect_code(0, &long).1.contains("run into each other"));
 }

@@ -14,9 +14,28 @@ with its guides. `--fit grow` enlarges the page where the result needs room; `--
 const ENTRIES: &[CookbookEntry] = &[
     CookbookEntry {
         name: "badge",
-        title: "Lettering around a badge",
+        title: "A badge with text above and below",
+        text: "Both lines are in one ring around the circle and read from left to right. `--inside` puts the ring within the circle, \
+`--at` turns it, `--glyphs rotate` keeps the shape of each letter.",
+        command: "text 'HARBOUR COFFEE' --below 'SINCE 1887' --on circle:r=60mm --size 20mm --letter-spacing 6% --margin 4mm --fill '#5d3a1a' -o out.svg",
+    },
+    CookbookEntry {
+        name: "spiral",
+        title: "A spiral of text",
+        text: "From the inside out, clockwise. `ccw` and `--reverse` begin outside and read inwards, the letters upright at the top as well.",
+        command: "text 'The Owl and the Pussy-cat went to sea in a beautiful pea-green boat: they took some honey, and plenty of money' --on spiral:turns=2.6,inner=16mm,outer=52mm --size 8mm --glyphs rotate --spacing even --align start --margin 3mm --fill '#1a3a5d' -o out.svg",
+    },
+    CookbookEntry {
+        name: "rainbow",
+        title: "Lettering on an arc",
         text: "Sets words in a font with their baseline on an arc, scaled to its length. `--fit page` crops the page to them.",
         command: "text 'HARBOUR COFFEE' --letter-spacing 6% --fill '#5d3a1a' | pathwarp bend - --along 'M10,250 A330,330 0 0 1 526,250' --stretch scale --fit page -o out.svg",
+    },
+    CookbookEntry {
+        name: "border",
+        title: "Words all the way around a plate",
+        text: "Any path takes text: here the outline of a plate, with as many copies of the words as fit. The text stands on its outer side.",
+        command: "text 'Handmade · ' --on 'samples/envelopes.svg#plate' --stretch repeat --size 22 --glyphs rotate --spacing even --margin 4 -o out.svg",
     },
     CookbookEntry {
         name: "flag",
