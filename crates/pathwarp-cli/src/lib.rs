@@ -16,6 +16,7 @@
 mod advice;
 mod bitmap;
 mod catalogue;
+pub mod coming_from;
 mod commands;
 mod decimals;
 mod editing;

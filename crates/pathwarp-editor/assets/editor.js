@@ -1176,7 +1176,8 @@
     card(deformation, args, steps, text, variant = null) {
       const image = h("img", { alt: "", draggable: "false" });
       const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-      const card = { button, image, steps, deformation, args, variant, words: button.textContent ?? "" };
+      const known = this.app.deformation(deformation)?.knownAs ?? [];
+      const card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
       button.addEventListener("click", () => void this.choose(card));
       this.cards.push(card);
       this.seen.observe(button);
@@ -1195,7 +1196,7 @@
     whole(d, variant = null) {
       const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
       card.button.title = capital(d.title);
-      card.words = `${variant?.label ?? ""} ${called(d)} ${d.name} ${d.title}`;
+      card.words += ` ${called(d)} ${d.name} ${d.title}`;
       return card;
     }
     presets(d) {
@@ -1234,7 +1235,8 @@
     }
     filter() {
       const wanted = this.search.value.trim().toLowerCase();
-      for (const { button, words: words2 } of this.cards) button.hidden = !words2.toLowerCase().includes(wanted);
+      const plain2 = (text) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
+      for (const { button, words: words2 } of this.cards) button.hidden = !plain2(words2).includes(plain2(wanted));
       for (const section of Array.from(this.box.children)) {
         if (section === this.own) continue;
         const shown2 = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);

@@ -62,9 +62,23 @@ const PARAM_LABELS: [(&str, &str, &str); 4] = [
 /// The deformation whose rows have equally many points, which are control points of one curve each.
 const ROWS: &str = "birational";
 
-/// Describes all deformations, in menu order.
-pub(crate) fn catalogue(registry: &Registry) -> Value {
-    registry.entries().iter().map(|e| deformation(e.info())).collect()
+/// Describes all deformations, in menu order. `foreign` are names in other programs, with the deformation that each means.
+pub(crate) fn catalogue(registry: &Registry, foreign: &[(&str, &str)]) -> Value {
+    let described = |info: &Info| {
+        let mut out = deformation(info);
+        out["knownAs"] =
+            foreign.iter().filter(|(w, name)| *name == info.name && !is_preset(info, w)).map(|(w, _)| *w).collect();
+        out
+    };
+    registry.entries().iter().map(|e| described(e.info())).collect()
+}
+
+/// Returns `true` if a name of another program ends in that of a preset, which is found by its own.
+fn is_preset(info: &Info, word: &str) -> bool {
+    let presets = info.gallery.and_then(|g| info.params.iter().find(|p| p.name == g.presets));
+    let Some(Kind::NameOrFile(names) | Kind::Choice(names)) = presets.map(|p| p.kind) else { return false };
+    let last = word.rsplit('›').next().unwrap_or(word).trim().to_lowercase().replace(' ', "-");
+    names.iter().any(|n| n.starts_with(&last))
 }
 
 fn deformation(info: &Info) -> Value {
@@ -141,7 +155,9 @@ mod tests {
     #[test]
     fn every_deformation_and_parameter_is_there() {
         let registry = Registry::builtin();
-        let all = catalogue(&registry);
+        let all = catalogue(&registry, &[("Puppet Warp", "mls"), ("Warp › Arch", "warp"), ("Make with Warp", "warp")]);
+        let of = |name: &str| all.as_array().unwrap().iter().find(|d| d["name"] == name).unwrap()["knownAs"].clone();
+        assert_eq!([of("mls"), of("warp"), of("bend")], [json!(["Puppet Warp"]), json!(["Make with Warp"]), json!([])]);
         for (entry, shown) in registry.entries().iter().zip(all.as_array().unwrap()) {
             let info = entry.info();
             assert_eq!(shown["name"], info.name);

@@ -12,6 +12,11 @@ pub trait Host: Send + Sync {
     /// The deformations on offer.
     fn registry(&self) -> &Registry;
 
+    /// Names that other programs have for deformations, each with that of the deformation: what a user may search for.
+    fn foreign_words(&self) -> Vec<(&str, &str)> {
+        Vec::new()
+    }
+
     /// Reads a drawing. If it is the result of an earlier run with its source embedded, that source is opened, with its recipe.
     ///
     /// # Errors

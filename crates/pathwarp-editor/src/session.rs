@@ -160,7 +160,7 @@ impl Session {
     }
 
     pub(crate) fn catalogue(&self) -> Value {
-        crate::catalogue::catalogue(self.host.registry())
+        crate::catalogue::catalogue(self.host.registry(), &self.host.foreign_words())
     }
 
     /// The drawing under these steps; `draft` is the tolerance while something is dragged.

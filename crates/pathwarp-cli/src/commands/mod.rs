@@ -28,7 +28,7 @@ use crate::failure::Failure;
 use crate::options::Given;
 use crate::plugins::{self, Plugins};
 use crate::status::Status;
-use crate::watch;
+use crate::{coming_from, output, watch};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
 use pathwarp::deform::Registry;
@@ -129,6 +129,10 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
+    if let Some(text) = foreign_help(registry, first) {
+        output::to_stdout(text.as_bytes())?;
+        return Ok(Status::Complete);
+    }
     let matches = build_for(registry, first.get(1))
         .try_get_matches_from(first)
         .map_err(|e| broken(&plugins, first).unwrap_or_else(|| suggested(registry, first, e)))?;
@@ -180,6 +184,19 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
 }
 
+/// What `help WORD` says about a word of another program, which may be several words.
+fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
+    let [_, help, words @ ..] = args else { return None };
+    let known = |name: &str| build_for(registry, Some(&name.into())).find_subcommand(name).cloned();
+    let wanted = words.iter().map(|w| w.to_str()).collect::<Option<Vec<_>>>()?.join(" ");
+    if help != "help" || wanted.starts_with('-') || known(&wanted).is_some() || wanted == "help" {
+        return None;
+    }
+    let entries = coming_from::found(&wanted);
+    let title = |name: &str| known(name)?.get_about().map(ToString::to_string);
+    (!entries.is_empty()).then(|| coming_from::help(&entries, title))
+}
+
 /// The error that the deformation that `args` begin with is a broken plug-in.
 fn broken(plugins: &Plugins, args: &[OsString]) -> Option<Failure> {
     let named = |word: &&OsString| plugins.broken.iter().find(|b| b.name.as_str() == word.as_os_str());
@@ -197,13 +214,18 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
     let is_help = args.get(1).is_some_and(|a| a == "help");
     let tip = match error.kind() {
         ErrorKind::InvalidSubcommand => {
-            let asked = args.get(2).filter(|_| is_help).map(|w| w.to_string_lossy().into_owned());
+            let asked = args.get(2..).filter(|words| is_help && !words.is_empty()).map(joined);
             let word = asked.or_else(|| context(ContextKind::InvalidSubcommand)).unwrap_or_default();
             if let Some(meant) = mistakes::command(registry, &word) {
                 return Failure::usage(meant);
             }
             let whole = build(registry);
-            let known = whole.get_subcommands().map(Command::get_name);
+            if let Some(meant) = coming_from::meant(&word) {
+                return Failure::usage(meant);
+            }
+            let foreign: Vec<String> = coming_from::all().map(|w| w.words[0].to_lowercase()).collect();
+            let known = whole.get_subcommands().map(Command::get_name).chain(foreign.iter().map(String::as_str));
+            let word = word.to_lowercase();
             return if is_help { Failure::usage(advice::unknown("command", &word, known)) } else { error.into() };
         }
         ErrorKind::InvalidValue if context(ContextKind::InvalidArg).is_some_and(|arg| arg.contains(PATHREF)) => {

@@ -3,6 +3,7 @@
 use super::artwork::EditedArtwork;
 use crate::advice::Flags;
 use crate::bitmap::encode;
+use crate::coming_from;
 use crate::export;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format, PICTURES};
@@ -93,6 +94,11 @@ impl EditorHost {
 impl Host for EditorHost {
     fn registry(&self) -> &Registry {
         &self.registry
+    }
+
+    fn foreign_words(&self) -> Vec<(&str, &str)> {
+        let named = coming_from::all().filter_map(|w| Some((w.subcommand()?, w.words)));
+        named.flat_map(|(name, words)| words.into_iter().map(move |w| (w, name))).collect()
     }
 
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {

@@ -102,7 +102,8 @@ export class Gallery {
   private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
     const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-    const card: Card = { button, image, steps, deformation, args, variant, words: button.textContent ?? "" };
+    const known = this.app.deformation(deformation)?.knownAs ?? [];
+    const card: Card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
     button.addEventListener("click", () => void this.choose(card));
     this.cards.push(card);
     this.seen.observe(button);
@@ -125,7 +126,7 @@ export class Gallery {
     const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? called(d)), variant);
     card.button.title = capital(d.title);
     // What it does is looked for, too.
-    card.words = `${variant?.label ?? ""} ${called(d)} ${d.name} ${d.title}`;
+    card.words += ` ${called(d)} ${d.name} ${d.title}`;
     return card;
   }
 
@@ -169,7 +170,9 @@ export class Gallery {
 
   private filter(): void {
     const wanted = this.search.value.trim().toLowerCase();
-    for (const { button, words } of this.cards) button.hidden = !words.toLowerCase().includes(wanted);
+    // Names may be typed without the menus before them, with other signs between the words.
+    const plain = (text: string) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
+    for (const { button, words } of this.cards) button.hidden = !plain(words).includes(plain(wanted));
     for (const section of Array.from(this.box.children) as HTMLElement[]) {
       if (section === this.own) continue;
       // One card of those in view can be reached with Tab.

@@ -39,6 +39,8 @@ export interface Deformation {
   title: string;
   group: string;
   about: string;
+  /** Its names in other programs. */
+  knownAs: string[];
   params: Param[];
   /** Other ways to begin, each by one parameter. */
   variants: { label: string; param: string }[];

@@ -35,7 +35,7 @@ const ENTRIES: &[CookbookEntry] = &[
         name: "border",
         title: "Words all the way around a plate",
         text: "Any path takes text: here the outline of a plate, with as many copies of the words as fit. The text stands on its outer side.",
-        command: "text 'Handmade · ' --on 'samples/envelopes.svg#plate' --stretch repeat --size 22 --glyphs rotate --spacing even --margin 4 -o out.svg",
+        command: "text 'handmade with care · ' --on 'samples/envelopes.svg#plate' --stretch repeat --size 20 --spacing even --fill '#6b3a12' --margin 6 -o out.svg",
     },
     CookbookEntry {
         name: "flag",

@@ -103,7 +103,7 @@ fn spacing() -> impl Iterator<Item = Arg> {
         choice(
             "align",
             &["start", "left", "center", "right", "justify"],
-            "Alignment of lines; justify widens the word spaces of shorter lines [default: start]",
+            "Alignment of lines, also on an open path; justify widens the word spaces of shorter lines [default: start, on a path center]",
         ),
     ]
     .into_iter()

@@ -106,6 +106,9 @@ pub(super) fn set(
         if is_below != m.get_flag("inside") {
             args.push("baseline", (frame.rect.y1 - cap_height(text)).to_string());
         }
+        if !curve.closed {
+            args.push("align", align(m, text));
+        }
         for name in OF_BEND.iter().filter(|n| !["reverse", "offset"].contains(n)) {
             if let Some(value) = m.get_one::<String>(name) {
                 args.push(*name, value);
@@ -248,6 +251,16 @@ fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
+/// The end of an open path at which a line is, in the words of `bend`.
+fn align(m: &ArgMatches, text: &OutlinedText) -> &'static str {
+    match m.get_one::<String>("align").map(String::as_str) {
+        Some("start") if text.rtl => "end",
+        Some("start" | "left") => "start",
+        Some("right") => "end",
+        _ => "middle",
+    }
+}
+
 fn length(frame: &Frame, name: &str, text: &str) -> Result<f64, Failure> {
     let args = Args::new();
     Ok(Settings::new(&[], &args, frame)?.length_in(name, text, pathwarp::param::Axis::X)?)
@@ -336,6 +349,8 @@ fn line(
     let set = letters.iter().enumerate().map(|(i, l)| Ok((l.name.clone(), set(i, l)?)));
     let letters = set.collect::<Result<_, GeometryError>>().map_err(pathwarp::Error::from)?;
     let flags = Flags::of(registry);
-    let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(|w| flags.in_text(w));
+    // Heights and widths go with the size of the text here.
+    let own = |w: &String| flags.in_text(w).replacen("bend: ", "", 1).replace("--width", "--size");
+    let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(own);
     Ok((SetLine { text: text.text.clone(), letters }, warnings.collect()))
 }
