@@ -57,5 +57,5 @@ pub use outline::{Outline, Seg, Subpath};
 
 /// The README's examples, tested.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../../../docs/library.md")]
 struct Readme;

@@ -1,7 +1,6 @@
-//! Every command line in help and in the cookbook runs, and help knows every deformation.
+//! Every command line in help runs, and help knows every deformation.
 
-use super::common::text;
-use crate::support::{expect_code, pathwarp_in, root, words};
+use crate::support::{expect_code, words};
 use std::fs;
 use std::path::Path;
 
@@ -16,36 +15,16 @@ fn every_example_in_help_runs() {
     }
 }
 
-#[test]
-fn every_command_of_the_cookbook_runs() {
-    let page = fs::read_to_string(root().join("docs/cookbook.md")).unwrap();
-    let dir = tempfile::tempdir().unwrap();
-    let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("pathwarp ")).collect();
-    assert!(commands.len() >= 15, "{commands:?}");
-    for command in commands {
-        let messages = run_into(dir.path(), command);
-        assert!(messages.is_empty(), "{command}: {messages}");
-    }
-}
-
-/// Runs a command line of the documentation, which may be a pipe, with its output in `dir`. Returns its messages.
-fn run_into(dir: &Path, command: &str) -> String {
-    let inside = |w: &String| {
-        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w.clone() }
+/// Runs a command line of the documentation with its output in `dir`.
+fn run_into(dir: &Path, command: &str) {
+    let inside = |w: String| {
+        if w.starts_with("out") && w.contains('.') { dir.join(w).display().to_string() } else { w }
     };
-    let (mut drawing, mut messages) = (Vec::new(), String::new());
-    for stage in words(command).split(|w| w == "|") {
-        let args: Vec<String> = stage.iter().filter(|w| *w != "pathwarp").map(inside).collect();
-        let args: Vec<&str> = args.iter().map(String::as_str).collect();
-        let out = pathwarp_in(&root(), &args, &drawing);
-        assert_eq!(out.status.code(), Some(0), "{command}: {}", text(&out.stderr));
-        messages += &text(&out.stderr);
-        drawing = out.stdout;
-    }
+    let args: Vec<String> = words(command).into_iter().map(inside).collect();
+    expect_code(0, &args);
     let svg = fs::read_to_string(dir.join("out.svg")).unwrap();
     assert!(svg.contains("<svg"), "{command}");
     fs::remove_file(dir.join("out.svg")).unwrap();
-    messages
 }
 
 #[test]

@@ -1,64 +1,76 @@
-//! Every block of commands in the README runs word for word in a shell, in a folder with files of the names that it uses.
+//! Every block of commands on samples in the README, the pages of docs/ and the table of other programs' words runs word for word in a
+//! shell, in a folder that has what a copy of the repository has.
 #![cfg(unix)]
 
-use crate::support::{pathwarp_in, pathwarp_program, root, sample};
+use crate::support::{expect_code, pathwarp_program, root};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Samples under the names that the README gives to a reader's own files.
-const FILES: [(&str, &str); 10] = [
-    ("logo.svg", "before.svg"),
-    ("badge.svg", "badge.svg"),
-    ("cages.svg", "cage.svg"),
-    ("envelopes.svg", "shapes.svg"),
-    ("lettering.svg", "word.svg"),
-    ("monogram.svg", "other.svg"),
-    ("icon.svg", "icons/icon.svg"),
-    ("grid.svg", "icons/grid.svg"),
-    ("tiles.svg", "drawings/tiles.svg"),
-    ("headline.svg", "drawings/headline.svg"),
-];
-/// The drawing with a cage, and the paths of an XCF.
-const CAGE: &str = "<path id='cage' fill='none' d='M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z'/></svg>";
-const PATHS: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path id='Logo' d='M10,10H90V90H10Z'/>\
-                     <path id='Cage' d='M0,100 Q50,60 100,100 L100,0 Q50,-40 0,0 Z'/></svg>";
-
-fn prepare(folder: &Path) {
-    fs::create_dir(folder.join("icons")).unwrap();
-    fs::create_dir(folder.join("drawings")).unwrap();
-    for (from, to) in FILES {
-        fs::copy(sample(from), folder.join(to)).unwrap();
+/// Runs a block as pasted, and returns what it says.
+fn paste(folder: &Path, block: &str) -> String {
+    for name in ["samples", "crates"] {
+        let link = folder.join(name);
+        if !link.exists() {
+            std::os::unix::fs::symlink(root().join(name), link).unwrap();
+        }
     }
-    std::os::unix::fs::symlink(root().join("samples"), folder.join("samples")).unwrap();
-    let logo = fs::read_to_string(sample("logo.svg")).unwrap();
-    fs::write(folder.join("logo.svg"), logo.replace("</svg>", CAGE)).unwrap();
-    fs::write(folder.join("after.svg"), pathwarp_in(folder, &["wave", "-q"], logo.as_bytes()).stdout).unwrap();
-    fs::write(
-        folder.join("photo.jpg"),
-        pathwarp_in(folder, &["render", "-", "--format", "jpg"], logo.as_bytes()).stdout,
-    )
-    .unwrap();
-    assert!(pathwarp_in(folder, &["convert", "-", "-o", "art.xcf"], PATHS.as_bytes()).status.success());
+    let programs = pathwarp_program().parent().unwrap().display().to_string();
+    let path = format!("{programs}:{}", std::env::var("PATH").unwrap());
+    let shell = Command::new("sh").args(["-e", "-c", block]).current_dir(folder).env("PATH", &path).output().unwrap();
+    let said = String::from_utf8_lossy(&shell.stderr).into_owned();
+    assert!(shell.status.success(), "{block}\n{said}");
+    said
+}
+
+/// The blocks of commands of a page that need no files but samples. The editor waits for its reader.
+fn blocks(page: &str) -> impl Iterator<Item = &str> {
+    let blocks = page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
+    blocks.filter(|b| {
+        let runs = b.starts_with("pathwarp ") || b.starts_with("# ");
+        runs && !b.starts_with("pathwarp edit ") && (b.contains("samples/") || b.contains("pathwarp text "))
+    })
 }
 
 #[test]
 fn every_block_of_commands_runs() {
-    let dir = tempfile::tempdir().unwrap();
-    prepare(dir.path());
-    let programs = pathwarp_program().parent().unwrap().display().to_string();
-    let path = format!("{programs}:{}", std::env::var("PATH").unwrap());
-    let page = fs::read_to_string(root().join("README.md")).unwrap();
-    let blocks = page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
+    let mut pages = vec![root().join("README.md")];
+    // The pages of deformations show the registry's examples, which run in `every_example_in_help_runs`.
+    pages.extend(fs::read_dir(root().join("docs")).unwrap().map(|f| f.unwrap().path()).filter(|p| p.is_file()));
     let mut run = 0;
-    // The editor waits for its reader.
-    let waits = |b: &str| b.starts_with("pathwarp edit ");
-    for block in blocks.filter(|b| b.lines().any(|l| l.starts_with("pathwarp ")) && !waits(b)) {
-        let shell =
-            Command::new("sh").args(["-e", "-x", "-c", block]).current_dir(dir.path()).env("PATH", &path).output();
-        let shell = shell.unwrap();
-        assert!(shell.status.success(), "{}", String::from_utf8_lossy(&shell.stderr));
-        run += 1;
+    for page in pages {
+        let dir = tempfile::tempdir().unwrap();
+        // What the front page and the cookbook show gives no warnings.
+        let quiet = page.ends_with("README.md") || page.ends_with("docs/cookbook.md");
+        for block in blocks(&fs::read_to_string(&page).unwrap()) {
+            let said = paste(dir.path(), block);
+            assert!(said.is_empty() || !quiet, "{block}\n{said}");
+            run += 1;
+        }
     }
-    assert!(run >= 4, "{run} blocks");
+    assert!(run >= 50, "{run} blocks");
+}
+
+/// The page of other programs' words promises a picture for each, without a warning.
+#[test]
+fn every_command_for_a_word_of_another_program_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    for word in pathwarp_cli::coming_from::all() {
+        if let Some(command) = word.command {
+            assert_eq!(paste(dir.path(), &format!("pathwarp {command}")), "", "{command}");
+        }
+    }
+    let (said, _) = expect_code(0, &["help", "puppet", "warp"]);
+    assert!(said.contains("Adobe Illustrator, Puppet Warp: mls — ") && said.contains("Photoshop"), "{said}");
+    let (said, _) = expect_code(0, &["help", "Zipper"]);
+    assert!(said.contains("Not there yet"), "{said}");
+    assert!(expect_code(2, &["help", "pupet warp"]).1.contains("did you mean `Puppet Warp`?"));
+    assert!(expect_code(0, &["help", "mesh"]).0.contains("Usage: pathwarp mesh"));
+}
+
+/// A front page is short.
+#[test]
+fn the_front_page_is_short() {
+    let page = fs::read_to_string(root().join("README.md")).unwrap();
+    assert!(page.split_whitespace().count() <= 700);
 }

@@ -4,7 +4,7 @@ use crate::bend::plain::WarpedPath;
 use crate::source::number::{path_data, push};
 use crate::source::xml::escape;
 use pathwarp::Error;
-use pathwarp::kurbo::{Rect, Shape as _};
+use pathwarp::kurbo::{Rect, Shape};
 use pathwarp::param::LengthUnit;
 use pathwarp_text::OutlinedText;
 use std::fmt::Write as _;
@@ -99,7 +99,7 @@ pub struct SetLine {
 /// As for [`write_lettering`].
 pub fn write_set_lines(lines: &[SetLine], options: &LetteringOptions) -> Result<String, Error> {
     let paths = lines.iter().flat_map(|l| &l.letters).map(|(_, p)| &p.path).filter(|p| !p.is_empty());
-    let page = paths.map(|p| p.bounding_box()).reduce(|a, b| a.union(b)).unwrap_or_default();
+    let page = paths.map(Shape::bounding_box).reduce(|a, b| a.union(b)).unwrap_or_default();
     let title: Vec<&str> = lines.iter().map(|l| l.text.as_str()).collect();
     let mut sheet = Sheet::new(page, &title.join(" "), options)?;
     for line in lines {

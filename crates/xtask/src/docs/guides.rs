@@ -1,14 +1,18 @@
 //! Pictures of the guides: pages written by hand, each picture drawn by the command below it.
 
 use crate::chore::{ChoreError, at};
+use crate::files;
 use crate::shell::{pipe, stages, words};
+use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The guides; their pictures are named relative to `docs/`.
-const GUIDES: [&str; 2] = ["docs/lettering.md", "docs/solid.md"];
+/// The guides, whose pictures are named relative to them.
+const GUIDES: [&str; 3] = ["README.md", "docs/lettering.md", "docs/solid.md"];
 /// In the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
+/// In a command on a folder of drawings.
+const INTO: &str = "--out-dir";
 /// Width of a picture in pixels.
 const WIDTH: &str = "800";
 
@@ -18,9 +22,13 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
         let page = root.join(guide);
         let page = fs::read_to_string(&page).map_err(at(&page))?;
         for (png, command) in pictures(&page) {
-            let png = root.join("docs").join(png);
+            let png = folder_of(root, guide).join(png);
             if let Some(folder) = png.parent() {
                 fs::create_dir_all(folder).map_err(at(folder))?;
+            }
+            if command.contains(INTO) {
+                sheet(root, program, &png, command)?;
+                continue;
             }
             if command.contains(PREVIEW) {
                 preview(root, program, &png, command)?;
@@ -36,6 +44,44 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
         }
     }
     Ok(())
+}
+
+/// The folder of a guide.
+fn folder_of(root: &Path, guide: &str) -> PathBuf {
+    root.join(guide).parent().map_or_else(|| root.to_owned(), Path::to_owned)
+}
+
+/// The picture of a command on a folder of drawings: the drawings in a row, and below them their results.
+fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
+    /// Side of a drawing on the sheet, and the space between two.
+    const SIDE: usize = 100;
+    const GAP: usize = 20;
+    let bent = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let mut words = words(command);
+    let into = words.iter().position(|w| w == INTO).ok_or("no --out-dir")?;
+    words[into + 1] = bent.path().display().to_string();
+    pipe(root, program, &words[1..], &[])?;
+    let source = words.iter().find(|w| w.starts_with("samples/")).ok_or("no folder of samples")?;
+    let mut sheet = String::new();
+    let mut columns = 0;
+    for (row, folder) in [root.join(source), bent.path().to_owned()].iter().enumerate() {
+        let files = files::below(folder, |f| files::ends_in(f, &["svg"]))?;
+        columns = files.len();
+        for (column, file) in files.iter().enumerate() {
+            let drawing = fs::read_to_string(file).map_err(at(file))?;
+            let start = drawing.find("<svg ").ok_or("no drawing")? + "<svg ".len();
+            // Places the whole drawing as a picture in this one.
+            let inner =
+                drawing[start..].replacen(" width=", " data-width=", 1).replacen(" height=", " data-height=", 1);
+            let [x, y] = [column, row].map(|i| GAP + i * (SIDE + GAP));
+            let _ = write!(sheet, "<svg x='{x}' y='{y}' width='{SIDE}' height='{SIDE}' {inner}");
+        }
+    }
+    let [width, height] = [columns, 2].map(|n| GAP + n * (SIDE + GAP));
+    let sheet = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}'>{sheet}</svg>");
+    let file = png.display().to_string();
+    let render = ["render", "-", "--width", WIDTH, "--background", "white", "-o", &file].map(str::to_owned);
+    pipe(root, program, &render, sheet.as_bytes()).map(drop)
 }
 
 /// The picture of a command that draws one itself, and whose result is a model.
@@ -77,11 +123,13 @@ mod tests {
         for guide in GUIDES {
             let page = fs::read_to_string(root.join(guide)).unwrap();
             let all = pictures(&page);
-            assert_eq!(all.len(), page.matches("![").count(), "{guide}");
+            // The first command of the README is for cargo.
+            let first = usize::from(guide == "README.md");
+            assert_eq!(all.len(), page.matches("![").count() - first, "{guide}");
             let mut expected: Vec<String> = all.iter().map(|(png, _)| (*png).to_owned()).collect();
             expected.sort();
             let folder = Path::new(&expected[0]).parent().unwrap();
-            let files = fs::read_dir(root.join("docs").join(folder)).unwrap();
+            let files = fs::read_dir(folder_of(&root, guide).join(folder)).unwrap();
             let name = |f: fs::DirEntry| format!("{}/{}", folder.display(), f.file_name().into_string().unwrap());
             let mut found: Vec<String> = files.map(|f| name(f.unwrap())).collect();
             found.sort();

@@ -1,5 +1,6 @@
 //! `cargo xtask docs`: the generated pages and every picture of the documentation.
 
+mod coming_from;
 mod cookbook;
 mod deformations;
 mod guides;
@@ -40,6 +41,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     shell::preview(root, program, GIMP_EXAMPLE, &root.join(GIMP_PICTURE))?;
     shell::pipe(root, program, &["gallery", SHEET_ARTWORK, "-o", SHEET].map(str::to_owned), &[])?;
     guides::draw(root, program)?;
+    coming_from::write(root, program)?;
     for page in COOKBOOK_PAGES {
         write_cookbook(page, root, program)?;
     }

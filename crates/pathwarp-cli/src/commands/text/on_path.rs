@@ -111,7 +111,7 @@ pub(super) fn set(
         }
         for name in OF_BEND.iter().filter(|n| !["reverse", "offset"].contains(n)) {
             if let Some(value) = m.get_one::<String>(name) {
-                args.push(*name, value);
+                args.push(name, value);
             }
         }
         let shift = m.get_one::<String>("offset").map_or(Ok(0.0), |t| length(&frame, "offset", t))?;
