@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::input::{GimpFile, described, read_data_file, split_reference, unreadable};
 use crate::options::Reading;
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::Point;
+use pathwarp::kurbo::{Affine, Point};
 use pathwarp::param::{Kind, is_inline};
 use pathwarp::recipe::Recipe;
 use pathwarp::{Error, Outline};
@@ -75,14 +75,26 @@ pub(crate) fn files_written<'a>(
     })
 }
 
-/// Looks up `FILE#NAME` or `FILE`.
-pub(crate) fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
+/// Looks up `FILE#NAME` or `FILE`, in user units of the file.
+fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
+    Ok(found(reference, reading)?.0)
+}
+
+/// Looks up `FILE#NAME` or `FILE`, in px.
+pub(crate) fn in_px(reference: &str, reading: &Reading) -> Result<Outline, Error> {
+    let (outline, to_px) = found(reference, reading)?;
+    Ok(outline.transformed(to_px))
+}
+
+/// The outline of a reference, and the map from its user units to px.
+fn found(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error> {
     let (file, name) = split_reference(reference);
     if let Some(gimp) = GimpFile::read(&file, false, &reading.limits)? {
-        return Ok(match name {
+        let outline = match name {
             Some(name) => gimp.path_named(name)?.outline(),
             None => gimp.only_path()?.outline(),
-        });
+        };
+        return Ok((outline, Affine::IDENTITY));
     }
     let shown = file.display();
     let bytes = std::fs::read(&file).map_err(|e| {
@@ -94,17 +106,19 @@ pub(crate) fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Err
         Error::input(shown.to_string(), problem)
     })?;
     if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
-        return points(&bytes).map_err(|e| Error::input(reference, e));
+        let outline = points(&bytes).map_err(|e| Error::input(reference, e))?;
+        return Ok((outline, Affine::IDENTITY));
     }
     let doc = Document::read(&bytes, &shown.to_string(), &reading.read_options());
     let doc = doc.map_err(|e| described(&bytes, &file).map_or(e, |what| Error::input(shown.to_string(), what)))?;
+    let to_px = doc.user_to_px();
     if let Some(name) = name {
-        return Ok(doc.path(name)?.outline);
+        return Ok((doc.path(name)?.outline, to_px));
     }
     let mut all = doc.paths();
     let count = all.len();
     match all.pop() {
-        Some(only) if count == 1 => Ok(only.outline),
+        Some(only) if count == 1 => Ok((only.outline, to_px)),
         None => Err(Error::input(reference, "holds no path")),
         Some(last) => {
             let problem = format!(

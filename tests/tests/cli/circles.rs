@@ -221,6 +221,24 @@ fn text_on_open_paths_takes_the_options_of_bend() {
     assert!((there("10mm") - there("0") - (10.0_f64 / 60.0).to_degrees()).abs() < 0.01);
 }
 
+/// A path of a file has its size on paper, whatever its units: an inch as radius, in px and in units of 0.1 mm.
+#[test]
+fn a_path_of_a_file_has_its_size() {
+    let dir = tempfile::tempdir().unwrap();
+    for (page, radius) in [("width='300' height='300'", 96), ("width='80mm' height='80mm' viewBox='0 0 800 800'", 254)]
+    {
+        let file = dir.path().join("ring.svg");
+        let ring = format!("<svg xmlns='http://www.w3.org/2000/svg' {page}><circle id='ring' r='{radius}'/></svg>");
+        std::fs::write(&file, ring).unwrap();
+        let on = format!("{}#ring", file.display());
+        for more in [&[][..], &["--below", "HH", "--at", "0"]] {
+            let (svg, _) = expect_code(0, &[&["text", "HH", "--size", "5mm", "--on", &on], more].concat());
+            let radii = range(&letters(&svg)[0], |p| p.0);
+            assert!((radii.0 - 25.4).abs() < 0.01, "{page}: {radii:?}");
+        }
+    }
+}
+
 #[test]
 fn what_does_not_go_on_a_path_says_so() {
     for (args, part) in [

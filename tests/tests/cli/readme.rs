@@ -64,7 +64,7 @@ fn every_command_for_a_word_of_another_program_runs() {
     assert!(said.contains("Adobe Illustrator, Puppet Warp: mls — ") && said.contains("Photoshop"), "{said}");
     let (said, _) = expect_code(0, &["help", "Zipper"]);
     assert!(said.contains("Not there yet"), "{said}");
-    assert!(expect_code(2, &["help", "pupet warp"]).1.contains("did you mean `Puppet Warp`?"));
+    assert!(expect_code(2, &["help", "pupet warp"]).1.contains("did you mean `puppet warp`?"));
     assert!(expect_code(0, &["help", "mesh"]).0.contains("Usage: pathwarp mesh"));
 }
 

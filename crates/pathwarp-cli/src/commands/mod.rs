@@ -184,11 +184,16 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
 }
 
+/// Words as one text.
+fn joined(words: &[OsString]) -> String {
+    words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}
+
 /// What `help WORD` says about a word of another program, which may be several words.
 fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     let [_, help, words @ ..] = args else { return None };
     let known = |name: &str| build_for(registry, Some(&name.into())).find_subcommand(name).cloned();
-    let wanted = words.iter().map(|w| w.to_str()).collect::<Option<Vec<_>>>()?.join(" ");
+    let wanted = joined(words);
     if help != "help" || wanted.starts_with('-') || known(&wanted).is_some() || wanted == "help" {
         return None;
     }

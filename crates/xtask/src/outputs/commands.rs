@@ -33,7 +33,7 @@ const MORE: [&str; 7] = [
 
 /// Pages written by hand. The pages of the deformations show the registry's examples.
 const GUIDES: [&str; 5] =
-    ["README.md", "samples/README.md", "docs/gimp.md", "docs/lettering.md", "docs/lettering-on-paths.md"];
+    ["README.md", "docs/tour.md", "docs/gimp.md", "docs/lettering.md", "docs/lettering-on-paths.md"];
 
 /// All command lines, without the leading `pathwarp`; the stages of a pipeline are separated by ` | `.
 pub(super) fn all(root: &Path, program: &Path, drawings: &[PathBuf], count: usize) -> Result<Vec<String>, ChoreError> {

@@ -275,9 +275,12 @@ fn path_and_middles(
 ) -> Result<(NamedPath, Vec<f64>), Failure> {
     let mut args = Args::new();
     args.push(ON, m.get_one::<String>(ON).map_or("", String::as_str));
+    let [x, y] = em.units_per_px();
+    let to_page = Affine::scale_non_uniform(x, y);
     let find = |reference: &str| match reference.strip_prefix('#') {
         Some(name) => Err(input::no_document(name)),
-        None => references::in_file(reference, &options.reading).map(Some),
+        // The text has its size on paper, and so has the path, whatever the units of its file are.
+        None => references::in_px(reference, &options.reading).map(|path| Some(path.transformed(to_page))),
     };
     args.resolve_paths(PARAMS, find).map_err(Failure::of_recipe)?;
     let frame = Frame::new(Rect::from_center_size(Point::ORIGIN, (width, width)));

@@ -1,6 +1,5 @@
 //! The style options.
 
-use super::on_path;
 use crate::failure::Failure;
 use clap::ArgMatches;
 use pathwarp::kurbo::Rect;
@@ -63,7 +62,7 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
             Some("center") => Align::Center,
             Some("right") => Align::Right,
             Some("justify") => Align::Justify,
-            None if on_path::is_asked_for(m) => Align::Center,
+            None if m.contains_id("on") => Align::Center,
             _ => Align::Start,
         },
         direction: match word("direction") {
