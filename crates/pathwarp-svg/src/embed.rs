@@ -2,7 +2,7 @@
 
 use crate::source::read::{bytes_unpacked, text};
 use crate::source::tags::PATHWARP as NAMESPACE;
-use crate::source::xml::{self, escape_content};
+use pathwarp_reader::xml::{self, escape_content};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;

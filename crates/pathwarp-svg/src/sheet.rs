@@ -6,7 +6,7 @@
 
 use crate::source::read::ReadOptions;
 use crate::source::tree;
-use crate::source::xml::escape_content;
+use pathwarp_reader::xml::escape_content;
 use pathwarp::Error;
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::Rect;

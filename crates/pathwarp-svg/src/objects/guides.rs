@@ -1,7 +1,7 @@
 //! Guides that a recipe refers to: kept with the objects, for the day when they are gone from the drawing.
 
 use super::nodes::{by_id, parse};
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::Error;
 use pathwarp::budget::Limits;
 use std::fmt::Write as _;

@@ -2,7 +2,7 @@
 
 use super::names::{NAMESPACE, RECIPE};
 use crate::source::tags::{INKSCAPE, SVG, is_shape, is_sodipodi};
-use crate::source::xml;
+use pathwarp_reader::xml;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
 use std::collections::HashMap;

@@ -8,7 +8,7 @@ use super::names::referred;
 use super::nodes::is_definition;
 use crate::source::read::{bytes_unpacked, compressed};
 use crate::source::tags::SVG;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;

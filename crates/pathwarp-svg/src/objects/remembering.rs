@@ -5,7 +5,7 @@ use super::names::{MADE, NAMESPACE, NODES, RECIPE, SOURCE, referred};
 use super::nodes::{by_id, is_definition, parse};
 use super::package::{definitions, pack};
 use super::patches::apply;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::Error;
 use pathwarp::budget::Limits;
 use std::collections::{BTreeSet, HashMap};

@@ -5,7 +5,7 @@ use super::nodes::{by_id, parse};
 use super::patches::apply;
 use crate::source::style::{declarations, with_declaration};
 use crate::source::tags::INKSCAPE;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::Error;
 use pathwarp::budget::Limits;
 use std::collections::BTreeMap;

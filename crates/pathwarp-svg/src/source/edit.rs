@@ -5,7 +5,7 @@ use super::element::Attr;
 use super::style::{declared, with_declaration};
 use super::tags::{ElementId, Namespace};
 use super::text::SourceText;
-use super::xml::escape;
+use pathwarp_reader::xml::escape;
 use std::collections::BTreeMap;
 use std::ops::Range;
 

@@ -4,7 +4,7 @@ use crate::scene::filter_area;
 use crate::scene::model::Scene;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::kurbo::{Affine, Rect};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;

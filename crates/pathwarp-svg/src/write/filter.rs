@@ -4,7 +4,7 @@ use super::markup::Markup;
 use super::values;
 use crate::scene::filter_area;
 use crate::source::number::short;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::kurbo::Rect;
 use std::fmt::Write as _;
 use usvg::filter::{

@@ -13,7 +13,7 @@ use super::{filter, filter_region, gradients, masks, patterns};
 use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::scene::model::{Group, Node, Part};
 use crate::source::number::{matrix, path_data, short};
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::kurbo::{Affine, Rect};
 use std::fmt::Write as _;
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use super::values::color;
 use crate::scene::affine::affine;
 use crate::source::number::{matrix, short};
 use crate::source::text::SourceText;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::kurbo::Affine;
 use std::fmt::Write as _;
 use std::sync::Arc;

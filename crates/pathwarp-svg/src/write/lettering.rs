@@ -1,7 +1,7 @@
 //! Lettering as an SVG drawing with data attributes for baselines, heights and letters.
 
 use crate::source::number::{path_data, push};
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::Error;
 use pathwarp::param::LengthUnit;
 use pathwarp_text::OutlinedText;

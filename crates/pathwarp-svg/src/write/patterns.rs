@@ -2,7 +2,7 @@
 
 use crate::scene::affine::affine;
 use crate::source::number::{matrix, short};
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use pathwarp::kurbo::Affine;
 use std::fmt::Write as _;
 use usvg::Pattern;

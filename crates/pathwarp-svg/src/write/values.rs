@@ -5,7 +5,7 @@ use crate::bend::picture::BentImage;
 use crate::scene::model::Part;
 use crate::source::number::{outline_data, path_data, short};
 use crate::source::text::SourceText;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::kurbo::{Affine, Rect, Shape as _};

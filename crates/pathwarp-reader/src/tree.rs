@@ -1,25 +1,22 @@
 //! The style of every element, from the root down, and the transforms, from the leaves up: the box of a group depends on those
 //! of its children.
 
-use super::cascade::{applying, own, work};
+use super::cascade::{applying, work};
 use super::computed::{Computed, Inherited, computed};
 use super::element::Looks;
+use super::ids::Ids;
 use super::shapes::shape_box;
-use super::sheet::Rules;
+use super::sheet::{Declaration, Rules, declarations};
 use super::text::TextStyle;
-use super::value::{Custom, Units, length};
+use super::value::{Custom, MEDIUM, Units, length};
 use super::{media, transform};
-use crate::source::tags::ElementId;
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::kurbo::{Affine, Rect};
+use roxmltree::{Document, NS_XML_URI, Node, NodeId};
 use selectors::context::SelectorCaches;
 use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
-use usvg::roxmltree::{Document, NS_XML_URI, Node, NodeId};
-
-/// Font size where nothing sets one, in px.
-const MEDIUM: f64 = 16.0;
 
 /// Size of a drawing that does not tell (CSS 2.1, section 10.3.2).
 const REPLACED: (f64, f64) = (300.0, 150.0);
@@ -32,18 +29,18 @@ const VARIABLE: usize = 64;
 
 /// The style of an element.
 #[derive(Debug)]
-pub(super) struct Styled {
-    pub(super) computed: Computed,
+pub(super) struct Styled<'a> {
+    pub(super) computed: Computed<'a>,
     /// Its transform. `None` if it cannot be computed.
     pub(super) matrix: Option<Affine>,
 }
 
 /// The style of a drawing.
-pub(super) struct Tree {
+pub(super) struct Tree<'a> {
     /// Element by element.
-    pub(super) styles: Vec<Styled>,
+    pub(super) styles: Vec<Styled<'a>>,
     /// The elements that are style sheets.
-    pub(super) sheets: BTreeSet<ElementId>,
+    pub(super) sheets: BTreeSet<usize>,
     /// What is not supported of them, in words.
     pub(super) unsupported: BTreeSet<String>,
 }
@@ -52,7 +49,77 @@ pub(super) struct Tree {
 ///
 /// # Errors
 /// It takes more work than the budget allows.
-pub(super) fn styled(doc: &Document<'_>, nodes: &[Node<'_, '_>], budget: &Budget) -> Result<Tree, Exceeded> {
+pub(super) fn styled<'a>(
+    doc: &'a Document<'_>,
+    nodes: &[Node<'a, '_>],
+    budget: &Budget,
+) -> Result<Tree<'a>, Exceeded> {
+    let (rules, sheets, unsupported) = rules(nodes, budget)?;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    let looks = Looks { done: Cell::new(0), most: budget.left(Limit::Comparisons) as u64 };
+    let mut caches = SelectorCaches::default();
+    let ids = Ids::new(doc);
+    // What the elements around hand on, outermost first.
+    let mut around: Vec<(NodeId, Inherited)> = Vec::new();
+    let mut known: HashMap<&str, Rc<[Declaration<'_>]>> = HashMap::new();
+    let mut out: Vec<(Computed<'_>, Units)> = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        let own = node.attribute("style").map(|style| {
+            // Many elements have the same style.
+            let parsed = || declarations(style).into();
+            if style.len() < REPEATED { parsed() } else { Rc::clone(known.entry(style).or_insert_with(parsed)) }
+        });
+        let own = own.as_deref().unwrap_or_default();
+        let declarations = if own.is_empty() && rules.is_empty() {
+            Vec::new()
+        } else {
+            applying(&rules, own, *node, &looks, &mut caches)
+        };
+        if looks.exceeded() {
+            break;
+        }
+        let parent = node.parent_element().map(|p| p.id());
+        while around.last().is_some_and(|(id, _)| Some(*id) != parent) {
+            around.pop();
+        }
+        let mut here = around.last().map_or_else(|| at_root(doc), |(_, inherited)| inherited.clone());
+        let custom = Rc::clone(&here.custom);
+        let style = computed(*node, parent.is_none(), &declarations, &ids, &mut here);
+        // Variables can make any value of a short one.
+        budget.spend(Limit::Comparisons, style.values().map(work).sum::<usize>() as u64)?;
+        if !Rc::ptr_eq(&custom, &here.custom) {
+            let bytes: usize = here.custom.values().map(|v| VARIABLE + v.len()).sum();
+            budget.spend(Limit::Comparisons, (bytes / PARSED) as u64)?;
+        }
+        let units = here.units;
+        if node.tag_name().name() == "svg" {
+            here.units.viewport = viewport(*node, &style, &units);
+        } else if let Some(inner) = view_box(*node).filter(|_| node.tag_name().name() == "symbol") {
+            here.units.viewport = inner;
+            here.in_symbol = true;
+        }
+        if node.has_children() {
+            around.push((node.id(), here));
+        }
+        out.push((style, units));
+    }
+    budget.spend_cut(Limit::Comparisons, looks.done.get())?;
+    let matrices = matrices(nodes, &out);
+    let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
+    Ok(Tree { styles: all.collect(), sheets, unsupported })
+}
+
+/// What the root element inherits.
+fn at_root(doc: &Document<'_>) -> Inherited {
+    let (custom, text) = (Rc::new(Custom::new()), TextStyle::default());
+    Inherited { in_symbol: false, custom, units: root_units(doc), dashes: [None, None], text }
+}
+
+/// The rules of a drawing, the elements that are sheets, and what is not supported of them, in words.
+type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
+
+/// Reads the style sheets of a drawing.
+fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exceeded> {
     let mut rules = Rules::default();
     let mut sheets = BTreeSet::new();
     for (e, node) in nodes.iter().enumerate().filter(|(_, n)| is_sheet(n)) {
@@ -71,46 +138,12 @@ pub(super) fn styled(doc: &Document<'_>, nodes: &[Node<'_, '_>], budget: &Budget
             rules.add(text);
         }
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let looks = Looks { done: Cell::new(0), most: budget.left(Limit::Comparisons) as u64 };
-    let mut caches = SelectorCaches::default();
-    let mut inherited: HashMap<NodeId, Inherited> = HashMap::new();
-    let mut out: Vec<(Computed, Units)> = Vec::with_capacity(nodes.len());
-    for node in nodes {
-        let own = own(*node);
-        let declarations = applying(&rules, &own, *node, &looks, &mut caches);
-        if looks.exceeded() {
-            break;
-        }
-        let parent = node.parent_element().and_then(|p| inherited.get(&p.id()));
-        let mut here = parent.cloned().unwrap_or_else(|| Inherited {
-            custom: Rc::new(Custom::new()),
-            units: root_units(doc),
-            dashes: [None, None],
-            text: TextStyle::default(),
-        });
-        let tag = node.tag_name().name();
-        let style = computed(tag, parent.is_none(), &declarations, |name| attribute(*node, name), &mut here);
-        // Variables can make any value of a short one.
-        budget.spend(Limit::Comparisons, style.values().map(work).sum::<usize>() as u64)?;
-        if parent.is_none_or(|p| !Rc::ptr_eq(&p.custom, &here.custom)) {
-            let bytes: usize = here.custom.values().map(|v| VARIABLE + v.len()).sum();
-            budget.spend(Limit::Comparisons, (bytes / PARSED) as u64)?;
-        }
-        let units = here.units;
-        if tag == "svg" {
-            here.units.viewport = viewport(*node, &style, &units);
-        }
-        if node.has_children() {
-            inherited.insert(node.id(), here);
-        }
-        out.push((style, units));
-    }
-    budget.spend_cut(Limit::Comparisons, looks.done.get())?;
-    let matrices = matrices(nodes, &out);
-    let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
-    Ok(Tree { styles: all.collect(), sheets, unsupported: rules.unsupported })
+    let unsupported = std::mem::take(&mut rules.unsupported);
+    Ok((rules, sheets, unsupported))
 }
+
+/// Bytes of style attributes from which on looking for the same one takes less time than reading it again.
+const REPEATED: usize = 128;
 
 /// An attribute by its name with the prefix `xml`, or without a prefix.
 pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
@@ -121,7 +154,8 @@ pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
 }
 
 fn is_sheet(node: &Node<'_, '_>) -> bool {
-    node.tag_name().name() == "style" && matches!(node.attribute("type"), None | Some("" | "text/css"))
+    let is_css = |kind: &str| kind.trim().is_empty() || kind.trim().eq_ignore_ascii_case("text/css");
+    node.tag_name().name() == "style" && node.attribute("type").is_none_or(is_css)
 }
 
 /// Units of the root element: the window is the drawing's size.
@@ -140,9 +174,9 @@ fn root_units(doc: &Document<'_>) -> Units {
 }
 
 /// Size of the viewport that an `<svg>` makes, in its own coordinates.
-fn viewport(node: Node<'_, '_>, style: &Computed, units: &Units) -> (f64, f64) {
+fn viewport<'a>(node: Node<'a, '_>, style: &Computed<'a>, units: &Units) -> (f64, f64) {
     let size = |name: &str, full: f64| {
-        style.new_value(name).or_else(|| node.attribute(name)).and_then(|v| length(v, units, full)).unwrap_or(full)
+        style.value(node, name).and_then(|v| length(v, units, full)).unwrap_or(full)
     };
     view_box(node).unwrap_or_else(|| (size("width", units.viewport.0), size("height", units.viewport.1)))
 }
@@ -153,29 +187,32 @@ fn view_box(node: Node<'_, '_>) -> Option<(f64, f64)> {
 }
 
 /// The transforms of all elements. Where a style sheet has a part in one, it is computed; `None` if it cannot be.
-fn matrices(nodes: &[Node<'_, '_>], styles: &[(Computed, Units)]) -> Vec<Option<Affine>> {
-    if styles.iter().all(|(s, _)| s.transform.is_empty()) {
+fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec<Option<Affine>> {
+    let is_turned = nodes.first().is_some_and(|root| root.has_attribute("transform"));
+    if !is_turned && styles.iter().all(|(s, _)| s.transform.is_empty()) {
         return vec![Some(Affine::IDENTITY); nodes.len()];
     }
-    let numbers: HashMap<NodeId, ElementId> = nodes.iter().enumerate().map(|(e, n)| (n.id(), e)).collect();
+    let numbers: HashMap<NodeId, usize> = nodes.iter().enumerate().map(|(e, n)| (n.id(), e)).collect();
     // Of what is inside, in the element's own coordinates.
     let mut boxes: Vec<Option<Rect>> = vec![None; nodes.len()];
     let mut out = vec![Some(Affine::IDENTITY); nodes.len()];
     for (e, (node, (style, units))) in nodes.iter().zip(styles).enumerate().rev() {
         let tag = node.tag_name().name();
-        let attr = |name: &str| style.new_value(name).or_else(|| node.attribute(name));
+        let attr = |name: &str| style.value(*node, name);
         let own = if matches!(tag, "g" | "a" | "switch") { boxes[e] } else { shape_box(tag, attr, units) };
         let declared = |name: &str| {
-            let last = style.transform.iter().find(|d| d.name == name).map(|d| d.value.as_str());
+            let last = style.transform.iter().find(|d| d.name == name).map(|d| d.value.as_ref());
             last.or_else(|| node.attribute(name).filter(|_| matches!(name, "transform" | "transform-origin")))
         };
         let reference = match declared("transform-box").unwrap_or("view-box") {
+            // The root is a box of CSS, which turns about its centre.
+            _ if e == 0 => Some(Rect::from_origin_size((0.0, 0.0), units.window)),
             "view-box" => Some(Rect::from_origin_size((0.0, 0.0), units.viewport)),
             // Strokes are left out of account.
             _ => own,
         };
-        let matrix = reference.and_then(|r| transform::matrix(declared, units, r));
-        out[e] = if style.transform.is_empty() { Some(Affine::IDENTITY) } else { matrix };
+        let matrix = reference.and_then(|r| transform::matrix(declared, units, r, e == 0));
+        out[e] = if style.transform.is_empty() && e > 0 { Some(Affine::IDENTITY) } else { matrix };
         if let (Some(own), Some(m), Some(&parent)) =
             (own, matrix, node.parent_element().and_then(|p| numbers.get(&p.id())))
         {
