@@ -21,6 +21,7 @@ mod cascade;
 mod color;
 mod computed;
 mod element;
+mod handles;
 mod ids;
 mod letters;
 mod media;

@@ -129,6 +129,7 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     let mut out =
         Plain { unsupported: unsupported.into_iter().map(|why| (None, why)).collect(), ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
+    let mut paths = String::new();
     // Ids that are no names: then all references stay as they are written here, also in an edited drawing.
     let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| safe_id(id) != id);
     for (e, (node, style)) in nodes.iter().zip(&styles).enumerate() {
@@ -147,9 +148,29 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
         if style.matrix.is_none() {
             out.unsupported.push((Some(e), "its transform is not supported".to_owned()));
         }
+        if let Some((edit, path)) = path_of_text(e, *node, doc) {
+            all.push(edit.of(text, e, *node));
+            paths.push_str(&path);
+        }
         out.far.extend(style.computed.far.iter().map(|far| (e, far.clone())));
     }
+    if let Some(end) = text[..doc.root_element().range().end].rfind('<').filter(|_| !paths.is_empty()) {
+        let new = format!("<defs xmlns=\"http://www.w3.org/2000/svg\">{paths}</defs>");
+        let empty = Change { element: nodes.len() - 1, name: "", range: end..end, text: "".into(), value: None, kept: "".into() };
+        all.push((empty, new));
+    }
     Ok((all, out))
+}
+
+/// For a `textPath` with path data, a path of its own and the link to it.
+fn path_of_text(e: usize, node: Node<'_, '_>, doc: &Document<'_>) -> Option<(Edit, String)> {
+    let data = node.attribute("path").filter(|_| node.tag_name().name() == "textPath")?;
+    let mut id = format!("text-path-{e}");
+    while doc.input_text().contains(&id) {
+        id.push('x');
+    }
+    let path = format!("<path id=\"{id}\" d=\"{}\"/>", escape(data));
+    Some((Edit { name: "href", value: Some(format!("#{id}")), kept: None }, path))
 }
 
 impl Edit {

@@ -112,7 +112,7 @@ pub(super) fn styled<'a>(
 /// What the root element inherits.
 fn at_root(doc: &Document<'_>) -> Inherited {
     let (custom, text) = (Rc::new(Custom::new()), TextStyle::default());
-    Inherited { in_symbol: false, custom, units: root_units(doc), dashes: [None, None], text }
+    Inherited { in_symbol: false, marked: false, custom, units: root_units(doc), dashes: [None, None], text }
 }
 
 /// The rules of a drawing, the elements that are sheets, and what is not supported of them, in words.

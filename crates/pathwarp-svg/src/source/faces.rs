@@ -61,6 +61,15 @@ impl Look {
         families.iter().find_map(|f| look.face_of(f, db))
     }
 
+    /// The face that Chromium takes where no family is there or asked for: its standard one or one with its metrics, else one
+    /// without serifs.
+    pub(super) fn standard_face(self, set: &GenericFamilies, db: &Database) -> Option<ID> {
+        const STANDARD: &str = "Times New Roman";
+        let configured = set.serif.as_deref().and_then(|name| self.face_of(name, db));
+        let found = configured.or_else(|| self.face_of(STANDARD, db)).or_else(|| self.face_with_metrics_of(STANDARD, db));
+        found.or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
+    }
+
     /// The face of a family like a missing one, or of its kind, for the first of which one is known.
     pub(super) fn face_like(self, missing: &[String], set: &GenericFamilies, db: &Database) -> Option<ID> {
         let alike = |name: &String| {
@@ -221,7 +230,7 @@ fn is_bundled(face: ID, db: &Database) -> bool {
 pub(super) fn of_interface(name: &str) -> Option<FontFamily> {
     Some(match name {
         "system-ui" | "ui-sans-serif" | "ui-rounded" | "-apple-system" | "BlinkMacSystemFont" => FontFamily::SansSerif,
-        "serif" | "ui-serif" | "math" | "fangsong" => FontFamily::Serif,
+        "ui-serif" | "math" | "fangsong" => FontFamily::Serif,
         "ui-monospace" => FontFamily::Monospace,
         _ => return None,
     })

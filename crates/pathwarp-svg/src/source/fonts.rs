@@ -201,6 +201,9 @@ impl Held {
     }
 }
 
+/// Stands for the family of text that asks for none.
+pub(super) const NO_FAMILY: &str = "a family";
+
 /// The face for a font of the drawing.
 fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
     let style = match font.style() {
@@ -222,7 +225,7 @@ fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: 
         if found.is_some() {
             return found;
         }
-        let Some(name) = asked_for(family, generic) else { continue };
+        let Some(name) = asked_for(family, generic).filter(|name| *name != NO_FAMILY) else { continue };
         absent.push(name.clone());
         similar = look.face_with_metrics_of(name, db);
         if similar.is_some() {
@@ -233,7 +236,7 @@ fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: 
         m.extend(absent.iter().cloned());
     }
     let last = similar.or_else(|| look.face_like(&absent, generic, db));
-    let last = last.or_else(|| look.face_of_kind(&FontFamily::Serif, generic, db));
+    let last = last.or_else(|| look.standard_face(generic, db));
     last.or_else(|| query(BUNDLED_FAMILY)).or_else(|| db.faces().next().map(|f| f.id))
 }
 

@@ -65,7 +65,7 @@ fn resolve(
             .map_err(|e| Error::limit(name, "with its text, its fonts take", e))?;
         let guard = FontGuard::new(options, &rejected);
         let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone(), guard);
-        usvg::Options { fontdb, font_resolver, font_size: MEDIUM, font_family: "serif".to_owned(), ..usvg::Options::default() }
+        usvg::Options { fontdb, font_resolver, font_size: MEDIUM, font_family: fonts::NO_FAMILY.to_owned(), ..usvg::Options::default() }
     } else {
         usvg::Options::default()
     };
