@@ -18,7 +18,8 @@ pub(super) fn paint(value: &str) -> Option<Cow<'_, str>> {
     }
     if let Some(link) = reference(value) {
         let fallback = link.rest.trim();
-        let new = if fallback.is_empty() { "".into() } else { paint(fallback).filter(|_| reference(fallback).is_none())? };
+        let new =
+            if fallback.is_empty() { "".into() } else { paint(fallback).filter(|_| reference(fallback).is_none())? };
         let old = &value[..value.len() - link.rest.len()];
         let id = link.id.as_deref().map_or(Cow::Borrowed(old), |id| format!("url(#{})", safe_id(id)).into());
         let text = format!("{} {new}", id.trim());

@@ -91,7 +91,8 @@ pub(super) fn computed<'a>(
     if !own.is_empty() {
         inherited.custom = Rc::new(value::custom(&own, &inherited.custom));
     }
-    let is_server = matches!(tag, "linearGradient" | "radialGradient" | "pattern" | "mask" | "filter" | "marker" | "clipPath");
+    let is_server =
+        matches!(tag, "linearGradient" | "radialGradient" | "pattern" | "mask" | "filter" | "marker" | "clipPath");
     let mut values = Values {
         custom: Rc::clone(&inherited.custom),
         units: inherited.units,
@@ -229,8 +230,12 @@ impl Values<'_, '_, '_> {
             },
             Kind::Words => (!raw.is_empty()).then(|| lower(raw)),
             Kind::FontWeight => text::is_weight(raw).then(|| lower(raw)),
-            Kind::BaselineShift if raw.eq_ignore_ascii_case("sub") => Some(format!("{}px", -SHIFT * self.units.font).into()),
-            Kind::BaselineShift if raw.eq_ignore_ascii_case("super") => Some(format!("{}px", SHIFT * self.units.font).into()),
+            Kind::BaselineShift if raw.eq_ignore_ascii_case("sub") => {
+                Some(format!("{}px", -SHIFT * self.units.font).into())
+            }
+            Kind::BaselineShift if raw.eq_ignore_ascii_case("super") => {
+                Some(format!("{}px", SHIFT * self.units.font).into())
+            }
             Kind::BaselineShift => word(&["baseline"], raw)
                 .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
             Kind::Link => link(raw),
@@ -247,7 +252,8 @@ impl Values<'_, '_, '_> {
 
     /// Filters. Where one of them is not there, browsers show the element without any.
     fn filter<'v>(&self, raw: &'v str) -> Cow<'v, str> {
-        let links = || raw.char_indices().filter_map(|(at, c)| reference(&raw[at..]).filter(|_| c.eq_ignore_ascii_case(&'u')));
+        let links =
+            || raw.char_indices().filter_map(|(at, c)| reference(&raw[at..]).filter(|_| c.eq_ignore_ascii_case(&'u')));
         let is_there = |id: &str| self.ids.get(id).is_some_and(|n| n.tag_name().name() == "filter");
         if raw.eq_ignore_ascii_case("none") || links().any(|l| l.id.as_deref().is_none_or(|id| !is_there(id))) {
             return "none".into();
@@ -277,7 +283,11 @@ fn list<'v>(raw: &'v str, of: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> Optio
     });
     let all = items.map(|v| Some((v, of(v)?))).collect::<Option<Vec<_>>>()?;
     let changed = all.iter().any(|(old, new)| *old != new.as_ref());
-    Some(if changed { all.iter().map(|v| v.1.as_ref()).collect::<Vec<_>>().join(" ").into() } else { Cow::Borrowed(raw) })
+    Some(if changed {
+        all.iter().map(|v| v.1.as_ref()).collect::<Vec<_>>().join(" ").into()
+    } else {
+        Cow::Borrowed(raw)
+    })
 }
 
 fn word<'v>(words: &'static [&'static str], raw: &'v str) -> Option<Cow<'v, str>> {
@@ -416,7 +426,8 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             } else if let Some(name) = length_attribute(name) {
                 let p = Property { name, inherited: false, initial: "0", kind: Kind::Length(Sign::Any) };
                 let all = list(raw.trim(), |v| self.values.of(&p, v, false));
-                let new = all.map_or(Cow::Borrowed(raw), |new| if new == raw.trim() { Cow::Borrowed(raw) } else { new });
+                let new =
+                    all.map_or(Cow::Borrowed(raw), |new| if new == raw.trim() { Cow::Borrowed(raw) } else { new });
                 let new = self.near(&new).into_owned();
                 self.out.attributes.extend((new != raw).then_some((name, Some(new))));
             } else if let Some(name) = range::checked(name)
@@ -449,7 +460,8 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 new => new,
             },
         };
-        let is_length = is_geometry || matches!(p.kind, Kind::Length(_) | Kind::Dashes | Kind::FontSize | Kind::Spacing);
+        let is_length =
+            is_geometry || matches!(p.kind, Kind::Length(_) | Kind::Dashes | Kind::FontSize | Kind::Spacing);
         let new = new.map(|v| if is_length { self.near(&v).into_owned() } else { v.into_owned() });
         if new.as_deref().is_none_or(|v| v != raw.trim()) {
             self.out.attributes.push((p.name, new));
@@ -473,7 +485,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         };
         let markers: Vec<bool> = ["marker-start", "marker-mid", "marker-end"].into_iter().filter_map(marker).collect();
         inherited.marked = markers.contains(&true) || inherited.marked && markers.len() < 3;
-        if inherited.marked && tag == "path" && let Some(new) = out.value(node, "d").and_then(off_nodes) {
+        if inherited.marked
+            && tag == "path"
+            && let Some(new) = out.value(node, "d").and_then(off_nodes)
+        {
             out.attributes.retain(|a| a.0 != "d");
             out.attributes.push(("d", Some(new)));
         }
@@ -494,7 +509,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 *dashes = Some(v.into());
             }
         }
-        if inherited.text.concerns(tag) || style.iter().any(|s| text::concerns(&s.0)) || node.attributes().any(|a| text::concerns(a.name())) {
+        if inherited.text.concerns(tag)
+            || style.iter().any(|s| text::concerns(&s.0))
+            || node.attributes().any(|a| text::concerns(a.name()))
+        {
             let (changes, letters) = inherited.text.declare(tag, |name| {
                 let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
                 own.or_else(|| out.value(node, name).filter(|_| of_attribute(name).is_some()))
@@ -511,14 +529,20 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
         out.unsupported.extend(node.attribute("clip-path").and_then(|clip| unsupported("clip-path", clip)));
         let before = node.attribute("style").map_or_else(|| Some(Vec::new()), simple);
-        let same = before.is_some_and(|b| b.len() == style.len() && b.iter().zip(&style).all(|(b, s)| b.0 == s.0 && b.1 == s.1));
+        let same = before
+            .is_some_and(|b| b.len() == style.len() && b.iter().zip(&style).all(|(b, s)| b.0 == s.0 && b.1 == s.1));
         out.style = (!same).then_some(style);
         out
     }
 }
 
 /// The attributes of a `use` with which usvg, which knows no place, size and transform of symbols, shows one (SVG 2, section 5.5).
-fn shown_symbol(node: Node<'_, '_>, symbol: Node<'_, '_>, own: &Computed<'_>, units: &Units) -> Vec<(&'static str, String)> {
+fn shown_symbol(
+    node: Node<'_, '_>,
+    symbol: Node<'_, '_>,
+    own: &Computed<'_>,
+    units: &Units,
+) -> Vec<(&'static str, String)> {
     let length_of = |n: Node<'_, '_>, name: &str| value::length(n.attribute(name)?, units, whole(name, units));
     let mut out = Vec::new();
     for name in ["width", "height"] {
@@ -532,7 +556,8 @@ fn shown_symbol(node: Node<'_, '_>, symbol: Node<'_, '_>, own: &Computed<'_>, un
     let turned = matrix(symbol);
     let shift = ["x", "y"].map(|name| length_of(symbol, name).unwrap_or(0.0));
     if turned.is_some() || shift != [0.0; 2] {
-        let [x, y] = ["x", "y"].map(|name| own.value(node, name).and_then(|v| value::length(v, units, whole(name, units))).unwrap_or(0.0));
+        let [x, y] = ["x", "y"]
+            .map(|name| own.value(node, name).and_then(|v| value::length(v, units, whole(name, units))).unwrap_or(0.0));
         let all = matrix(node).unwrap_or_default() * Affine::translate((x, y)) * turned.unwrap_or_default();
         let list = all.as_coeffs().map(|c| c.to_string()).join(" ");
         out.push(("transform", format!("matrix({list})")));
@@ -544,9 +569,30 @@ fn shown_symbol(node: Node<'_, '_>, symbol: Node<'_, '_>, own: &Computed<'_>, un
 /// Whether usvg knows what `inherit` means for a property.
 fn knows_inherit(p: &Property) -> bool {
     let unknown = matches!(p.kind, Kind::Geometry(_) | Kind::Transform | Kind::Path)
-        || matches!(p.name, "paint-order" | "mix-blend-mode" | "isolation" | "mask-type" | "vector-effect" | "white-space" | "lighting-color")
+        || matches!(
+            p.name,
+            "paint-order"
+                | "mix-blend-mode"
+                | "isolation"
+                | "mask-type"
+                | "vector-effect"
+                | "white-space"
+                | "lighting-color"
+        )
         || p.name.starts_with("font-variant-")
-        || text::concerns(p.name) && !matches!(p.name, "font-size" | "font-weight" | "font-stretch" | "direction" | "letter-spacing" | "word-spacing" | "text-anchor" | "text-decoration" | "font-variant");
+        || text::concerns(p.name)
+            && !matches!(
+                p.name,
+                "font-size"
+                    | "font-weight"
+                    | "font-stretch"
+                    | "direction"
+                    | "letter-spacing"
+                    | "word-spacing"
+                    | "text-anchor"
+                    | "text-decoration"
+                    | "font-variant"
+            );
     !unknown
 }
 
@@ -566,7 +612,8 @@ fn scaled_dashes(node: Node<'_, '_>, style: &Computed<'_>, inherited: &Inherited
 impl<'a> Computed<'a> {
     /// All values.
     pub(super) fn values(&self) -> impl Iterator<Item = &str> {
-        let declared = self.style.iter().flatten().map(|d| d.1.as_ref()).chain(self.transform.iter().map(|d| d.value.as_ref()));
+        let declared =
+            self.style.iter().flatten().map(|d| d.1.as_ref()).chain(self.transform.iter().map(|d| d.value.as_ref()));
         declared.chain(self.attributes.iter().filter_map(|a| a.1.as_deref()))
     }
 

@@ -2,6 +2,7 @@
 //! them among an element's ancestors and siblings.
 
 use super::names::{Name, State, Svg};
+use roxmltree::Node;
 use selectors::OpaqueElement;
 use selectors::attr::{AttrSelectorOperation, CaseSensitivity, NamespaceConstraint};
 use selectors::bloom::BloomFilter;
@@ -11,7 +12,6 @@ use selectors::context::{
 use selectors::matching::{ElementSelectorFlags, matches_selector};
 use selectors::parser::Selector;
 use std::cell::Cell;
-use roxmltree::Node;
 
 /// Bytes of an attribute's value, and attributes, that are looked at in the time of a comparison.
 const VALUE: usize = 32;

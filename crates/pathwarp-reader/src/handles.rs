@@ -22,7 +22,9 @@ pub(super) fn off_nodes(data: &str) -> Option<String> {
                 start = at;
                 None
             }
-            PathSegment::LineTo { abs, x, y } | PathSegment::Quadratic { abs, x, y, .. } | PathSegment::EllipticalArc { abs, x, y, .. } => {
+            PathSegment::LineTo { abs, x, y }
+            | PathSegment::Quadratic { abs, x, y, .. }
+            | PathSegment::EllipticalArc { abs, x, y, .. } => {
                 at = place(abs, x, y);
                 None
             }

@@ -1,7 +1,7 @@
 //! Rewrites the words of a text: in the case that its style asks for, and with marks for its direction.
 
-use roxmltree::{Node, NodeId};
 use super::text::{Letters, separated};
+use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
 use std::ops::Range;
 

@@ -28,6 +28,8 @@ pub struct Plain {
     pub unsupported: Vec<(Option<usize>, String)>,
     /// The elements with numbers out of range, which the text has not, each with the first of them.
     pub far: Vec<(usize, String)>,
+    /// Elements that entities hold are written out, which no change tells.
+    pub expanded: bool,
 }
 
 /// An attribute or words that differ from the drawing's own. Elements are numbered in document order, from 0.
@@ -98,8 +100,10 @@ pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
     {
         text = Cow::Owned(expanded);
     }
+    let expanded = matches!(text, Cow::Owned(_));
     let doc = xml::document(&text).map_err(ReadError::Xml)?;
     let (mut all, mut out) = changes(&doc, budget)?;
+    out.expanded = expanded;
     all.sort_by_key(|(o, _)| (o.range.start, o.range.end));
     if all.is_empty() {
         drop(doc);
@@ -126,12 +130,11 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     let text = doc.input_text();
     let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
     let Tree { styles, sheets, unsupported } = styled(doc, &nodes, budget)?;
-    let mut out =
-        Plain { unsupported: unsupported.into_iter().map(|why| (None, why)).collect(), ..Plain::default() };
+    let mut out = Plain { unsupported: unsupported.into_iter().map(|why| (None, why)).collect(), ..Plain::default() };
     let mut all: Vec<(Change, String)> = Vec::new();
     let mut paths = String::new();
     // Ids that are no names: then all references stay as they are written here, also in an edited drawing.
-    let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| safe_id(id) != id);
+    let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| is_renamed(id, text));
     for (e, (node, style)) in nodes.iter().zip(&styles).enumerate() {
         all.extend(edits(*node, style, renamed).into_iter().map(|edit| edit.of(text, e, *node)));
         if sheets.contains(&e) {
@@ -156,7 +159,14 @@ fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>
     }
     if let Some(end) = text[..doc.root_element().range().end].rfind('<').filter(|_| !paths.is_empty()) {
         let new = format!("<defs xmlns=\"http://www.w3.org/2000/svg\">{paths}</defs>");
-        let empty = Change { element: nodes.len() - 1, name: "", range: end..end, text: "".into(), value: None, kept: "".into() };
+        let empty = Change {
+            element: nodes.len() - 1,
+            name: "",
+            range: end..end,
+            text: "".into(),
+            value: None,
+            kept: "".into(),
+        };
         all.push((empty, new));
     }
     Ok((all, out))
@@ -220,10 +230,11 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     let attributes = computed.attributes.iter();
     let mut out: Vec<Edit> =
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
-    out.extend(names(node));
+    out.extend(names(node, renamed));
     // The origin of what only an animation turns stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
-    let frozen = style.matrix.filter(|m| !(computed.transform.is_empty() && *m == Affine::IDENTITY) && !is_still(m)).map(frozen);
+    let frozen =
+        style.matrix.filter(|m| !(computed.transform.is_empty() && *m == Affine::IDENTITY) && !is_still(m)).map(frozen);
     let written = |all: &mut dyn Iterator<Item = (&str, &str)>| {
         all.map(|(n, v)| format!("{n}:{v}")).collect::<Vec<_>>().join(";")
     };
@@ -232,7 +243,11 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
         // usvg takes that of the root from its attribute.
         out.retain(|edit| edit.name != "transform");
         out.push(Edit { name: "transform", value: Some(list.clone()), kept: None });
-        out.extend(node.attribute("transform-origin").map(|_| Edit { name: "transform-origin", value: None, kept: None }));
+        out.extend(node.attribute("transform-origin").map(|_| Edit {
+            name: "transform-origin",
+            value: None,
+            kept: None,
+        }));
         out.extend(known.map(|v| Edit { name: "style", value: Some(v).filter(|v| !v.is_empty()), kept: None }));
     } else if let Some(all) = frozen {
         let was = node.attribute("style").unwrap_or_default().to_owned();
@@ -254,10 +269,12 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
 }
 
 /// Ids that end references before their end, and what refers to elements: also in results, where they belong together.
-fn names(node: Node<'_, '_>) -> impl Iterator<Item = Edit> {
-    node.attributes().filter_map(|a| {
+fn names(node: Node<'_, '_>, renamed: bool) -> impl Iterator<Item = Edit> {
+    node.attributes().filter_map(move |a| {
         let (name, new) = match a.name() {
-            "id" if a.namespace().is_none() => ("id", safe_id(a.value())),
+            "id" if a.namespace().is_none() && renamed && is_renamed(a.value(), node.document().input_text()) => {
+                ("id", safe_id(a.value()))
+            }
             "href" => {
                 let fragment = a.value().trim().strip_prefix('#')?;
                 let decoded = percent_decoded(fragment);
@@ -270,6 +287,11 @@ fn names(node: Node<'_, '_>) -> impl Iterator<Item = Edit> {
         };
         (new != a.value()).then(|| Edit { name, value: Some(new.clone().into_owned()), kept: Some(new.into_owned()) })
     })
+}
+
+/// Whether an id has signs that end references, and something may refer to it.
+fn is_renamed(id: &str, text: &str) -> bool {
+    safe_id(id) != id && (text.contains(&format!("#{id}")) || text.contains('%') && text.contains("href"))
 }
 
 /// Sets a property in a style attribute.
@@ -298,9 +320,7 @@ fn frozen(m: Affine) -> [(&'static str, String); 6] {
 fn attribute_node<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<roxmltree::Attribute<'a, 'i>> {
     match name.strip_prefix("xml:") {
         Some(name) => node.attribute_node((NS_XML_URI, name)),
-        None if name == "href" => {
-            node.attribute_node(name).or_else(|| node.attributes().find(|a| a.name() == name))
-        }
+        None if name == "href" => node.attribute_node(name).or_else(|| node.attributes().find(|a| a.name() == name)),
         None => node.attribute_node(name),
     }
 }

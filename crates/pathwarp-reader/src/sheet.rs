@@ -89,7 +89,12 @@ impl<'a> Rules<'a> {
     }
 
     /// The selectors that an element may match.
-    pub(super) fn candidates<'s>(&'s self, tag: &str, id: Option<&str>, classes: Option<&'s str>) -> impl Iterator<Item = usize> {
+    pub(super) fn candidates<'s>(
+        &'s self,
+        tag: &str,
+        id: Option<&str>,
+        classes: Option<&'s str>,
+    ) -> impl Iterator<Item = usize> {
         let classes = classes.into_iter().flat_map(str::split_ascii_whitespace).filter_map(|c| self.by_class.get(c));
         let named = self.by_id.get(id.unwrap_or_default()).into_iter().chain(self.by_tag.get(tag));
         named.chain(classes).chain([&self.others]).flatten().copied()

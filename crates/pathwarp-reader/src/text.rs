@@ -237,23 +237,21 @@ impl TextStyle {
 
 /// Whether a property is one that [`TextStyle`] follows.
 pub(super) fn concerns(name: &str) -> bool {
-    matches!(
-        name.as_bytes().first(),
-        Some(b'f' | b'd' | b't' | b'l' | b'w' | b'u' | b'o' | b's')
-    ) && (matches!(
-        name,
-        "font-weight"
-            | "font-stretch"
-            | "text-anchor"
-            | "direction"
-            | "text-transform"
-            | "letter-spacing"
-            | "white-space"
-            | "unicode-bidi"
-            | "fill-opacity"
-            | "stroke-opacity"
-            | "opacity"
-    ) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name))
+    matches!(name.as_bytes().first(), Some(b'f' | b'd' | b't' | b'l' | b'w' | b'u' | b'o' | b's'))
+        && (matches!(
+            name,
+            "font-weight"
+                | "font-stretch"
+                | "text-anchor"
+                | "direction"
+                | "text-transform"
+                | "letter-spacing"
+                | "white-space"
+                | "unicode-bidi"
+                | "fill-opacity"
+                | "stroke-opacity"
+                | "opacity"
+        ) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name))
 }
 
 /// Whether a value is a weight of fonts.

@@ -49,11 +49,7 @@ pub(super) struct Tree<'a> {
 ///
 /// # Errors
 /// It takes more work than the budget allows.
-pub(super) fn styled<'a>(
-    doc: &'a Document<'_>,
-    nodes: &[Node<'a, '_>],
-    budget: &Budget,
-) -> Result<Tree<'a>, Exceeded> {
+pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Tree<'a>, Exceeded> {
     let (rules, sheets, unsupported) = rules(nodes, budget)?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
     let looks = Looks { done: Cell::new(0), most: budget.left(Limit::Comparisons) as u64 };
@@ -175,9 +171,7 @@ fn root_units(doc: &Document<'_>) -> Units {
 
 /// Size of the viewport that an `<svg>` makes, in its own coordinates.
 fn viewport<'a>(node: Node<'a, '_>, style: &Computed<'a>, units: &Units) -> (f64, f64) {
-    let size = |name: &str, full: f64| {
-        style.value(node, name).and_then(|v| length(v, units, full)).unwrap_or(full)
-    };
+    let size = |name: &str, full: f64| style.value(node, name).and_then(|v| length(v, units, full)).unwrap_or(full);
     view_box(node).unwrap_or_else(|| (size("width", units.viewport.0), size("height", units.viewport.1)))
 }
 

@@ -66,7 +66,8 @@ impl Look {
     pub(super) fn standard_face(self, set: &GenericFamilies, db: &Database) -> Option<ID> {
         const STANDARD: &str = "Times New Roman";
         let configured = set.serif.as_deref().and_then(|name| self.face_of(name, db));
-        let found = configured.or_else(|| self.face_of(STANDARD, db)).or_else(|| self.face_with_metrics_of(STANDARD, db));
+        let found =
+            configured.or_else(|| self.face_of(STANDARD, db)).or_else(|| self.face_with_metrics_of(STANDARD, db));
         found.or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
     }
 
@@ -123,27 +124,108 @@ const SERIFS: &[&str] =
 const SANS_SERIFS: &[&str] =
     &["Arial", "Liberation Sans", "Arimo", "Helvetica", "Nimbus Sans", "Noto Sans", "DejaVu Sans"];
 const MONOSPACED: &[&str] = &[
-    "Consolas", "Menlo", "Noto Sans Mono", "Noto Mono", "DejaVu Sans Mono", "Liberation Mono", "Cousine", "Courier New",
+    "Consolas",
+    "Menlo",
+    "Noto Sans Mono",
+    "Noto Mono",
+    "DejaVu Sans Mono",
+    "Liberation Mono",
+    "Cousine",
+    "Courier New",
 ];
 
 /// Beginnings of the names of families, by plain names, of one kind (fontconfig's `45-latin.conf`, and what names say).
 const KINDS: [(FontFamily, &[&str]); 4] = [
-    (FontFamily::Monospace, &[
-        "andalemono", "consol", "courier", "lucidaconsole", "menlo", "monaco", "sfmono", "terminal", "lettergothic",
-    ]),
-    (FontFamily::Serif, &[
-        "antiqua", "baskerville", "bodoni", "bookantiqua", "bookman", "cambria", "caslon", "century", "charter", "cochin",
-        "constantia", "didot", "elephant", "garamond", "georgia", "goudy", "lora", "merriweather", "minion", "newyork",
-        "nimbusroman", "palatino", "perpetua", "playfair", "rockwell", "times", "utopia",
-    ]),
+    (
+        FontFamily::Monospace,
+        &["andalemono", "consol", "courier", "lucidaconsole", "menlo", "monaco", "sfmono", "terminal", "lettergothic"],
+    ),
+    (
+        FontFamily::Serif,
+        &[
+            "antiqua",
+            "baskerville",
+            "bodoni",
+            "bookantiqua",
+            "bookman",
+            "cambria",
+            "caslon",
+            "century",
+            "charter",
+            "cochin",
+            "constantia",
+            "didot",
+            "elephant",
+            "garamond",
+            "georgia",
+            "goudy",
+            "lora",
+            "merriweather",
+            "minion",
+            "newyork",
+            "nimbusroman",
+            "palatino",
+            "perpetua",
+            "playfair",
+            "rockwell",
+            "times",
+            "utopia",
+        ],
+    ),
     (FontFamily::Cursive, &["brush", "chalkboard", "comic", "lucidahandwriting", "snell", "zapfchancery", "zapfino"]),
-    (FontFamily::SansSerif, &[
-        "albany", "arial", "avantgarde", "avenir", "bahnschrift", "britannic", "calibri", "candara", "centurygothic", "corbel",
-        "dmsans", "droidsans", "firasans", "franklin", "frutiger", "futura", "geneva", "gillsans", "haettenschweiler",
-        "helvetica", "ibmplexsans", "impact", "inter", "lato", "lucida", "luxisans", "microsoftsans", "montserrat", "mssans",
-        "myriad", "nimbussans", "nunito", "opensans", "optima", "poppins", "proximanova", "quicksand", "raleway", "roboto",
-        "segoeui", "sourcesans", "sfpro", "tahoma", "trebuchet", "ubuntu", "univers", "verdana", "worksans",
-    ]),
+    (
+        FontFamily::SansSerif,
+        &[
+            "albany",
+            "arial",
+            "avantgarde",
+            "avenir",
+            "bahnschrift",
+            "britannic",
+            "calibri",
+            "candara",
+            "centurygothic",
+            "corbel",
+            "dmsans",
+            "droidsans",
+            "firasans",
+            "franklin",
+            "frutiger",
+            "futura",
+            "geneva",
+            "gillsans",
+            "haettenschweiler",
+            "helvetica",
+            "ibmplexsans",
+            "impact",
+            "inter",
+            "lato",
+            "lucida",
+            "luxisans",
+            "microsoftsans",
+            "montserrat",
+            "mssans",
+            "myriad",
+            "nimbussans",
+            "nunito",
+            "opensans",
+            "optima",
+            "poppins",
+            "proximanova",
+            "quicksand",
+            "raleway",
+            "roboto",
+            "segoeui",
+            "sourcesans",
+            "sfpro",
+            "tahoma",
+            "trebuchet",
+            "ubuntu",
+            "univers",
+            "verdana",
+            "worksans",
+        ],
+    ),
 ];
 
 /// The kind of a missing family, by its name.

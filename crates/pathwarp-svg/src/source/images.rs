@@ -2,8 +2,8 @@
 //! are followed only where the user allows it.
 
 use super::read::{self, ReadOptions};
-use super::{bitmap, check};
 use super::text::plain;
+use super::{bitmap, check};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;

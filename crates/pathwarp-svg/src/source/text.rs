@@ -69,6 +69,7 @@ impl SourceText {
             originals: plain.changes,
             far: plain.far,
             unsupported_style: plain.unsupported,
+            unpatchable: read.unpatchable.clone().or(plain.expanded.then_some(Unpatchable::Entities)),
             ..read
         };
         let marked = marks::mark(&plain.text);

@@ -1,6 +1,7 @@
 //! usvg's tree of a drawing: its fonts and images, and limits on its size.
 
 use super::check::{self, Features};
+use super::fontface;
 use super::fontguard::FontGuard;
 use super::fonts;
 use super::images::{self, Missing, Rejected, Unread};
@@ -8,7 +9,6 @@ use super::read::{self, ReadOptions};
 use super::stack::with_stack;
 use super::text::{SourceText, plain};
 use super::undrawn::{may_be_unknown, undrawn};
-use super::fontface;
 use pathwarp::Error;
 use pathwarp_reader::{Plain, xml};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -65,7 +65,13 @@ fn resolve(
             .map_err(|e| Error::limit(name, "with its text, its fonts take", e))?;
         let guard = FontGuard::new(options, &rejected);
         let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone(), guard);
-        usvg::Options { fontdb, font_resolver, font_size: MEDIUM, font_family: fonts::NO_FAMILY.to_owned(), ..usvg::Options::default() }
+        usvg::Options {
+            fontdb,
+            font_resolver,
+            font_size: MEDIUM,
+            font_family: fonts::NO_FAMILY.to_owned(),
+            ..usvg::Options::default()
+        }
     } else {
         usvg::Options::default()
     };

@@ -1,9 +1,9 @@
 //! Lettering as an SVG drawing with data attributes for baselines, heights and letters.
 
 use crate::source::number::{path_data, push};
-use pathwarp_reader::xml::escape;
 use pathwarp::Error;
 use pathwarp::param::LengthUnit;
+use pathwarp_reader::xml::escape;
 use pathwarp_text::OutlinedText;
 use std::fmt::Write as _;
 use std::str::FromStr as _;
