@@ -234,7 +234,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
     // The origin of what only an animation turns stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
     let frozen =
-        style.matrix.filter(|m| !(computed.transform.is_empty() && *m == Affine::IDENTITY) && !is_still(m)).map(frozen);
+        style.matrix.filter(|m| !(is_still(m) || computed.transform.is_empty() && *m == Affine::IDENTITY)).map(frozen);
     let written = |all: &mut dyn Iterator<Item = (&str, &str)>| {
         all.map(|(n, v)| format!("{n}:{v}")).collect::<Vec<_>>().join(";")
     };
