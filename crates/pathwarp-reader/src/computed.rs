@@ -2,13 +2,12 @@
 
 use super::color;
 use super::handles::off_nodes;
-use super::ids::Ids;
+use super::ids::{Ids, attribute};
 use super::range;
 use super::shapes::shape_length;
 use super::sheet::{Declaration, simple};
 use super::table::{Kind, Property, Sign, length_attribute, of_attribute, property};
 use super::text::{self, Letters, TextStyle};
-use super::tree::attribute;
 use super::value::{self, Custom, Units, reference};
 use pathwarp::kurbo::Affine;
 use roxmltree::Node;

@@ -1,7 +1,7 @@
-//! The elements that references lead to.
+//! The elements that references lead to, and attributes by their names.
 
 use super::value::percent_decoded;
-use roxmltree::{Document, Node};
+use roxmltree::{Document, NS_XML_URI, Node};
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
@@ -34,5 +34,13 @@ impl<'a, 'i> Ids<'a, 'i> {
         let links = || node.attributes().filter(|a| a.name() == "href");
         let link = links().find(|a| a.namespace().is_none()).or_else(|| links().next())?;
         self.get(&percent_decoded(link.value().trim().strip_prefix('#')?))
+    }
+}
+
+/// An attribute by its name with the prefix `xml`, or without a prefix.
+pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    match name.strip_prefix("xml:") {
+        Some(name) => node.attribute((NS_XML_URI, name)),
+        None => node.attribute(name),
     }
 }

@@ -12,7 +12,7 @@ use super::value::{Custom, MEDIUM, Units, length};
 use super::{media, transform};
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::kurbo::{Affine, Rect};
-use roxmltree::{Document, NS_XML_URI, Node, NodeId};
+use roxmltree::{Document, Node, NodeId};
 use selectors::context::SelectorCaches;
 use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap};
@@ -140,14 +140,6 @@ fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exce
 
 /// Bytes of style attributes from which on looking for the same one takes less time than reading it again.
 const REPEATED: usize = 128;
-
-/// An attribute by its name with the prefix `xml`, or without a prefix.
-pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
-    match name.strip_prefix("xml:") {
-        Some(name) => node.attribute((NS_XML_URI, name)),
-        None => node.attribute(name),
-    }
-}
 
 fn is_sheet(node: &Node<'_, '_>) -> bool {
     let is_css = |kind: &str| kind.trim().is_empty() || kind.trim().eq_ignore_ascii_case("text/css");

@@ -157,6 +157,15 @@ impl<'a> Edits<'a> {
     }
 }
 
+/// Declares new path data where a declaration would override the attribute.
+fn declare_data(source: &SourceText, e: ElementId, c: &mut Change) {
+    if let Some((_, Some(data))) = c.attrs.iter().find(|a| a.0 == "d")
+        && (source.css_mentions("d") || declared(&source.written_style(e), "d").is_some())
+    {
+        c.properties.push(("d", format!("path('{data}')")));
+    }
+}
+
 fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize, usize, String)>) {
     let text = &source.text;
     let el = &source.elements[e];
@@ -175,12 +184,7 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
     if let Some(q) = &qname {
         out.push((el.qname.start, el.qname.end, q.clone()));
     }
-    // The property would override the attribute.
-    if let Some((_, Some(data))) = c.attrs.iter().find(|a| a.0 == "d")
-        && (source.css_mentions("d") || declared(&source.written_style(e), "d").is_some())
-    {
-        c.properties.push(("d", format!("path('{data}')")));
-    }
+    declare_data(source, e, &mut c);
     let mut added = String::new();
     let mut attrs = c.attrs;
     if !c.properties.is_empty() {
