@@ -167,6 +167,7 @@ fn declare_data(source: &SourceText, e: ElementId, c: &mut Change) {
 }
 
 fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize, usize, String)>) {
+    declare_data(source, e, &mut c);
     let text = &source.text;
     let el = &source.elements[e];
     if !c.before.is_empty() {
@@ -184,7 +185,6 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
     if let Some(q) = &qname {
         out.push((el.qname.start, el.qname.end, q.clone()));
     }
-    declare_data(source, e, &mut c);
     let mut added = String::new();
     let mut attrs = c.attrs;
     if !c.properties.is_empty() {
