@@ -2,11 +2,11 @@
 
 use crate::source::read::{bytes_unpacked, text};
 use crate::source::tags::PATHWARP as NAMESPACE;
-use crate::source::xml::{self, escape_content};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp_reader::xml::{self, escape_content};
 use std::io::Write as _;
 use usvg::roxmltree;
 

@@ -6,10 +6,10 @@
 
 use crate::source::read::ReadOptions;
 use crate::source::tree;
-use crate::source::xml::escape_content;
 use pathwarp::Error;
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::Rect;
+use pathwarp_reader::xml::escape_content;
 use std::fmt::Write as _;
 use usvg::WriteOptions;
 

@@ -100,7 +100,8 @@ impl Limit {
     fn base(self) -> f64 {
         match self {
             Self::Bytes => 16e6,
-            Self::Elements | Self::Letters => 30e3,
+            Self::Elements => 30e3,
+            Self::Letters => 100e3,
             Self::Comparisons => 15e6,
             Self::Segments => 2e6,
             Self::Pixels => 80e6,

@@ -41,7 +41,8 @@ fn dependencies_run_one_way() {
         }
     };
     allowed("pathwarp-text", &[]);
-    allowed("pathwarp-svg", &["pathwarp", "pathwarp-text"]);
+    allowed("pathwarp-reader", &["pathwarp"]);
+    allowed("pathwarp-svg", &["pathwarp", "pathwarp-reader", "pathwarp-text"]);
     allowed("pathwarp-raster", &["pathwarp"]);
     allowed("pathwarp-gimp", &["pathwarp"]);
     allowed("pathwarp-mesh", &["pathwarp"]);
@@ -61,6 +62,7 @@ fn dependencies_run_one_way() {
         "pathwarp-pdf",
         "pathwarp-plugin",
         "pathwarp-psd",
+        "pathwarp-reader",
         "pathwarp-svg",
         "pathwarp-raster",
         "pathwarp-solid",

@@ -1,9 +1,9 @@
 //! Guides that a recipe refers to: kept with the objects, for the day when they are gone from the drawing.
 
 use super::nodes::{by_id, parse};
-use crate::source::xml::escape;
 use pathwarp::Error;
 use pathwarp::budget::Limits;
+use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
 use usvg::roxmltree::Node;
 

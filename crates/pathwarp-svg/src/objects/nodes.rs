@@ -2,9 +2,9 @@
 
 use super::names::{NAMESPACE, RECIPE};
 use crate::source::tags::{INKSCAPE, SVG, is_shape, is_sodipodi};
-use crate::source::xml;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
+use pathwarp_reader::xml;
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node};
 

@@ -197,7 +197,7 @@ impl Drawing {
             return far;
         }
         // As for the shapes.
-        let far = Far::of(&self.source, self.scene(), self.shapes(), self.missed.range);
+        let far = Far::of(&self.source, self.scene(), self.shapes());
         self.far.get_or_init(|| far)
     }
 }

@@ -2,10 +2,10 @@
 
 use super::model::Scene;
 use super::shape::Shape;
-use crate::source::range::{self, LARGEST};
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Outline;
+use pathwarp_reader::LARGEST;
 use std::collections::{BTreeSet, HashSet};
 
 /// The parts that are out of range, and the reasons.
@@ -18,13 +18,13 @@ pub(crate) struct Far {
 }
 
 impl Far {
-    /// Finds the parts. `replaced`: the source has numbers that were replaced.
-    pub(super) fn of(source: &SourceText, scene: &Scene, shapes: &[Shape], replaced: bool) -> Self {
+    /// Finds the parts.
+    pub(super) fn of(source: &SourceText, scene: &Scene, shapes: &[Shape]) -> Self {
         let reach: Vec<bool> = shapes.iter().map(|s| !is_near(&s.outline)).collect();
-        if !replaced && !reach.contains(&true) {
+        if source.far.is_empty() && !reach.contains(&true) {
             return Self::default();
         }
-        let numbers = if replaced { range::elements(source) } else { Vec::new() };
+        let numbers = &source.far;
         let named: HashSet<ElementId> = numbers.iter().map(|n| n.0).collect();
         let inside = |e: Option<ElementId>| e.is_some_and(|e| source.ancestors(e).any(|a| named.contains(&a)));
         let mut reasons: Vec<(String, String)> = numbers

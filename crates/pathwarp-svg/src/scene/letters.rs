@@ -7,8 +7,9 @@ use crate::source::element::Attr;
 use crate::source::read::ReadOptions;
 use crate::source::tags::{ElementId, Namespace};
 use crate::source::text::SourceText;
-use crate::source::{tree, xml};
+use crate::source::tree;
 use pathwarp::Error;
+use pathwarp_reader::xml;
 use std::collections::HashMap;
 use usvg::{Color, Fill, Node, Paint};
 

@@ -1,10 +1,11 @@
 //! The check of a drawing before it is resolved: everything that references, style sheets and text make of it is counted.
 
 use super::quoted::{self, Quoted};
-use super::{range, selectors, unfold};
+use super::unfold;
 use memchr::{memchr2, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit};
 use pathwarp::{Error, Outline, Seg};
+use pathwarp_reader::LARGEST;
 use std::collections::HashMap;
 use usvg::roxmltree;
 
@@ -42,7 +43,6 @@ impl Features {
 /// Returns [`Error::Input`] if it exceeds the budget or nests too deeply.
 pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<Features, Error> {
     let features = Features::of(xml);
-    selectors::count(xml, budget).map_err(|e| Error::limit(name, "its style sheet takes", e))?;
     let mut quoted = Quoted::default();
     if features.text {
         let too_much = |e| Error::limit(name, "its texts take", e);
@@ -93,8 +93,8 @@ fn wide_arcs(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Excee
     const MOVED: f64 = 0.0125;
     // Path data is parsed once more only where its numbers may amount to such an arc.
     let arcs = |d: &str| {
-        let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && range::is_uneven(d);
-        suspected.then(|| Outline::from_svg_lossy(&range::in_range(d)))
+        let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && is_uneven(d);
+        suspected.then(|| Outline::from_svg_lossy(d))
     };
     let radius = |s: &Seg| if let Seg::Arc(a) = s { a.a.hypot().max(a.b.hypot()) } else { 0.0 };
     let widest = |o: Outline| o.segs().map(radius).fold(0.0, f64::max);
@@ -107,6 +107,27 @@ fn wide_arcs(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Excee
     // Each of them may be as wide, and all were counted with what references show again.
     let arcs = budget.limits().of(Limit::Segments) - budget.left(Limit::Segments);
     budget.spend_cut(Limit::Comparisons, (arcs * MOVED * cubics * cubics) as u64)
+}
+
+/// Returns `false` if all numbers of path data are certainly below 10⁴ and, unless they are zero, at least 10⁻³: no exponent, no five
+/// digits before a point, no three zeros after it.
+fn is_uneven(data: &str) -> bool {
+    let (mut digits, mut zeros, mut fraction) = (0, 0, false);
+    for byte in data.bytes() {
+        match byte {
+            b'e' | b'E' => return true,
+            b'.' => (zeros, fraction) = (0, true),
+            b'0' if fraction => zeros += 1,
+            // The digits after the first one that is not zero do not count.
+            b'0'..=b'9' if fraction => zeros = i32::MIN,
+            b'0'..=b'9' => digits += 1,
+            _ => (digits, fraction) = (0, false),
+        }
+        if digits > 4 || fraction && zeros > 2 {
+            return true;
+        }
+    }
+    false
 }
 
 /// Counts the shapes of a drawing with strokes so wide that single precision fails the renderer when it outlines them for their
@@ -122,7 +143,7 @@ fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Ex
         let end = value.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-')));
         value[..end.unwrap_or(value.len())].trim_end_matches(['e', 'E']).parse::<f64>().ok()
     });
-    let width = widths.fold(0.0, f64::max).min(range::LARGEST);
+    let width = widths.fold(0.0, f64::max).min(LARGEST);
     if width < WIDE {
         return Ok(());
     }

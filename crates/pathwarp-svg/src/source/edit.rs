@@ -5,7 +5,7 @@ use super::element::Attr;
 use super::style::{declared, with_declaration};
 use super::tags::{ElementId, Namespace};
 use super::text::SourceText;
-use super::xml::escape;
+use pathwarp_reader::xml::escape;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -30,9 +30,10 @@ struct Change {
 }
 
 impl Change {
-    /// Whether the change decides about an attribute.
-    fn sets(&self, name: &str) -> bool {
-        self.attrs.iter().any(|a| a.0 == name) || name == "style" && !self.properties.is_empty()
+    /// Whether the change decides about an attribute. With path data, it may decide about their property, too.
+    fn sets(&self, name: &str, has_data: bool) -> bool {
+        let styled = !self.properties.is_empty() || has_data && self.attrs.iter().any(|a| a.0 == "d" && a.1.is_some());
+        self.attrs.iter().any(|a| a.0 == name) || name == "style" && styled
     }
 }
 
@@ -126,7 +127,11 @@ impl<'a> Edits<'a> {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
         let changes = &self.changes;
-        let kept = source.originals.iter().filter(|o| !changes.get(&o.element).is_some_and(|c| c.sets(o.name)));
+        let has_data = |e| source.css_mentions("d") || declared(&source.written_style(e), "d").is_some();
+        let decided = |o: &pathwarp_reader::Change| {
+            changes.get(&o.element).is_some_and(|c| c.sets(o.name, o.name == "style" && has_data(o.element)))
+        };
+        let kept = source.originals.iter().filter(|o| !decided(o));
         let kept: Vec<_> = kept.map(|o| (o.range.start, o.range.end, o.kept.clone())).collect();
         for (e, c) in self.changes {
             patch(source, e, c, &mut patches);
@@ -152,7 +157,17 @@ impl<'a> Edits<'a> {
     }
 }
 
-fn patch(source: &SourceText, e: ElementId, c: Change, out: &mut Vec<(usize, usize, String)>) {
+/// Declares new path data where a declaration would override the attribute.
+fn declare_data(source: &SourceText, e: ElementId, c: &mut Change) {
+    if let Some((_, Some(data))) = c.attrs.iter().find(|a| a.0 == "d")
+        && (source.css_mentions("d") || declared(&source.written_style(e), "d").is_some())
+    {
+        c.properties.push(("d", format!("path('{data}')")));
+    }
+}
+
+fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize, usize, String)>) {
+    declare_data(source, e, &mut c);
     let text = &source.text;
     let el = &source.elements[e];
     if !c.before.is_empty() {

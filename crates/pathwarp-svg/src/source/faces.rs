@@ -56,9 +56,36 @@ impl Look {
 
     /// The face of a family whose letters are as wide as those of a missing one.
     pub(super) fn face_with_metrics_of(self, missing: &str, db: &Database) -> Option<ID> {
-        let (families, weight, style) = metric_compatible(missing)?;
+        let (families, weight, style) = named(&METRIC_COMPATIBLE, missing)?;
         let look = self.or(weight, style, fontdb::Stretch::Normal);
         families.iter().find_map(|f| look.face_of(f, db))
+    }
+
+    /// The face that Chromium takes where no family is there or asked for: its standard one or one with its metrics, else one
+    /// without serifs.
+    pub(super) fn standard_face(self, set: &GenericFamilies, db: &Database) -> Option<ID> {
+        const STANDARD: &str = "Times New Roman";
+        let configured = set.serif.as_deref().and_then(|name| self.face_of(name, db));
+        let found =
+            configured.or_else(|| self.face_of(STANDARD, db)).or_else(|| self.face_with_metrics_of(STANDARD, db));
+        found.or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
+    }
+
+    /// The face of a family like a missing one, or of its kind, for the first of which one is known.
+    pub(super) fn face_like(self, missing: &[String], set: &GenericFamilies, db: &Database) -> Option<ID> {
+        let alike = |name: &String| {
+            let (families, weight, style) = named(&ALIKE, name)?;
+            let look = self.or(weight, style, fontdb::Stretch::Normal);
+            families.iter().find_map(|f| look.face_of(f, db))
+        };
+        let of_kind = |name: &String| {
+            let words = plain(name);
+            let weight = if words.contains("bold") { fontdb::Weight::BOLD } else { fontdb::Weight::NORMAL };
+            let slanted = words.contains("italic") || words.contains("oblique");
+            let style = if slanted { fontdb::Style::Italic } else { fontdb::Style::Normal };
+            self.or(weight, style, fontdb::Stretch::Normal).face_of_kind(&kind_of(name)?, set, db)
+        };
+        missing.iter().find_map(|name| alike(name).or_else(|| of_kind(name)))
     }
 
     /// The same, with another weight, style or stretch where this one's is normal.
@@ -73,22 +100,153 @@ impl Look {
     /// The face of a generic family: of the configured one, else of a common one that is installed, else of the bundled one.
     pub(super) fn face_of_kind(self, kind: &FontFamily, set: &GenericFamilies, db: &Database) -> Option<ID> {
         let common: &[&str] = match kind {
-            FontFamily::Serif => &["Times New Roman", "Noto Serif", "DejaVu Serif", "Liberation Serif"],
-            FontFamily::SansSerif => &["Arial", "Helvetica", "Noto Sans", "DejaVu Sans", "Liberation Sans"],
+            FontFamily::Serif => SERIFS,
+            FontFamily::SansSerif => SANS_SERIFS,
             FontFamily::Cursive => &["Comic Sans MS", "Apple Chancery"],
             FontFamily::Fantasy => &["Impact", "Papyrus"],
-            FontFamily::Monospace => {
-                &["Courier New", "Noto Sans Mono", "Noto Mono", "DejaVu Sans Mono", "Liberation Mono"]
-            }
+            FontFamily::Monospace => MONOSPACED,
             FontFamily::Named(_) => return None,
         };
+        // Where there is none, Chromium's is without serifs.
+        let last = if matches!(kind, FontFamily::Cursive | FontFamily::Fantasy) { SANS_SERIFS } else { &[] };
         // The bundled family has a single weight.
         let installed = |name: &&str| self.face_of(name, db).filter(|id| !is_bundled(*id, db));
         match asked_for(kind, set) {
             Some(name) => self.face_of(name, db),
-            None => common.iter().find_map(installed).or_else(|| self.face_of(BUNDLED_FAMILY, db)),
+            None => common.iter().chain(last).find_map(installed).or_else(|| self.face_of(BUNDLED_FAMILY, db)),
         }
     }
+}
+
+/// The fonts that browsers take for the generic families, the usual ones first, then what has their metrics, then what Linux has.
+const SERIFS: &[&str] =
+    &["Times New Roman", "Liberation Serif", "Tinos", "Times", "Nimbus Roman", "Noto Serif", "DejaVu Serif"];
+const SANS_SERIFS: &[&str] =
+    &["Arial", "Liberation Sans", "Arimo", "Helvetica", "Nimbus Sans", "Noto Sans", "DejaVu Sans"];
+const MONOSPACED: &[&str] = &[
+    "Consolas",
+    "Menlo",
+    "Noto Sans Mono",
+    "Noto Mono",
+    "DejaVu Sans Mono",
+    "Liberation Mono",
+    "Cousine",
+    "Courier New",
+];
+
+/// Beginnings of the names of families, by plain names, of one kind (fontconfig's `45-latin.conf`, and what names say).
+const KINDS: [(FontFamily, &[&str]); 4] = [
+    (
+        FontFamily::Monospace,
+        &["andalemono", "consol", "courier", "lucidaconsole", "menlo", "monaco", "sfmono", "terminal", "lettergothic"],
+    ),
+    (
+        FontFamily::Serif,
+        &[
+            "antiqua",
+            "baskerville",
+            "bodoni",
+            "bookantiqua",
+            "bookman",
+            "cambria",
+            "caslon",
+            "century",
+            "charter",
+            "cochin",
+            "constantia",
+            "didot",
+            "elephant",
+            "garamond",
+            "georgia",
+            "goudy",
+            "lora",
+            "merriweather",
+            "minion",
+            "newyork",
+            "nimbusroman",
+            "palatino",
+            "perpetua",
+            "playfair",
+            "rockwell",
+            "times",
+            "utopia",
+        ],
+    ),
+    (FontFamily::Cursive, &["brush", "chalkboard", "comic", "lucidahandwriting", "snell", "zapfchancery", "zapfino"]),
+    (
+        FontFamily::SansSerif,
+        &[
+            "albany",
+            "arial",
+            "avantgarde",
+            "avenir",
+            "bahnschrift",
+            "britannic",
+            "calibri",
+            "candara",
+            "centurygothic",
+            "corbel",
+            "dmsans",
+            "droidsans",
+            "firasans",
+            "franklin",
+            "frutiger",
+            "futura",
+            "geneva",
+            "gillsans",
+            "haettenschweiler",
+            "helvetica",
+            "ibmplexsans",
+            "impact",
+            "inter",
+            "lato",
+            "lucida",
+            "luxisans",
+            "microsoftsans",
+            "montserrat",
+            "mssans",
+            "myriad",
+            "nimbussans",
+            "nunito",
+            "opensans",
+            "optima",
+            "poppins",
+            "proximanova",
+            "quicksand",
+            "raleway",
+            "roboto",
+            "segoeui",
+            "sourcesans",
+            "sfpro",
+            "tahoma",
+            "trebuchet",
+            "ubuntu",
+            "univers",
+            "verdana",
+            "worksans",
+        ],
+    ),
+];
+
+/// The kind of a missing family, by its name.
+pub(super) fn kind_of(missing: &str) -> Option<FontFamily> {
+    let name = plain(missing);
+    // What the whole name says is more than its beginning.
+    let said = [
+        ("mono", FontFamily::Monospace),
+        ("typewriter", FontFamily::Monospace),
+        ("gothic", FontFamily::SansSerif),
+        ("grotes", FontFamily::SansSerif),
+        ("sans", FontFamily::SansSerif),
+        ("slab", FontFamily::Serif),
+        ("serif", FontFamily::Serif),
+        ("script", FontFamily::Cursive),
+        ("handwriting", FontFamily::Cursive),
+    ];
+    let by_word = || said.iter().find(|(word, _)| name.contains(word)).map(|(_, kind)| kind.clone());
+    let known = KINDS.iter().find(|(_, names)| names.iter().any(|n| name.starts_with(n)));
+    let specific = known.filter(|(_, names)| names.iter().any(|n| *n == name)).map(|k| k.0.clone());
+    specific.or_else(by_word).or_else(|| known.map(|k| k.0.clone()))
 }
 
 /// A name in small letters and digits, without the style that most fonts have.
@@ -98,8 +256,9 @@ fn plain(name: &str) -> String {
     letters
 }
 
-/// Families whose letters are as wide as those of others (fontconfig's `30-metric-aliases.conf`), by plain names.
-const METRIC_COMPATIBLE: [(&str, &[&str]); 9] = [
+/// Families whose letters are as wide as those of others (fontconfig's `30-metric-aliases.conf`), by plain names. Chromium takes them
+/// for the missing ones, before other families of a list.
+const METRIC_COMPATIBLE: [(&str, &[&str]); 13] = [
     ("arial", &["Liberation Sans", "Arimo", "Helvetica", "Nimbus Sans"]),
     ("helvetica", &["Nimbus Sans", "Arial", "Liberation Sans", "Arimo"]),
     ("timesnewroman", &["Liberation Serif", "Tinos", "Times", "Nimbus Roman"]),
@@ -109,12 +268,27 @@ const METRIC_COMPATIBLE: [(&str, &[&str]); 9] = [
     ("calibri", &["Carlito"]),
     ("cambria", &["Caladea"]),
     ("georgia", &["Gelasio"]),
+    ("palatino", &["P052", "URW Palladio L", "TeX Gyre Pagella"]),
+    ("palatinolinotype", &["P052", "URW Palladio L", "TeX Gyre Pagella"]),
+    ("newcenturyschoolbook", &["C059", "Century Schoolbook L", "TeX Gyre Schola"]),
+    ("itcavantgardegothic", &["URW Gothic", "TeX Gyre Adventor"]),
+];
+
+/// Families that look like others, by plain names: where no other family follows.
+const ALIKE: [(&str, &[&str]); 4] = [
+    ("verdana", &["DejaVu Sans", "Bitstream Vera Sans"]),
+    ("segoeui", &["Selawik", "Open Sans"]),
+    ("consolas", &["Inconsolata", "DejaVu Sans Mono"]),
+    ("menlo", &["DejaVu Sans Mono"]),
 ];
 
 /// The families that can stand for a missing one, which may be named by a PostScript name, and the look that its name says.
-fn metric_compatible(missing: &str) -> Option<(&'static [&'static str], fontdb::Weight, fontdb::Style)> {
+fn named(
+    table: &[(&str, &'static [&'static str])],
+    missing: &str,
+) -> Option<(&'static [&'static str], fontdb::Weight, fontdb::Style)> {
     let name = plain(missing);
-    METRIC_COMPATIBLE.iter().find_map(|(family, others)| {
+    table.iter().find_map(|(family, others)| {
         let mut rest = name.strip_prefix(family)?;
         let (mut weight, mut style) = (fontdb::Weight::NORMAL, fontdb::Style::Normal);
         while !rest.is_empty() {
@@ -163,11 +337,24 @@ mod tests {
     #[test]
     fn names_of_fonts() {
         assert_eq!(plain("Noto Sans-Regular"), "notosans");
-        let of = |name| metric_compatible(name).map(|(families, weight, style)| (families[0], weight.0, style));
+        let of = |name| named(&METRIC_COMPATIBLE, name).map(|(families, weight, style)| (families[0], weight.0, style));
         assert_eq!(of("Arial"), Some(("Liberation Sans", 400, fontdb::Style::Normal)));
         assert_eq!(of("Helvetica-BoldOblique"), Some(("Nimbus Sans", 700, fontdb::Style::Italic)));
         assert_eq!(of("TimesNewRomanPS-ItalicMT"), Some(("Liberation Serif", 400, fontdb::Style::Italic)));
         assert_eq!(of("Courier New"), Some(("Liberation Mono", 400, fontdb::Style::Normal)));
         assert_eq!([of("Helvetica Neue"), of("Arial Black"), of("Timeless")], [None; 3]);
+        for (name, kind) in [
+            ("Helvetica Neue", Some(FontFamily::SansSerif)),
+            ("Segoe UI", Some(FontFamily::SansSerif)),
+            ("PublicSans-Regular", Some(FontFamily::SansSerif)),
+            ("Noto Serif Display", Some(FontFamily::Serif)),
+            ("Century Gothic", Some(FontFamily::SansSerif)),
+            ("MinionPro-Bold", Some(FontFamily::Serif)),
+            ("Fira Mono", Some(FontFamily::Monospace)),
+            ("Brush Script MT", Some(FontFamily::Cursive)),
+            ("Nowhere", None),
+        ] {
+            assert_eq!(kind_of(name), kind, "{name}");
+        }
     }
 }

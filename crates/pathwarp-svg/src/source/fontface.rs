@@ -2,6 +2,7 @@
 //! TrueType, OpenType or WOFF 1.0 font.
 
 use super::fontguard::listing;
+use super::fonts::load_unnamed;
 use super::style::declarations;
 use base64::Engine as _;
 use pathwarp::budget::{Budget, Exceeded, Limit};
@@ -36,7 +37,12 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
     let taken: Vec<_> = all.faces().filter(same).map(|f| f.id).collect();
     taken.into_iter().for_each(|id| all.remove_face(id));
     for face in faces {
-        for id in all.load_font_source(Source::Binary(Arc::new(face.data))) {
+        let data: Arc<dyn AsRef<[u8]> + Send + Sync> = Arc::new(face.data);
+        let mut ids = all.load_font_source(Source::Binary(data.clone())).to_vec();
+        if ids.is_empty() {
+            ids.extend(load_unnamed(all, data, face.family.clone()));
+        }
+        for id in ids {
             let Some(info) = all.face(id).cloned() else { continue };
             all.remove_face(id);
             all.push_face_info(FaceInfo {

@@ -66,7 +66,39 @@ pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
     if is_collection(path).map_err(unreadable)? && listing(&fs::read(path).map_err(unreadable)?, MOST) > MOST {
         return Err("has more fonts, or longer names, than can be listed".into());
     }
-    db.load_font_file(path).map_err(unreadable)
+    let before = db.len();
+    db.load_font_file(path).map_err(unreadable)?;
+    if db.len() == before && !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ttc")) {
+        let data = fs::read(path).map_err(unreadable)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let _ = load_unnamed(db, Arc::new(data), name);
+    }
+    Ok(())
+}
+
+/// Loads a font without names, as subsets are, by a name from elsewhere. `None` for what is no font.
+pub(super) fn load_unnamed(db: &mut Database, data: Bytes, family: String) -> Option<ID> {
+    let font = FontRef::new(data.as_ref().as_ref()).ok()?;
+    let about = font.attributes();
+    let style = match about.style {
+        skrifa::attribute::Style::Normal => fontdb::Style::Normal,
+        skrifa::attribute::Style::Italic => fontdb::Style::Italic,
+        skrifa::attribute::Style::Oblique(_) => fontdb::Style::Oblique,
+    };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1000")]
+    let weight = fontdb::Weight(about.weight.value().clamp(1.0, 1000.0) as u16);
+    font.charmap().mappings().next()?;
+    Some(db.push_face_info(fontdb::FaceInfo {
+        id: ID::dummy(),
+        source: Source::Binary(data.clone()),
+        index: 0,
+        families: vec![(family.clone(), fontdb::Language::English_UnitedStates)],
+        post_script_name: family,
+        style,
+        weight,
+        stretch: fontdb::Stretch::Normal,
+        monospaced: false,
+    }))
 }
 
 /// Finds fonts like usvg's own resolver, but always returns one, and records the families that were not found.
@@ -169,6 +201,9 @@ impl Held {
     }
 }
 
+/// Stands for the family of text that asks for none.
+pub(super) const NO_FAMILY: &str = "a family";
+
 /// The face for a font of the drawing.
 fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
     let style = match font.style() {
@@ -190,7 +225,7 @@ fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: 
         if found.is_some() {
             return found;
         }
-        let Some(name) = asked_for(family, generic) else { continue };
+        let Some(name) = asked_for(family, generic).filter(|name| *name != NO_FAMILY) else { continue };
         absent.push(name.clone());
         similar = look.face_with_metrics_of(name, db);
         if similar.is_some() {
@@ -198,9 +233,10 @@ fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: 
         }
     }
     if let Ok(mut m) = missing.lock() {
-        m.extend(absent);
+        m.extend(absent.iter().cloned());
     }
-    let last = similar.or_else(|| look.face_of_kind(&FontFamily::Serif, generic, db));
+    let last = similar.or_else(|| look.face_like(&absent, generic, db));
+    let last = last.or_else(|| look.standard_face(generic, db));
     last.or_else(|| query(BUNDLED_FAMILY)).or_else(|| db.faces().next().map(|f| f.id))
 }
 

@@ -2,11 +2,13 @@
 //! are followed only where the user allows it.
 
 use super::read::{self, ReadOptions};
-use super::{bitmap, check, range, xml};
+use super::text::plain;
+use super::{bitmap, check};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::Error;
 use pathwarp::budget::Limit;
+use pathwarp_reader::{Plain, xml};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Read as _;
@@ -54,7 +56,8 @@ pub(super) fn resolver<'a>(
     let decode = usvg::ImageHrefResolver::default_data_resolver();
     let load = Arc::new(move |mime: &str, data: Arc<Vec<u8>>, what: &str, usvg: &usvg::Options<'_>| {
         match checked(mime, data, &format!("{name}: {what}"), options) {
-            Ok(data) => decode(mime, data?, usvg),
+            // What a picture is, its content says, as in browsers.
+            Ok(data) => decode(if mime == SVG { mime } else { ANY }, data?, usvg),
             Err(e) => {
                 if let Ok(mut r) = rejected.lock() {
                     r.get_or_insert(e);
@@ -121,10 +124,10 @@ pub(super) fn checked(
         Err(e @ Error::Input { limit: Some(_), .. }) => return Err(e),
         Err(_) => return Ok(None),
     };
-    match xml::parse(&text, place, budget) {
-        Ok(xml) => {
-            check::drawing(&xml, place, budget)?;
-            let text = range::replaced(&xml, place)?.unwrap_or(text);
+    xml::check(&text, place, budget)?;
+    match plain(text, place, budget, None) {
+        Ok(Plain { text, .. }) => {
+            check::drawing(&xml::parse_checked(&text, place)?, place, budget)?;
             Ok(Some(Arc::new(text.into_bytes())))
         }
         Err(e @ Error::Input { limit: Some(_), .. }) => Err(e),

@@ -18,7 +18,7 @@ pub(crate) struct Marked {
 }
 
 /// The elements with a temporary id, which is the stem followed by the element's number.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Marks {
     pub(crate) stem: String,
     /// In document order.

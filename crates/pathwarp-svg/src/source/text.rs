@@ -1,7 +1,6 @@
 //! The source text with its table of elements: names and attributes are looked up here, and patches refer to it.
 
 use super::ahead::{self, Ahead};
-use super::css::{self, Original, Resolved};
 use super::element::{Attr, Element};
 use super::marks::{self, Marks};
 use super::parallel::both;
@@ -10,9 +9,9 @@ use super::style;
 use super::table::Table;
 use super::tags::{ElementId, Namespace, is_animation, is_tracked};
 use super::unpatchable::Unpatchable;
-use super::xml;
 use pathwarp::Error;
 use pathwarp::budget::Budget;
+use pathwarp_reader::{Change, Plain, ReadError, resolve, xml};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -35,8 +34,10 @@ pub(crate) struct SourceText {
     pub(crate) unpatchable: Option<Unpatchable>,
     /// Namespace prefixes that the file did not declare; the text does.
     pub(crate) undeclared: Vec<String>,
-    /// Attributes that differ from the file's, in the order of the text: its style, as browsers read it.
-    pub(crate) originals: Vec<Original>,
+    /// How the text differs from the file's, in its order: it is what usvg reads as browsers read the file.
+    pub(crate) originals: Vec<Change>,
+    /// The elements with numbers out of range, each with the first of them.
+    pub(crate) far: Vec<(ElementId, String)>,
     /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
     marks: Marks,
@@ -61,39 +62,29 @@ impl SourceText {
         then: impl FnOnce(&Self, &roxmltree::Document<'_>) -> Result<T, Error>,
     ) -> Result<(Self, T), Error> {
         xml::check(&text, name, budget)?;
-        let styled = |text: String| {
-            let resolved = css::resolved(&text, budget).map_err(|e| Error::limit(name, "its style takes", e))?;
-            Ok::<_, Error>(resolved.unwrap_or_else(|| Resolved {
-                text,
-                originals: Vec::new(),
-                unsupported: Vec::new(),
-            }))
-        };
-        let Resolved { mut text, mut originals, unsupported: mut unsupported_style } = styled(text)?;
         let mut undeclared = Vec::new();
-        while let Some(marked) = marks::mark(&text) {
-            let doc = match xml::document(&marked.text) {
-                Ok(doc) => doc,
-                Err(roxmltree::Error::UnknownNamespace(prefix, _)) => match prefixes::declared(&text, &prefix) {
-                    Some(mended) if undeclared.len() < MOST_PREFIXES => {
-                        Resolved { text, originals, unsupported: unsupported_style } = styled(mended)?;
-                        undeclared.push(prefix);
-                        continue;
-                    }
-                    _ => break,
-                },
-                Err(_) => break,
-            };
-            let Some(table) = Table::of(&doc, &marked.patches) else { break };
-            if table.unpatchable.is_some() || table.elements.len() != marked.elements {
-                break;
-            }
-            let read = Self::new(text, table, marked.marks);
-            let source = Self { undeclared, originals, unsupported_style, ..read };
+        let plain = plain(text, name, budget, Some(&mut undeclared))?;
+        let complete = |read: Self| Self {
+            undeclared,
+            originals: plain.changes,
+            far: plain.far,
+            unsupported_style: plain.unsupported,
+            unpatchable: read.unpatchable.clone().or(plain.expanded.then_some(Unpatchable::Entities)),
+            ..read
+        };
+        let marked = marks::mark(&plain.text);
+        let doc = marked.as_ref().and_then(|m| Some((m, xml::document(&m.text).ok()?)));
+        let read = doc.and_then(|(m, doc)| {
+            let table = Table::of(&doc, &m.patches)?;
+            (table.unpatchable.is_none() && table.elements.len() == m.elements).then_some((table, doc))
+        });
+        if let Some((table, doc)) = read {
+            let marks = marked.as_ref().map(|m| m.marks.clone()).unwrap_or_default();
+            let source = complete(Self::new(plain.text, table, marks));
             let result = then(&source, &doc)?;
             return Ok((source, result));
         }
-        let mut source = Self { undeclared, originals, unsupported_style, ..Self::parse(text, name)? };
+        let mut source = complete(Self::parse(plain.text, name)?);
         let (marked, marks) = source.instrumented();
         source.marks = marks;
         // Without reliable positions, ids cannot be inserted.
@@ -128,6 +119,7 @@ impl SourceText {
             unpatchable,
             undeclared: Vec::new(),
             originals: Vec::new(),
+            far: Vec::new(),
             unsupported_style: Vec::new(),
             marks,
             ahead: Ahead::default(),
@@ -245,6 +237,13 @@ impl SourceText {
 
     pub(crate) fn attr(&self, e: ElementId, name: &str) -> Option<Cow<'_, str>> {
         self.elements.get(e)?.attr(&self.text, name)
+    }
+
+    /// The value of a property that an element declares. Nothing is inherited.
+    pub(crate) fn property(&self, e: ElementId, name: &str) -> Option<Cow<'_, str>> {
+        let style = self.attr(e, "style");
+        let declared = style.as_deref().and_then(|s| style::declared(s, name)).map(|v| v.to_owned().into());
+        declared.or_else(|| self.attr(e, name))
     }
 
     /// An attribute in a namespace, e.g. Inkscape's label.
@@ -377,6 +376,32 @@ impl SourceText {
     }
 }
 
+/// Resolves a drawing into plain SVG. Prefixes that it does not declare are added to `undeclared`, or else are an error.
+pub(super) fn plain(
+    mut text: String,
+    name: &str,
+    budget: &Budget,
+    mut undeclared: Option<&mut Vec<String>>,
+) -> Result<Plain, Error> {
+    loop {
+        let why = match resolve(&text, budget) {
+            Ok(plain) => return Ok(plain),
+            Err(ReadError::Limit(e)) => return Err(Error::limit(name, "its style takes", e)),
+            Err(ReadError::Xml(why)) => why,
+        };
+        let known = undeclared.as_mut().filter(|u| u.len() < MOST_PREFIXES);
+        if let (roxmltree::Error::UnknownNamespace(prefix, _), Some(known)) = (&why, known)
+            && let Some(mended) = prefixes::declared(&text, prefix)
+        {
+            known.push(prefix.clone());
+            text = mended;
+            continue;
+        }
+        xml::parse_checked(&text, name)?;
+        return Err(Error::input(name, why.to_string()));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -403,7 +428,7 @@ mod tests {
         let drawings = [
             "<svg xmlns='http://www.w3.org/2000/svg'><path/><g id='q'><path id=''/></g></svg>",
             "<?xml version='1.0'?>\n<!DOCTYPE svg>\n<!-- <path> --><s:svg xmlns:s='http://www.w3.org/2000/svg' a='>'\n><s:g\n/>\
-             <s:path xml:id = \"a\" d='M0,0'/><s:style><![CDATA[ <g> .b{} ]]></s:style><s:title>t &amp; u</s:title></s:svg >",
+             <s:path xml:id = \"a\" d='M0,0'/><s:style type='text/x'><![CDATA[ <g> .b{} ]]></s:style><s:title>t &amp; u</s:title></s:svg >",
             "<svg xmlns='http://www.w3.org/2000/svg' xmlns:i='http://www.inkscape.org/namespaces/inkscape'>\
              <g id='a' i:label='&lt;'><path id='a' d='M0,0\n1,1'/></g><rect id='longer than warp-5' x='1'/><rect \
              id='longer than warp-5' y='2'/><use href='#a'/><text><tspan id='c'>warp-</tspan></text><svg/></svg>",

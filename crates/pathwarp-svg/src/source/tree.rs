@@ -1,15 +1,16 @@
 //! usvg's tree of a drawing: its fonts and images, and limits on its size.
 
 use super::check::{self, Features};
+use super::fontface;
 use super::fontguard::FontGuard;
 use super::fonts;
 use super::images::{self, Missing, Rejected, Unread};
 use super::read::{self, ReadOptions};
 use super::stack::with_stack;
-use super::text::SourceText;
+use super::text::{SourceText, plain};
 use super::undrawn::{may_be_unknown, undrawn};
-use super::{css, fontface, range, xml};
 use pathwarp::Error;
+use pathwarp_reader::{Plain, xml};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use usvg::roxmltree;
@@ -23,8 +24,6 @@ pub(crate) struct Missed {
     pub(crate) images: Vec<String>,
     /// Those of them that lead out of the folder of the drawing.
     pub(crate) outside: Vec<String>,
-    /// Numbers out of range were replaced.
-    pub(crate) range: bool,
     /// What else a picture of it lacks, in words; of drawings that are read by [`parse`].
     pub(crate) undrawn: Vec<String>,
 }
@@ -36,13 +35,7 @@ pub(crate) fn tree(
     options: &ReadOptions,
 ) -> Result<(usvg::Tree, Missed), Error> {
     let features = check::drawing(xml, name, &options.budget)?;
-    match range::replaced(xml, name)? {
-        None => resolve(xml, &features, name, options),
-        Some(text) => {
-            let (tree, missed) = resolve(&xml::parse_checked(&text, name)?, &features, name, options)?;
-            Ok((tree, Missed { range: true, ..missed }))
-        }
-    }
+    resolve(xml, &features, name, options)
 }
 
 /// Resolves another version of a drawing, which asks for the same work once more.
@@ -72,7 +65,13 @@ fn resolve(
             .map_err(|e| Error::limit(name, "with its text, its fonts take", e))?;
         let guard = FontGuard::new(options, &rejected);
         let font_resolver = fonts::resolver(options.generic_families.clone(), missing.clone(), guard);
-        usvg::Options { fontdb, font_resolver, font_size: MEDIUM, ..usvg::Options::default() }
+        usvg::Options {
+            fontdb,
+            font_resolver,
+            font_size: MEDIUM,
+            font_family: fonts::NO_FAMILY.to_owned(),
+            ..usvg::Options::default()
+        }
     } else {
         usvg::Options::default()
     };
@@ -116,8 +115,7 @@ pub(crate) fn parse_counted(
 ) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     let text = read::text(data, name, &options.budget)?;
     xml::check(&text, name, &options.budget)?;
-    let resolved = css::resolved(&text, &options.budget).map_err(|e| Error::limit(name, "its style takes", e))?;
-    let (text, unsupported) = resolved.map_or((text, Vec::new()), |r| (r.text, r.unsupported));
+    let Plain { text, unsupported, .. } = plain(text, name, &options.budget, None)?;
     let xml = xml::parse_checked(&text, name)?;
     let (tree, mut missed) = with_stack(name, || tree(&xml, name, options))?;
     drop(xml);

@@ -1,16 +1,13 @@
 //! Bounds on the size of a drawing with all references followed. `use`, patterns, markers, clip paths, masks and filters
 //! show other elements, which may show further ones in turn, so a few lines can expand to more elements than any program can
 //! draw. usvg walks them all, so they are counted first.
-//!
-//! The cascade here follows usvg's rules, not CSS's, as the count must bound what usvg is going to do: an `!important`
-//! declaration is never overridden, not even by an important one of higher precedence. `cascade` resolves properties that usvg
-//! does not know, and follows CSS.
+//! Style sheets have been resolved before.
 
 use super::quoted::{Quoted, letters};
 use super::tags::is_shape;
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Exceeded, Limit};
-use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, PseudoClass, StyleSheet};
+use simplecss::DeclarationTokenizer;
 use std::collections::HashMap;
 use usvg::roxmltree::{self, Node, NodeId};
 
@@ -180,7 +177,6 @@ struct Unfolding<'a, 'i> {
     doc: &'a roxmltree::Document<'i>,
     quoted: &'a Quoted<'a>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
-    sheet: StyleSheet<'a>,
     /// Number of elements and depth by body; `None` while the body is being counted.
     known: HashMap<Body, Option<(Size, usize)>>,
 }
@@ -188,21 +184,12 @@ struct Unfolding<'a, 'i> {
 impl<'a, 'i> Unfolding<'a, 'i> {
     fn of(doc: &'a roxmltree::Document<'i>, quoted: &'a Quoted<'a>) -> Self {
         let mut by_id = HashMap::new();
-        let mut sheet = StyleSheet::new();
         for node in doc.descendants().filter(Node::is_element) {
             if let Some(id) = node.attribute("id") {
                 by_id.entry(id).or_insert(node);
             }
-            if node.tag_name().name() == "style"
-                && let Some(text) = node.text()
-            {
-                sheet.parse_more(text);
-            }
         }
-        // Keep only rules with relevant properties.
-        let is_relevant = |d: &Declaration<'_>| matches!(d.name, "marker" | "filter") || PROPERTIES.contains(&d.name);
-        sheet.rules.retain(|r| r.declarations.iter().any(is_relevant));
-        Self { doc, quoted, by_id, sheet, known: HashMap::new() }
+        Self { doc, quoted, by_id, known: HashMap::new() }
     }
 
     /// Sums up everything with repetitions, and finds the deepest nesting.
@@ -323,7 +310,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         out
     }
 
-    /// Resolves the properties of an element from attributes, style sheets and the style attribute. Filters are listed from all
+    /// Resolves the properties of an element from attributes and the style attribute. Filters are listed from all
     /// declarations, as each may hold several.
     fn references(&self, node: Node<'a, 'i>) -> ([Reference; PROPERTIES.len()], Vec<NodeId>) {
         let mut out = [(Reference::Unset, false); PROPERTIES.len()];
@@ -341,10 +328,6 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         };
         for a in node.attributes() {
             set(a.name(), a.value(), false);
-        }
-        let rules = self.sheet.rules.iter().filter(|r| r.selector.matches(&Element(node)));
-        for d in rules.flat_map(|r| &r.declarations) {
-            set(d.name, d.value, d.important);
         }
         for d in node.attribute("style").into_iter().flat_map(DeclarationTokenizer::from) {
             set(d.name, d.value, d.important);
@@ -396,31 +379,6 @@ fn vertices(node: Node<'_, '_>) -> u64 {
     first + bytes.windows(2).map(|w| starts(w[0], w[1])).sum::<u64>() + 2
 }
 
-/// Element adapter for selectors.
-struct Element<'a, 'i>(Node<'a, 'i>);
-
-impl simplecss::Element for Element<'_, '_> {
-    fn parent_element(&self) -> Option<Self> {
-        self.0.parent_element().map(Element)
-    }
-
-    fn prev_sibling_element(&self) -> Option<Self> {
-        self.0.prev_sibling_element().map(Element)
-    }
-
-    fn has_local_name(&self, name: &str) -> bool {
-        self.0.tag_name().name() == name
-    }
-
-    fn attribute_matches(&self, name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.0.attribute(name).is_some_and(|v| operator.matches(v))
-    }
-
-    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
-        matches!(class, PseudoClass::FirstChild) && self.0.prev_sibling_element().is_none()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -448,7 +406,6 @@ mod tests {
         let pattern = "<pattern id='p'><rect/></pattern>";
         assert_eq!(elements(&format!("{pattern}<rect fill='url(#p) red'/>")), 3 + 2);
         assert_eq!(elements(&format!("{pattern}<rect style='fill:url( \"#p\" )' stroke='url(#p)'/>")), 3 + 4);
-        assert_eq!(elements(&format!("{pattern}<style>.k{{fill:url(#p)}}</style><rect class='k'/><rect/>")), 5 + 2);
         assert_eq!(elements(&format!("{pattern}<g fill='url(#p)'><rect/><rect fill='red'/><rect/></g>")), 6 + 4);
         assert_eq!(elements(&format!("{pattern}{group}<use href='#g' fill='url(#p)'/>")), 4 + 2 + 2);
         let context = "<defs><g id='c' fill='context-fill'><rect/><rect/></g></defs>";

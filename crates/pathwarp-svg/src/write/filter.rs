@@ -4,8 +4,8 @@ use super::markup::Markup;
 use super::values;
 use crate::scene::filter_area;
 use crate::source::number::short;
-use crate::source::xml::escape;
 use pathwarp::kurbo::Rect;
+use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
 use usvg::filter::{
     ColorChannel, ColorInterpolation, ColorMatrix, ColorMatrixKind, ComponentTransfer, Composite, CompositeOperator,

@@ -4,7 +4,7 @@ use super::fragment::Writer;
 use super::input::WriteInput;
 use super::page;
 use crate::bend::outcome::{Notes, Skipped};
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 

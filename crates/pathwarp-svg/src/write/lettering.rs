@@ -2,10 +2,10 @@
 
 use crate::bend::plain::WarpedPath;
 use crate::source::number::{path_data, push};
-use crate::source::xml::escape;
 use pathwarp::Error;
 use pathwarp::kurbo::{Rect, Shape};
 use pathwarp::param::LengthUnit;
+use pathwarp_reader::xml::escape;
 use pathwarp_text::OutlinedText;
 use std::fmt::Write as _;
 use std::str::FromStr as _;

@@ -1,7 +1,7 @@
 //! Markup: prefixes, attributes and styles as they must be written in the surrounding file.
 
 use crate::source::text::SourceText;
-use crate::source::xml::escape;
+use pathwarp_reader::xml::escape;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt::Write as _;

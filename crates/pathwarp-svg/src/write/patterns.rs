@@ -2,8 +2,8 @@
 
 use crate::scene::affine::affine;
 use crate::source::number::{matrix, short};
-use crate::source::xml::escape;
 use pathwarp::kurbo::Affine;
+use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
 use usvg::Pattern;
 

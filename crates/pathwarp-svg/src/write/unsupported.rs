@@ -2,7 +2,6 @@
 
 use super::input::WriteInput;
 use crate::bend::outcome::{Notes, Skipped};
-use crate::source::cascade;
 use crate::source::tags::{ElementId, is_shape};
 use crate::source::text::SourceText;
 use crate::source::undrawn::{Unknown, is_definition, unknown};
@@ -74,12 +73,11 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
         return Vec::new();
     }
     let selected = input.options.selection.resolve(source);
-    let [fills, strokes] = ["fill", "stroke"].map(|p| cascade::values(source, p));
     let parts = input.scene.parts.iter().zip(input.outcomes);
     let warped: HashSet<ElementId> =
         parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element()).collect();
-    let unknown = |e: ElementId, values: &[Option<String>]| {
-        let value = source.ancestors(e).find_map(|a| values[a].as_deref().filter(|v| *v != "inherit"))?;
+    let unknown = |e: ElementId, property: &str| {
+        let value = source.ancestors(e).find_map(|a| source.property(a, property).filter(|v| v != "inherit"))?;
         let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
         paint(&source.elements[*source.by_id().get(id)?.first()?].tag)
     };
@@ -88,11 +86,8 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
             return Some(why.to_owned());
         }
         let tag = source.elements[e].tag.as_ref();
-        let paints = [("fill", &fills), ("stroke", &strokes)];
-        let (name, kind) = paints
-            .into_iter()
-            .filter(|_| is_shape(tag) || tag == "text")
-            .find_map(|(name, values)| Some((name, unknown(e, values)?)))?;
+        let painted = ["fill", "stroke"].into_iter().filter(|_| is_shape(tag) || tag == "text");
+        let (name, kind) = { painted }.find_map(|name| Some((name, unknown(e, name)?)))?;
         Some(if warped.contains(&e) {
             format!("only its outline is; its {name}, {kind}, is unchanged")
         } else {

@@ -5,10 +5,10 @@ use crate::bend::picture::BentImage;
 use crate::scene::model::Part;
 use crate::source::number::{outline_data, path_data, short};
 use crate::source::text::SourceText;
-use crate::source::xml::escape;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::kurbo::{Affine, Rect, Shape as _};
+use pathwarp_reader::xml::escape;
 
 /// Position of a bent bitmap as attributes of its element.
 pub(super) fn bent_attributes(bent: &BentImage, to: Affine) -> [(&'static str, String); 5] {

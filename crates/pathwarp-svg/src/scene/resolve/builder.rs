@@ -5,7 +5,6 @@ use crate::scene::geometry::GeometryReader;
 use crate::scene::letters::Owners;
 use crate::scene::model::{Clip, PartRole, Referrer, Scene};
 use crate::scene::resolve::tiling::Tiling;
-use crate::source::cascade;
 use crate::source::tags::ElementId;
 use crate::source::text::SourceText;
 use crate::source::unpatchable::Unpatchable;
@@ -168,8 +167,7 @@ fn fixed_widths(source: &SourceText) -> HashSet<ElementId> {
     if !source.text.contains(FIXED) {
         return HashSet::new();
     }
-    let values = cascade::values(source, "vector-effect").into_iter().enumerate();
-    values.filter(|(_, v)| v.as_deref() == Some(FIXED)).map(|(e, _)| e).collect()
+    (0..source.elements.len()).filter(|&e| source.property(e, "vector-effect").as_deref() == Some(FIXED)).collect()
 }
 
 fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Affine>> {

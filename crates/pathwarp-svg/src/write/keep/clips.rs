@@ -6,8 +6,8 @@ use crate::scene::affine::stretch;
 use crate::scene::model::{Clip, Group, Mask, Node, Referrer};
 use crate::source::tags::ElementId;
 use crate::source::unpatchable::Unpatchable;
-use crate::source::xml::escape;
 use crate::write::masks;
+use pathwarp_reader::xml::escape;
 use std::collections::BTreeSet;
 use std::ops::Range;
 

@@ -2,7 +2,6 @@
 
 use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
-use crate::source::cascade;
 use crate::source::number::short;
 use crate::source::style::declared;
 use crate::source::tags::ElementId;
@@ -120,8 +119,8 @@ fn property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     if !k.source.text.contains(name) {
         return;
     }
-    for (e, value) in cascade::values(k.source, name).into_iter().enumerate() {
-        let Some(new) = value.and_then(|v| numbers(&v, diagonal)) else { continue };
+    for e in 0..k.source.elements.len() {
+        let Some(new) = k.source.property(e, name).and_then(|v| numbers(&v, diagonal)) else { continue };
         // What the root declares, it hands down.
         if k.tag(e).is_empty() || e > 0 && !refers_to_root(k.source, e) {
             continue;

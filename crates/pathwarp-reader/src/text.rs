@@ -131,6 +131,11 @@ pub(super) struct Letters {
 }
 
 impl TextStyle {
+    /// Whether an element is a text or a part of one.
+    pub(super) fn concerns(&self, tag: &str) -> bool {
+        tag == "text" || self.fade.is_some()
+    }
+
     /// Takes over what an element declares: `value` gives the values of its properties.
     pub(super) fn declare<'a>(&mut self, tag: &str, value: impl Fn(&str) -> Option<&'a str>) -> (TextChanges, Letters) {
         let value = |name: &str| value(name).map(str::trim).filter(|v| !v.eq_ignore_ascii_case("inherit"));
@@ -230,6 +235,30 @@ impl TextStyle {
     }
 }
 
+/// Whether a property is one that [`TextStyle`] follows.
+pub(super) fn concerns(name: &str) -> bool {
+    matches!(name.as_bytes().first(), Some(b'f' | b'd' | b't' | b'l' | b'w' | b'u' | b'o' | b's'))
+        && (matches!(
+            name,
+            "font-weight"
+                | "font-stretch"
+                | "text-anchor"
+                | "direction"
+                | "text-transform"
+                | "letter-spacing"
+                | "white-space"
+                | "unicode-bidi"
+                | "fill-opacity"
+                | "stroke-opacity"
+                | "opacity"
+        ) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name))
+}
+
+/// Whether a value is a weight of fonts.
+pub(super) fn is_weight(value: &str) -> bool {
+    weight(value, 400).is_some()
+}
+
 /// The start of a value, as long as messages show it: many texts may inherit it.
 pub(super) fn start(value: &str) -> &str {
     const SHOWN: usize = 80;
@@ -299,7 +328,7 @@ fn is_angle(unit: &str) -> bool {
 /// A weight in hundreds, which usvg knows. `parent` is the inherited one.
 fn weight(value: &str, parent: u16) -> Option<u16> {
     Some(match value.to_ascii_lowercase().as_str() {
-        "normal" | "initial" => 400,
+        "normal" => 400,
         "bold" => 700,
         "bolder" => match parent {
             0..350 => 400,

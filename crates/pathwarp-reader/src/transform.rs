@@ -4,13 +4,14 @@ use super::value::{Units, length, nested};
 use cssparser::{Parser, Token};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 
-/// The properties that together make a transform.
-pub(super) const PROPERTIES: [&str; 6] =
-    ["transform", "rotate", "scale", "translate", "transform-origin", "transform-box"];
-
-/// Computes the transform of an element. `declared` gives the values of [`PROPERTIES`]; `reference` is the box that percentages
-/// and the origin refer to. Returns `None` for what is not flat or not valid.
-pub(super) fn matrix<'a>(declared: impl Fn(&str) -> Option<&'a str>, units: &Units, reference: Rect) -> Option<Affine> {
+/// Computes the transform of an element. `declared` gives the values of the properties that make it; `reference` is the box that percentages
+/// and the origin refer to; `is_box`: it is laid out by CSS, so that it turns about its centre. Returns `None` for what is not flat or not valid.
+pub(super) fn matrix<'a>(
+    declared: impl Fn(&str) -> Option<&'a str>,
+    units: &Units,
+    reference: Rect,
+    is_box: bool,
+) -> Option<Affine> {
     let set = |name: &str| declared(name).map(str::trim).filter(|v| !v.eq_ignore_ascii_case("none"));
     let size = (reference.width(), reference.height());
     let translate = set("translate").map_or(Some(Affine::IDENTITY), |v| {
@@ -26,6 +27,7 @@ pub(super) fn matrix<'a>(declared: impl Fn(&str) -> Option<&'a str>, units: &Uni
     let list = set("transform").map_or(Some(Affine::IDENTITY), |v| functions(v, units, size))?;
     let origin = declared("transform-origin").map_or(Some(None), |v| origin(v, units, size).map(Some))?;
     // Without a declaration, the origin of what CSS does not lay out is the corner of the box that `transform-box` names.
+    let origin = origin.or(is_box.then(|| Vec2::new(size.0 / 2.0, size.1 / 2.0)));
     let origin = (reference.origin() + origin.unwrap_or_default()).to_vec2();
     let all =
         Affine::translate(origin) * translate * Affine::rotate(rotate) * scale * list * Affine::translate(-origin);
@@ -142,7 +144,7 @@ mod tests {
 
     fn of(declared: &[(&str, &'static str)]) -> Option<Point> {
         let find = |name: &str| declared.iter().find(|d| d.0 == name).map(|d| d.1);
-        let m = matrix(find, &UNITS, Rect::new(10.0, 20.0, 50.0, 100.0))?;
+        let m = matrix(find, &UNITS, Rect::new(10.0, 20.0, 50.0, 100.0), false)?;
         let p = m * Point::new(1.0, 2.0);
         Some(Point::new((p.x * 1e9).round() / 1e9, (p.y * 1e9).round() / 1e9))
     }

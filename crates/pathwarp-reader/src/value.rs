@@ -2,6 +2,7 @@
 //! to fonts and windows (CSS Values 4), `light-dark()` (CSS Color 5).
 
 use cssparser::{Parser, Token};
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -14,6 +15,9 @@ const LONGEST: usize = 1 << 14;
 
 /// Names that mark values which are not plain.
 const FUNCTIONS: [&str; 6] = ["var(", "calc(", "min(", "max(", "clamp(", "light-dark("];
+
+/// Font size where nothing sets one, in px.
+pub(super) const MEDIUM: f64 = 16.0;
 
 /// Custom properties and their values, variables replaced.
 pub(super) type Custom = BTreeMap<String, Rc<str>>;
@@ -41,7 +45,12 @@ pub(super) fn is_plain(value: &str) -> bool {
             is_relative(&rest[..end])
         }
     };
-    !FUNCTIONS.iter().any(|f| contains(value, f)) && !bytes.iter().enumerate().any(unit)
+    !has_functions(value) && !bytes.iter().enumerate().any(unit)
+}
+
+/// Returns `true` if a value has variables or expressions.
+pub(super) fn has_functions(value: &str) -> bool {
+    value.contains('(') && FUNCTIONS.iter().any(|f| contains(value, f))
 }
 
 fn contains(value: &str, function: &str) -> bool {
@@ -56,7 +65,7 @@ fn find(value: &str, function: &str) -> Option<usize> {
 /// Units that usvg does not know.
 fn is_relative(unit: &str) -> bool {
     let unit = unit.to_ascii_lowercase();
-    matches!(unit.as_str(), "rem" | "ch" | "ic" | "cap" | "lh" | "rlh" | "q")
+    matches!(unit.as_str(), "em" | "ex" | "rem" | "ch" | "ic" | "cap" | "lh" | "rlh" | "q")
         || unit
             .strip_prefix(['s', 'l', 'd'])
             .unwrap_or(&unit)
@@ -207,6 +216,118 @@ pub(super) fn length(value: &str, units: &Units, percent: f64) -> Option<f64> {
     let mut input = Parser::new(value);
     let quantity = Math { units, percent: Some(percent) }.atom(&mut input)?;
     (input.is_exhausted() && quantity.value.is_finite()).then_some(quantity.value)
+}
+
+/// A length as usvg reads it. `percent` is what 100 % is, if usvg does not know. `None` for what is none; where `strict`, without a unit.
+pub(super) fn known_length<'v>(
+    text: &'v str,
+    units: &Units,
+    percent: Option<f64>,
+    positive: bool,
+    strict: bool,
+) -> Option<Cow<'v, str>> {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| from + bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let mut end = digits(sign);
+    if bytes.get(end) == Some(&b'.') && bytes.get(end + 1).is_some_and(u8::is_ascii_digit) {
+        end = digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let signed = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        if bytes.get(signed).is_some_and(u8::is_ascii_digit) {
+            end = digits(signed);
+        }
+    }
+    let (number, unit) = text.split_at(end);
+    let value: f64 = number.parse().ok()?;
+    if positive && value < 0.0 {
+        return None;
+    }
+    match unit {
+        "" if strict && value != 0.0 => None,
+        "" | "px" | "in" | "cm" | "mm" | "pt" | "pc" => Some(Cow::Borrowed(text)),
+        "%" => Some(percent.map_or(Cow::Borrowed(text), |full| format!("{}px", value / 100.0 * full).into())),
+        _ => {
+            let lower = unit.to_ascii_lowercase();
+            if matches!(lower.as_str(), "px" | "in" | "cm" | "mm" | "pt" | "pc") {
+                return Some(format!("{number}{lower}").into());
+            }
+            Some(format!("{}px", length(text, units, 0.0)?).into())
+        }
+    }
+}
+
+/// A `url()`.
+#[derive(Debug, PartialEq)]
+pub(super) struct Reference<'v> {
+    /// The element in the same file, by its id.
+    pub(super) id: Option<String>,
+    /// What follows.
+    pub(super) rest: &'v str,
+}
+
+impl Reference<'_> {
+    /// The reference as usvg reads it.
+    pub(super) fn text<'t>(&self, old: &'t str) -> Cow<'t, str> {
+        let Some(id) = self.id.as_deref().map(safe_id) else { return Cow::Borrowed(old) };
+        let is_plain = old.strip_prefix("url(#").and_then(|o| o.strip_prefix(&*id)).is_some_and(|o| o.starts_with(')'));
+        if is_plain { Cow::Borrowed(old) } else { format!("url(#{id}){}", self.rest).into() }
+    }
+}
+
+/// The reference that a value begins with.
+pub(super) fn reference(value: &str) -> Option<Reference<'_>> {
+    if !value.as_bytes().get(..4)?.eq_ignore_ascii_case(b"url(") {
+        return None;
+    }
+    let mut input = Parser::new(value);
+    let target = match input.next().ok()?.clone() {
+        Token::UnquotedUrl(target) => target.as_ref().to_owned(),
+        Token::Function(_) => {
+            let inside = input.parse_nested_block(|i| i.expect_string_cloned().map_err(|_| unexpected()));
+            inside.ok()?.as_ref().to_owned()
+        }
+        _ => return None,
+    };
+    let id = target.trim().strip_prefix('#').map(|id| percent_decoded(id).into_owned());
+    Some(Reference { id, rest: value.get(input.position().byte_index()..)? })
+}
+
+/// A fragment with its percent escapes replaced.
+pub(super) fn percent_decoded(fragment: &str) -> Cow<'_, str> {
+    if !fragment.contains('%') {
+        return Cow::Borrowed(fragment);
+    }
+    let bytes = fragment.as_bytes();
+    let (mut out, mut at) = (Vec::with_capacity(bytes.len()), 0);
+    while let Some(&b) = bytes.get(at) {
+        let code = fragment.get(at + 1..at + 3).filter(|_| b == b'%').and_then(|c| u8::from_str_radix(c, 16).ok());
+        out.push(code.unwrap_or(b));
+        at += if code.is_some() { 3 } else { 1 };
+    }
+    String::from_utf8(out).map_or(Cow::Borrowed(fragment), Cow::Owned)
+}
+
+/// An id with signs that end references replaced by their codes.
+pub(super) fn safe_id(id: &str) -> Cow<'_, str> {
+    let is_bad = |c: char| c.is_whitespace() || matches!(c, '(' | ')' | '"' | '\'' | '\\');
+    if !id.contains(is_bad) {
+        return Cow::Borrowed(id);
+    }
+    id.chars().map(|c| if is_bad(c) { format!("_{:x}_", u32::from(c)) } else { c.to_string() }).collect()
+}
+
+/// The data of `path("…")`.
+pub(super) fn path_data(value: &str) -> Option<String> {
+    let mut input = Parser::new(value);
+    input.expect_function_matching("path").ok()?;
+    let data = input.parse_nested_block(|i| {
+        // A fill rule before it has no effect.
+        let _ = i.try_parse(|i| i.expect_ident_cloned().and_then(|_| i.expect_comma()));
+        i.expect_string_cloned().map_err(|_| unexpected())
+    });
+    data.ok().map(|d| d.as_ref().to_owned())
 }
 
 /// A number, or a length in px.
@@ -416,10 +537,10 @@ mod tests {
 
     #[test]
     fn plain_values() {
-        for plain in ["red", "12px", "1.5em", "url(#rem)", "#1a2", "M1 2q3 4"] {
+        for plain in ["red", "12px", "url(#rem)", "#1a2", "M1 2q3 4"] {
             assert!(is_plain(plain), "{plain}");
         }
-        for other in ["2rem", "VAR(--x)", "calc(1px)", "10vw", "3.5Q", "1dvh"] {
+        for other in ["2rem", "1.5em", "VAR(--x)", "calc(1px)", "10vw", "3.5Q", "1dvh"] {
             assert!(!is_plain(other), "{other}");
         }
     }

@@ -2,6 +2,7 @@
 //! them among an element's ancestors and siblings.
 
 use super::names::{Name, State, Svg};
+use roxmltree::Node;
 use selectors::OpaqueElement;
 use selectors::attr::{AttrSelectorOperation, CaseSensitivity, NamespaceConstraint};
 use selectors::bloom::BloomFilter;
@@ -9,9 +10,8 @@ use selectors::context::{
     MatchingContext, MatchingForInvalidation, MatchingMode, NeedsSelectorFlags, QuirksMode, SelectorCaches,
 };
 use selectors::matching::{ElementSelectorFlags, matches_selector};
-use selectors::parser::SelectorList;
+use selectors::parser::Selector;
 use std::cell::Cell;
-use usvg::roxmltree::Node;
 
 /// Bytes of an attribute's value, and attributes, that are looked at in the time of a comparison.
 const VALUE: usize = 32;
@@ -35,13 +35,12 @@ impl Looks {
     }
 }
 
-/// The specificity of the strongest selector of a list that the element matches.
-pub(super) fn specificity(
-    list: &SelectorList<Svg>,
-    node: Node<'_, '_>,
+/// Whether an element matches selectors.
+pub(super) fn matcher<'b>(
+    node: Node<'b, '_>,
     looks: &Looks,
-    caches: &mut SelectorCaches,
-) -> Option<u32> {
+    caches: &'b mut SelectorCaches,
+) -> impl FnMut(&Selector<Svg>) -> bool {
     let mut context = MatchingContext::new(
         MatchingMode::Normal,
         None,
@@ -51,8 +50,7 @@ pub(super) fn specificity(
         MatchingForInvalidation::No,
     );
     let element = Counted { node, looks };
-    let matching = list.slice().iter().filter(|s| looks.add(1) && matches_selector(s, 0, None, element, &mut context));
-    matching.map(selectors::parser::Selector::specificity).max()
+    move |selector| looks.add(1) && matches_selector(selector, 0, None, element, &mut context)
 }
 
 /// An element that counts what is looked at, and has no neighbours once that is too much.
@@ -135,11 +133,22 @@ impl selectors::Element for Counted<'_, '_, '_> {
 
     fn attr_matches(
         &self,
-        _: &NamespaceConstraint<&Name>,
+        namespace: &NamespaceConstraint<&Name>,
         name: &Name,
         operation: &AttrSelectorOperation<&Name>,
     ) -> bool {
-        self.attribute(name.as_ref()).is_some_and(|value| operation.eval_str(value))
+        let uri = match namespace {
+            NamespaceConstraint::Specific(uri) => uri.as_ref(),
+            NamespaceConstraint::Any => {
+                let mut values = self.node.attributes().filter(|a| a.name() == name.as_ref()).map(|a| a.value());
+                return values.any(|v| self.looks.add(1 + v.len() / VALUE) && operation.eval_str(v));
+            }
+        };
+        if uri.is_empty() {
+            return self.attribute(name.as_ref()).is_some_and(|value| operation.eval_str(value));
+        }
+        let value = self.node.attribute((uri, name.as_ref()));
+        value.is_some_and(|v| self.looks.add(1 + v.len() / VALUE) && operation.eval_str(v))
     }
 
     fn match_non_ts_pseudo_class(&self, state: &State, _: &mut MatchingContext<'_, Svg>) -> bool {

@@ -43,8 +43,7 @@ fn tags(text: &str, budget: &Budget) -> Result<(), Exceeded> {
 
 /// Declarations of entities, and what they expand to.
 fn entities(text: &str, budget: &Budget) -> Result<(), Exceeded> {
-    let declared: Vec<(&str, &str)> =
-        memmem::find_iter(text.as_bytes(), "<!ENTITY").filter_map(|at| declaration(&text[at..])).collect();
+    let declared = declared(text);
     if declared.is_empty() {
         return Ok(());
     }
@@ -70,7 +69,12 @@ fn entities(text: &str, budget: &Budget) -> Result<(), Exceeded> {
 }
 
 /// Levels of entities in entities that the parser follows.
-const LEVELS: usize = 10;
+pub(super) const LEVELS: usize = 10;
+
+/// The entities that a text declares: names and values.
+pub(super) fn declared(text: &str) -> Vec<(&str, &str)> {
+    memmem::find_iter(text.as_bytes(), "<!ENTITY").filter_map(|at| declaration(&text[at..])).collect()
+}
 
 /// Name and value of the declaration that a text begins with.
 fn declaration(text: &str) -> Option<(&str, &str)> {

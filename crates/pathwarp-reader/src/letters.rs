@@ -1,9 +1,9 @@
 //! Rewrites the words of a text: in the case that its style asks for, and with marks for its direction.
 
 use super::text::{Letters, separated};
+use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
 use std::ops::Range;
-use usvg::roxmltree::{Node, NodeId};
 
 /// New content for a run of characters.
 pub(super) struct Rewritten {

@@ -1,12 +1,13 @@
 //! Style sheets and style attributes, parsed into rules and declarations.
 
 use super::media;
-use super::names::{Svg, selectors};
+use super::names::{Namespaces, Svg, selectors};
 use cssparser::{
     AtRuleParser, CowRcStr, DeclarationParser, ParseError, Parser, ParserState, QualifiedRuleParser,
     RuleBodyItemParser, RuleBodyParser, StyleSheetParser,
 };
-use selectors::parser::{SelectorList, SelectorParseErrorKind};
+use selectors::parser::{Component, Selector, SelectorList, SelectorParseErrorKind};
+use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 
 type Failure = ParseError<SelectorParseErrorKind>;
@@ -16,37 +17,91 @@ const UNLAYERED: usize = usize::MAX;
 
 /// A declaration.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Declaration {
+pub(super) struct Declaration<'a> {
     /// In lower case, unless it is a custom property.
-    pub(super) name: String,
-    pub(super) value: String,
+    pub(super) name: Cow<'a, str>,
+    pub(super) value: Cow<'a, str>,
     pub(super) important: bool,
+    /// Lengths of fonts need units: true in style sheets only, as browsers read style attributes of SVG in quirks mode.
+    pub(super) strict: bool,
 }
 
-/// A rule.
-pub(super) struct Rule {
-    pub(super) selectors: SelectorList<Svg>,
-    pub(super) declarations: Vec<Declaration>,
+/// The declarations of a rule.
+pub(super) struct Block<'a> {
+    pub(super) declarations: Vec<Declaration<'a>>,
     /// Rank of its cascade layer; later layers are stronger.
     pub(super) layer: usize,
 }
 
 /// The rules of a drawing.
 #[derive(Default)]
-pub(super) struct Rules {
-    pub(super) rules: Vec<Rule>,
+pub(super) struct Rules<'a> {
+    pub(super) blocks: Vec<Block<'a>>,
+    /// Selectors with the numbers of their blocks.
+    pub(super) selectors: Vec<(Selector<Svg>, usize)>,
+    /// The selectors that an element with an id, a class or a name may match; and those that any may.
+    by_id: HashMap<String, Vec<usize>>,
+    by_class: HashMap<String, Vec<usize>>,
+    by_tag: HashMap<String, Vec<usize>>,
+    others: Vec<usize>,
     /// Ranks of layers by name.
     layers: HashMap<String, usize>,
     /// What is not supported, in words.
     pub(super) unsupported: BTreeSet<String>,
 }
 
-impl Rules {
+impl<'a> Rules<'a> {
     /// Adds a sheet.
-    pub(super) fn add(&mut self, css: &str) {
+    pub(super) fn add(&mut self, css: &'a str) {
         let mut input = Parser::new(css);
-        let mut top = Sheet { out: self, layer: UNLAYERED };
+        let mut names = Namespaces::default();
+        let mut top = Sheet { out: self, layer: UNLAYERED, names: &mut names };
         StyleSheetParser::new(&mut input, &mut top).for_each(drop);
+    }
+
+    fn add_rule(&mut self, list: &SelectorList<Svg>, block: Block<'a>) {
+        for selector in list.slice() {
+            let number = self.selectors.len();
+            // What the element itself has to be; an id tells most.
+            let (mut id, mut class, mut tag) = (None, None, None);
+            for part in selector.iter() {
+                match part {
+                    Component::ID(name) => id = Some(name),
+                    Component::Class(name) => class = Some(name),
+                    Component::LocalName(name) => tag = Some(&name.name),
+                    _ => {}
+                }
+            }
+            let (places, name) = match (id, class, tag) {
+                (Some(name), ..) => (&mut self.by_id, name),
+                (_, Some(name), _) => (&mut self.by_class, name),
+                (.., Some(name)) => (&mut self.by_tag, name),
+                _ => {
+                    self.others.push(number);
+                    self.selectors.push((selector.clone(), self.blocks.len()));
+                    continue;
+                }
+            };
+            places.entry(name.as_ref().to_owned()).or_default().push(number);
+            self.selectors.push((selector.clone(), self.blocks.len()));
+        }
+        self.blocks.push(block);
+    }
+
+    /// The selectors that an element may match.
+    pub(super) fn candidates<'s>(
+        &'s self,
+        tag: &str,
+        id: Option<&str>,
+        classes: Option<&'s str>,
+    ) -> impl Iterator<Item = usize> {
+        let classes = classes.into_iter().flat_map(str::split_ascii_whitespace).filter_map(|c| self.by_class.get(c));
+        let named = self.by_id.get(id.unwrap_or_default()).into_iter().chain(self.by_tag.get(tag));
+        named.chain(classes).chain([&self.others]).flatten().copied()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.selectors.is_empty()
     }
 
     fn layer(&mut self, name: &str) -> usize {
@@ -56,7 +111,15 @@ impl Rules {
 }
 
 /// The declarations of a style attribute.
-pub(super) fn declarations(style: &str) -> Vec<Declaration> {
+pub(super) fn declarations(style: &str) -> Vec<Declaration<'_>> {
+    if let Some(all) = simple(style) {
+        let lower = |name: &str| !name.starts_with("--") && name.bytes().any(|b| b.is_ascii_uppercase());
+        let pairs = all.into_iter().map(|(n, value)| {
+            let name = if lower(n) { Cow::Owned(n.to_ascii_lowercase()) } else { Cow::Borrowed(n) };
+            Declaration { name, value: value.into(), important: false, strict: false }
+        });
+        return pairs.collect();
+    }
     let mut input = Parser::new(style);
     let mut body = Body::default();
     RuleBodyParser::new(&mut input, &mut body).flatten().collect()
@@ -70,9 +133,10 @@ enum Prelude {
 }
 
 /// Reads rules.
-struct Sheet<'a> {
-    out: &'a mut Rules,
+struct Sheet<'a, 'i> {
+    out: &'a mut Rules<'i>,
     layer: usize,
+    names: &'a mut Namespaces,
 }
 
 /// The rest of the input, which the parser wants to see used up.
@@ -82,7 +146,7 @@ fn rest<'i>(input: &mut Parser<'i>) -> &'i str {
     input.slice_from(start).trim()
 }
 
-impl<'i> AtRuleParser<'i> for Sheet<'_> {
+impl<'i> AtRuleParser<'i> for Sheet<'_, 'i> {
     type Prelude = Prelude;
     type AtRule = ();
     type Error = SelectorParseErrorKind;
@@ -103,6 +167,10 @@ impl<'i> AtRuleParser<'i> for Sheet<'_> {
                 let layers = text.split(',').map(|name| self.out.layer(name.trim()));
                 Prelude::Inside(layers.last().unwrap_or(self.layer))
             }
+            "namespace" => {
+                self.names.declare(text);
+                Prelude::Ignored
+            }
             known @ ("import" | "container" | "scope") => {
                 self.out.unsupported.insert(format!("“@{known} {text}” is ignored"));
                 Prelude::Ignored
@@ -118,7 +186,7 @@ impl<'i> AtRuleParser<'i> for Sheet<'_> {
     fn parse_block(&mut self, prelude: Prelude, _: &ParserState, input: &mut Parser<'i>) -> Result<(), Failure> {
         match prelude {
             Prelude::Inside(layer) => {
-                let mut inner = Sheet { out: self.out, layer };
+                let mut inner = Sheet { out: self.out, layer, names: self.names };
                 StyleSheetParser::new(input, &mut inner).for_each(drop);
             }
             Prelude::Ignored => drop(rest(input)),
@@ -127,14 +195,14 @@ impl<'i> AtRuleParser<'i> for Sheet<'_> {
     }
 }
 
-impl<'i> QualifiedRuleParser<'i> for Sheet<'_> {
+impl<'i> QualifiedRuleParser<'i> for Sheet<'_, 'i> {
     type Prelude = SelectorList<Svg>;
     type QualifiedRule = ();
     type Error = SelectorParseErrorKind;
 
     fn parse_prelude(&mut self, input: &mut Parser<'i>) -> Result<SelectorList<Svg>, Failure> {
         let state = input.state();
-        selectors(input).inspect_err(|_| {
+        selectors(input, self.names).inspect_err(|_| {
             input.reset(&state);
             self.out.unsupported.insert(format!("rules for “{}” are ignored", rest(input)));
         })
@@ -142,11 +210,12 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_> {
 
     fn parse_block(&mut self, list: SelectorList<Svg>, _: &ParserState, input: &mut Parser<'i>) -> Result<(), Failure> {
         let mut body = Body::default();
-        let declarations = RuleBodyParser::new(input, &mut body).flatten().collect();
+        let mut declarations: Vec<Declaration<'i>> = RuleBodyParser::new(input, &mut body).flatten().collect();
+        declarations.iter_mut().for_each(|d| d.strict = true);
         if body.nested {
             self.out.unsupported.insert("rules inside of rules are ignored".to_owned());
         }
-        self.out.rules.push(Rule { selectors: list, declarations, layer: self.layer });
+        self.out.add_rule(&list, Block { declarations, layer: self.layer });
         Ok(())
     }
 }
@@ -159,7 +228,7 @@ struct Body {
 }
 
 impl<'i> DeclarationParser<'i> for Body {
-    type Declaration = Declaration;
+    type Declaration = Declaration<'i>;
     type Error = SelectorParseErrorKind;
 
     fn parse_value(
@@ -167,20 +236,23 @@ impl<'i> DeclarationParser<'i> for Body {
         name: CowRcStr<'i>,
         input: &mut Parser<'i>,
         _: &ParserState,
-    ) -> Result<Declaration, Failure> {
-        let value = without_comments(rest(input));
-        let (value, important) = match value.rsplit_once('!') {
-            Some((v, word)) if word.trim().eq_ignore_ascii_case("important") => (v.trim(), true),
-            _ => (value.trim(), false),
+    ) -> Result<Declaration<'i>, Failure> {
+        let raw = rest(input);
+        let raw = if raw.contains("/*") { Cow::Owned(without_comments(raw)) } else { Cow::Borrowed(raw) };
+        let important = raw.rsplit_once('!').is_some_and(|(_, word)| word.trim().eq_ignore_ascii_case("important"));
+        let end = if important { raw.rfind('!').unwrap_or(raw.len()) } else { raw.len() };
+        let value = match raw {
+            Cow::Borrowed(raw) => Cow::Borrowed(raw[..end].trim()),
+            Cow::Owned(raw) => Cow::Owned(raw[..end].trim().to_owned()),
         };
         let name = if name.starts_with("--") { name.as_ref().to_owned() } else { name.to_ascii_lowercase() };
-        Ok(Declaration { name, value: value.to_owned(), important })
+        Ok(Declaration { name: name.into(), value, important, strict: false })
     }
 }
 
 impl<'i> AtRuleParser<'i> for Body {
     type Prelude = ();
-    type AtRule = Declaration;
+    type AtRule = Declaration<'i>;
     type Error = SelectorParseErrorKind;
 
     fn parse_prelude(&mut self, _: CowRcStr<'i>, _: &mut Parser<'i>) -> Result<(), Failure> {
@@ -191,7 +263,7 @@ impl<'i> AtRuleParser<'i> for Body {
 
 impl<'i> QualifiedRuleParser<'i> for Body {
     type Prelude = ();
-    type QualifiedRule = Declaration;
+    type QualifiedRule = Declaration<'i>;
     type Error = SelectorParseErrorKind;
 
     fn parse_prelude(&mut self, input: &mut Parser<'i>) -> Result<(), Failure> {
@@ -201,7 +273,7 @@ impl<'i> QualifiedRuleParser<'i> for Body {
     }
 }
 
-impl RuleBodyItemParser<'_, Declaration, SelectorParseErrorKind> for Body {
+impl<'i> RuleBodyItemParser<'i, Declaration<'i>, SelectorParseErrorKind> for Body {
     fn parse_declarations(&self) -> bool {
         true
     }
@@ -209,6 +281,21 @@ impl RuleBodyItemParser<'_, Declaration, SelectorParseErrorKind> for Body {
     fn parse_qualified(&self) -> bool {
         true
     }
+}
+
+/// The declarations of a style attribute that is so simple that every parser sees the same ones.
+pub(super) fn simple(style: &str) -> Option<Vec<(&str, &str)>> {
+    if style.bytes().any(|b| matches!(b, b'{' | b'\\' | b'@' | b'<' | b'!')) || style.contains("/*") {
+        return None;
+    }
+    let is_name = |name: &str| name.bytes().all(|b| b.is_ascii_alphabetic() || b == b'-') && !name.is_empty();
+    let is_whole = |value: &str| {
+        let count = |sign: u8| value.bytes().filter(|b| *b == sign).count();
+        !value.is_empty() && count(b'(') == count(b')') && count(b'"') % 2 == 0 && count(b'\'') % 2 == 0
+    };
+    let parts = style.split(';').map(str::trim).filter(|part| !part.is_empty());
+    let pairs = parts.map(|part| part.split_once(':').map(|(name, value)| (name.trim(), value.trim())));
+    pairs.map(|pair| pair.filter(|(name, value)| is_name(name) && is_whole(value))).collect()
 }
 
 /// Replaces comments by spaces.
@@ -231,7 +318,7 @@ mod tests {
     fn names(css: &str) -> Vec<String> {
         let mut rules = Rules::default();
         rules.add(css);
-        rules.rules.iter().flat_map(|r| r.declarations.iter().map(|d| format!("{}={}", d.name, d.value))).collect()
+        rules.blocks.iter().flat_map(|r| r.declarations.iter().map(|d| format!("{}={}", d.name, d.value))).collect()
     }
 
     #[test]
@@ -260,7 +347,7 @@ mod tests {
     #[test]
     fn style_attributes() {
         let all = declarations("fill:red;--A:b;;stroke : url(x;y) !important");
-        let all: Vec<_> = all.iter().map(|d| (d.name.as_str(), d.value.as_str(), d.important)).collect();
+        let all: Vec<_> = all.iter().map(|d| (&*d.name, &*d.value, d.important)).collect();
         assert_eq!(all, [("fill", "red", false), ("--A", "b", false), ("stroke", "url(x;y)", true)]);
     }
 }

@@ -6,6 +6,7 @@ use selectors::parser::{
     NonTSPseudoClass, ParseRelative, PseudoElement, SelectorImpl, SelectorList, SelectorParseErrorKind,
 };
 use std::borrow::Borrow;
+use std::collections::HashMap;
 use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
@@ -103,10 +104,31 @@ impl SelectorImpl for Svg {
     type PseudoElement = Part;
 }
 
-/// Parses selectors as browsers do: one that is unknown makes the whole list invalid.
-struct Dialect;
+/// The namespaces that a sheet declares.
+#[derive(Default)]
+pub(super) struct Namespaces {
+    default: Option<Name>,
+    by_prefix: HashMap<String, Name>,
+}
 
-impl<'i> selectors::parser::Parser<'i> for Dialect {
+impl Namespaces {
+    /// Takes over what stands in an `@namespace` rule.
+    pub(super) fn declare(&mut self, rule: &str) {
+        let mut input = Parser::new(rule);
+        let prefix = input.try_parse(Parser::expect_ident_cloned).ok();
+        let Ok(uri) = input.expect_url_or_string() else { return };
+        let uri = Name(uri.as_ref().to_owned());
+        match prefix {
+            Some(prefix) => drop(self.by_prefix.insert(prefix.as_ref().to_owned(), uri)),
+            None => self.default = Some(uri),
+        }
+    }
+}
+
+/// Parses selectors as browsers do: one that is unknown makes the whole list invalid.
+struct Dialect<'a>(&'a Namespaces);
+
+impl<'i> selectors::parser::Parser<'i> for Dialect<'_> {
     type Impl = Svg;
     type Error = SelectorParseErrorKind;
 
@@ -122,12 +144,23 @@ impl<'i> selectors::parser::Parser<'i> for Dialect {
         }
     }
 
+    fn default_namespace(&self) -> Option<Name> {
+        self.0.default.clone()
+    }
+
+    fn namespace_for_prefix(&self, prefix: &Name) -> Option<Name> {
+        self.0.by_prefix.get(prefix.as_ref()).cloned()
+    }
+
     fn parse_pseudo_element(&self, _: &str) -> Result<Part, ParseError<SelectorParseErrorKind>> {
         Ok(Part)
     }
 }
 
 /// Parses the selectors of a rule.
-pub(super) fn selectors<'i>(input: &mut Parser<'i>) -> Result<SelectorList<Svg>, ParseError<SelectorParseErrorKind>> {
-    SelectorList::parse(&Dialect, input, ParseRelative::No)
+pub(super) fn selectors<'i>(
+    input: &mut Parser<'i>,
+    namespaces: &Namespaces,
+) -> Result<SelectorList<Svg>, ParseError<SelectorParseErrorKind>> {
+    SelectorList::parse(&Dialect(namespaces), input, ParseRelative::No)
 }

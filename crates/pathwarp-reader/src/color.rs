@@ -1,5 +1,9 @@
 //! Colours that usvg does not read (CSS Color 4), as the nearest in sRGB.
 
+use super::value::{reference, safe_id};
+use std::borrow::Cow;
+use std::str::FromStr as _;
+
 /// Display P3 in linear light to XYZ (CSS Color 4, section 10.3).
 const P3_TO_XYZ: [[f64; 3]; 3] = [
     [608_311.0 / 1_250_200.0, 189_793.0 / 714_400.0, 198_249.0 / 1_000_160.0],
@@ -8,14 +12,49 @@ const P3_TO_XYZ: [[f64; 3]; 3] = [
 ];
 
 /// A paint as usvg reads it. `None` for what is no paint, or of a kind that is not supported.
-pub(super) fn paint(value: &str) -> Option<String> {
-    let is_keyword = matches!(value, "inherit" | "initial" | "unset");
-    if is_keyword || svgtypes::Paint::from_str(value).is_ok() {
-        return Some(value.to_owned());
+pub(super) fn paint(value: &str) -> Option<Cow<'_, str>> {
+    if is_hex(value) || value == "none" {
+        return Some(Cow::Borrowed(value));
+    }
+    if let Some(link) = reference(value) {
+        let fallback = link.rest.trim();
+        let new =
+            if fallback.is_empty() { "".into() } else { paint(fallback).filter(|_| reference(fallback).is_none())? };
+        let old = &value[..value.len() - link.rest.len()];
+        let id = link.id.as_deref().map_or(Cow::Borrowed(old), |id| format!("url(#{})", safe_id(id)).into());
+        let text = format!("{} {new}", id.trim());
+        return Some(if text.trim() == value { Cow::Borrowed(value) } else { Cow::Owned(text.trim().to_owned()) });
+    }
+    for keyword in ["none", "context-fill", "context-stroke"] {
+        if value.eq_ignore_ascii_case(keyword) {
+            return Some(Cow::Borrowed(keyword));
+        }
+    }
+    color(value)
+}
+
+fn is_hex(value: &str) -> bool {
+    let digits = value.strip_prefix('#').unwrap_or_default();
+    matches!(digits.len(), 3 | 4 | 6 | 8) && digits.bytes().all(|b| b.is_ascii_hexdigit())
+}
+
+/// A colour as usvg reads it.
+pub(super) fn color(value: &str) -> Option<Cow<'_, str>> {
+    if is_hex(value) {
+        return Some(Cow::Borrowed(value));
+    }
+    if value.eq_ignore_ascii_case("currentcolor") {
+        return Some(Cow::Borrowed("currentColor"));
+    }
+    if !value.starts_with('#') && svgtypes::Color::from_str(value).is_ok() {
+        return Some(Cow::Borrowed(value));
+    }
+    if value.starts_with('#') || !value.contains('(') {
+        return None;
     }
     let lower = value.to_ascii_lowercase();
     let [r, g, b, a] = csscolorparser::parse(&in_xyz(&lower).unwrap_or(lower)).ok()?.to_rgba8();
-    Some(format!("rgba({r},{g},{b},{})", f64::from(a) / 255.0))
+    Some(format!("rgba({r},{g},{b},{})", f64::from(a) / 255.0).into())
 }
 
 /// Writes a colour of Display P3 in XYZ.
@@ -42,7 +81,7 @@ mod tests {
 
     #[test]
     fn what_usvg_reads_stays() {
-        for css in ["#123", "url(#a) red", "context-fill", "inherit", "currentColor", "hsl(120 50% 40% / 60%)"] {
+        for css in ["#123", "url(#a) red", "context-fill", "currentColor", "hsl(120 50% 40% / 60%)"] {
             assert_eq!(paint(css).as_deref(), Some(css));
         }
     }

@@ -1,0 +1,645 @@
+//! Computes the style of one element: declarations that usvg reads, attributes, and the declarations of the transform.
+
+use super::color;
+use super::handles::off_nodes;
+use super::ids::{Ids, attribute};
+use super::range;
+use super::shapes::shape_length;
+use super::sheet::{Declaration, simple};
+use super::table::{Kind, Property, Sign, length_attribute, of_attribute, property};
+use super::text::{self, Letters, TextStyle};
+use super::value::{self, Custom, Units, reference};
+use pathwarp::kurbo::Affine;
+use roxmltree::Node;
+use std::borrow::Cow;
+use std::collections::HashSet;
+use std::rc::Rc;
+
+/// The shift of subscripts and superscripts in parts of the font size: half of ascent and descent in Chromium, which are 1.12 to 1.17
+/// in the usual fonts.
+const SHIFT: f64 = 0.57;
+
+const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
+
+/// What an element hands on to its children.
+#[derive(Debug, Clone)]
+pub(super) struct Inherited {
+    /// Percentages refer to another size than usvg takes: that of a symbol's own viewport.
+    pub(super) in_symbol: bool,
+    /// Paths have markers.
+    pub(super) marked: bool,
+    pub(super) custom: Rc<Custom>,
+    pub(super) units: Units,
+    /// Values of [`DASHES`].
+    pub(super) dashes: [Option<Rc<str>>; 2],
+    pub(super) text: TextStyle,
+}
+
+/// The style of an element.
+#[derive(Debug, Default)]
+pub(super) struct Computed<'a> {
+    /// Declarations that usvg reads, if they are not those of the style attribute.
+    pub(super) style: Option<Vec<(Cow<'a, str>, Cow<'a, str>)>>,
+    /// New values of attributes; `None` takes the attribute away.
+    pub(super) attributes: Vec<(&'static str, Option<String>)>,
+    /// Declarations of the transform.
+    pub(super) transform: Vec<Declaration<'a>>,
+    /// What is not supported, in words.
+    pub(super) unsupported: Vec<String>,
+    pub(super) letters: Letters,
+    /// The first number out of range.
+    pub(super) far: Option<String>,
+}
+
+/// The geometry properties of an element, as far as Chromium goes: nested viewports take none from style sheets, and a `use` no
+/// size.
+fn geometry(tag: &str, is_root: bool) -> &'static [&'static str] {
+    match tag {
+        "rect" => &["x", "y", "width", "height", "rx", "ry"],
+        "circle" => &["cx", "cy", "r"],
+        "ellipse" => &["cx", "cy", "rx", "ry"],
+        "image" => &["x", "y", "width", "height"],
+        "use" => &["x", "y"],
+        "svg" if is_root => &["width", "height"],
+        _ => &[],
+    }
+}
+
+/// What 100 % of a property is.
+fn whole(name: &str, units: &Units) -> f64 {
+    let (w, h) = units.viewport;
+    match name {
+        "x" | "width" | "cx" | "rx" | "x1" | "x2" | "dx" | "fx" | "refX" | "markerWidth" => w,
+        "y" | "height" | "cy" | "ry" | "y1" | "y2" | "dy" | "fy" | "refY" | "markerHeight" => h,
+        _ => w.hypot(h) / std::f64::consts::SQRT_2,
+    }
+}
+
+/// Computes the style of an element from the declarations that apply, weakest first. `inherited` is what its parent hands on, and
+/// becomes what the element itself does.
+pub(super) fn computed<'a>(
+    node: Node<'a, '_>,
+    is_root: bool,
+    declarations: &[&Declaration<'a>],
+    ids: &Ids<'a, '_>,
+    inherited: &mut Inherited,
+) -> Computed<'a> {
+    let tag = node.tag_name().name();
+    let variables = declarations.iter().filter(|d| d.name.starts_with("--"));
+    let own: Vec<(String, String)> = variables.map(|d| (d.name.to_string(), d.value.to_string())).collect();
+    if !own.is_empty() {
+        inherited.custom = Rc::new(value::custom(&own, &inherited.custom));
+    }
+    let is_server =
+        matches!(tag, "linearGradient" | "radialGradient" | "pattern" | "mask" | "filter" | "marker" | "clipPath");
+    let mut values = Values {
+        custom: Rc::clone(&inherited.custom),
+        units: inherited.units,
+        font: inherited.units.font,
+        absolute: inherited.in_symbol && !is_server && !tag.starts_with("fe"),
+        ids,
+    };
+    // The font size first: other lengths refer to it.
+    if let Some(px) = font_size(node, declarations, &values) {
+        inherited.units.font = px;
+    }
+    if is_root {
+        inherited.units.root_font = inherited.units.font;
+    }
+    values.units = inherited.units;
+    let mut all = Declared { geometry: geometry(tag, is_root), ..Declared::new(tag, &values) };
+    for d in declarations.iter().rev().filter(|d| !d.name.starts_with("--")) {
+        all.declare(d);
+    }
+    all.style.reverse();
+    all.take_attributes(node);
+    all.finish(node, inherited)
+}
+
+/// The size of an element's font in px, if it declares one.
+fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<f64> {
+    let size = property("font-size")?;
+    let px = |text: &str, strict| value::length(&values.of(size, text, strict)?, &values.units, values.font);
+    let declared = declarations.iter().rev().find_map(|d| match d.name.as_ref() {
+        "font-size" => match wide(&d.value) {
+            Some(Wide::Initial) => Some(value::MEDIUM),
+            Some(_) => Some(values.font),
+            None => px(&d.value, d.strict),
+        },
+        "font" => px(&text::font(&values.substituted(&d.value)?)?.iter().find(|l| l.0 == "font-size")?.1, true),
+        _ => None,
+    });
+    declared.or_else(|| px(node.attribute("font-size")?, false))
+}
+
+/// A keyword that every property has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wide {
+    Inherit,
+    Initial,
+    /// One of the two: whichever is natural.
+    Unset,
+}
+
+fn wide(value: &str) -> Option<Wide> {
+    let first = value.as_bytes().first()? | 0x20;
+    if !matches!(first, b'i' | b'u' | b'r') {
+        return None;
+    }
+    let is = |word: &str| value.eq_ignore_ascii_case(word);
+    match () {
+        () if is("inherit") => Some(Wide::Inherit),
+        () if is("initial") => Some(Wide::Initial),
+        () if is("unset") || is("revert") || is("revert-layer") => Some(Wide::Unset),
+        () => None,
+    }
+}
+
+/// What a wide keyword comes to; `None` if the value is the parent's.
+fn resolved(wide: Wide, p: &Property) -> Option<&'static str> {
+    match wide {
+        Wide::Inherit => None,
+        Wide::Unset if p.inherited => None,
+        Wide::Initial | Wide::Unset => Some(p.initial),
+    }
+}
+
+/// Computes single values.
+struct Values<'d, 'a, 'i> {
+    custom: Rc<Custom>,
+    units: Units,
+    /// Font size of the parent.
+    font: f64,
+    /// Percentages become px.
+    absolute: bool,
+    ids: &'d Ids<'a, 'i>,
+}
+
+impl Values<'_, '_, '_> {
+    fn substituted(&self, raw: &str) -> Option<String> {
+        value::substituted(raw, &|n| self.custom.get(n).map(ToString::to_string))
+    }
+
+    /// A value as usvg reads it. `None` if it is invalid. Where `strict`, lengths need units, except for zero.
+    fn of<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
+        let raw = raw.trim();
+        if value::has_functions(raw) && !matches!(p.kind, Kind::Transform | Kind::Any) {
+            let text = self.substituted(raw)?;
+            let text = value::computed(&text, &self.units_for(p), Some(self.full(p)))?;
+            return Some(Cow::Owned(self.plain(p, text.trim(), strict)?.into_owned()));
+        }
+        if matches!(p.kind, Kind::Transform | Kind::Any) && !value::is_plain(raw) {
+            let text = self.substituted(raw)?;
+            return Some(Cow::Owned(value::computed(&text, &self.units_for(p), None).unwrap_or(text)));
+        }
+        self.plain(p, raw, strict)
+    }
+
+    /// Font sizes refer to that of the parent.
+    fn units_for(&self, p: &Property) -> Units {
+        let font = if matches!(p.kind, Kind::FontSize) { self.font } else { self.units.font };
+        Units { font, ..self.units }
+    }
+
+    /// What 100 % is.
+    fn full(&self, p: &Property) -> f64 {
+        match p.kind {
+            Kind::FontSize => self.font,
+            Kind::Spacing => self.units.font,
+            Kind::Share => 1.0,
+            _ => whole(p.name, &self.units),
+        }
+    }
+
+    /// A value without variables and expressions.
+    fn plain<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
+        match p.kind {
+            Kind::Word(words) => word(words, raw),
+            Kind::Paint => color::paint(raw),
+            Kind::Color => color::color(raw),
+            Kind::Share => share(raw),
+            Kind::Number => raw.parse::<f64>().ok().filter(|n| *n >= 0.0).map(|_| Cow::Borrowed(raw)),
+            Kind::Length(sign) | Kind::Geometry(sign) if raw != "auto" => self.length(p, raw, sign, false),
+            Kind::Spacing if raw.eq_ignore_ascii_case("normal") => Some("normal".into()),
+            Kind::Spacing => self.length(p, raw, Sign::Any, strict),
+            Kind::Dashes => self.dashes(p, raw),
+            Kind::FontSize => match text::size(raw, self.font) {
+                Some(px) => Some(format!("{px}px").into()),
+                None => self.length(p, raw, Sign::Positive, strict),
+            },
+            Kind::Words => (!raw.is_empty()).then(|| lower(raw)),
+            Kind::FontWeight => text::is_weight(raw).then(|| lower(raw)),
+            Kind::BaselineShift if raw.eq_ignore_ascii_case("sub") => {
+                Some(format!("{}px", -SHIFT * self.units.font).into())
+            }
+            Kind::BaselineShift if raw.eq_ignore_ascii_case("super") => {
+                Some(format!("{}px", SHIFT * self.units.font).into())
+            }
+            Kind::BaselineShift => word(&["baseline"], raw)
+                .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
+            Kind::Link => link(raw),
+            Kind::Filter => Some(self.filter(raw)),
+            _ => (!raw.is_empty()).then_some(Cow::Borrowed(raw)),
+        }
+    }
+
+    /// A length with a unit that usvg knows.
+    fn length<'v>(&self, p: &Property, raw: &'v str, sign: Sign, strict: bool) -> Option<Cow<'v, str>> {
+        let relative = self.absolute || matches!(p.kind, Kind::FontSize | Kind::Spacing);
+        value::known_length(raw, &self.units_for(p), relative.then(|| self.full(p)), sign == Sign::Positive, strict)
+    }
+
+    /// Filters. Where one of them is not there, browsers show the element without any.
+    fn filter<'v>(&self, raw: &'v str) -> Cow<'v, str> {
+        let links =
+            || raw.char_indices().filter_map(|(at, c)| reference(&raw[at..]).filter(|_| c.eq_ignore_ascii_case(&'u')));
+        let is_there = |id: &str| self.ids.get(id).is_some_and(|n| n.tag_name().name() == "filter");
+        if raw.eq_ignore_ascii_case("none") || links().any(|l| l.id.as_deref().is_none_or(|id| !is_there(id))) {
+            return "none".into();
+        }
+        // Several would be written one by one.
+        match reference(raw).filter(|l| l.rest.trim().is_empty()) {
+            Some(only) => only.text(raw),
+            None => Cow::Borrowed(raw),
+        }
+    }
+
+    fn dashes<'v>(&self, p: &Property, raw: &'v str) -> Option<Cow<'v, str>> {
+        if raw.eq_ignore_ascii_case("none") {
+            return Some("none".into());
+        }
+        list(raw, |v| self.length(p, v, Sign::Positive, false))
+    }
+}
+
+/// A list with all items valid, separated by spaces, by commas, or by both.
+fn list<'v>(raw: &'v str, of: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> Option<Cow<'v, str>> {
+    let items = raw.split(',').flat_map(|part| {
+        let mut words = part.split_ascii_whitespace().peekable();
+        // Nothing between commas is not valid.
+        let empty = words.peek().is_none().then_some("");
+        words.chain(empty)
+    });
+    let all = items.map(|v| Some((v, of(v)?))).collect::<Option<Vec<_>>>()?;
+    let changed = all.iter().any(|(old, new)| *old != new.as_ref());
+    Some(if changed {
+        all.iter().map(|v| v.1.as_ref()).collect::<Vec<_>>().join(" ").into()
+    } else {
+        Cow::Borrowed(raw)
+    })
+}
+
+fn word<'v>(words: &'static [&'static str], raw: &'v str) -> Option<Cow<'v, str>> {
+    words.iter().find(|w| w.eq_ignore_ascii_case(raw)).map(|w| Cow::Borrowed(*w))
+}
+
+fn lower(raw: &str) -> Cow<'_, str> {
+    if raw.bytes().any(|b| b.is_ascii_uppercase()) { raw.to_ascii_lowercase().into() } else { Cow::Borrowed(raw) }
+}
+
+fn share(raw: &str) -> Option<Cow<'_, str>> {
+    let number = raw.strip_suffix('%').unwrap_or(raw);
+    // What ends with a point is no number of CSS.
+    let valid = !number.ends_with('.') && number.parse::<f64>().is_ok_and(f64::is_finite);
+    valid.then_some(Cow::Borrowed(raw))
+}
+
+/// A reference, or `none`. Shapes of CSS stay as they are.
+fn link(raw: &str) -> Option<Cow<'_, str>> {
+    if raw.eq_ignore_ascii_case("none") {
+        return Some("none".into());
+    }
+    Some(reference(raw).map_or(Cow::Borrowed(raw), |r| r.text(raw)))
+}
+
+/// The declarations of an element on their way to usvg.
+struct Declared<'v, 'a, 'i> {
+    tag: &'v str,
+    geometry: &'static [&'static str],
+    values: &'v Values<'v, 'a, 'i>,
+    seen: HashSet<Cow<'a, str>>,
+    /// Properties whose value is the parent's, where usvg does not know `inherit`.
+    dropped: HashSet<&'static str>,
+    /// Strongest first while declarations are added.
+    style: Vec<(Cow<'a, str>, Cow<'a, str>)>,
+    out: Computed<'a>,
+}
+
+impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
+    fn new(tag: &'v str, values: &'v Values<'v, 'a, 'i>) -> Self {
+        let (seen, dropped) = (HashSet::new(), HashSet::new());
+        Self { tag, geometry: &[], values, seen, dropped, style: Vec::new(), out: Computed::default() }
+    }
+
+    /// Adds a declaration that is weaker than those before. Of several for a property, the strongest valid one counts.
+    fn declare(&mut self, d: &Declaration<'a>) {
+        match d.name.as_ref() {
+            "font" => {
+                let Some(all) = self.values.substituted(&d.value).and_then(|v| text::font(&v)) else { return };
+                for (name, value) in all {
+                    if let Some(p) = property(name) {
+                        self.set(p, &Declaration { name: name.into(), value: value.into(), ..d.clone() });
+                    }
+                }
+            }
+            "marker" => {
+                for p in ["marker-start", "marker-mid", "marker-end"].into_iter().filter_map(property) {
+                    self.set(p, &Declaration { name: p.name.into(), ..d.clone() });
+                }
+            }
+            name => match property(name) {
+                Some(p) => self.set(p, d),
+                None => {
+                    if self.seen.insert(d.name.clone()) {
+                        self.out.unsupported.extend(unsupported(&d.name, &d.value));
+                        self.style.push((d.name.clone(), d.value.clone()));
+                    }
+                }
+            },
+        }
+    }
+
+    fn set(&mut self, p: &'static Property, d: &Declaration<'a>) {
+        if self.seen.contains(p.name) {
+            return;
+        }
+        let value = match wide(&d.value) {
+            Some(wide) => match resolved(wide, p) {
+                Some(initial) => Cow::Borrowed(initial),
+                None if !knows_inherit(p) => {
+                    self.seen.insert(p.name.into());
+                    self.dropped.insert(p.name);
+                    return;
+                }
+                None => "inherit".into(),
+            },
+            None => match self.values.of(p, &d.value, d.strict) {
+                Some(v) if v == d.value => d.value.clone(),
+                Some(v) => v.into_owned().into(),
+                None => return,
+            },
+        };
+        self.seen.insert(p.name.into());
+        match p.kind {
+            Kind::Transform => self.out.transform.push(Declaration { value, ..d.clone() }),
+            Kind::Geometry(_) if self.geometry.contains(&p.name) => {
+                let value = self.near(&value).into_owned();
+                // `auto` is the value of an attribute that is not there.
+                self.out.attributes.push((p.name, Some(value).filter(|v| v != "auto")));
+            }
+            Kind::Path if self.tag == "path" => {
+                let data = value::path_data(&value).unwrap_or_default();
+                let data = self.near(&data).into_owned();
+                self.out.attributes.push((p.name, Some(data)));
+            }
+            Kind::Length(_) | Kind::Spacing | Kind::Dashes | Kind::FontSize => {
+                let value = self.near(&value).into_owned();
+                self.style.push((d.name.clone(), value.into()));
+            }
+            _ => {
+                self.out.unsupported.extend(unsupported(p.name, &value));
+                self.style.push((d.name.clone(), value));
+            }
+        }
+    }
+
+    /// A value with its numbers in range.
+    fn near<'t>(&mut self, value: &'t str) -> Cow<'t, str> {
+        let (near, far) = range::in_range(value);
+        if self.out.far.is_none() {
+            self.out.far = far;
+        }
+        near
+    }
+
+    /// Computes the attributes for which no declaration stands.
+    fn take_attributes(&mut self, node: Node<'a, '_>) {
+        for a in node.attributes().filter(|a| a.namespace().is_none()) {
+            let (name, raw) = (a.name(), a.value());
+            if let Some(p) = of_attribute(name) {
+                if !self.seen.contains(p.name) {
+                    self.attribute(p, raw);
+                } else if self.dropped.contains(p.name) {
+                    self.out.attributes.push((p.name, None));
+                }
+            } else if let Some(name) = length_attribute(name) {
+                let p = Property { name, inherited: false, initial: "0", kind: Kind::Length(Sign::Any) };
+                let all = list(raw.trim(), |v| self.values.of(&p, v, false));
+                let new =
+                    all.map_or(Cow::Borrowed(raw), |new| if new == raw.trim() { Cow::Borrowed(raw) } else { new });
+                let new = self.near(&new).into_owned();
+                self.out.attributes.extend((new != raw).then_some((name, Some(new))));
+            } else if let Some(name) = range::checked(name)
+                && let Cow::Owned(new) = self.near(raw)
+            {
+                self.out.attributes.push((name, Some(new)));
+            }
+        }
+    }
+
+    fn attribute(&mut self, p: &'static Property, raw: &str) {
+        if matches!(p.kind, Kind::Transform) {
+            if let Cow::Owned(new) = self.near(raw) {
+                self.out.attributes.push((p.name, Some(new)));
+            }
+            return;
+        }
+        let is_geometry = matches!(p.kind, Kind::Geometry(_));
+        let new = match wide(raw.trim()) {
+            Some(wide) => match resolved(wide, p) {
+                Some(initial) => Some(Cow::Borrowed(initial)),
+                None if knows_inherit(p) => Some("inherit".into()),
+                None => None,
+            },
+            None => match self.values.of(p, raw, false) {
+                // In attributes, `auto` is no radius.
+                Some(v) if v == "auto" && matches!(p.name, "rx" | "ry") => Some("0".into()),
+                // usvg knows what to do about geometry without a valid value.
+                None if is_geometry => return,
+                new => new,
+            },
+        };
+        let is_length =
+            is_geometry || matches!(p.kind, Kind::Length(_) | Kind::Dashes | Kind::FontSize | Kind::Spacing);
+        let new = new.map(|v| if is_length { self.near(&v).into_owned() } else { v.into_owned() });
+        if new.as_deref().is_none_or(|v| v != raw.trim()) {
+            self.out.attributes.push((p.name, new));
+        }
+    }
+
+    /// Adds what texts, dashes and `use` elements need.
+    fn finish(mut self, node: Node<'a, '_>, inherited: &mut Inherited) -> Computed<'a> {
+        let tag = self.tag;
+        let mut out = self.out;
+        let mut style = std::mem::take(&mut self.style);
+        // usvg takes percentages of a `use` twice where it shows a symbol.
+        for name in ["width", "height"].into_iter().filter(|_| tag == "use") {
+            let share = node.attribute(name).filter(|v| v.trim().ends_with('%'));
+            let px = share.and_then(|v| value::length(v, &self.values.units, whole(name, &self.values.units)));
+            out.attributes.extend(px.map(|px| (name, Some(px.to_string()))));
+        }
+        let marker = |name: &str| {
+            let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
+            own.or_else(|| out.value(node, name)).filter(|v| *v != "inherit").map(|v| v != "none")
+        };
+        let markers: Vec<bool> = ["marker-start", "marker-mid", "marker-end"].into_iter().filter_map(marker).collect();
+        inherited.marked = markers.contains(&true) || inherited.marked && markers.len() < 3;
+        if inherited.marked
+            && tag == "path"
+            && let Some(new) = out.value(node, "d").and_then(off_nodes)
+        {
+            out.attributes.retain(|a| a.0 != "d");
+            out.attributes.push(("d", Some(new)));
+        }
+        if tag == "use"
+            && let Some(symbol) = self.values.ids.target(node).filter(|n| n.tag_name().name() == "symbol")
+        {
+            let new = shown_symbol(node, symbol, &out, &self.values.units);
+            out.attributes.retain(|a| new.iter().all(|n| n.0 != a.0));
+            out.attributes.extend(new.into_iter().map(|(name, v)| (name, Some(v))));
+        }
+        let styled = |style: &[(Cow<'a, str>, Cow<'a, str>)], name: &str| {
+            let found = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.to_string());
+            found.or_else(|| out.value(node, name).map(ToOwned::to_owned))
+        };
+        for (name, dashes) in DASHES.iter().zip(&mut inherited.dashes) {
+            let own = self.seen.contains(*name) || node.attributes().any(|a| a.name() == *name);
+            if let Some(v) = own.then(|| styled(&style, name)).flatten().filter(|v| v.trim() != "inherit") {
+                *dashes = Some(v.into());
+            }
+        }
+        if inherited.text.concerns(tag)
+            || style.iter().any(|s| text::concerns(&s.0))
+            || node.attributes().any(|a| text::concerns(a.name()))
+        {
+            let (changes, letters) = inherited.text.declare(tag, |name| {
+                let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
+                own.or_else(|| out.value(node, name).filter(|_| of_attribute(name).is_some()))
+            });
+            out.letters = letters;
+            let attributes = changes.attributes.into_iter().filter(|(name, v)| attribute(node, name) != Some(v));
+            out.attributes.extend(attributes.map(|(name, v)| (name, Some(v))));
+            out.unsupported.extend(changes.unsupported.iter().map(|d| ignored(d)));
+            style.extend(changes.style.into_iter().map(|(n, v)| (n.into(), v.into())));
+        }
+        if let Some(dashes) = scaled_dashes(node, &out, inherited) {
+            style.retain(|s| !DASHES.contains(&s.0.as_ref()));
+            style.extend(DASHES.iter().zip(dashes).map(|(name, value)| (Cow::Borrowed(*name), value.into())));
+        }
+        out.unsupported.extend(node.attribute("clip-path").and_then(|clip| unsupported("clip-path", clip)));
+        let before = node.attribute("style").map_or_else(|| Some(Vec::new()), simple);
+        let same = before
+            .is_some_and(|b| b.len() == style.len() && b.iter().zip(&style).all(|(b, s)| b.0 == s.0 && b.1 == s.1));
+        out.style = (!same).then_some(style);
+        out
+    }
+}
+
+/// The attributes of a `use` with which usvg, which knows no place, size and transform of symbols, shows one (SVG 2, section 5.5).
+fn shown_symbol(
+    node: Node<'_, '_>,
+    symbol: Node<'_, '_>,
+    own: &Computed<'_>,
+    units: &Units,
+) -> Vec<(&'static str, String)> {
+    let length_of = |n: Node<'_, '_>, name: &str| value::length(n.attribute(name)?, units, whole(name, units));
+    let mut out = Vec::new();
+    for name in ["width", "height"] {
+        let given = own.value(node, name).is_some_and(|v| v.trim() != "auto");
+        out.extend(length_of(symbol, name).filter(|_| !given).map(|px| (name, px.to_string())));
+    }
+    let matrix = |n: Node<'_, '_>| {
+        let t: svgtypes::Transform = n.attribute("transform")?.parse().ok()?;
+        Some(Affine::new([t.a, t.b, t.c, t.d, t.e, t.f]))
+    };
+    let turned = matrix(symbol);
+    let shift = ["x", "y"].map(|name| length_of(symbol, name).unwrap_or(0.0));
+    if turned.is_some() || shift != [0.0; 2] {
+        let [x, y] = ["x", "y"]
+            .map(|name| own.value(node, name).and_then(|v| value::length(v, units, whole(name, units))).unwrap_or(0.0));
+        let all = matrix(node).unwrap_or_default() * Affine::translate((x, y)) * turned.unwrap_or_default();
+        let list = all.as_coeffs().map(|c| c.to_string()).join(" ");
+        out.push(("transform", format!("matrix({list})")));
+        out.extend(["x", "y"].into_iter().zip(shift).map(|(name, v)| (name, v.to_string())));
+    }
+    out
+}
+
+/// Whether usvg knows what `inherit` means for a property.
+fn knows_inherit(p: &Property) -> bool {
+    let unknown = matches!(p.kind, Kind::Geometry(_) | Kind::Transform | Kind::Path)
+        || matches!(
+            p.name,
+            "paint-order"
+                | "mix-blend-mode"
+                | "isolation"
+                | "mask-type"
+                | "vector-effect"
+                | "white-space"
+                | "lighting-color"
+        )
+        || p.name.starts_with("font-variant-")
+        || text::concerns(p.name)
+            && !matches!(
+                p.name,
+                "font-size"
+                    | "font-weight"
+                    | "font-stretch"
+                    | "direction"
+                    | "letter-spacing"
+                    | "word-spacing"
+                    | "text-anchor"
+                    | "text-decoration"
+                    | "font-variant"
+            );
+    !unknown
+}
+
+/// Dashes in user units, where `pathLength` gives their unit.
+fn scaled_dashes(node: Node<'_, '_>, style: &Computed<'_>, inherited: &Inherited) -> Option<[String; 2]> {
+    let whole: f64 = node.attribute("pathLength")?.trim().parse().ok().filter(|l| *l > 0.0)?;
+    let [Some(array), offset] = &inherited.dashes else { return None };
+    let units = &inherited.units;
+    let unit = shape_length(node.tag_name().name(), |name| style.value(node, name), units)? / whole;
+    let diagonal = units.viewport.0.hypot(units.viewport.1) / std::f64::consts::SQRT_2;
+    let scaled = |v: &str| Some((value::length(v, units, diagonal)? * unit).to_string());
+    let array = array.split([',', ' ']).filter(|v| !v.is_empty()).map(scaled).collect::<Option<Vec<_>>>()?;
+    let offset = offset.as_deref().map_or_else(|| Some("0".to_owned()), scaled)?;
+    (!array.is_empty()).then(|| [array.join(","), offset])
+}
+
+impl<'a> Computed<'a> {
+    /// All values.
+    pub(super) fn values(&self) -> impl Iterator<Item = &str> {
+        let declared =
+            self.style.iter().flatten().map(|d| d.1.as_ref()).chain(self.transform.iter().map(|d| d.value.as_ref()));
+        declared.chain(self.attributes.iter().filter_map(|a| a.1.as_deref()))
+    }
+
+    /// The value of an attribute as it is going to be.
+    pub(super) fn value<'s>(&'s self, node: Node<'a, '_>, name: &str) -> Option<&'s str> {
+        match self.attributes.iter().find(|a| a.0 == name) {
+            Some(new) => new.1.as_deref(),
+            None => node.attribute(name),
+        }
+    }
+}
+
+/// What has no effect in the result, in words.
+fn unsupported(name: &str, value: &str) -> Option<String> {
+    if !matches!(name, "clip-path" | "mask" | "text-transform" | "mask-image" | "offset-path") {
+        return None;
+    }
+    let lower = value.to_ascii_lowercase();
+    if matches!(lower.as_str(), "none" | "inherit" | "initial" | "unset" | "revert" | "auto") {
+        return None;
+    }
+    let cut = matches!(name, "clip-path" | "mask") && !lower.contains("url(");
+    let letters = name == "text-transform" && !matches!(lower.as_str(), "uppercase" | "lowercase" | "capitalize");
+    (cut || letters || matches!(name, "mask-image" | "offset-path"))
+        .then(|| ignored(&format!("{name}: {}", text::start(value))))
+}
+
+fn ignored(declaration: &str) -> String {
+    format!("only without “{declaration}”, which is not supported")
+}

@@ -1,0 +1,42 @@
+//! Resolves SVG drawings into plain SVG that usvg reads as browsers read the original.
+//!
+//! Text goes in, text comes out: [`resolve`] computes the style of every element as browsers do (CSS Cascade 5, Selectors 4, Media
+//! Queries 4, CSS Values 4, CSS Transforms 1 and 2, SVG 2's geometry properties) and writes what usvg would read otherwise into
+//! attributes that it reads alike. What usvg reads as browsers do stays as it is, byte for byte; each change says where it stands,
+//! and what stood there, so that a program that edits the drawing can put the original back.
+//!
+//! ```
+//! use pathwarp::budget::Budget;
+//!
+//! let svg = "<svg xmlns='http://www.w3.org/2000/svg'><style>.\\31 a{FILL:currentcolor}</style><path class='1a'/></svg>";
+//! let plain = pathwarp_reader::resolve(svg, &Budget::default()).unwrap();
+//! assert!(plain.text.contains("<path style=\"fill:currentColor\" class='1a'/>"));
+//! assert_eq!(plain.restored(), svg);
+//! ```
+//!
+//! One table of properties says what each of them is ([`Kind`](table)); what usvg learns can be deleted there. It is written for usvg
+//! 0.49.
+
+mod cascade;
+mod color;
+mod computed;
+mod element;
+mod handles;
+mod ids;
+mod letters;
+mod media;
+mod names;
+mod precheck;
+mod range;
+mod rewrite;
+mod shapes;
+mod sheet;
+mod table;
+mod text;
+mod transform;
+mod tree;
+mod value;
+pub mod xml;
+
+pub use range::LARGEST;
+pub use rewrite::{Change, Plain, ReadError, resolve};

@@ -1,0 +1,130 @@
+//! Numbers that are out of range: no program that follows computes with them, and some never return from the attempt. They are
+//! replaced by a large number; the elements that hold them are named.
+
+use memchr::memchr2;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// Numbers from here on are out of range. Coordinates of real drawings stay below a million; from 1e12 on, coordinates of
+/// single precision are farther apart than a page.
+pub const LARGEST: f64 = 1e9;
+
+/// Stands for a number out of range.
+const INSTEAD: &str = "9e8";
+
+/// Fewest digits before the point of a number out of range without exponent.
+const DIGITS: usize = 10;
+
+/// Attributes that are no properties and no lengths, and hold numbers of geometry.
+const CHECKED: [&str; 25] = [
+    "points",
+    "z",
+    "viewBox",
+    "gradientTransform",
+    "patternTransform",
+    "stdDeviation",
+    "radius",
+    "baseFrequency",
+    "surfaceScale",
+    "kernelUnitLength",
+    "pointsAtX",
+    "pointsAtY",
+    "pointsAtZ",
+    "limitingConeAngle",
+    "kernelMatrix",
+    "divisor",
+    "bias",
+    "k1",
+    "k2",
+    "k3",
+    "k4",
+    "pathLength",
+    "d",
+    "rotate",
+    "scale",
+];
+
+/// The name of an attribute that holds numbers of geometry.
+pub(super) fn checked(name: &str) -> Option<&'static str> {
+    CHECKED.iter().copied().find(|n| *n == name)
+}
+
+/// A number, list or path data with all numbers in range, and the first that was not.
+pub(super) fn in_range(value: &str) -> (Cow<'_, str>, Option<String>) {
+    let found = if may_be_far(value) { far(value) } else { Vec::new() };
+    let Some(first) = found.first().and_then(|r| value.get(r.clone())) else { return (Cow::Borrowed(value), None) };
+    let first = first.to_owned();
+    let mut out = value.to_owned();
+    for r in found.into_iter().rev() {
+        out.replace_range(r, INSTEAD);
+    }
+    (Cow::Owned(out), Some(first))
+}
+
+/// Returns `false` if a text certainly holds no number out of range.
+fn may_be_far(text: &str) -> bool {
+    let bytes = text.as_bytes();
+    let digits = || {
+        // A run of ten digits has one at a multiple of ten.
+        let places = (0..bytes.len()).step_by(DIGITS).filter(|&i| bytes[i].is_ascii_digit());
+        let mut runs = places.map(|i| {
+            let before = bytes[..i].iter().rev().take_while(|b| b.is_ascii_digit()).count();
+            before + bytes[i..].iter().take_while(|b| b.is_ascii_digit()).count()
+        });
+        runs.any(|run| run >= DIGITS)
+    };
+    memchr2(b'e', b'E', bytes).is_some() || digits()
+}
+
+/// The numbers out of range in a text, without their signs.
+fn far(text: &str) -> Vec<Range<usize>> {
+    let bytes = text.as_bytes();
+    let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
+    let digits = |mut i: usize| {
+        while digit(i) {
+            i += 1;
+        }
+        i
+    };
+    let mut out = Vec::new();
+    let mut i = 0;
+    while i < bytes.len() {
+        let start = i;
+        if !digit(i) {
+            i += 1;
+            continue;
+        }
+        i = digits(i);
+        if bytes.get(i) == Some(&b'.') {
+            i = digits(i + 1);
+        }
+        if matches!(bytes.get(i), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(bytes.get(i + 1), Some(b'+' | b'-')));
+            if digit(i + 1 + sign) {
+                i = digits(i + 1 + sign);
+            }
+        }
+        let value: f64 = text.get(start..i).and_then(|t| t.parse().ok()).unwrap_or(0.0);
+        if value >= LARGEST {
+            out.push(start..i);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_out_of_range_are_found_and_others_are_not() {
+        let found = |t: &str| -> Vec<String> { far(t).into_iter().map(|r| t[r].to_owned()).collect() };
+        assert_eq!(found("M0 0L1e308-3.4e38H1e+9 999999999 1e8z"), ["1e308", "3.4e38", "1e+9"]);
+        assert_eq!(found("M.5.1234567890123 1e-20 12345678901.5"), ["12345678901.5"]);
+        for t in ["M0 0L1e308 1", "0.5 12345678901", "1234567890"] {
+            assert!(may_be_far(t), "{t}");
+        }
+        assert!(!may_be_far("M10 20.123456L-5 1234567 z"));
+        assert_eq!(in_range("M0 0L1e308,1"), ("M0 0L9e8,1".into(), Some("1e308".into())));
+    }
+}

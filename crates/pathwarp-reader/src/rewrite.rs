@@ -1,0 +1,338 @@
+//! Writes computed style into the text.
+
+use super::letters::{Rewritten, rewritten};
+use super::sheet::declarations;
+use super::text::Letters;
+use super::tree::{Styled, Tree, styled};
+use super::value::{percent_decoded, safe_id};
+use super::xml::{self, escape};
+use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::kurbo::Affine;
+use roxmltree::{Document, NS_XML_URI, Node};
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// Bytes of style that are written in the time of a comparison.
+const WRITTEN: usize = 16;
+
+const SINGLE_LETTERS: &str = "only from left to right, as its letters have positions of their own";
+
+/// A drawing in plain SVG.
+#[derive(Debug, Default)]
+pub struct Plain {
+    /// The text.
+    pub text: String,
+    /// How it differs from the drawing's own, in the order of the text.
+    pub changes: Vec<Change>,
+    /// What is not supported: the element, or none for the style sheets, and what there is to say.
+    pub unsupported: Vec<(Option<usize>, String)>,
+    /// The elements with numbers out of range, which the text has not, each with the first of them.
+    pub far: Vec<(usize, String)>,
+    /// Elements that entities hold are written out, which no change tells.
+    pub expanded: bool,
+}
+
+/// An attribute or words that differ from the drawing's own. Elements are numbered in document order, from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// The last element that begins before.
+    pub element: usize,
+    /// The attribute's local name; `xml:space` has its prefix. Words have none.
+    pub name: &'static str,
+    /// The attribute and the space before it, or the words.
+    pub range: Range<usize>,
+    /// The drawing's own text in this place.
+    pub text: String,
+    /// The attribute's value in an edited drawing that does not change it, if it has one there: that of the drawing, unless a
+    /// transform is frozen, as boxes that it refers to change, or an id is no name.
+    pub value: Option<String>,
+    /// That attribute, with the space before it.
+    pub kept: String,
+}
+
+/// Why a drawing cannot be resolved.
+#[derive(Debug)]
+pub enum ReadError {
+    /// It is not XML.
+    Xml(roxmltree::Error),
+    /// It takes more work than the budget allows.
+    Limit(Exceeded),
+}
+
+impl From<Exceeded> for ReadError {
+    fn from(e: Exceeded) -> Self {
+        Self::Limit(e)
+    }
+}
+
+impl Plain {
+    /// The drawing's own text.
+    #[must_use]
+    pub fn restored(&self) -> String {
+        let mut out = String::with_capacity(self.text.len());
+        let mut done = 0;
+        for change in &self.changes {
+            out.push_str(&self.text[done..change.range.start]);
+            out.push_str(&change.text);
+            done = change.range.end;
+        }
+        out + &self.text[done..]
+    }
+}
+
+/// A new value for an attribute, and what an edited drawing is to have if that is not what the drawing has.
+struct Edit {
+    name: &'static str,
+    /// `None` takes the attribute away.
+    value: Option<String>,
+    kept: Option<String>,
+}
+
+/// Resolves a drawing whose markup is known to be within the budget (see [`xml::check`]). Elements that come from entities get a
+/// place of their own in the text.
+///
+/// # Errors
+/// It is not XML, or its style takes more work than the budget allows.
+pub fn resolve(text: &str, budget: &Budget) -> Result<Plain, ReadError> {
+    let mut text = Cow::Borrowed(text);
+    if text.contains("<!ENTITY")
+        && let Some(expanded) = xml::with_elements_of_entities(&text)
+    {
+        text = Cow::Owned(expanded);
+    }
+    let expanded = matches!(text, Cow::Owned(_));
+    let doc = xml::document(&text).map_err(ReadError::Xml)?;
+    let (mut all, mut out) = changes(&doc, budget)?;
+    out.expanded = expanded;
+    all.sort_by_key(|(o, _)| (o.range.start, o.range.end));
+    if all.is_empty() {
+        drop(doc);
+        out.text = text.into_owned();
+        return Ok(out);
+    }
+    out.text.reserve(text.len() * 2);
+    let mut done = 0;
+    for (change, new) in all {
+        let Some(before) = text.get(done..change.range.start) else { continue };
+        budget.spend(Limit::Comparisons, (new.len() / WRITTEN) as u64)?;
+        done = change.range.end;
+        out.text.push_str(before);
+        let start = out.text.len();
+        out.text.push_str(&new);
+        out.changes.push(Change { range: start..out.text.len(), ..change });
+    }
+    out.text.push_str(&text[done..]);
+    Ok(out)
+}
+
+/// Lists what is to be changed, each with the new text.
+fn changes(doc: &Document<'_>, budget: &Budget) -> Result<(Vec<(Change, String)>, Plain), Exceeded> {
+    let text = doc.input_text();
+    let nodes: Vec<Node<'_, '_>> = doc.descendants().filter(Node::is_element).collect();
+    let Tree { styles, sheets, unsupported } = styled(doc, &nodes, budget)?;
+    let mut out = Plain { unsupported: unsupported.into_iter().map(|why| (None, why)).collect(), ..Plain::default() };
+    let mut all: Vec<(Change, String)> = Vec::new();
+    let mut paths = String::new();
+    // Ids that are no names: then all references stay as they are written here, also in an edited drawing.
+    let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| is_renamed(id, text));
+    for (e, (node, style)) in nodes.iter().zip(&styles).enumerate() {
+        all.extend(edits(*node, style, renamed).into_iter().map(|edit| edit.of(text, e, *node)));
+        if sheets.contains(&e) {
+            // usvg passes over sheets of other types.
+            all.push(Edit { name: "type", value: Some("text/plain".to_owned()), kept: None }.of(text, e, *node));
+        }
+        if node.tag_name().name() == "text" {
+            match words(text, e, *node, &styles[e..]) {
+                Some(new) => all.extend(new),
+                None => out.unsupported.push((Some(e), SINGLE_LETTERS.to_owned())),
+            }
+        }
+        out.unsupported.extend(style.computed.unsupported.iter().map(|why| (Some(e), why.clone())));
+        if style.matrix.is_none() {
+            out.unsupported.push((Some(e), "its transform is not supported".to_owned()));
+        }
+        if let Some((edit, path)) = path_of_text(e, *node, doc) {
+            all.push(edit.of(text, e, *node));
+            paths.push_str(&path);
+        }
+        out.far.extend(style.computed.far.iter().map(|far| (e, far.clone())));
+    }
+    if let Some(end) = text[..doc.root_element().range().end].rfind('<').filter(|_| !paths.is_empty()) {
+        let new = format!("<defs xmlns=\"http://www.w3.org/2000/svg\">{paths}</defs>");
+        let empty = Change {
+            element: nodes.len() - 1,
+            name: "",
+            range: end..end,
+            text: "".into(),
+            value: None,
+            kept: "".into(),
+        };
+        all.push((empty, new));
+    }
+    Ok((all, out))
+}
+
+/// For a `textPath` with path data, a path of its own and the link to it.
+fn path_of_text(e: usize, node: Node<'_, '_>, doc: &Document<'_>) -> Option<(Edit, String)> {
+    let data = node.attribute("path").filter(|_| node.tag_name().name() == "textPath")?;
+    let mut id = format!("text-path-{e}");
+    while doc.input_text().contains(&id) {
+        id.push('x');
+    }
+    let path = format!("<path id=\"{id}\" d=\"{}\"/>", escape(data));
+    Some((Edit { name: "href", value: Some(format!("#{id}")), kept: None }, path))
+}
+
+impl Edit {
+    /// The edit of an element in the text, and the attribute that it writes.
+    fn of(self, text: &str, element: usize, node: Node<'_, '_>) -> (Change, String) {
+        let Self { name, value, kept } = self;
+        let found = attribute_node(node, name);
+        let range = place(text, node, found);
+        let old = text[range.clone()].to_owned();
+        // Lines keep their numbers.
+        let lines = "\n".repeat(old.matches('\n').count());
+        let qname = found.and_then(|a| text.get(a.range_qname())).unwrap_or(name);
+        let written = |value: &str| format!(" {lines}{qname}=\"{}\"", escape(value));
+        let new = value.as_deref().map_or_else(|| lines.clone(), written);
+        let (value, kept) = match kept {
+            Some(v) => (Some(v.clone()), written(&v)),
+            None => (found.map(|a| a.value().to_owned()), old.clone()),
+        };
+        (Change { element, name, range, text: old, value, kept }, new)
+    }
+}
+
+/// The edits of a text's words. `None` if they cannot be made.
+fn words(
+    text: &str,
+    e: usize,
+    node: Node<'_, '_>,
+    styles: &[Styled<'_>],
+) -> Option<impl Iterator<Item = (Change, String)>> {
+    let letters = styles.iter().map(|s| s.computed.letters).take(node.descendants().filter(Node::is_element).count());
+    let letters: Vec<Letters> = letters.collect();
+    let new = if letters.iter().all(|l| *l == Letters::default()) { Vec::new() } else { rewritten(node, &letters)? };
+    let start = node.range().start;
+    // Words of an entity stand in its declaration.
+    let own = new.into_iter().filter(move |r| r.range.start > start);
+    Some(own.map(move |Rewritten { elements, range, text: new }| {
+        let old = text[range.clone()].to_owned();
+        let change = Change { element: e + elements, name: "", range, text: old.clone(), value: None, kept: old };
+        (change, escape(&new))
+    }))
+}
+
+/// The attributes to change in an element.
+fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: bool) -> Vec<Edit> {
+    let computed = &style.computed;
+    let refers = |v: &&String| renamed && v.contains("url(#");
+    let attributes = computed.attributes.iter();
+    let mut out: Vec<Edit> =
+        attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
+    out.extend(names(node, renamed));
+    // The origin of what only an animation turns stays.
+    let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
+    let frozen =
+        style.matrix.filter(|m| !(is_still(m) || computed.transform.is_empty() && *m == Affine::IDENTITY)).map(frozen);
+    let written = |all: &mut dyn Iterator<Item = (&str, &str)>| {
+        all.map(|(n, v)| format!("{n}:{v}")).collect::<Vec<_>>().join(";")
+    };
+    let known = computed.style.as_ref().map(|s| written(&mut s.iter().map(|(n, v)| (n.as_ref(), v.as_ref()))));
+    if let Some([(_, list), ..]) = frozen.as_ref().filter(|_| node.parent_element().is_none()) {
+        // usvg takes that of the root from its attribute.
+        out.retain(|edit| edit.name != "transform");
+        out.push(Edit { name: "transform", value: Some(list.clone()), kept: None });
+        out.extend(node.attribute("transform-origin").map(|_| Edit {
+            name: "transform-origin",
+            value: None,
+            kept: None,
+        }));
+        out.extend(known.map(|v| Edit { name: "style", value: Some(v).filter(|v| !v.is_empty()), kept: None }));
+    } else if let Some(all) = frozen {
+        let was = node.attribute("style").unwrap_or_default().to_owned();
+        let own = known.unwrap_or_else(|| {
+            let all = declarations(&was);
+            written(&mut all.iter().map(|d| (d.name.as_ref(), d.value.as_ref())))
+        });
+        let [transform, origin, ..] = &all;
+        let value = [own, format!("{}:{}", transform.0, transform.1), format!("{}:{}", origin.0, origin.1)];
+        let value = value.into_iter().filter(|v| !v.is_empty()).collect::<Vec<_>>().join(";");
+        let important = if computed.transform.iter().any(|d| d.important) { " !important" } else { "" };
+        let kept = all.iter().fold(was, |s, (name, value)| with_declaration(&s, name, &format!("{value}{important}")));
+        out.push(Edit { name: "style", value: Some(value), kept: Some(kept) });
+    } else if let Some(value) = known {
+        let kept = Some(&value).filter(refers).cloned();
+        out.push(Edit { name: "style", value: Some(value).filter(|v| !v.is_empty()), kept });
+    }
+    out
+}
+
+/// Ids that end references before their end, and what refers to elements: also in results, where they belong together.
+fn names(node: Node<'_, '_>, renamed: bool) -> impl Iterator<Item = Edit> {
+    node.attributes().filter_map(move |a| {
+        let (name, new) = match a.name() {
+            "id" if a.namespace().is_none() && renamed && is_renamed(a.value(), node.document().input_text()) => {
+                ("id", safe_id(a.value()))
+            }
+            "href" => {
+                let fragment = a.value().trim().strip_prefix('#')?;
+                let decoded = percent_decoded(fragment);
+                match safe_id(&decoded) {
+                    id if id == fragment => return None,
+                    id => ("href", Cow::Owned(format!("#{id}"))),
+                }
+            }
+            _ => return None,
+        };
+        (new != a.value()).then(|| Edit { name, value: Some(new.clone().into_owned()), kept: Some(new.into_owned()) })
+    })
+}
+
+/// Whether an id has signs that end references, and something may refer to it.
+fn is_renamed(id: &str, text: &str) -> bool {
+    safe_id(id) != id && (text.contains(&format!("#{id}")) || text.contains('%') && text.contains("href"))
+}
+
+/// Sets a property in a style attribute.
+fn with_declaration(style: &str, name: &str, value: &str) -> String {
+    let important = |d: &super::sheet::Declaration<'_>| if d.important { " !important" } else { "" };
+    let all = declarations(style);
+    let others = all.iter().filter(|d| d.name != name).map(|d| format!("{}:{}{}", d.name, d.value, important(d)));
+    others.chain([format!("{name}:{value}")]).collect::<Vec<_>>().join(";")
+}
+
+/// Declarations of a transform that refers to nothing. The first two are for usvg.
+fn frozen(m: Affine) -> [(&'static str, String); 6] {
+    let list = m.as_coeffs().map(|c| c.to_string()).join(",");
+    let none = || "none".to_owned();
+    [
+        ("transform", format!("matrix({list})")),
+        ("transform-origin", "0 0".to_owned()),
+        ("transform-box", "view-box".to_owned()),
+        ("rotate", none()),
+        ("scale", none()),
+        ("translate", none()),
+    ]
+}
+
+/// An attribute by its name with the prefix `xml`, or without a prefix; `href` with or without.
+fn attribute_node<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<roxmltree::Attribute<'a, 'i>> {
+    match name.strip_prefix("xml:") {
+        Some(name) => node.attribute_node((NS_XML_URI, name)),
+        None if name == "href" => node.attribute_node(name).or_else(|| node.attributes().find(|a| a.name() == name)),
+        None => node.attribute_node(name),
+    }
+}
+
+/// The range of an attribute with the space before it, or the place after the element's name.
+fn place(text: &str, node: Node<'_, '_>, attribute: Option<roxmltree::Attribute<'_, '_>>) -> Range<usize> {
+    if let Some(a) = attribute {
+        let range = a.range();
+        return text[..range.start].trim_end().len()..range.end;
+    }
+    let start = node.range().start + 1;
+    let end =
+        text[start..].find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).map_or(start, |i| start + i);
+    end..end
+}

@@ -1,0 +1,288 @@
+//! The properties that a drawing is read by, in one table: what browsers know of each, in the words that usvg 0.49 knows.
+//!
+//! Facts are from Chromium's computed values. An entry with a [`Kind`] of its own is there because usvg reads the property otherwise.
+
+/// A property of CSS that stands in style sheets, style attributes, and mostly in an attribute of its name.
+#[derive(Debug)]
+pub(super) struct Property {
+    pub(super) name: &'static str,
+    /// Children have the value of their parent.
+    pub(super) inherited: bool,
+    pub(super) initial: &'static str,
+    pub(super) kind: Kind,
+}
+
+/// What values a property has.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Kind {
+    /// One of these words, in any case.
+    Word(&'static [&'static str]),
+    Paint,
+    Color,
+    /// A number, or a percentage of 1.
+    Share,
+    /// A number that is not negative.
+    Number,
+    Length(Sign),
+    /// `normal`, or a length; percentages refer to the font size.
+    Spacing,
+    /// `none`, or lengths.
+    Dashes,
+    /// `none`, or a reference to an element.
+    Link,
+    /// References and functions; one without its element is `none`.
+    Filter,
+    FontSize,
+    FontWeight,
+    BaselineShift,
+    /// A part of the transform.
+    Transform,
+    /// A length of SVG 2's geometry. Not all elements take it from style sheets.
+    Geometry(Sign),
+    /// Path data, as `path("…")`.
+    Path,
+    /// Any words, in any case.
+    Words,
+    /// Anything; usvg and browsers agree, or neither of them shows it.
+    Any,
+}
+
+/// Whether a length may be negative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sign {
+    Any,
+    Positive,
+}
+
+use Kind::{
+    Any, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Length, Link, Number, Paint, Path,
+    Share, Spacing, Transform, Word, Words,
+};
+
+const DISPLAY: &[&str] = &[
+    "none",
+    "inline",
+    "block",
+    "inline-block",
+    "contents",
+    "flex",
+    "grid",
+    "inline-flex",
+    "inline-grid",
+    "list-item",
+    "flow-root",
+    "run-in",
+    "table",
+    "inline-table",
+    "table-row",
+    "table-cell",
+    "table-column",
+    "table-caption",
+    "table-row-group",
+    "table-column-group",
+    "table-header-group",
+    "table-footer-group",
+];
+const BASELINES: &[&str] = &[
+    "auto",
+    "baseline",
+    "before-edge",
+    "text-before-edge",
+    "middle",
+    "central",
+    "after-edge",
+    "text-after-edge",
+    "ideographic",
+    "alphabetic",
+    "hanging",
+    "mathematical",
+    "use-script",
+    "no-change",
+    "reset-size",
+    "text-top",
+    "text-bottom",
+];
+const BLENDS: &[&str] = &[
+    "normal",
+    "multiply",
+    "screen",
+    "overlay",
+    "darken",
+    "lighten",
+    "color-dodge",
+    "color-burn",
+    "hard-light",
+    "soft-light",
+    "difference",
+    "exclusion",
+    "hue",
+    "saturation",
+    "color",
+    "luminosity",
+    "plus-lighter",
+];
+/// An inherited property.
+const fn up(name: &'static str, initial: &'static str, kind: Kind) -> Property {
+    Property { name, inherited: true, initial, kind }
+}
+
+/// A property that is not inherited.
+const fn own(name: &'static str, initial: &'static str, kind: Kind) -> Property {
+    Property { name, inherited: false, initial, kind }
+}
+
+/// The properties, sorted by name.
+static PROPERTIES: [Property; 84] = [
+    own("alignment-baseline", "baseline", Word(BASELINES)),
+    own("baseline-shift", "baseline", BaselineShift),
+    own("clip-path", "none", Link),
+    up("clip-rule", "nonzero", Word(&["nonzero", "evenodd"])),
+    up("color", "black", Color),
+    up("color-interpolation-filters", "linearRGB", Word(&["auto", "sRGB", "linearRGB"])),
+    own("cx", "0", Geometry(Sign::Any)),
+    own("cy", "0", Geometry(Sign::Any)),
+    own("d", "none", Path),
+    up("direction", "ltr", Word(&["ltr", "rtl"])),
+    own("display", "inline", Word(DISPLAY)),
+    up("dominant-baseline", "auto", Word(BASELINES)),
+    up("fill", "black", Paint),
+    up("fill-opacity", "1", Share),
+    up("fill-rule", "nonzero", Word(&["nonzero", "evenodd"])),
+    own("filter", "none", Filter),
+    own("flood-color", "black", Color),
+    own("flood-opacity", "1", Share),
+    up("font-family", "serif", Any),
+    up("font-feature-settings", "normal", Any),
+    up("font-kerning", "auto", Word(&["auto", "normal", "none"])),
+    up("font-size", "16px", FontSize),
+    up("font-size-adjust", "none", Any),
+    up("font-stretch", "normal", Words),
+    up("font-style", "normal", Words),
+    up("font-variant", "normal", Words),
+    up("font-variant-caps", "normal", Words),
+    up("font-variant-east-asian", "normal", Words),
+    up("font-variant-ligatures", "normal", Words),
+    up("font-variant-numeric", "normal", Words),
+    up("font-variant-position", "normal", Words),
+    up("font-variation-settings", "normal", Any),
+    up("font-weight", "400", FontWeight),
+    own("height", "auto", Geometry(Sign::Positive)),
+    up("image-rendering", "auto", Any),
+    own("isolation", "auto", Word(&["auto", "isolate"])),
+    up("letter-spacing", "0", Spacing),
+    own("lighting-color", "white", Color),
+    up("marker-end", "none", Link),
+    up("marker-mid", "none", Link),
+    up("marker-start", "none", Link),
+    own("mask", "none", Link),
+    own("mask-type", "luminance", Word(&["luminance", "alpha"])),
+    own("mix-blend-mode", "normal", Word(BLENDS)),
+    own("opacity", "1", Share),
+    own("overflow", "visible", Word(&["visible", "hidden", "scroll", "auto", "clip"])),
+    up("paint-order", "normal", Words),
+    own("r", "0", Geometry(Sign::Positive)),
+    own("rotate", "none", Transform),
+    own("rx", "auto", Geometry(Sign::Positive)),
+    own("ry", "auto", Geometry(Sign::Positive)),
+    own("scale", "none", Transform),
+    up("shape-rendering", "auto", Word(&["auto", "optimizeSpeed", "crispEdges", "geometricPrecision"])),
+    own("stop-color", "black", Color),
+    own("stop-opacity", "1", Share),
+    up("stroke", "none", Paint),
+    up("stroke-dasharray", "none", Dashes),
+    up("stroke-dashoffset", "0", Length(Sign::Any)),
+    up("stroke-linecap", "butt", Word(&["butt", "round", "square"])),
+    up("stroke-linejoin", "miter", Word(&["miter", "round", "bevel"])),
+    up("stroke-miterlimit", "4", Number),
+    up("stroke-opacity", "1", Share),
+    up("stroke-width", "1", Length(Sign::Positive)),
+    up("text-anchor", "start", Word(&["start", "middle", "end"])),
+    own("text-decoration", "none", Words),
+    own("text-decoration-style", "solid", Words),
+    own("text-decoration-thickness", "auto", Any),
+    up("text-orientation", "mixed", Words),
+    up("text-rendering", "auto", Word(&["auto", "optimizeSpeed", "optimizeLegibility", "geometricPrecision"])),
+    up("text-shadow", "none", Any),
+    up("text-transform", "none", Words),
+    own("transform", "none", Transform),
+    own("transform-box", "view-box", Transform),
+    own("transform-origin", "0 0", Transform),
+    own("translate", "none", Transform),
+    own("unicode-bidi", "normal", Words),
+    own("vector-effect", "none", Word(&["none", "non-scaling-stroke"])),
+    up("visibility", "visible", Word(&["visible", "hidden", "collapse"])),
+    up("white-space", "normal", Words),
+    own("width", "auto", Geometry(Sign::Positive)),
+    up("word-spacing", "0", Spacing),
+    up("writing-mode", "horizontal-tb", Words),
+    own("x", "0", Geometry(Sign::Any)),
+    own("y", "0", Geometry(Sign::Any)),
+];
+
+/// Attributes that are no properties and hold a length.
+const LENGTHS: [&str; 15] = [
+    "dx",
+    "dy",
+    "fr",
+    "fx",
+    "fy",
+    "markerHeight",
+    "markerWidth",
+    "refX",
+    "refY",
+    "startOffset",
+    "textLength",
+    "x1",
+    "x2",
+    "y1",
+    "y2",
+];
+
+/// Properties that no attribute sets.
+const STYLE_ONLY: [&str; 17] = [
+    "d",
+    "font-feature-settings",
+    "font-kerning",
+    "font-variant-caps",
+    "font-variant-east-asian",
+    "font-variant-ligatures",
+    "font-variant-numeric",
+    "font-variant-position",
+    "font-variation-settings",
+    "isolation",
+    "mix-blend-mode",
+    "rotate",
+    "scale",
+    "text-shadow",
+    "text-transform",
+    "translate",
+    "white-space",
+];
+
+/// The property with a name in lower case.
+pub(super) fn property(name: &str) -> Option<&'static Property> {
+    PROPERTIES.binary_search_by(|p| p.name.cmp(name)).ok().map(|i| &PROPERTIES[i])
+}
+
+/// The property that an attribute sets.
+pub(super) fn of_attribute(name: &str) -> Option<&'static Property> {
+    property(name).filter(|p| !STYLE_ONLY.contains(&p.name))
+}
+
+/// The name of an attribute that holds a length or lengths and is no property.
+pub(super) fn length_attribute(name: &str) -> Option<&'static str> {
+    LENGTHS.iter().copied().find(|n| *n == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn properties_are_found() {
+        assert!(PROPERTIES.windows(2).all(|w| w[0].name < w[1].name));
+        assert!(PROPERTIES.iter().all(|p| std::ptr::eq(property(p.name).unwrap(), p)));
+        assert!(STYLE_ONLY.iter().all(|n| property(n).is_some() && of_attribute(n).is_none()));
+        assert!(property("class").is_none());
+    }
+}

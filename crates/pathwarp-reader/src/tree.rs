@@ -1,0 +1,210 @@
+//! The style of every element, from the root down, and the transforms, from the leaves up: the box of a group depends on those
+//! of its children.
+
+use super::cascade::{applying, work};
+use super::computed::{Computed, Inherited, computed};
+use super::element::Looks;
+use super::ids::Ids;
+use super::shapes::shape_box;
+use super::sheet::{Declaration, Rules, declarations};
+use super::text::TextStyle;
+use super::value::{Custom, MEDIUM, Units, length};
+use super::{media, transform};
+use pathwarp::budget::{Budget, Exceeded, Limit};
+use pathwarp::kurbo::{Affine, Rect};
+use roxmltree::{Document, Node, NodeId};
+use selectors::context::SelectorCaches;
+use std::cell::Cell;
+use std::collections::{BTreeSet, HashMap};
+use std::rc::Rc;
+
+/// Size of a drawing that does not tell (CSS 2.1, section 10.3.2).
+const REPLACED: (f64, f64) = (300.0, 150.0);
+
+/// Bytes of a style sheet that are parsed in the time of a comparison.
+const PARSED: usize = 16;
+
+/// Bytes that a variable takes besides its value.
+const VARIABLE: usize = 64;
+
+/// The style of an element.
+#[derive(Debug)]
+pub(super) struct Styled<'a> {
+    pub(super) computed: Computed<'a>,
+    /// Its transform. `None` if it cannot be computed.
+    pub(super) matrix: Option<Affine>,
+}
+
+/// The style of a drawing.
+pub(super) struct Tree<'a> {
+    /// Element by element.
+    pub(super) styles: Vec<Styled<'a>>,
+    /// The elements that are style sheets.
+    pub(super) sheets: BTreeSet<usize>,
+    /// What is not supported of them, in words.
+    pub(super) unsupported: BTreeSet<String>,
+}
+
+/// Computes the style of all elements.
+///
+/// # Errors
+/// It takes more work than the budget allows.
+pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Tree<'a>, Exceeded> {
+    let (rules, sheets, unsupported) = rules(nodes, budget)?;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    let looks = Looks { done: Cell::new(0), most: budget.left(Limit::Comparisons) as u64 };
+    let mut caches = SelectorCaches::default();
+    let ids = Ids::new(doc);
+    // What the elements around hand on, outermost first.
+    let mut around: Vec<(NodeId, Inherited)> = Vec::new();
+    let mut known: HashMap<&str, Rc<[Declaration<'_>]>> = HashMap::new();
+    let mut out: Vec<(Computed<'_>, Units)> = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        let own = node.attribute("style").map(|style| {
+            // Many elements have the same style.
+            let parsed = || declarations(style).into();
+            if style.len() < REPEATED { parsed() } else { Rc::clone(known.entry(style).or_insert_with(parsed)) }
+        });
+        let own = own.as_deref().unwrap_or_default();
+        let declarations = if own.is_empty() && rules.is_empty() {
+            Vec::new()
+        } else {
+            applying(&rules, own, *node, &looks, &mut caches)
+        };
+        if looks.exceeded() {
+            break;
+        }
+        let parent = node.parent_element().map(|p| p.id());
+        while around.last().is_some_and(|(id, _)| Some(*id) != parent) {
+            around.pop();
+        }
+        let mut here = around.last().map_or_else(|| at_root(doc), |(_, inherited)| inherited.clone());
+        let custom = Rc::clone(&here.custom);
+        let style = computed(*node, parent.is_none(), &declarations, &ids, &mut here);
+        // Variables can make any value of a short one.
+        budget.spend(Limit::Comparisons, style.values().map(work).sum::<usize>() as u64)?;
+        if !Rc::ptr_eq(&custom, &here.custom) {
+            let bytes: usize = here.custom.values().map(|v| VARIABLE + v.len()).sum();
+            budget.spend(Limit::Comparisons, (bytes / PARSED) as u64)?;
+        }
+        let units = here.units;
+        if node.tag_name().name() == "svg" {
+            here.units.viewport = viewport(*node, &style, &units);
+        } else if let Some(inner) = view_box(*node).filter(|_| node.tag_name().name() == "symbol") {
+            here.units.viewport = inner;
+            here.in_symbol = true;
+        }
+        if node.has_children() {
+            around.push((node.id(), here));
+        }
+        out.push((style, units));
+    }
+    budget.spend_cut(Limit::Comparisons, looks.done.get())?;
+    let matrices = matrices(nodes, &out);
+    let all = out.into_iter().zip(matrices).map(|((computed, _), matrix)| Styled { computed, matrix });
+    Ok(Tree { styles: all.collect(), sheets, unsupported })
+}
+
+/// What the root element inherits.
+fn at_root(doc: &Document<'_>) -> Inherited {
+    let (custom, text) = (Rc::new(Custom::new()), TextStyle::default());
+    Inherited { in_symbol: false, marked: false, custom, units: root_units(doc), dashes: [None, None], text }
+}
+
+/// The rules of a drawing, the elements that are sheets, and what is not supported of them, in words.
+type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
+
+/// Reads the style sheets of a drawing.
+fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exceeded> {
+    let mut rules = Rules::default();
+    let mut sheets = BTreeSet::new();
+    for (e, node) in nodes.iter().enumerate().filter(|(_, n)| is_sheet(n)) {
+        sheets.insert(e);
+        let queries = node.attribute("media").unwrap_or_default();
+        match media::applies(queries) {
+            Some(true) => {}
+            Some(false) => continue,
+            None => {
+                rules.unsupported.insert(format!("the style sheet for “{queries}” is ignored"));
+                continue;
+            }
+        }
+        for text in node.children().filter_map(|c| c.text()) {
+            budget.spend(Limit::Comparisons, (text.len() / PARSED) as u64)?;
+            rules.add(text);
+        }
+    }
+    let unsupported = std::mem::take(&mut rules.unsupported);
+    Ok((rules, sheets, unsupported))
+}
+
+/// Bytes of style attributes from which on looking for the same one takes less time than reading it again.
+const REPEATED: usize = 128;
+
+fn is_sheet(node: &Node<'_, '_>) -> bool {
+    let is_css = |kind: &str| kind.trim().is_empty() || kind.trim().eq_ignore_ascii_case("text/css");
+    node.tag_name().name() == "style" && node.attribute("type").is_none_or(is_css)
+}
+
+/// Units of the root element: the window is the drawing's size.
+fn root_units(doc: &Document<'_>) -> Units {
+    let root = doc.root_element();
+    let units = Units { font: MEDIUM, root_font: MEDIUM, window: REPLACED, viewport: REPLACED };
+    let inner = view_box(root).unwrap_or(REPLACED);
+    let absolute = |name: &str| root.attribute(name).filter(|v| !v.contains('%')).and_then(|v| length(v, &units, 0.0));
+    let window = match (absolute("width"), absolute("height")) {
+        (Some(w), Some(h)) => (w, h),
+        (Some(w), None) => (w, w * inner.1 / inner.0),
+        (None, Some(h)) => (h * inner.0 / inner.1, h),
+        (None, None) => inner,
+    };
+    Units { window, viewport: window, ..units }
+}
+
+/// Size of the viewport that an `<svg>` makes, in its own coordinates.
+fn viewport<'a>(node: Node<'a, '_>, style: &Computed<'a>, units: &Units) -> (f64, f64) {
+    let size = |name: &str, full: f64| style.value(node, name).and_then(|v| length(v, units, full)).unwrap_or(full);
+    view_box(node).unwrap_or_else(|| (size("width", units.viewport.0), size("height", units.viewport.1)))
+}
+
+fn view_box(node: Node<'_, '_>) -> Option<(f64, f64)> {
+    let b: svgtypes::ViewBox = node.attribute("viewBox")?.parse().ok()?;
+    Some((b.w, b.h))
+}
+
+/// The transforms of all elements. Where a style sheet has a part in one, it is computed; `None` if it cannot be.
+fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec<Option<Affine>> {
+    let is_turned = nodes.first().is_some_and(|root| root.has_attribute("transform"));
+    if !is_turned && styles.iter().all(|(s, _)| s.transform.is_empty()) {
+        return vec![Some(Affine::IDENTITY); nodes.len()];
+    }
+    let numbers: HashMap<NodeId, usize> = nodes.iter().enumerate().map(|(e, n)| (n.id(), e)).collect();
+    // Of what is inside, in the element's own coordinates.
+    let mut boxes: Vec<Option<Rect>> = vec![None; nodes.len()];
+    let mut out = vec![Some(Affine::IDENTITY); nodes.len()];
+    for (e, (node, (style, units))) in nodes.iter().zip(styles).enumerate().rev() {
+        let tag = node.tag_name().name();
+        let attr = |name: &str| style.value(*node, name);
+        let own = if matches!(tag, "g" | "a" | "switch") { boxes[e] } else { shape_box(tag, attr, units) };
+        let declared = |name: &str| {
+            let last = style.transform.iter().find(|d| d.name == name).map(|d| d.value.as_ref());
+            last.or_else(|| node.attribute(name).filter(|_| matches!(name, "transform" | "transform-origin")))
+        };
+        let reference = match declared("transform-box").unwrap_or("view-box") {
+            // The root is a box of CSS, which turns about its centre.
+            _ if e == 0 => Some(Rect::from_origin_size((0.0, 0.0), units.window)),
+            "view-box" => Some(Rect::from_origin_size((0.0, 0.0), units.viewport)),
+            // Strokes are left out of account.
+            _ => own,
+        };
+        let matrix = reference.and_then(|r| transform::matrix(declared, units, r, e == 0));
+        out[e] = if style.transform.is_empty() && e > 0 { Some(Affine::IDENTITY) } else { matrix };
+        if let (Some(own), Some(m), Some(&parent)) =
+            (own, matrix, node.parent_element().and_then(|p| numbers.get(&p.id())))
+        {
+            let seen = m.transform_rect_bbox(own);
+            boxes[parent] = Some(boxes[parent].map_or(seen, |b| b.union(seen)));
+        }
+    }
+    out
+}
