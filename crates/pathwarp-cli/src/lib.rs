@@ -28,6 +28,7 @@ mod input;
 mod leftovers;
 mod options;
 mod output;
+mod page;
 mod pipeline;
 mod plugins;
 mod readable;

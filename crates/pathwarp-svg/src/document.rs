@@ -304,7 +304,7 @@ impl Document {
     /// [`OnError::Skip`](crate::OnError::Skip). Returns [`Error::Input`] if the structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<WarpedDocument, Error> {
         // If nothing moves, return the source unchanged.
-        let unchanged = is_identity(map, options) && options.page == PageFit::None;
+        let unchanged = is_identity(map, options) && matches!(options.page, PageFit::None | PageFit::Auto);
         if unchanged && options.structure != Structure::Flatten {
             let svg = self.drawing.source.as_in_file().into_owned();
             return Ok(WarpedDocument { svg, ..WarpedDocument::default() });

@@ -3,13 +3,13 @@
 use crate::failure::Failure;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
+use crate::page::PageNews;
 use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
-use pathwarp::recipe::BuiltRecipe;
+use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::{Error, Outline};
-use pathwarp_svg::Overhang;
 use std::sync::Arc;
 
 /// Artwork of one kind, read and ready to be warped.
@@ -62,6 +62,7 @@ pub(crate) enum Baseline {
 
 /// A warp of one input.
 pub(crate) struct WarpRequest<'a> {
+    pub(crate) recipe: &'a Recipe,
     pub(crate) built: &'a BuiltRecipe,
     pub(crate) options: &'a CommonOptions,
     /// The artwork's bounding box.
@@ -70,6 +71,8 @@ pub(crate) struct WarpRequest<'a> {
     pub(crate) tolerance: f64,
     /// The recipe file's text, to be embedded in the result.
     pub(crate) embedded_recipe: Option<String>,
+    /// Show the result on the page of the source.
+    pub(crate) same_view: bool,
 }
 
 /// The outcome of a warp. Nothing is written yet.
@@ -78,8 +81,7 @@ pub(crate) struct WarpedArtwork {
     pub(crate) shapes: Vec<ReportedShape>,
     pub(crate) skipped: Vec<SkippedShape>,
     pub(crate) warnings: Vec<String>,
-    /// The artwork extends past the page and did not before.
-    pub(crate) overhang: Option<Overhang>,
+    pub(crate) page: PageNews,
     /// Files besides the result.
     pub(crate) files: Vec<PendingFile>,
     /// The picture of `--preview`.

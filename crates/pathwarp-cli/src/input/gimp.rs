@@ -10,6 +10,7 @@ use super::{preview, surface};
 use crate::export::{self, Exported};
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::page::PageNews;
 use crate::options::{CommonOptions, FrameChoice};
 use crate::output::PendingFile;
 use crate::report::{ReportedShape, SkippedShape, assurance_word};
@@ -167,7 +168,7 @@ impl Artwork for GimpArtwork {
         let preview = options.preview.as_deref().map(|file| self.preview(&warped, built, (file, options.quality)));
         Ok(WarpedArtwork {
             result,
-            overhang: None,
+            page: PageNews::default(),
             files: Vec::new(),
             preview: preview.transpose()?,
             shapes: warped.shapes,

@@ -7,6 +7,7 @@ use crate::advice;
 use crate::bitmap::{ROUNDING, count_decoded, count_warped, inverse};
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
+use crate::page::PageNews;
 use crate::options::{CommonOptions, FrameChoice};
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
 use pathwarp::kurbo::{Affine, Point, Rect};
@@ -134,7 +135,7 @@ impl Artwork for PictureArtwork {
             shapes: Vec::new(),
             skipped: Vec::new(),
             warnings,
-            overhang: None,
+            page: PageNews::default(),
             files: Vec::new(),
             preview: None,
             partial: undefined.is_some(),

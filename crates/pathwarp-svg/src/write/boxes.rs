@@ -4,6 +4,7 @@ use super::values::stroke_scale;
 use crate::bend::outcome::{StrokeOutcome, WarpedPart};
 use crate::scene::expand::stroke_outline;
 use crate::scene::model::Part;
+use crate::scene::seen::overlap;
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
 use pathwarp::{Outline, Seg};
 use std::borrow::Cow;
@@ -67,5 +68,22 @@ pub(super) fn painted_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) 
             let outline = stroke_outline(&back, s, (FINE * size).max(1e-9)).transformed(frame * Affine::scale(scale));
             outline.bounding_box().map_or(inside, |b| inside.union(b))
         }
+    }
+}
+
+/// Returns `true` if a part paints anything in an area, up to the boxes of its segments and the reach of its stroke.
+pub(super) fn paints_in(p: &Part, warped: Option<&WarpedPart>, frame: Affine, area: Rect) -> bool {
+    if overlap(bound(p, warped, frame), area).is_none() || overlap(painted_box(p, warped, frame), area).is_none() {
+        return false;
+    }
+    let fills = |path: &BezPath| {
+        let placed = frame * path;
+        placed.segments().any(|s| overlap(s.bounding_box(), area).is_some()) || placed.winding(area.center()) != 0
+    };
+    match (&p.stroke, warped.map(|d| &d.stroke)) {
+        // The outline of a stroke is filled.
+        (Some(_), Some(StrokeOutcome::Outlined(o))) if fills(o) => true,
+        (Some(_), None | Some(StrokeOutcome::Scaled(_))) => true,
+        _ => p.fill.is_some() && fills(&path(p, warped)),
     }
 }
