@@ -87,6 +87,37 @@ fn baselines_heights_and_letters_are_recorded_correctly() {
     assert!(text.contains("<title>Hi H</title>") && text.contains("<g aria-label=\"Hi&#10;H\""), "{text}");
 }
 
+/// The ink of each line, by the path data of its letters.
+fn ink_of_lines(drawing: &str) -> Vec<Rect> {
+    let lines = drawing.split("<g data-baseline").skip(1);
+    let of = |line: &str| {
+        let data = line.split(" d=\"").skip(1).map(|d| d.split('"').next().unwrap());
+        data.map(|d| Outline::from_svg(d).unwrap().bounding_box().unwrap()).reduce(|a, b| a.union(b)).unwrap()
+    };
+    lines.map(of).collect()
+}
+
+#[test]
+fn words_fill_a_block() {
+    let drawing = svg("text LOVE MUSIC --align fill --gap 6% --size 100");
+    let ink = ink_of_lines(&drawing);
+    near(&[ink[0].x0, ink[1].x0, ink[1].y0 - ink[0].y1], &[0.0, 0.0, 6.0]);
+    near(&[ink[0].x1], &[ink[1].x1]);
+    let plain = ink_of_lines(&svg("text LOVE MUSIC --size 100"));
+    near(&[ink[1].width()], &[plain[1].width()]);
+    near(&[ink[0].width() / ink[0].height()], &[plain[0].width() / plain[0].height()]);
+    // The larger line has the larger heights, so that it can be bent by its own.
+    let scale = ink[0].width() / plain[0].width();
+    near(&numbers(&drawing, "data-cap-height").concat(), &[71.4, 71.4 * scale]);
+    // Bent into a box, the block fills it edge to edge.
+    let bent = svg(
+        "text LOVE MUSIC --align fill --gap 6% | envelope - --bottom 'M0,200 H300' --top 'M0,0 H300' --keep verticals",
+    );
+    let all = ink_of_lines(&bent).into_iter().reduce(|a, b| a.union(b)).unwrap();
+    assert!((all.x0.abs() + all.y0.abs() + (all.x1 - 300.0).abs() + (all.y1 - 200.0).abs()) < 0.2, "{all:?}");
+    expect_code(&["text", "A", "B", "--gap", "6%", "--line-height", "90%"], 2);
+}
+
 #[test]
 fn text_is_read_from_arguments_files_and_standard_input() {
     let dir = tempfile::tempdir().unwrap();

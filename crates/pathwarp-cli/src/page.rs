@@ -112,7 +112,8 @@ impl PageNews {
     pub(crate) fn warnings(&self) -> Vec<String> {
         let arrivals = self.arrivals.as_ref().map(ToString::to_string);
         let overhang = self.overhang.map(|o| overhang(o, self.stays));
-        let blank = self.is_blank.then(|| "nothing is on the page of the result; --fit page sets it to the artwork".to_owned());
+        let blank =
+            self.is_blank.then(|| "nothing is on the page of the result; --fit page sets it to the artwork".to_owned());
         [arrivals, overhang, blank].into_iter().flatten().collect()
     }
 }
@@ -152,9 +153,7 @@ impl PageCounts {
                 self.most = Some((o.share, file.to_owned()));
             }
         }
-        for (has, (count, first)) in
-            [(news.is_blank, &mut self.blank), (news.arrivals.is_some(), &mut self.arrivals)]
-        {
+        for (has, (count, first)) in [(news.is_blank, &mut self.blank), (news.arrivals.is_some(), &mut self.arrivals)] {
             *count += usize::from(has);
             if has && first.is_none() {
                 *first = Some(file.to_owned());
@@ -180,7 +179,10 @@ impl PageCounts {
             )
         });
         let arrivals = arrivals.1.as_ref().map(|file| {
-            format!("in {} of {inputs} inputs, such as {file}, shapes that lay off the page have moved onto it", arrivals.0)
+            format!(
+                "in {} of {inputs} inputs, such as {file}, shapes that lay off the page have moved onto it",
+                arrivals.0
+            )
         });
         [past, blank, arrivals].into_iter().flatten().collect()
     }

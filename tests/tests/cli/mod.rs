@@ -12,6 +12,7 @@ mod explain;
 mod faults;
 mod fonts;
 mod overwriting;
+mod page;
 mod readme;
 mod report;
 mod selection;

@@ -5,7 +5,5 @@ mod messages;
 mod names;
 
 pub(crate) use flags::Flags;
-pub(crate) use messages::{
-    error, lacking, lettering_frame, outside, picture, raise, stretched, surface,
-};
+pub(crate) use messages::{error, lacking, lettering_frame, outside, picture, raise, stretched, surface};
 pub(crate) use names::unknown;

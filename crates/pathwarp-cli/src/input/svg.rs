@@ -21,7 +21,8 @@ use pathwarp::param::Frame;
 use pathwarp::refit;
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_svg::{
-    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, WarpOptions, WarpedDocument,
+    Document, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, ReadOptions, Selection, WarpOptions,
+    WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;

@@ -67,7 +67,11 @@ impl Display for Warning {
                 write_names(f, names)
             }
             Self::Arrivals(names) => {
-                let shapes = if names.len() == 1 { "shape that lay off the page has" } else { "shapes that lay off the page have" };
+                let shapes = if names.len() == 1 {
+                    "shape that lay off the page has"
+                } else {
+                    "shapes that lay off the page have"
+                };
                 write!(f, "{} {shapes} moved onto it", names.len())?;
                 write_names(f, names)
             }

@@ -39,7 +39,7 @@ const DIGITS: i32 = 10;
 ///
 /// The text is a group with an `aria-label` and the font's heights in user units: `data-ascent` and `data-descent` (both
 /// measured from the baseline, both positive), `data-cap-height`, `data-x-height`. It contains a group for every line with
-/// `data-baseline="x0 y0 x1 y1"`, from the line's left end to its right end. That contains a path for every cluster with an
+/// `data-baseline="x0 y0 x1 y1"`, from the line's left end to its right end, and with heights of its own if it is scaled. That contains a path for every cluster with an
 /// outline: its text as `aria-label`, and its origin on the baseline and its advance width as `data-glyph="x y advance"`.
 ///
 /// ```
@@ -84,21 +84,24 @@ pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> 
     let numbers = |v: &[f64]| v.iter().map(|v| number(*v)).collect::<Vec<_>>().join(" ");
 
     let (w, h) = (number(page.width()), number(page.height()));
-    let (m, unit) = (&lettering.metrics, options.unit.map_or("", page_unit));
+    let unit = options.unit.map_or("", page_unit);
+    let heights = |scale: f64| {
+        let m = lettering.metrics.scaled(scale);
+        let [ascent, descent, cap, x] = [m.ascent, m.descent, m.cap_height, m.x_height].map(number);
+        format!(" data-ascent=\"{ascent}\" data-descent=\"{descent}\" data-cap-height=\"{cap}\" data-x-height=\"{x}\"")
+    };
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}{unit}\" height=\"{h}{unit}\" viewBox=\"{}\">\n<title>{}</title>\n\
-         <g aria-label=\"{}\" data-ascent=\"{}\" data-descent=\"{}\" data-cap-height=\"{}\" data-x-height=\"{}\"{fill}>\n",
+         <g aria-label=\"{}\"{}{fill}>\n",
         numbers(&[page.x0, page.y0, page.width(), page.height()]),
         escape(&lettering.text.replace('\n', " ")),
         escape(&lettering.text),
-        number(m.ascent),
-        number(m.descent),
-        number(m.cap_height),
-        number(m.x_height),
+        heights(1.0),
     );
     for line in &lettering.lines {
-        let _ =
-            writeln!(out, "<g data-baseline=\"{}\">", numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]));
+        let own = if line.scale == 1.0 { String::new() } else { heights(line.scale) };
+        let ends = numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]);
+        let _ = writeln!(out, "<g data-baseline=\"{ends}\"{own}>");
         for c in line.clusters.iter().filter(|c| !c.outline.is_empty()) {
             let _ = writeln!(
                 out,
