@@ -115,7 +115,7 @@ fn words_fill_a_block() {
     );
     let all = ink_of_lines(&bent).into_iter().reduce(|a, b| a.union(b)).unwrap();
     assert!((all.x0.abs() + all.y0.abs() + (all.x1 - 300.0).abs() + (all.y1 - 200.0).abs()) < 0.2, "{all:?}");
-    expect_code(&["text", "A", "B", "--gap", "6%", "--line-height", "90%"], 2);
+    expect_code(2, &["text", "A", "B", "--gap", "6%", "--line-height", "90%"]);
 }
 
 #[test]

@@ -111,7 +111,7 @@ impl PageNews {
 
     pub(crate) fn warnings(&self) -> Vec<String> {
         let arrivals = self.arrivals.as_ref().map(ToString::to_string);
-        let overhang = self.overhang.map(|o| overhang(o, self.stays));
+        let overhang = self.overhang.filter(|_| !self.is_blank).map(|o| overhang(o, self.stays));
         let blank =
             self.is_blank.then(|| "nothing is on the page of the result; --fit page sets it to the artwork".to_owned());
         [arrivals, overhang, blank].into_iter().flatten().collect()

@@ -277,6 +277,9 @@ fn clones_follow_and_pages_stay_with_the_artwork() {
     assert!(got.contains("<inkscape:page x='0' y='0' width='250' height='225' id='p1'/>"), "{got}");
     assert!(got.contains("x='260' y='0' width='100' height='200' id='p2'"), "{got}");
     assert!(got.contains("position='80,65'"), "{got}");
+    // Without the option, and so by default, the page stays.
+    let got = desk.result(&document(&format!("{view}{body}")), &["r"], &move_left[..4]);
+    assert!(got.contains("viewBox='0 0 200 200'") && !got.contains("--fit"), "{got}");
 }
 
 #[test]

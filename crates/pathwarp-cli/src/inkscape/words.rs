@@ -142,6 +142,8 @@ mod tests {
             ["--shaper=#cage", "--reverse-shaper"]
         );
         assert_eq!(of_options(&call(&["--fit=grow", "--text=outline", "--tolerance="])), ["--fit=grow"]);
+        assert_eq!(of_options(&call(&["--fit=auto"])), ["--fit=auto"]);
+        assert!(of_options(&call(&["--fit=none"])).is_empty());
     }
 
     #[test]

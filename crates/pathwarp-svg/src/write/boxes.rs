@@ -8,6 +8,7 @@ use crate::scene::seen::overlap;
 use pathwarp::kurbo::{Affine, BezPath, Rect, Shape as _};
 use pathwarp::{Outline, Seg};
 use std::borrow::Cow;
+use usvg::FillRule;
 
 /// Relative tolerance of outlines that are measured.
 const FINE: f64 = 1e-4;
@@ -76,14 +77,15 @@ pub(super) fn paints_in(p: &Part, warped: Option<&WarpedPart>, frame: Affine, ar
     if overlap(bound(p, warped, frame), area).is_none() || overlap(painted_box(p, warped, frame), area).is_none() {
         return false;
     }
-    let fills = |path: &BezPath| {
+    let fills = |path: &BezPath, rule: FillRule| {
         let placed = frame * path;
-        placed.segments().any(|s| overlap(s.bounding_box(), area).is_some()) || placed.winding(area.center()) != 0
+        let winding = placed.winding(area.center());
+        let is_inside = if rule == FillRule::EvenOdd { winding % 2 != 0 } else { winding != 0 };
+        is_inside || placed.segments().any(|s| overlap(s.bounding_box(), area).is_some())
     };
     match (&p.stroke, warped.map(|d| &d.stroke)) {
-        // The outline of a stroke is filled.
-        (Some(_), Some(StrokeOutcome::Outlined(o))) if fills(o) => true,
+        (Some(_), Some(StrokeOutcome::Outlined(o))) if fills(o, FillRule::NonZero) => true,
         (Some(_), None | Some(StrokeOutcome::Scaled(_))) => true,
-        _ => p.fill.is_some() && fills(&path(p, warped)),
+        _ => p.fill.as_ref().is_some_and(|f| fills(&path(p, warped), f.rule())),
     }
 }
