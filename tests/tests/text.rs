@@ -26,11 +26,17 @@ fn stages(line: &str) -> Vec<Vec<String>> {
     words(line).split(|w| w == "|").map(<[String]>::to_vec).collect()
 }
 
+/// Runs a pipeline that says no more than that a word that is bent takes its page along.
+#[track_caller]
+fn quiet(stages: &[Vec<String>]) -> Vec<u8> {
+    let (drawing, said) = pipeline(stages);
+    assert!(said.lines().all(|l| l.starts_with("note: the page grew")), "{stages:?}: {said}");
+    drawing
+}
+
 #[track_caller]
 fn run(line: &str) -> Vec<u8> {
-    let (drawing, said) = pipeline(&stages(line));
-    assert_eq!(said, "", "{line}");
-    drawing
+    quiet(&stages(line))
 }
 
 #[track_caller]
@@ -110,10 +116,10 @@ fn words_fill_a_block() {
     let scale = ink[0].width() / plain[0].width();
     near(&numbers(&drawing, "data-cap-height").concat(), &[71.4, 71.4 * scale]);
     // Bent into a box, the block fills it edge to edge.
-    let bent = svg(
+    let bent = run(
         "text LOVE MUSIC --align fill --gap 6% | envelope - --bottom 'M0,200 H300' --top 'M0,0 H300' --keep verticals",
     );
-    let all = ink_of_lines(&bent).into_iter().reduce(|a, b| a.union(b)).unwrap();
+    let all = bounds(&bent);
     assert!((all.x0.abs() + all.y0.abs() + (all.x1 - 300.0).abs() + (all.y1 - 200.0).abs()) < 0.2, "{all:?}");
     expect_code(2, &["text", "A", "B", "--gap", "6%", "--line-height", "90%"]);
 }
@@ -307,6 +313,6 @@ fn examples_in_help_run() {
         let out = last.pop().unwrap();
         let (_, format) = out.rsplit_once('.').unwrap();
         last.extend(["-".to_owned(), "--format".to_owned(), format.to_owned()]);
-        assert_eq!(pipeline(&stages).1, "", "{example}");
+        quiet(&stages);
     }
 }

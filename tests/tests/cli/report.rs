@@ -17,13 +17,13 @@ fn artwork_that_extends_past_the_page_causes_one_warning() {
         let report: Value = serde_json::from_slice(&fs::read(dir.path().join("r.json")).unwrap()).unwrap();
         (text(&out.stderr), report["inputs"][0]["warnings"].as_array().unwrap().clone())
     };
-    let (said, warnings) = run(&[]);
+    let (said, warnings) = run(&["--fit", "none"]);
     assert_eq!(said.lines().count(), 1, "{said}");
     for part in ["extends past the page by up to 30 units", "30 %; top, right", "--fit grow", "--fit page"] {
         assert!(said.contains(part) && warnings[0].as_str().unwrap().contains(part), "{part} not in {said}");
     }
     assert_eq!(warnings.len(), 1);
-    let (said, warnings) = run(&["--quiet"]);
+    let (said, warnings) = run(&["--quiet", "--fit", "none"]);
     assert!(said.is_empty() && warnings.len() == 1, "{said} {warnings:?}");
     for fit in ["grow", "page"] {
         let (said, warnings) = run(&["--fit", fit]);
@@ -59,7 +59,7 @@ fn quiet_commands_say_by_their_exit_code_alone_that_something_is_missing() {
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><image width='9' height='9' href='no.png'/></svg>";
     for command in [&["render", "-"][..], &["convert", "-", "--format", "pdf"]] {
         let run = |more: &[&str]| pathwarp_in(dir.path(), &[command, more].concat(), unread.as_bytes());
-        let (aloud, quiet) = (run(&[]), run(&["--quiet"]));
+        let (aloud, quiet) = (run(&[]), run(&["--quiet", "--fit", "none"]));
         assert!(text(&aloud.stderr).contains("no.png"), "{command:?}: {}", text(&aloud.stderr));
         assert_eq!(text(&quiet.stderr), "", "{command:?}");
         assert_eq!((quiet.status.code(), &quiet.stdout), (Some(1), &aloud.stdout), "{command:?}");

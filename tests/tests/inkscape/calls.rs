@@ -87,8 +87,10 @@ fn what_is_selected_is_bent_and_nothing_else() {
     for ids in [&["a"][..], &["b", "a"], &["g"], &["u"], &["t"], &["layer"], &["r", "t"]] {
         let got = desk.result(&svg, ids, &FLAG);
         let select: Vec<String> = ids.iter().map(|id| format!("--select=#{id}")).collect();
-        let words: Vec<&str> =
-            ["warp", "--style=flag", "--bend=40%"].into_iter().chain(select.iter().map(String::as_str)).collect();
+        let words: Vec<&str> = ["warp", "--style=flag", "--bend=40%", "--fit=none"]
+            .into_iter()
+            .chain(select.iter().map(String::as_str))
+            .collect();
         assert_eq!(forgetful(&got), desk.command_line(&svg, &words), "{ids:?}");
         assert_eq!(got.matches(MEMORY).count(), ids.len(), "{ids:?}");
     }
