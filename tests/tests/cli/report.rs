@@ -59,7 +59,7 @@ fn quiet_commands_say_by_their_exit_code_alone_that_something_is_missing() {
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><image width='9' height='9' href='no.png'/></svg>";
     for command in [&["render", "-"][..], &["convert", "-", "--format", "pdf"]] {
         let run = |more: &[&str]| pathwarp_in(dir.path(), &[command, more].concat(), unread.as_bytes());
-        let (aloud, quiet) = (run(&[]), run(&["--quiet", "--fit", "none"]));
+        let (aloud, quiet) = (run(&[]), run(&["--quiet"]));
         assert!(text(&aloud.stderr).contains("no.png"), "{command:?}: {}", text(&aloud.stderr));
         assert_eq!(text(&quiet.stderr), "", "{command:?}");
         assert_eq!((quiet.status.code(), &quiet.stdout), (Some(1), &aloud.stdout), "{command:?}");

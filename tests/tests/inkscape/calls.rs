@@ -96,7 +96,7 @@ fn what_is_selected_is_bent_and_nothing_else() {
     }
     // Nothing is selected: the page, but not what is locked.
     let whole = desk.result(&svg, &[], &FLAG);
-    let wanted = desk.command_line(&svg, &["warp", "--style=flag", "--bend=40%", "--exclude=#locked"]);
+    let wanted = desk.command_line(&svg, &["warp", "--style=flag", "--bend=40%", "--fit=none", "--exclude=#locked"]);
     assert_eq!(forgetful(&whole), wanted);
     assert!(whole.contains("d='M 150,150 h 30 v 30 z'"));
 }
