@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::temporaries::{self, Temporary};
 use std::fs::{File, Metadata};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IsTerminal as _, Write};
 use std::path::{Path, PathBuf};
 
 /// An output with its content. Nothing appears under its name before [`PendingFile::commit_all`].
@@ -135,6 +135,17 @@ impl Draft {
             Sink::Bytes(bytes) => PendingFile::new(&self.to, &bytes),
         }
     }
+}
+
+/// Refuses to write what is not text to a terminal.
+pub(crate) fn refuse_terminal(target: Option<&Path>, what: &str, extension: &str) -> Result<(), Failure> {
+    let names_terminal = target.is_none_or(is_stdout) && io::stdout().is_terminal();
+    if !names_terminal {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "{what} would be written to the terminal; name a file with -o OUT.{extension}, or redirect it: > OUT.{extension}"
+    )))
 }
 
 /// The kinds of places that an output's name may stand for.

@@ -161,6 +161,11 @@ impl PageCounts {
         }
     }
 
+    /// Returns `true` if nothing is on a page.
+    pub(crate) fn are_blank(&self) -> bool {
+        self.blank.0 > 0
+    }
+
     /// The warnings about a batch of so many inputs.
     pub(crate) fn warnings(&self, inputs: usize) -> Vec<String> {
         let past = self.most.as_ref().map(|(share, file)| {

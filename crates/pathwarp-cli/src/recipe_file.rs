@@ -10,6 +10,7 @@
 //! deformation = "shaper"
 //! shaper = "cage.svg#flag"   # relative to the recipe's own folder
 //! reverse-shaper = true
+//! select = ["#banner"]       # also exclude: this step holds for a part of the drawing only
 //! ```
 //!
 //! A recipe for solids has `solid = true` below the version.
@@ -31,6 +32,8 @@ const VERSION: i64 = 1;
 /// Keys of a step that are not parameters of its deformation.
 const DEFORMATION: &str = "deformation";
 const INVERSE: &str = "inverse";
+const SELECT: &str = "select";
+const EXCLUDE: &str = "exclude";
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -114,6 +117,13 @@ fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> 
         match key.as_str() {
             DEFORMATION => {}
             INVERSE => step.inverse = value.as_bool().ok_or("inverse must be true or false")?,
+            SELECT | EXCLUDE if catalogue.is_solid() => {
+                return Err(format!("{key} is for drawings; a step holds for the whole of a solid"));
+            }
+            SELECT | EXCLUDE => {
+                let list = if key == SELECT { &mut step.select } else { &mut step.exclude };
+                *list = texts(value).ok_or_else(|| format!("{key}: must be a text or a list of them"))?;
+            }
             key => {
                 let params = info.params;
                 let param = params.iter().find(|p| p.name == key).ok_or_else(|| {
@@ -221,6 +231,11 @@ pub(crate) fn write(
         t.insert(DEFORMATION.into(), Value::String(s.deformation.clone()));
         if s.inverse {
             t.insert(INVERSE.into(), Value::Boolean(true));
+        }
+        for (key, selectors) in [(SELECT, &s.select), (EXCLUDE, &s.exclude)] {
+            if !selectors.is_empty() {
+                t.insert(key.into(), Value::Array(selectors.iter().cloned().map(Value::String).collect()));
+            }
         }
         let params = catalogue.info(&s.deformation).map_or(&[][..], |i| i.params);
         for (name, values) in s.args.iter() {

@@ -2,7 +2,7 @@
 
 use crate::catalogue::Catalogue;
 use crate::failure::Failure;
-use crate::input::{GimpFile, read_data_file, split_reference};
+use crate::input::{GimpFile, described, read_data_file, split_reference, unreadable};
 use crate::options::Reading;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
@@ -87,15 +87,17 @@ fn in_file(reference: &str, reading: &Reading) -> Result<Outline, Error> {
     let shown = file.display();
     let bytes = std::fs::read(&file).map_err(|e| {
         let problem = format!(
-            "cannot be read: {e}; a path reference is FILE#NAME, #NAME, path data, \
-                       points, circle:r=R or arc:r=R,from=A,to=B"
+            "{}; a path reference is FILE#NAME, #NAME, path data, \
+                       points, circle:r=R or arc:r=R,from=A,to=B",
+            unreadable(&file, &e)
         );
         Error::input(shown.to_string(), problem)
     })?;
     if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
         return points(&bytes).map_err(|e| Error::input(reference, e));
     }
-    let doc = Document::read(&bytes, &shown.to_string(), &reading.read_options())?;
+    let doc = Document::read(&bytes, &shown.to_string(), &reading.read_options());
+    let doc = doc.map_err(|e| described(&bytes, &file).map_or(e, |what| Error::input(shown.to_string(), what)))?;
     if let Some(name) = name {
         return Ok(doc.path(name)?.outline);
     }

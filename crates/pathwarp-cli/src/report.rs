@@ -17,6 +17,9 @@ pub(crate) struct FileReport {
     pub(crate) tolerance: Option<f64>,
     /// The frame that percentages refer to: x, y, width and height in user units; `None` after an error.
     pub(crate) frame: Option<[f64; 4]>,
+    /// What every step holds for; omitted if all hold for the same.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) selections: Vec<StepSelection>,
     /// The height of the lettering's baseline, if the frame has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) baseline: Option<f64>,
@@ -37,6 +40,7 @@ impl FileReport {
             error: Some(error),
             tolerance: None,
             frame: None,
+            selections: Vec::new(),
             baseline: None,
             page: None,
             shapes: Vec::new(),
@@ -51,10 +55,25 @@ impl FileReport {
     }
 }
 
+/// A step with a part of the artwork.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct StepSelection {
+    pub(crate) deformation: String,
+    /// Selectors; none for all artwork.
+    pub(crate) select: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) exclude: Vec<String>,
+    /// The frame that its percentages refer to, as in a report.
+    pub(crate) frame: [f64; 4],
+}
+
 /// One shape.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct ReportedShape {
     pub(crate) id: String,
+    /// The steps that hold for the shape, counted from 1; omitted if all do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) steps: Option<Vec<usize>>,
     /// Number of copies of the shape in the result; omitted if one.
     #[serde(skip_serializing_if = "is_one")]
     pub(crate) copies: usize,

@@ -30,6 +30,10 @@ pub(crate) fn command_line(
         if step.inverse {
             line.push_str(" --inverse");
         }
+        let selectors = step.select.iter().map(|s| ("select", s)).chain(step.exclude.iter().map(|s| ("exclude", s)));
+        for (name, selector) in selectors {
+            let _ = write!(line, " --{name} {}", quoted(selector));
+        }
         if first {
             for (name, value) in options {
                 let _ = write!(line, " --{name} {}", quoted(value));

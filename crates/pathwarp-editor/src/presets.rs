@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn paths_are_laid_onto_the_new_frame() {
         let args = [("shaper".to_owned(), vec!["M0,10 L10,10 L10,0 L0,0 Z".to_owned()])];
-        let step = PageStep { deformation: "shaper".into(), inverse: false, args: args.into() };
+        let step = PageStep { deformation: "shaper".into(), inverse: false, args: args.into(), ..PageStep::default() };
         let preset = Preset { name: "a".into(), steps: vec![step], frames: vec![[0.0, 0.0, 10.0, 10.0]] };
         let laid = preset.step_for(&Registry::builtin(), 0, Rect::new(5.0, 5.0, 25.0, 10.0)).unwrap();
         assert_eq!(laid.args["shaper"], ["M5,10 L25,10 L25,5 L5,5 Z"]);

@@ -9,13 +9,18 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A step as pages and drafts have it: values as typed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PageStep {
     pub(crate) deformation: String,
     #[serde(default)]
     pub(crate) inverse: bool,
     #[serde(default)]
     pub(crate) args: BTreeMap<String, Vec<String>>,
+    /// Selectors of the part of the drawing that the step holds for, and of what it leaves out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) select: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) exclude: Vec<String>,
 }
 
 /// A request.
@@ -106,7 +111,8 @@ pub(crate) fn recipe(steps: &[PageStep]) -> Recipe {
         for (name, values) in s.args.iter().filter(|(_, values)| !values.is_empty()) {
             args.set(name, values.clone());
         }
-        Step { inverse: s.inverse, ..Step::new(s.deformation.clone(), args) }
+        let (select, exclude) = (s.select.clone(), s.exclude.clone());
+        Step { inverse: s.inverse, select, exclude, ..Step::new(s.deformation.clone(), args) }
     };
     Recipe { steps: steps.iter().map(step).collect() }
 }
@@ -117,6 +123,8 @@ pub(crate) fn steps(recipe: &Recipe) -> Vec<PageStep> {
         deformation: s.deformation.clone(),
         inverse: s.inverse,
         args: s.args.iter().map(|(name, values)| (name.to_owned(), values.to_vec())).collect(),
+        select: s.select.clone(),
+        exclude: s.exclude.clone(),
     };
     recipe.steps.iter().map(step).collect()
 }
@@ -127,7 +135,7 @@ mod tests {
 
     #[test]
     fn requests_are_read() {
-        let text = r#"{"id":7,"do":"bend","steps":[{"deformation":"wave","args":{"height":["5%"]}}],"draft":0.5}"#;
+        let text = r#"{"id":7,"do":"bend","steps":[{"deformation":"wave","args":{"height":["5%"]},"select":[".a"]}],"draft":0.5}"#;
         let message: Message = serde_json::from_str(text).unwrap();
         let Request::Bend { steps: given, draft } = message.request else { panic!() };
         assert_eq!((message.id, draft), (7, Some(0.5)));

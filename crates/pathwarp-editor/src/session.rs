@@ -269,14 +269,14 @@ impl Session {
             Some(variant) => variant.values(frame, false),
             None => opening(entry.info(), frame),
         };
-        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args })
+        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args, ..PageStep::default() })
     }
 
     /// The frame of a step after these.
     fn frame_after(&mut self, given: &[PageStep]) -> Result<Rect, String> {
         let (_, built) = self.opened.artwork.settle(&recipe(given))?;
         let artwork = &self.opened.artwork;
-        let image = (!given.is_empty()).then(|| built.image_box(artwork.outlines().into_iter(), &[])).flatten();
+        let image = (!given.is_empty()).then(|| built.image_box(artwork.outlines().into_iter())).flatten();
         Ok(image.unwrap_or_else(|| artwork.frame()))
     }
 
@@ -326,7 +326,7 @@ impl Session {
             Some(variant) => variant.values(frame, true),
             None => example(entry.info(), frame),
         };
-        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args })
+        Ok(PageStep { deformation: deformation.to_owned(), inverse: false, args, ..PageStep::default() })
     }
 
     /// The file that *Save* writes unless another is named.

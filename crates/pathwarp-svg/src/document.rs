@@ -1,6 +1,7 @@
 //! The public face of a drawing.
 
-use crate::bend::drawing::{bend, bent_parts, is_identity};
+use crate::bend::bends::{Bend, Bends};
+use crate::bend::drawing::bend;
 use crate::bend::letters::placed_outlines;
 use crate::bend::options::{PageFit, Structure, WarpOptions};
 use crate::bend::outcome::WarpedDocument;
@@ -13,7 +14,7 @@ use crate::scene::shape::{NamedPath, Shape, named_path};
 use crate::scene::stroked::stroked;
 use crate::scene::unread::UnreadImages;
 use crate::source::read::ReadOptions;
-use crate::source::select::{Selection, candidates, is_named, matches_any};
+use crate::source::select::{self, Division, Selection, candidates, is_named, matches_any};
 use crate::source::tags::{ElementId, is_shape};
 use crate::source::undrawn::undrawn;
 use crate::write;
@@ -303,29 +304,49 @@ impl Document {
     /// Returns [`Error::Geometry`] with the name of a shape that the map cannot bend, unless `options` has
     /// [`OnError::Skip`](crate::OnError::Skip). Returns [`Error::Input`] if the structure must be kept and cannot be.
     pub fn warp(&self, map: &dyn Map, options: &WarpOptions) -> Result<WarpedDocument, Error> {
+        self.warp_each(&[(map, options)])
+    }
+
+    /// Bends parts of the drawing, each by a map of its own: what is selected by the options that stand beside the map. Shapes that share
+    /// an edge keep it together if the same map bends both. For the document as a whole, as for its page, the first options count.
+    ///
+    /// # Errors
+    /// As [`Document::warp`].
+    pub fn warp_each(&self, bends: &[(&dyn Map, &WarpOptions)]) -> Result<WarpedDocument, Error> {
+        let each = bends.iter().map(|(map, options)| Bend { map: *map, options: (*options).clone() }).collect();
+        let document = bends.first().map_or_else(|| WarpOptions::new(refit::Options::new(1.0)), |b| b.1.clone());
+        let bends = &Bends::new(&self.drawing.source, each, &document);
         // If nothing moves, return the source unchanged.
-        let unchanged = is_identity(map, options) && matches!(options.page, PageFit::None | PageFit::Auto);
-        if unchanged && options.structure != Structure::Flatten {
+        let unchanged = bends.is_identity() && matches!(document.page, PageFit::None | PageFit::Auto);
+        if unchanged && document.structure != Structure::Flatten {
             let svg = self.drawing.source.as_in_file().into_owned();
             return Ok(WarpedDocument { svg, ..WarpedDocument::default() });
         }
-        match tiles::laid_out(&self.drawing, map, options)? {
-            Some(tiled) => warp(&tiled, map, options),
-            None => warp(&self.drawing, map, options),
+        let divided = bends.divided(&self.drawing)?;
+        let drawing = divided.as_ref().unwrap_or(&self.drawing);
+        match tiles::laid_out(drawing, bends)? {
+            Some(tiled) => warp(&tiled, bends),
+            None => warp(drawing, bends),
         }
+    }
+
+    /// Divides the drawing by selections: each part holds what the same ones of them select. What none selects is in no part.
+    #[must_use]
+    pub fn divide(&self, selections: &[Selection]) -> Vec<Division> {
+        select::divide(&self.drawing.source, selections)
+    }
+
+    /// What any of these selections holds, as one.
+    #[must_use]
+    pub fn united<'a>(&self, selections: impl Iterator<Item = &'a Selection>) -> Selection {
+        Selection::union(&self.drawing.source, selections)
     }
 }
 
-fn warp(drawing: &Drawing, map: &dyn Map, options: &WarpOptions) -> Result<WarpedDocument, Error> {
-    let mut options = options.clone();
-    if options.refit.merge && !is_identity(map, &options) {
-        let bent = drawing.shapes().iter().zip(bent_parts(drawing, &options)).filter(|(_, bent)| *bent);
-        let shared = refit::SharedEdges::among(bent.map(|(s, _)| &*s.outline));
-        options.refit.shared = Arc::new(shared);
-    }
+fn warp(drawing: &Drawing, bends: &Bends<'_>) -> Result<WarpedDocument, Error> {
     let mut out = WarpedDocument::default();
-    let bent = bend(drawing, map, &options, &mut out)?;
-    let input = WriteInput::new(drawing, &bent, map, &options);
+    let bent = bend(drawing, bends, &mut out)?;
+    let input = WriteInput::new(drawing, &bent, bends);
     drawing.with_stack(|| write::document::write(&input, &mut out))?;
     Ok(out)
 }

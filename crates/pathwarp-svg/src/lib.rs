@@ -75,5 +75,5 @@ pub use scene::unread::UnreadImages;
 pub use source::faces::{GenericFamilies, bundled_font};
 pub use source::families::{FontFile, check_fonts, family_styles, find_font};
 pub use source::read::{ReadOptions, compressed};
-pub use source::select::Selection;
+pub use source::select::{Division, Elements, Selection};
 pub use write::lettering::{LetteringOptions, write_lettering};

@@ -29,9 +29,9 @@ use crate::error::{Error, GeometryError, show};
 use crate::map::{Chain, Map, NewtonInverse, metered};
 use crate::meter::Meter;
 use crate::outline::Outline;
-use crate::param::{Args, Frame, Kind, Letter, Param};
+use crate::param::{Args, Frame, Kind, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
-use std::cell::LazyCell;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// A deformation with its arguments.
@@ -43,13 +43,23 @@ pub struct Step {
     pub args: Args,
     /// Applies the inverse map.
     pub inverse: bool,
+    /// Selectors of the artwork that the step holds for, as whoever reads the artwork understands them. Empty: all of it.
+    pub select: Vec<String>,
+    /// Selectors of the artwork that the step leaves out.
+    pub exclude: Vec<String>,
 }
 
 impl Step {
-    /// Creates a step that is not inverted.
+    /// Creates a step that is not inverted and holds for all artwork.
     #[must_use]
     pub fn new(deformation: impl Into<String>, args: Args) -> Self {
-        Self { deformation: deformation.into(), args, inverse: false }
+        Self { deformation: deformation.into(), args, inverse: false, select: Vec::new(), exclude: Vec::new() }
+    }
+
+    /// Returns `true` if the step has selectors of its own.
+    #[must_use]
+    pub fn is_selective(&self) -> bool {
+        !self.select.is_empty() || !self.exclude.is_empty()
     }
 
     /// The given values with their names, as a command line takes them: a flag that is set has no value, one that is not is left out.
@@ -83,8 +93,28 @@ pub struct BuiltRecipe {
     pub after: Chain,
     /// For every step, the frame that its percentages refer to.
     pub frames: Vec<Frame>,
+    /// For every step, its index in the recipe.
+    pub indices: Vec<usize>,
     /// Counts the searches of inverses.
     meter: Arc<Meter>,
+}
+
+/// A part of the artwork that the same steps hold for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Portion<'a> {
+    /// The indices of those steps, in order.
+    pub steps: Vec<usize>,
+    /// Its outlines.
+    pub outlines: Vec<&'a Outline>,
+}
+
+/// A recipe whose steps hold for parts of the artwork, with every parameter settled.
+#[derive(Clone)]
+pub struct BuiltParts {
+    /// All steps in order, as for artwork that all of them hold for.
+    pub whole: BuiltRecipe,
+    /// For every portion, its own steps.
+    pub parts: Vec<BuiltRecipe>,
 }
 
 impl Recipe {
@@ -102,15 +132,49 @@ impl Recipe {
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
         budget: &Arc<Budget>,
     ) -> Result<BuiltRecipe, Error> {
+        self.build_parts(registry, &self.alone(frame), &[self.all_of(artwork)], budget).map(|b| b.whole)
+    }
+
+    /// Builds steps that hold for parts of the artwork, within a budget as [`Recipe::build_within`]. `start` has the frame of every step
+    /// that [starts](Self::starts); the percentages of the others refer to the bounding box of all that the step holds for, each part of it
+    /// as the earlier steps that hold for that part have left it.
+    ///
+    /// # Errors
+    /// As for [`Recipe::build_within`].
+    pub fn build_parts(
+        &self,
+        registry: &Registry,
+        start: &[Option<Frame>],
+        portions: &[Portion<'_>],
+        budget: &Arc<Budget>,
+    ) -> Result<BuiltParts, Error> {
         let paths: usize = self.steps.iter().map(|s| s.args.path_segments()).sum();
         budget.spend(Limit::Evaluations, MEASURED * paths as u64).map_err(GeometryError::Limit)?;
-        let samples = LazyCell::new(|| (artwork.clone().flat_map(Outline::segs).count() * (PER_SEGMENT + 1)) as f64);
-        let count = |out: &BuiltRecipe| {
+        let count = |out: &BuiltRecipe, portion: &Portion<'_>| {
+            let samples = portion.outlines.iter().flat_map(|o| o.segs()).count() * (PER_SEGMENT + 1);
             let places = out.placement.copies.len().max(1) as f64;
-            let work = SAMPLE * places * *samples * out.map.work();
+            let work = SAMPLE * places * samples as f64 * out.map.work();
             budget.spend_cut(Limit::Evaluations, work as u64).map_err(GeometryError::Limit)
         };
-        self.counted(registry, frame, artwork, (&count, &Meter::new(Arc::clone(budget))))
+        self.counted(registry, start, portions, (&count, &Meter::new(Arc::clone(budget))))
+    }
+
+    /// Returns `true` if no part of the artwork that step `i` holds for has been moved by an earlier step; for a recipe of inverse steps
+    /// alone, if none is moved by a later one: its frame is then that of the source.
+    #[must_use]
+    pub fn starts(&self, i: usize, portions: &[Portion<'_>]) -> bool {
+        let end = |p: &Portion<'_>| if self.undoes() { p.steps.last().copied() } else { p.steps.first().copied() };
+        portions.iter().filter(|p| p.steps.contains(&i)).all(|p| end(p) == Some(i))
+    }
+
+    /// Returns `true` if the recipe has several steps and all are inverse.
+    fn undoes(&self) -> bool {
+        self.steps.len() > 1 && self.steps.iter().all(|s| s.inverse)
+    }
+
+    /// The artwork as one portion that every step holds for.
+    fn all_of<'a>(&self, artwork: &(impl Iterator<Item = &'a Outline> + Clone)) -> Portion<'a> {
+        Portion { steps: (0..self.steps.len()).collect(), outlines: artwork.clone().collect() }
     }
 
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
@@ -128,24 +192,32 @@ impl Recipe {
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
-        let unlimited = Arc::new(Budget::new(Limits::none()));
-        self.counted(registry, frame, artwork, (&|_| Ok(()), &Meter::new(unlimited)))
+        let unlimited = Meter::new(Arc::new(Budget::new(Limits::none())));
+        let counting: Counting<'_> = (&|_, _| Ok(()), &unlimited);
+        self.counted(registry, &self.alone(frame), &[self.all_of(artwork)], counting).map(|b| b.whole)
+    }
+
+    /// The frames of a recipe whose steps hold for all artwork, as far as they are known: that of the source.
+    fn alone(&self, source: Frame) -> Vec<Option<Frame>> {
+        let known = if self.undoes() { self.steps.len() - 1 } else { 0 };
+        let mut source = Some(source);
+        (0..self.steps.len()).map(|i| if i == known { source.take() } else { None }).collect()
     }
 
     /// Builds every step.
-    fn counted<'a>(
+    fn counted(
         &self,
         registry: &Registry,
-        frame: Frame,
-        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        start: &[Option<Frame>],
+        portions: &[Portion<'_>],
         counting: Counting<'_>,
-    ) -> Result<BuiltRecipe, Error> {
-        if self.steps.len() < 2 || !self.steps.iter().all(|s| s.inverse) {
-            return self.built(registry, frame, artwork, counting, None);
+    ) -> Result<BuiltParts, Error> {
+        if !self.undoes() {
+            return self.built(registry, start, portions, counting);
         }
-        let (frames, off) = self.frames_on_the_way_back(registry, frame.clone(), artwork, counting)?;
-        let mut out = self.built(registry, frame, artwork, counting, Some(&frames))?;
-        if let Some(step) = out.steps.last_mut().filter(|_| off > SETTLED) {
+        let (frames, off) = self.frames_on_the_way_back(registry, start, portions, counting)?;
+        let mut out = self.built(registry, &frames, portions, counting)?;
+        if let Some(step) = out.whole.steps.last_mut().filter(|_| off > SETTLED) {
             step.warn(format!(
                 "the boxes that percentages of the later steps refer to were not found again, and differ by {off:.1e} of their size: \
                  the result is not the source; give those steps lengths instead"
@@ -155,30 +227,50 @@ impl Recipe {
     }
 
     /// The frames of inverse steps, in their order, for artwork that is a result; and by how much the last turn moved them, as a share of
-    /// their size.
-    fn frames_on_the_way_back<'a>(
+    /// their size. `start` has the frames of the source.
+    fn frames_on_the_way_back(
         &self,
         registry: &Registry,
-        source: Frame,
-        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        start: &[Option<Frame>],
+        portions: &[Portion<'_>],
         counting: Counting<'_>,
-    ) -> Result<(Vec<Frame>, f64), Error> {
-        let Rect { x0, y0, x1, y1 } = source.rect;
-        let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(Point::from);
-        let page = Outline::from_points(&corners, true);
-        let there = self.inverted().built(registry, source, &std::iter::once(&page), counting, None)?;
+    ) -> Result<(Vec<Option<Frame>>, f64), Error> {
+        let turned = |i: usize| self.steps.len() - 1 - i;
+        let any = || start.iter().flatten().next();
+        let page = |p: &Portion<'_>| {
+            let source = p.steps.last().and_then(|&i| start[i].as_ref()).or_else(any);
+            let Rect { x0, y0, x1, y1 } = source.map_or(Rect::ZERO, |f| f.rect);
+            Outline::from_points(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(Point::from), true)
+        };
+        let pages: Vec<Outline> = portions.iter().map(page).collect();
+        let there: Vec<Portion<'_>> = std::iter::zip(portions, &pages)
+            .map(|(p, page)| Portion {
+                steps: p.steps.iter().rev().map(|&i| turned(i)).collect(),
+                outlines: vec![page],
+            })
+            .collect();
+        let sources: Vec<Option<Frame>> = start.iter().rev().cloned().collect();
+        let there = self.inverted().built(registry, &sources, &there, counting)?.whole;
         let mut frames: Vec<Frame> = there.frames.into_iter().rev().collect();
         let (count, meter) = counting;
         let mut off = f64::INFINITY;
         for _ in 0..TURNS {
-            let mut back = BuiltRecipe::new(frames.len(), meter);
+            let mut back: Vec<BuiltRecipe> = portions.iter().map(|_| BuiltRecipe::new(frames.len(), meter)).collect();
             off = 0.0;
-            // The source's frame, the last, is known.
-            for (i, step) in self.steps.iter().enumerate().take(frames.len() - 1) {
+            for (i, step) in self.steps.iter().enumerate() {
+                let members: Vec<usize> = members(portions, i).collect();
+                // The frames of the source are known, and nothing comes after them.
+                if start[i].is_some() || members.is_empty() {
+                    continue;
+                }
                 let built = entry(registry, i, step)?.build_from(&step.args, &frames[i])?;
-                back.map.push(inverse(&built, &frames[i], meter));
-                count(&back)?;
-                let Some(found) = image_box(artwork.clone(), &[], &back.map) else { continue };
+                let map = inverse(&built, &frames[i], meter);
+                for &m in &members {
+                    back[m].map.push(Arc::clone(&map));
+                    count(&back[m], &portions[m])?;
+                }
+                let found = members.iter().filter_map(|&m| back[m].image_box(portions[m].outlines.iter().copied()));
+                let Some(found) = found.reduce(|a, b| a.union(b)) else { continue };
                 let known = frames[i].rect;
                 let moved =
                     (found.origin() - known.origin()).hypot().max((found.size() - known.size()).to_vec2().hypot());
@@ -189,50 +281,49 @@ impl Recipe {
                 break;
             }
         }
-        Ok((frames, off))
+        Ok((frames.into_iter().map(Some).collect(), off))
     }
 
-    /// Builds every step, with the frames that are found for them or those of the artwork on its way.
-    fn built<'a>(
+    /// Builds every step in its frame, or else that of the artwork on its way.
+    fn built(
         &self,
         registry: &Registry,
-        frame: Frame,
-        artwork: &(impl Iterator<Item = &'a Outline> + Clone),
+        start: &[Option<Frame>],
+        portions: &[Portion<'_>],
         counting: Counting<'_>,
-        found: Option<&[Frame]>,
-    ) -> Result<BuiltRecipe, Error> {
+    ) -> Result<BuiltParts, Error> {
         let (count, meter) = counting;
-        let mut out = BuiltRecipe::new(self.steps.len(), meter);
-        let letters = Arc::clone(&frame.letters);
-        let mut frame = frame;
+        let new = || BuiltRecipe::new(self.steps.len(), meter);
+        let mut out = BuiltParts { whole: new(), parts: portions.iter().map(|_| new()).collect() };
+        let mut frame = Frame::new(Rect::ZERO);
         for (i, step) in self.steps.iter().enumerate() {
             let entry = entry(registry, i, step)?;
-            if let Some(found) = found.and_then(|f| f.get(i)) {
-                frame = found.clone();
-            } else if i > 0 {
-                count(&out)?;
+            let members: Vec<usize> = members(portions, i).collect();
+            let all = || members.iter().map(|&m| (&out.parts[m], &portions[m]));
+            if let Some(given) = &start[i] {
+                frame = given.clone();
+            } else {
+                all().try_for_each(|(part, portion)| count(part, portion))?;
                 let units_per_px = frame.units_per_px;
-                let image = out.image_box(artwork.clone(), &letters);
+                let images = all().filter_map(|(part, portion)| part.image_box(portion.outlines.iter().copied()));
+                let image = images.reduce(|a, b| a.union(b));
                 frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
             }
             let mut built = entry.build_from(&step.args, &frame)?;
-            check_placement(&built.placement, i, step)?;
-            if i == 0 {
-                out.placement.clone_from(&built.placement);
-            }
+            let is_first = all().all(|(part, _)| part.steps.is_empty());
+            check_placement(&built.placement, i, is_first, step)?;
             if step.inverse {
-                count(&out)?;
-                if let Some(warning) = out.torn_seam(artwork.clone(), &built, &step.deformation) {
+                all().try_for_each(|(part, portion)| count(part, portion))?;
+                let torn = |(part, portion): (&BuiltRecipe, &Portion<'_>)| {
+                    part.torn_seam(portion.outlines.iter().copied(), &built, &step.deformation)
+                };
+                if let Some(warning) = all().find_map(torn) {
                     built.warn(warning);
                 }
                 built = inverted(built, &frame, &step.deformation, meter)?;
             }
-            if i > 0 {
-                out.after.push(Arc::clone(&built.map));
-            }
-            out.map.push(Arc::clone(&built.map));
-            out.steps.push(built);
-            out.frames.push(frame.clone());
+            members.iter().for_each(|&m| out.parts[m].push(i, built.clone(), &frame));
+            out.whole.push(i, built, &frame);
         }
         Ok(out)
     }
@@ -254,15 +345,20 @@ fn entry<'a>(registry: &'a Registry, i: usize, step: &Step) -> Result<&'a Arc<dy
     })
 }
 
+/// The portions that step `i` holds for.
+fn members<'p>(portions: &'p [Portion<'_>], i: usize) -> impl Iterator<Item = usize> + use<'p> {
+    portions.iter().enumerate().filter(move |(_, p)| p.steps.contains(&i)).map(|(m, _)| m)
+}
+
 /// Refuses copies and placed letters in all but a first step that is not inverted.
-fn check_placement(placement: &Placement, i: usize, step: &Step) -> Result<(), Error> {
+fn check_placement(placement: &Placement, i: usize, is_first: bool, step: &Step) -> Result<(), Error> {
     let effect = match placement {
         p if !p.copies.is_empty() => "repeats the artwork",
         p if !p.letters.is_empty() => "places letters",
         _ => return Ok(()),
     };
-    let problem = match (i, step.inverse) {
-        (0, false) => return Ok(()),
+    let problem = match (is_first, step.inverse) {
+        (true, false) => return Ok(()),
         (_, true) => "has no inverse",
         _ => "only the first step can do; put it first, or in a separate run",
     };
@@ -277,8 +373,22 @@ impl BuiltRecipe {
             placement: Placement::default(),
             after: Chain::default(),
             frames: Vec::with_capacity(steps),
+            indices: Vec::with_capacity(steps),
             meter: Arc::clone(meter),
         }
+    }
+
+    /// Adds step `i` of the recipe.
+    fn push(&mut self, i: usize, step: Built, frame: &Frame) {
+        if self.steps.is_empty() {
+            self.placement.clone_from(&step.placement);
+        } else {
+            self.after.push(Arc::clone(&step.map));
+        }
+        self.map.push(Arc::clone(&step.map));
+        self.steps.push(step);
+        self.frames.push(frame.clone());
+        self.indices.push(i);
     }
 
     /// Returns the failure of a step's map, if one has failed, or the limit that searches for an inverse have exceeded. Results computed
@@ -295,14 +405,20 @@ impl BuiltRecipe {
     }
 
     /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
-    /// `letters` are those of the first frame. `None` if nothing of the artwork is in the map's domain.
+    /// `None` if nothing of the artwork is in the map's domain.
     #[must_use]
-    pub fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>, letters: &[Letter]) -> Option<Rect> {
-        if self.placement.letters.is_empty() {
+    pub fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>) -> Option<Rect> {
+        let Some(first) = self.frames.first().filter(|_| !self.placement.letters.is_empty()) else {
             return image_box(artwork, &self.placement.copies, &self.map);
-        }
-        let placed = letters.iter().zip(&self.placement.letters).map(|(l, p)| (&l.outline, p.as_slice()));
-        placed.filter_map(|(o, p)| image_box(std::iter::once(o), p, &self.after)).reduce(|a, b| a.union(b))
+        };
+        // The letters of the frame are those of all that the first step holds for.
+        let start = |o: &Outline| o.subpaths.first().map(|s| [s.start.x.to_bits(), s.start.y.to_bits()]);
+        let own: HashSet<[u64; 2]> =
+            artwork.flat_map(|o| &o.subpaths).map(|s| [s.start.x.to_bits(), s.start.y.to_bits()]).collect();
+        let placed = first.letters.iter().zip(&self.placement.letters);
+        let placed = placed.filter(|(l, _)| start(&l.outline).is_some_and(|s| own.contains(&s)));
+        let boxes = placed.filter_map(|(l, p)| image_box(std::iter::once(&l.outline), p, &self.after));
+        boxes.reduce(|a, b| a.union(b))
     }
 
     /// Warns if the image under the steps so far crosses the seam of a deformation to be inverted.
@@ -325,7 +441,7 @@ impl BuiltRecipe {
 }
 
 /// What is called before the artwork's image under the steps so far is sampled, and the meter of the inverses.
-type Counting<'a> = (&'a dyn Fn(&BuiltRecipe) -> Result<(), GeometryError>, &'a Arc<Meter>);
+type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), GeometryError>, &'a Arc<Meter>);
 
 /// The inverse of a map: its closed form, or Newton's method over the frame.
 fn inverse(built: &Built, frame: &Frame, meter: &Arc<Meter>) -> Arc<dyn Map> {

@@ -2,6 +2,7 @@
 
 mod flags;
 mod messages;
+pub(crate) mod mistakes;
 mod names;
 
 pub(crate) use flags::Flags;

@@ -23,7 +23,7 @@ mod solid;
 mod text;
 mod unwarp;
 
-use crate::advice;
+use crate::advice::{self, mistakes};
 use crate::failure::Failure;
 use crate::options::Given;
 use crate::plugins::{self, Plugins};
@@ -50,6 +50,7 @@ const AFTER: &str = "Path references (PATHREF), for every option that takes a pa
 
 Chains: pathwarp projective IN.svg --target … + shaper --shaper … -o OUT.svg
 All steps are composed before any curve is fitted. Name the inputs in the first part; common options may be in any part.
+--select (or --exclude) in several parts holds for the step of its part: warp IN.svg --select .a + swirl --select .b -o OUT.svg
 
 Exit codes: 0 success; 1 done, but something was left unchanged or missed the tolerance, or some of several inputs failed;
 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
@@ -87,6 +88,7 @@ fn root() -> Command {
                 .long(plugins::OPTION)
                 .value_name("FILE")
                 .global(true)
+                .hide_short_help(true)
                 .help("Use the plug-in in this file, too (docs/plugin-protocol.md)"),
         )
 }
@@ -119,7 +121,9 @@ const OTHERS: [(&str, Declare); 18] = [
 /// Runs the subcommand that `args` names; the first of them is the program's name.
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Failure> {
     let (args, plugins) = plugins::load(registry, args, &OTHERS.map(|(name, _)| name))?;
-    let (registry, args) = (&plugins.added_to(registry), args.as_slice());
+    let registry = &plugins.added_to(registry);
+    let args = without_aliases(registry, args);
+    let args = args.as_slice();
     // Each part after a lone `+` is a command line of its own.
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
@@ -137,10 +141,13 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     }
     // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
     if registry.get(name).is_some() {
-        return deformation::run(registry, name, m, &later);
+        return deformation::run(registry, name, m, first, &later).map_err(|e| match e {
+            Failure::Clap(e) => suggested(registry, args, e),
+            other => other,
+        });
     }
     if name == run::NAME {
-        return run::run(registry, m);
+        return run::run(registry, m, first);
     }
     reading.check()?;
     if name != map::NAME && name != solid::NAME && !later.is_empty() {
@@ -159,14 +166,14 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
         solid::NAME => solid::run(m, &later),
         unwarp::NAME => unwarp::run(m),
         schema::NAME => schema::run(registry),
-        text::NAME => text::run(m),
+        text::NAME => text::run(m, first),
         paths::NAME => paths::run(m),
         convert::NAME => convert::run(m),
         render::NAME => render::run(m),
         gallery::NAME => gallery::run(registry, m),
         compare::NAME => compare::run(m),
         install::NAME => install::run(registry, m),
-        completions::NAME => completions::run(build(registry), m),
+        completions::NAME => completions::run(registry, build(registry), m),
         man::NAME => man::run(build(registry), m),
         other => Err(Failure::usage(format!("there is no command {other}"))),
     }
@@ -179,22 +186,69 @@ fn broken(plugins: &Plugins, args: &[OsString]) -> Option<Failure> {
     word.as_ref().and_then(named).map(|b| b.fault.of(&b.path).into())
 }
 
-/// Suggests a command to `pathwarp help NAME`, for which clap does not, and quotes around `#NAME`, which shells take for a comment.
+/// Adds to an error of clap what is most likely meant: commands and options of other programs, quotes around `#NAME`, which shells
+/// take for a comment.
 fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Failure {
-    if error.kind() == ErrorKind::InvalidValue
-        && let Some(ContextValue::String(arg)) = error.get(ContextKind::InvalidArg)
-        && arg.contains(PATHREF)
-    {
-        let tip = "shells take a word that starts with # for a comment; quote it: '#NAME'";
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
-    }
-    let wanted = args.get(2).map(|name| name.to_string_lossy());
-    match wanted {
-        Some(name) if error.kind() == ErrorKind::InvalidSubcommand && args[1] == "help" => {
+    let context = |kind: ContextKind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.clone()),
+        _ => None,
+    };
+    let is_help = args.get(1).is_some_and(|a| a == "help");
+    let tip = match error.kind() {
+        ErrorKind::InvalidSubcommand => {
+            let asked = args.get(2).filter(|_| is_help).map(|w| w.to_string_lossy().into_owned());
+            let word = asked.or_else(|| context(ContextKind::InvalidSubcommand)).unwrap_or_default();
+            if let Some(meant) = mistakes::command(registry, &word) {
+                return Failure::usage(meant);
+            }
             let whole = build(registry);
             let known = whole.get_subcommands().map(Command::get_name);
-            Failure::usage(advice::unknown("command", &name, known))
+            return if is_help { Failure::usage(advice::unknown("command", &word, known)) } else { error.into() };
         }
-        _ => error.into(),
+        ErrorKind::InvalidValue if context(ContextKind::InvalidArg).is_some_and(|arg| arg.contains(PATHREF)) => {
+            Some("shells take a word that starts with # for a comment; quote it: '#NAME'".to_owned())
+        }
+        ErrorKind::UnknownArgument => context(ContextKind::InvalidArg).and_then(|arg| {
+            let known = options_of(registry, args);
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            if !arg.starts_with('-') {
+                return mistakes::surplus(&arg, &known);
+            }
+            let meant = mistakes::options(&arg, &known);
+            let tip = (!meant.is_empty()).then(|| format!("use --{}", meant.join(" or --")));
+            if tip.is_some() {
+                error.insert(ContextKind::SuggestedArg, ContextValue::None);
+            }
+            tip
+        }),
+        _ => None,
+    };
+    if let Some(tip) = tip {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
+    error.into()
+}
+
+/// The options of the commands that a command line names.
+fn options_of(registry: &Registry, args: &[OsString]) -> Vec<String> {
+    let commands = args.iter().enumerate().skip(1).filter(|(i, _)| *i == 1 || args[i - 1] == "+").map(|(_, word)| word);
+    let names = commands.flat_map(|word| {
+        let whole = build_for(registry, Some(word));
+        let command = word.to_str().and_then(|w| whole.find_subcommand(w));
+        let longs = command.into_iter().flat_map(|c| c.get_arguments().filter_map(|a| a.get_long().map(str::to_owned)));
+        longs.collect::<Vec<_>>()
+    });
+    names.collect()
+}
+
+/// The arguments with other names of commands replaced.
+fn without_aliases(registry: &Registry, mut args: Vec<OsString>) -> Vec<OsString> {
+    for i in 1..args.len() {
+        let is_command = i == 1 || args[i - 1] == "+" || i == 2 && (args[1] == "help" || args[1] == "map");
+        let meant = args[i].to_str().filter(|w| is_command && registry.get(w).is_none()).and_then(mistakes::alias);
+        if let Some(name) = meant {
+            args[i] = name.into();
+        }
+    }
+    args
 }

@@ -62,6 +62,7 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     } else {
         m.get_one::<f32>("scale").map_or(Size::Native, |s| Size::Scale(*s))
     };
+    output::refuse_terminal(target, "the picture", format.extension())?;
     let background = match m.get_one::<Background>("background") {
         Some(Background(None)) if format == Format::Jpeg => {
             return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
@@ -72,7 +73,8 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     };
     let bytes = input::bytes(file)?;
     let name = input::display(file);
-    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &options.reading))?;
+    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &options.reading))
+        .map_err(|e| input::not_a_drawing(&bytes, file, e.into()))?;
     let limits = options.reading.limits.for_input(bytes.len());
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
     let picture = encode(drawn.map_err(|e| Failure::from(e).about(&name))?, format, options.quality)?;

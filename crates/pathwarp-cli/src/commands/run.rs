@@ -12,6 +12,7 @@ use pathwarp::deform::Registry;
 use pathwarp::param::Kind;
 use pathwarp::recipe::{Recipe, Step};
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 
 pub(super) const NAME: &str = "run";
 
@@ -30,7 +31,7 @@ pub(super) fn command(registry: &Registry) -> Command {
         .args_override_self(true)
         .after_help(
             "A recipe:\n  pathwarp = 1\n  [options]\n  tolerance = \"0.01\"\n  [[step]]\n  deformation = \"shaper\"\n  \
-             shaper = \"cage.svg#flag\"   # relative to the recipe's own folder\n\nExamples:\n  pathwarp shaper logo.svg \
+             shaper = \"cage.svg#flag\"   # relative to the recipe's own folder\n  select = [\"#logo\"]           # this step holds for a part only; also exclude\n\nExamples:\n  pathwarp shaper logo.svg \
              --shaper cage.svg -o out.svg --write-recipe flag.toml\n  pathwarp run flag.toml other.svg -o other-out.svg\n  pathwarp run \
              flag.toml other.svg --bottom 2 -o other-out.svg   # overrides the recipe's value",
         )
@@ -77,11 +78,12 @@ fn override_parameters(registry: &Registry, recipe: &mut Recipe, m: &ArgMatches)
     Ok(())
 }
 
-pub(super) fn run(registry: &Registry, m: &ArgMatches) -> Result<Status, Failure> {
+pub(super) fn run(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
     let file = file_args::given(m, "RECIPE")?;
     let mut saved = recipe_file::read(registry, file, Given::reading(m)?.external)?;
     override_parameters(registry, &mut saved.recipe, m)?;
     let given = saved.options.overridden_by(&Given::inputs_and_options(m));
+    super::deformation::mistaken(words, &given)?;
     // The command line alone has no conflicts, so one that shows up now involves the recipe.
     given.check_conflicts().map_err(|e| Failure::file(file, format!("[options] {e}")))?;
     let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };

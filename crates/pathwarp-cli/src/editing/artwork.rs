@@ -2,14 +2,14 @@
 
 use crate::advice::Flags;
 use crate::failure::Failure;
-use crate::input::{Artwork as _, Baseline, SvgArtwork, WarpRequest, WarpedResult};
+use crate::input::{Artwork as _, Baseline, SvgArtwork, WarpRequest, WarpedResult, Which};
 use crate::options::{CommonOptions, Given};
 use crate::{pipeline, plugins, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::recipe::{BuiltParts, BuiltRecipe, Recipe, Step};
 use pathwarp_editor::{Artwork, Bent, Fineness, Summary};
 use pathwarp_svg::Document;
 use std::path::{Path, PathBuf};
@@ -34,15 +34,13 @@ pub(super) struct EditedArtwork {
 struct Framed {
     guides: Vec<String>,
     baseline: Baseline,
-    bounds: Option<Rect>,
     frame: Frame,
 }
 
 /// A recipe that is ready to be used.
 struct Ready {
     resolved: Recipe,
-    built: BuiltRecipe,
-    bounds: Option<Rect>,
+    built: BuiltParts,
     tolerance: f64,
 }
 
@@ -80,42 +78,43 @@ impl EditedArtwork {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
         let guides = references::resolve_names(&self.registry, &mut resolved, |name| self.svg.path_named(name))?;
-        let Framed { bounds, frame, .. } = self.framed(guides, pipeline::first_baseline(&self.registry, &resolved))?;
-        let tolerance = self.options.tolerance_for(bounds, &frame)?;
-        let outlines = self.svg.outlines();
-        let built = resolved
-            .build_within(&self.registry, frame, &outlines.iter().copied(), self.svg.budget())
-            .map_err(Failure::of_recipe)?;
+        let baseline = resolved.steps.first().map_or(Baseline::None, |s| pipeline::baseline(&self.registry, s));
+        self.svg.restore(&self.options);
+        self.svg.remove_guides(guides.clone());
+        let frame = self.framed(guides, baseline)?;
+        let tolerance = self.options.tolerance_for(self.svg.bounding_box(Which::All), &frame)?;
+        let parts = pipeline::divided(&mut self.svg, &resolved)?;
+        let known = (!resolved.steps.iter().any(Step::is_selective)).then_some(&frame);
+        let starts = pipeline::starts(&self.registry, &resolved, &self.svg, &parts, self.options.frame, known)?;
+        let built = pipeline::build(&self.registry, &resolved, &self.svg, &parts, &starts)?;
         sound(&built)?;
-        Ok(Ready { resolved, built, bounds, tolerance })
+        Ok(Ready { resolved, built, tolerance })
     }
 
-    fn framed(&mut self, guides: Vec<String>, baseline: Baseline) -> Result<Framed, Failure> {
+    /// The frame of all artwork.
+    fn framed(&mut self, guides: Vec<String>, baseline: Baseline) -> Result<Frame, Failure> {
         if let Some(framed) = self.framed.as_ref().filter(|f| f.guides == guides && f.baseline == baseline) {
-            return Ok(framed.clone());
+            return Ok(framed.frame.clone());
         }
-        self.svg.remove_guides(guides.clone());
-        let bounds = self.svg.bounding_box();
-        let frame = self.svg.frame(self.options.frame, bounds, baseline)?;
+        let frame = self.svg.frame(Which::All, self.options.frame, self.svg.bounding_box(Which::All), baseline)?;
         let frame = frame.with_units_per_px(self.svg.units_per_px());
-        let framed = Framed { guides, baseline, bounds, frame };
-        self.framed = Some(framed.clone());
-        Ok(framed)
+        self.framed = Some(Framed { guides, baseline, frame: frame.clone() });
+        Ok(frame)
     }
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        let Ready { resolved, built, bounds, tolerance } = self.ready(recipe)?;
+        let Ready { resolved, built, tolerance } = self.ready(recipe)?;
         let text = || recipe_file::write(&*self.registry, recipe, &self.given, &self.folder);
         let embedded_recipe = (fineness == Fineness::Finished { embedded: true }).then(text).transpose()?;
         let tolerance = if let Fineness::Draft(draft) = fineness { draft.max(tolerance) } else { tolerance };
         let same_view = !matches!(fineness, Fineness::Finished { .. });
         let options = &self.options;
-        let request = WarpRequest { recipe, built: &built, options, bounds, tolerance, embedded_recipe, same_view };
+        let request = WarpRequest { recipe, built: &built, options, tolerance, embedded_recipe, same_view };
         if let Fineness::Draft(_) = fineness {
             let svg = self.svg.draft(&request);
             sound(&built)?;
             let (svg, page) = svg?;
-            return Ok(Bent { svg, page, resolved, built, summary: None, warnings: Vec::new() });
+            return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
         }
         let warped = self.svg.warp(&request);
         sound(&built)?;
@@ -133,12 +132,12 @@ impl EditedArtwork {
             tolerance,
             folds: shapes.iter().filter_map(fold).collect(),
         };
-        let own = built.steps.iter().flat_map(|s| &s.explanation.warnings);
+        let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
         let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
         warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
         warnings.extend(warped.skipped.iter().map(|s| format!("{} is not bent: {}", s.id, s.why)));
         let page = warped.page.change.map(|[_, after]| after);
-        Ok(Bent { svg, page, resolved, built, summary: Some(summary), warnings })
+        Ok(Bent { svg, page, resolved, built: built.whole, summary: Some(summary), warnings })
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
@@ -147,8 +146,8 @@ impl EditedArtwork {
 }
 
 /// The map of a plug-in may fail at any time. Nothing that was computed with it is used then.
-fn sound(built: &BuiltRecipe) -> Result<(), Failure> {
-    built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
+fn sound(built: &BuiltParts) -> Result<(), Failure> {
+    built.whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
 }
 
 impl Artwork for EditedArtwork {
@@ -158,11 +157,11 @@ impl Artwork for EditedArtwork {
 
     fn frame(&self) -> Rect {
         let known = self.framed.as_ref().map(|f| f.frame.rect);
-        known.or_else(|| self.svg.bounding_box()).unwrap_or_else(|| self.document().view_box())
+        known.or_else(|| self.svg.bounding_box(Which::All)).unwrap_or_else(|| self.document().view_box())
     }
 
     fn outlines(&self) -> Vec<&Outline> {
-        self.svg.outlines()
+        self.svg.outlines(Which::All)
     }
 
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
@@ -172,7 +171,7 @@ impl Artwork for EditedArtwork {
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
         let ready = self.ready(recipe);
-        self.said(ready).map(|r| (r.resolved, r.built))
+        self.said(ready).map(|r| (r.resolved, r.built.whole))
     }
 
     fn options(&self) -> Vec<(String, String)> {

@@ -6,6 +6,7 @@ use super::points::PointMap;
 use crate::failure::Failure;
 use crate::input::{Fold, no_document};
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
+use crate::steps;
 use crate::steps::in_lower_case;
 use crate::{pipeline, recipe_file, references};
 use pathwarp::Outline;
@@ -122,16 +123,19 @@ impl Warper {
         Ok(())
     }
 
-    /// This recipe and then another. Options of both are kept; the later one's win.
+    /// This recipe and then another. Options of both are kept; the later one's win. If both select, each holds for its own.
     #[must_use]
     pub fn then(&self, later: &Self) -> Self {
-        let joined = |a: &Recipe, b: &Recipe| Recipe { steps: a.steps.iter().chain(&b.steps).cloned().collect() };
-        Self {
-            registry: self.registry.clone(),
-            typed: joined(&self.typed, &later.typed),
-            resolved: joined(&self.resolved, &later.resolved),
-            given: self.given.overridden_by(&later.given),
-        }
+        let joined = |a: &Recipe, b: &Recipe| {
+            let mut steps = [&a.steps[..], &b.steps[..]].concat();
+            let (first, second) = steps.split_at_mut(a.steps.len());
+            let (mut of_first, mut of_second) = (self.given.clone(), later.given.clone());
+            steps::assign([(first, &mut of_first), (second, &mut of_second)]);
+            (Recipe { steps }, of_first.overridden_by(&of_second))
+        };
+        let (typed, given) = joined(&self.typed, &later.typed);
+        let (resolved, _) = joined(&self.resolved, &later.resolved);
+        Self { registry: self.registry.clone(), typed, resolved, given }
     }
 
     /// The recipe that undoes this one. Percentages and defaults need the option `frame`, the box of the source.
@@ -238,6 +242,9 @@ impl Warper {
 
     /// Builds the recipe without a drawing.
     fn build(&self, frame: &Frame, outline: &Outline, budget: &Arc<Budget>) -> Result<BuiltRecipe, Failure> {
+        if self.resolved.steps.iter().any(Step::is_selective) {
+            return Err(Failure::usage("select and exclude are for drawings"));
+        }
         let mut recipe = self.resolved.clone();
         references::resolve_names(&self.registry, &mut recipe, |name| Err(no_document(name)))?;
         let outlines = std::iter::once(outline);

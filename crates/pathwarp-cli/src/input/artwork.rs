@@ -8,9 +8,20 @@ use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::recipe::{BuiltParts, Recipe, Step};
 use pathwarp::{Error, Outline};
 use std::sync::Arc;
+
+/// Which of the artwork is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Which {
+    /// All that is warped.
+    All,
+    /// What this step of the recipe holds for.
+    Step(usize),
+    /// What the same steps hold for, in the order of [`Artwork::divide`].
+    Part(usize),
+}
 
 /// Artwork of one kind, read and ready to be warped.
 pub(crate) trait Artwork {
@@ -23,16 +34,29 @@ pub(crate) trait Artwork {
     /// Removes the paths that serve as guides from the artwork. Called once, before anything below.
     fn remove_guides(&mut self, guides: Vec<String>);
 
+    /// Divides the artwork by what the steps hold for; returns the indices of each part's steps. Called once, after the guides are
+    /// removed, and only if a step has a selection of its own.
+    ///
+    /// # Errors
+    /// A selector matches nothing, or the artwork has no parts.
+    fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure>;
+
     /// The bounding box of the artwork; `None` if there is none.
-    fn bounding_box(&self) -> Option<Rect>;
+    fn bounding_box(&self, which: Which) -> Option<Rect>;
 
     /// The bounding box, `bounds`, with what the page cuts off the artwork. `None` if it cuts nothing.
-    fn uncut_box(&self, _bounds: Rect) -> Option<Rect> {
+    fn uncut_box(&self, _which: Which, _bounds: Rect) -> Option<Rect> {
         None
     }
 
-    /// The frame for building the first step. `bounds` is the artwork's bounding box.
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure>;
+    /// The frame for building a step that no other comes before. `bounds` is the artwork's bounding box.
+    fn frame(
+        &self,
+        which: Which,
+        choice: FrameChoice,
+        bounds: Option<Rect>,
+        baseline: Baseline,
+    ) -> Result<Frame, Failure>;
 
     /// User units per px along x and y.
     fn units_per_px(&self) -> [f64; 2] {
@@ -40,7 +64,7 @@ pub(crate) trait Artwork {
     }
 
     /// The outlines of the artwork.
-    fn outlines(&self) -> Vec<&Outline>;
+    fn outlines(&self, which: Which) -> Vec<&Outline>;
 
     /// The limits on the work that the artwork causes, and what is used of them.
     fn budget(&self) -> &Arc<Budget>;
@@ -49,7 +73,7 @@ pub(crate) trait Artwork {
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure>;
 }
 
-/// The baseline of a recipe's first step.
+/// The baseline of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Baseline {
     /// The deformation has none; it has no use for lettering.
@@ -63,10 +87,9 @@ pub(crate) enum Baseline {
 /// A warp of one input.
 pub(crate) struct WarpRequest<'a> {
     pub(crate) recipe: &'a Recipe,
-    pub(crate) built: &'a BuiltRecipe,
+    /// One for each part of the artwork.
+    pub(crate) built: &'a BuiltParts,
     pub(crate) options: &'a CommonOptions,
-    /// The artwork's bounding box.
-    pub(crate) bounds: Option<Rect>,
     /// User units.
     pub(crate) tolerance: f64,
     /// The recipe file's text, to be embedded in the result.

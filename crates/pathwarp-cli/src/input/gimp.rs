@@ -1,6 +1,6 @@
 //! GIMP paths as artwork: warped, and written in a format that GIMP reads.
 
-use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::folds::{self, Fold};
 use super::gimp_file::GimpFile;
 use super::gimp_format::{GimpFormat, format};
@@ -17,14 +17,15 @@ use crate::report::{ReportedShape, SkippedShape, assurance_word};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect};
-use pathwarp::map::{Class, Map};
+use pathwarp::map::{Chain, Class, Map};
 use pathwarp::param::Frame;
-use pathwarp::recipe::BuiltRecipe;
+use pathwarp::recipe::{BuiltParts, BuiltRecipe, Step};
 use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_gimp::{GimpPath, Stroke, to_json, to_svg};
 use pathwarp_svg::{Document, OnError, ReadOptions};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -40,6 +41,10 @@ pub(crate) struct GimpArtwork {
     selected: Vec<usize>,
     /// The outlines of those paths.
     outlines: Vec<Outline>,
+    /// For each of those paths, the steps that hold for it; empty if all do.
+    steps: Vec<Vec<usize>>,
+    /// The steps of every part, if the steps divide the paths.
+    parts: Vec<Vec<usize>>,
     budget: Arc<Budget>,
 }
 
@@ -48,13 +53,21 @@ impl GimpArtwork {
     pub(super) fn new(file: GimpFile, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
         let format = format(options, &file, target)?;
         let (select, exclude) = (options.select.clone(), options.exclude.clone());
-        for name in select.iter().chain(&exclude) {
-            file.path_named(name.strip_prefix('#').unwrap_or(name))?;
-        }
+        check_names(&file, select.iter().chain(&exclude))?;
         let size = std::fs::metadata(&file.path).map_or(0, |m| m.len());
         let limits = options.reading.limits.for_input(usize::try_from(size).unwrap_or(usize::MAX));
         let budget = Arc::new(Budget::new(limits));
-        Ok(Self { file, format, select, exclude, selected: Vec::new(), outlines: Vec::new(), budget })
+        Ok(Self {
+            file,
+            format,
+            select,
+            exclude,
+            selected: Vec::new(),
+            outlines: Vec::new(),
+            steps: Vec::new(),
+            parts: Vec::new(),
+            budget,
+        })
     }
 
     fn path(&self, i: usize) -> &GimpPath {
@@ -63,20 +76,32 @@ impl GimpArtwork {
 
     /// Returns `true` if a path is to be warped: selected, not a guide, and not empty.
     fn is_selected(&self, p: &GimpPath, guides: &[String]) -> bool {
-        let names = |list: &[String], name: &str| list.iter().any(|s| s.strip_prefix('#').unwrap_or(s) == name);
         !p.strokes.is_empty()
             && self.file.only.as_ref().is_none_or(|o| *o == p.name)
-            && (self.select.is_empty() || names(&self.select, &p.name))
-            && !names(&self.exclude, &p.name)
+            && holds_for(&self.select, &self.exclude, &p.name)
             && !guides.contains(&p.name)
+    }
+
+    /// The places among the selected paths of what is meant.
+    fn places(&self, which: Which) -> impl Iterator<Item = usize> {
+        (0..self.selected.len()).filter(move |&i| match (which, self.steps.get(i)) {
+            (Which::All, _) | (_, None) => true,
+            (Which::Step(s), Some(steps)) => steps.contains(&s),
+            (Which::Part(k), Some(steps)) => self.parts[k] == *steps,
+        })
+    }
+
+    /// The index of the part that a selected path is in.
+    fn part(&self, place: usize) -> usize {
+        self.steps.get(place).and_then(|own| self.parts.iter().position(|p| p == own)).unwrap_or(0)
     }
 
     /// Writes the warped paths in the format chosen. Returns the result and what the format could not take.
     fn write(&self, warped: &WarpedPaths, request: &WarpRequest<'_>) -> Result<(WarpedResult, Vec<String>), Failure> {
         let canvas = self.file.canvas();
-        let built = request.built;
         // Coordinates that have not moved are not rounded.
-        let unmoved = built.map.class() == Class::Affine(Affine::IDENTITY) && built.placement.copies.is_empty();
+        let stays = |b: &BuiltRecipe| b.map.class() == Class::Affine(Affine::IDENTITY) && b.placement.copies.is_empty();
+        let unmoved = request.built.parts.iter().all(stays);
         let precision = request.options.precision.or((!unmoved).then(|| decimals_for(request.tolerance)));
         let format = match (self.format, &request.options.into) {
             (GimpFormat::IntoXcf, Some(copy)) => {
@@ -97,12 +122,7 @@ impl GimpArtwork {
         Ok((WarpedResult::Bytes(bytes), warnings))
     }
 
-    fn preview(
-        &self,
-        warped: &WarpedPaths,
-        built: &BuiltRecipe,
-        file: (&Path, Option<u8>),
-    ) -> Result<Vec<u8>, Failure> {
+    fn preview(&self, warped: &WarpedPaths, built: &BuiltParts, file: (&Path, Option<u8>)) -> Result<Vec<u8>, Failure> {
         let canvas = self.file.canvas();
         let before: Vec<GimpPath> = self.selected.iter().map(|&i| self.path(i).clone()).collect();
         let (before, after) = (to_svg(canvas, &before, None), to_svg(canvas, &warped.paths(self), None));
@@ -126,11 +146,25 @@ impl Artwork for GimpArtwork {
         self.outlines = self.selected.iter().map(|&i| self.path(i).outline()).collect();
     }
 
-    fn bounding_box(&self) -> Option<Rect> {
-        self.outlines.iter().filter_map(Outline::bounding_box).reduce(|a, b| a.union(b))
+    fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
+        check_names(&self.file, steps.iter().flat_map(|s| s.select.iter().chain(&s.exclude)))?;
+        let of = |&i: &usize| -> Vec<usize> {
+            let holds = |s: &Step| holds_for(&s.select, &s.exclude, &self.path(i).name);
+            steps.iter().enumerate().filter(|(_, s)| holds(s)).map(|(i, _)| i).collect()
+        };
+        let of_paths: Vec<(usize, Vec<usize>)> = self.selected.iter().map(|i| (*i, of(i))).collect();
+        let held: Vec<_> = of_paths.into_iter().filter(|(_, steps)| !steps.is_empty()).collect();
+        self.outlines = held.iter().map(|(i, _)| self.path(*i).outline()).collect();
+        (self.selected, self.steps) = held.into_iter().unzip();
+        self.parts = self.steps.iter().cloned().collect::<BTreeSet<_>>().into_iter().collect();
+        Ok(self.parts.clone())
     }
 
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, _baseline: Baseline) -> Result<Frame, Failure> {
+    fn bounding_box(&self, which: Which) -> Option<Rect> {
+        self.places(which).filter_map(|i| self.outlines[i].bounding_box()).reduce(|a, b| a.union(b))
+    }
+
+    fn frame(&self, _: Which, choice: FrameChoice, bounds: Option<Rect>, _: Baseline) -> Result<Frame, Failure> {
         let [width, height] = self.file.canvas();
         let canvas = Rect::new(0.0, 0.0, width, height);
         match choice {
@@ -147,13 +181,13 @@ impl Artwork for GimpArtwork {
         &self.budget
     }
 
-    fn outlines(&self) -> Vec<&Outline> {
-        self.outlines.iter().collect()
+    fn outlines(&self, which: Which) -> Vec<&Outline> {
+        self.places(which).map(|i| &self.outlines[i]).collect()
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options, .. } = request;
-        if let Some(param) = surface::requested(built) {
+        if let Some(param) = surface::requested(&built.whole) {
             return Err(Failure::usage(format!(
                 "--{param} is for SVG files; convert the paths to SVG first (`pathwarp convert`)"
             )));
@@ -199,47 +233,77 @@ impl WarpedPaths {
 /// With fewer segments, starting threads takes longer than the work.
 const WORTH_THREADS: usize = 1000;
 
+/// What bends a part of the paths.
+struct PartBend<'a> {
+    map: &'a Chain,
+    places: Vec<Affine>,
+    refit: refit::Options,
+    survey: Survey<'a>,
+    segments: usize,
+}
+
 impl GimpArtwork {
+    fn part_bend<'a>(&self, k: usize, built: &'a BuiltRecipe, request: &WarpRequest<'_>) -> PartBend<'a> {
+        let outlines = || self.places(Which::Part(k)).map(|i| &self.outlines[i]);
+        let refit = refit::Options::new(request.tolerance)
+            .with_certify(request.options.certify)
+            .with_merge(request.options.merge)
+            .with_budget(Arc::clone(&self.budget))
+            .with_shared(Arc::new(SharedEdges::among(outlines())));
+        let copies = &built.placement.copies;
+        let places = if copies.is_empty() { vec![Affine::IDENTITY] } else { copies.clone() };
+        let segments: usize = outlines().map(|o| o.segs().count()).sum();
+        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), segments);
+        PartBend { map: &built.map, places, refit, survey, segments }
+    }
+
     fn warp_paths(&self, request: &WarpRequest<'_>) -> Result<WarpedPaths, Failure> {
         let WarpRequest { built, options, .. } = request;
-        let refit = refit::Options::new(request.tolerance)
-            .with_certify(options.certify)
-            .with_merge(options.merge)
-            .with_budget(Arc::clone(&self.budget))
-            .with_shared(Arc::new(SharedEdges::among(self.outlines.iter())));
-        let places =
-            if built.placement.copies.is_empty() { vec![Affine::IDENTITY] } else { built.placement.copies.clone() };
-        let segments: usize = self.outlines.iter().map(|o| o.segs().count()).sum();
-        let survey = Survey::new(&built.map, request.bounds, segments);
-        let work = survey.work(0, segments) * places.len() as f64;
+        let bends: Vec<PartBend<'_>> =
+            built.parts.iter().enumerate().map(|(k, b)| self.part_bend(k, b, request)).collect();
+        let segments: usize = bends.iter().map(|b| b.segments).sum();
+        let work: f64 = bends.iter().map(|b| b.survey.work(0, b.segments) * b.places.len() as f64).sum();
         self.budget.spend_cut(Limit::Evaluations, work as u64).map_err(|e| Error::from(GeometryError::Limit(e)))?;
-        let warp = |(&i, outline): (&usize, &Outline)| {
-            (warp_strokes(self.path(i), &places, &built.map, &refit), survey.orientation(outline, false))
+        let warp = |place: usize| {
+            let b = &bends[self.part(place)];
+            let strokes = warp_strokes(self.path(self.selected[place]), &b.places, b.map, &b.refit);
+            (strokes, b.survey.orientation(&self.outlines[place], false))
         };
         let results: Vec<(Result<WarpedStrokes, GeometryError>, Orientation)> = if segments < WORTH_THREADS {
-            self.selected.iter().zip(&self.outlines).map(warp).collect()
+            (0..self.selected.len()).map(warp).collect()
         } else {
-            self.selected.par_iter().zip(&self.outlines).map(warp).collect()
+            (0..self.selected.len()).into_par_iter().map(warp).collect()
         };
 
-        let all = results.iter().fold(Orientation::default(), |a, (_, o)| a.and(o));
+        // A part that is mirrored does not fold over the others.
+        let mut all = vec![Orientation::default(); bends.len()];
+        for (place, (_, o)) in results.iter().enumerate() {
+            let sum = &mut all[self.part(place)];
+            *sum = sum.and(o);
+        }
         let mut out = WarpedPaths {
             strokes: Vec::with_capacity(results.len()),
             shapes: Vec::with_capacity(results.len()),
             skipped: Vec::new(),
             warnings: self.file.damage.iter().cloned().collect(),
         };
-        for (&i, (result, orientation)) in self.selected.iter().zip(results) {
-            let path = self.path(i);
+        for (place, (&i, (result, orientation))) in self.selected.iter().zip(results).enumerate() {
+            let (path, part) = (self.path(i), self.part(place));
             match result {
                 Ok(mut warped) => {
-                    let fold = Fold::of(&orientation, &all);
+                    let fold = Fold::of(&orientation, &all[part]);
                     out.warnings.extend(fold.at.map(|at| folds::warning(&path.name, &[], at)));
                     if self.format == GimpFormat::IntoXcf {
                         warped.report.max_error +=
                             warped.strokes.iter().map(single_precision_error).fold(0.0, f64::max);
                     }
-                    out.shapes.push(shape_report(&path.name, places.len(), &warped.report, &fold));
+                    out.shapes.push(shape_report(
+                        &path.name,
+                        self.steps.get(place),
+                        bends[part].places.len(),
+                        &warped.report,
+                        &fold,
+                    ));
                     out.strokes.push((i, warped.strokes));
                 }
                 Err(e) => {
@@ -256,9 +320,26 @@ impl GimpArtwork {
     }
 }
 
-fn shape_report(name: &str, copies: usize, warped: &PathReport, fold: &Fold) -> ReportedShape {
+/// Returns `true` if names that are selected and excluded hold for a path.
+fn holds_for(select: &[String], exclude: &[String], path: &str) -> bool {
+    let names = |list: &[String]| list.iter().any(|s| s.strip_prefix('#').unwrap_or(s) == path);
+    (select.is_empty() || names(select)) && !names(exclude)
+}
+
+fn check_names<'a>(file: &GimpFile, mut names: impl Iterator<Item = &'a String>) -> Result<(), Error> {
+    names.try_for_each(|name| file.path_named(name.strip_prefix('#').unwrap_or(name)).map(|_| ()))
+}
+
+fn shape_report(
+    name: &str,
+    steps: Option<&Vec<usize>>,
+    copies: usize,
+    warped: &PathReport,
+    fold: &Fold,
+) -> ReportedShape {
     ReportedShape {
         id: name.to_owned(),
+        steps: steps.map(|all| all.iter().map(|i| i + 1).collect()),
         copies,
         segments_in: warped.segments_in,
         segments_out: warped.segments_out,

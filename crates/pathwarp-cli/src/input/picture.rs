@@ -1,6 +1,6 @@
 //! Photographs (PNG, JPEG, WebP) as artwork: warped pixel by pixel, by the same maps as a drawing.
 
-use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::read::display;
 use super::reference_name::no_document;
 use crate::advice;
@@ -13,6 +13,7 @@ use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
+use pathwarp::recipe::{BuiltParts, Step};
 use pathwarp::{Error, Outline};
 use pathwarp_raster::{Extent, ImageWarp, Picture, PictureFormat, extent, shown, warp_image};
 use pathwarp_svg::OnError;
@@ -74,11 +75,15 @@ impl Artwork for PictureArtwork {
 
     fn remove_guides(&mut self, _guides: Vec<String>) {}
 
-    fn bounding_box(&self) -> Option<Rect> {
+    fn divide(&mut self, _steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
+        Err(Failure::usage("--select and --exclude are for drawings; a picture has no parts to name"))
+    }
+
+    fn bounding_box(&self, _which: Which) -> Option<Rect> {
         Some(self.area())
     }
 
-    fn frame(&self, choice: FrameChoice, _bounds: Option<Rect>, _baseline: Baseline) -> Result<Frame, Failure> {
+    fn frame(&self, _: Which, choice: FrameChoice, _: Option<Rect>, _: Baseline) -> Result<Frame, Failure> {
         match choice {
             FrameChoice::Default | FrameChoice::Artwork | FrameChoice::ViewBox => Ok(Frame::new(self.area())),
             FrameChoice::Rect(r) => Ok(Frame::new(r.rect(self.units_per_px()))),
@@ -92,12 +97,12 @@ impl Artwork for PictureArtwork {
         &self.budget
     }
 
-    fn outlines(&self) -> Vec<&Outline> {
+    fn outlines(&self, _which: Which) -> Vec<&Outline> {
         vec![&self.outline]
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
-        let WarpRequest { built, options, .. } = request;
+        let WarpRequest { built: BuiltParts { whole: built, .. }, options, .. } = request;
         if !built.placement.copies.is_empty() {
             return Err(Failure::usage(
                 "the deformation repeats the artwork, which works for drawings only, not for pictures",

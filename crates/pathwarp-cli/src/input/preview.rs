@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use pathwarp::deform::Role;
 use pathwarp::kurbo::{Rect, Shape};
-use pathwarp::recipe::BuiltRecipe;
+use pathwarp::recipe::BuiltParts;
 use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
 use pathwarp_svg::{Document, ReadOptions, Selection, usvg_tree};
 use std::path::Path;
@@ -18,7 +18,7 @@ pub(crate) const PREVIEW: Choice<'_> = Choice { what: "a preview is", among: PIC
 pub(super) fn draw(
     doc: &Document,
     warped: &str,
-    built: &BuiltRecipe,
+    built: &BuiltParts,
     read: &ReadOptions,
     (file, quality): (&Path, Option<u8>),
 ) -> Result<Vec<u8>, Failure> {
@@ -29,20 +29,22 @@ pub(super) fn draw(
     let everything = Selection::default();
     // The view holds all artwork, including what the warp moved off the page.
     let artwork = [doc, &after].into_iter().filter_map(|d| d.artwork_box(&everything));
-    let guides = built.steps.iter().flat_map(|s| s.explanation.overlays.iter().map(|o| o.path.bounding_box()));
+    let whole = &built.whole;
+    let guides = whole.steps.iter().flat_map(|s| s.explanation.overlays.iter().map(|o| o.path.bounding_box()));
     let seen = artwork.chain(guides).filter(Rect::is_finite);
     let view = seen.fold(doc.view_box().union(after.view_box()), |all, r| all.union(r));
-    let last = built.steps.len().saturating_sub(1);
-    for (i, step) in built.steps.iter().enumerate() {
+    for (i, step) in whole.steps.iter().enumerate() {
+        let at = |end: fn(&[usize]) -> Option<&usize>| built.parts.iter().any(|p| end(&p.indices) == Some(&i));
+        let (is_first, is_last) = (at(<[usize]>::first), at(<[usize]>::last));
         let has_target = step.explanation.overlays.iter().any(|o| o.role == Role::Target);
         for o in &step.explanation.overlays {
             // The guides of a middle step lie in a plane that neither panel shows. A cage whose result goes to a target is
             // only a pattern, so it is drawn over the source.
             let (panel, kind) = match o.role {
-                Role::Base if i == 0 => (&mut left, OverlayKind::Base),
-                Role::Cage if i == 0 && has_target => (&mut left, OverlayKind::Cage),
-                Role::Cage if i == last => (&mut right, OverlayKind::Cage),
-                Role::Target if i == last => (&mut right, OverlayKind::Target),
+                Role::Base if is_first => (&mut left, OverlayKind::Base),
+                Role::Cage if is_first && has_target => (&mut left, OverlayKind::Cage),
+                Role::Cage if is_last => (&mut right, OverlayKind::Cage),
+                Role::Target if is_last => (&mut right, OverlayKind::Target),
                 _ => continue,
             };
             *panel = panel.clone().with(PreviewOverlay::new(kind, o.path.clone()));

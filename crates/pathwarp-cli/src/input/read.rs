@@ -1,5 +1,6 @@
 //! Reads input files, and standard input for `-`.
 
+use super::foreign::{described, unreadable};
 use super::gimp_file::is_named_xcf;
 use crate::failure::Failure;
 use crate::options::Reading;
@@ -30,7 +31,7 @@ pub(crate) fn display(input: &Path) -> String {
 /// Reads all bytes of a file or of standard input.
 pub(crate) fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
     if !is_stdin(input) {
-        let bytes = std::fs::read(input).map_err(|e| Failure::file(input, format!("cannot be read: {e}")))?;
+        let bytes = std::fs::read(input).map_err(|e| Failure::file(input, unreadable(input, &e)))?;
         watch::count_input(bytes.len());
         return Ok(bytes);
     }
@@ -82,7 +83,13 @@ pub(crate) fn document_of(bytes: &[u8], input: &Path, reading: &Reading) -> Resu
             "an XCF holds paths, not a drawing; `pathwarp paths` lists them, `pathwarp convert` copies them to an SVG";
         return Err(Failure::file(input, advice));
     }
-    Ok(Document::read(bytes, &display(input), &read_options(input, reading))?)
+    let read = Document::read(bytes, &display(input), &read_options(input, reading));
+    read.map_err(|e| not_a_drawing(bytes, input, e.into()))
+}
+
+/// The failure to read a drawing: what the file is instead, if that is known.
+pub(crate) fn not_a_drawing(bytes: &[u8], input: &Path, failure: Failure) -> Failure {
+    described(bytes, input).map_or(failure, |what| Failure::Input(format!("{}: {what}", display(input))))
 }
 
 /// Options for reading `input` as SVG: linked images are looked up relative to its folder.

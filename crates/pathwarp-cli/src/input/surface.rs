@@ -2,12 +2,29 @@
 
 use crate::advice;
 use crate::failure::Failure;
+use pathwarp::deform::Built;
 use pathwarp::kurbo::Point;
 use pathwarp::map::Map;
-use pathwarp::recipe::BuiltRecipe;
+use pathwarp::recipe::{BuiltParts, BuiltRecipe};
 use pathwarp_mesh::NamedShape;
 use pathwarp_svg::{Document, WarpOptions};
 use std::path::PathBuf;
+
+/// Refuses steps that write such a file for artwork which other steps have bent in several ways.
+pub(super) fn check(built: &BuiltParts) -> Result<(), Failure> {
+    let asks = |(i, step): (usize, &Built)| {
+        let file = step.space.as_ref()?.files.first()?;
+        let parts = built.parts.iter().filter(|p| p.indices.contains(&i)).count();
+        (parts > 1).then_some((file.param, i))
+    };
+    match built.whole.steps.iter().enumerate().find_map(asks) {
+        Some((param, i)) => Err(Failure::usage(format!(
+            "--{param} writes one surface, but step {} holds for parts that other steps bend in different ways; run it by itself",
+            i + 1
+        ))),
+        None => Ok(()),
+    }
+}
 
 /// The first parameter that asks for such a file.
 pub(super) fn requested(built: &BuiltRecipe) -> Option<&'static str> {

@@ -1,8 +1,8 @@
 //! SVG drawings as artwork.
 
-use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult};
+use super::artwork::{Artwork, Baseline, WarpRequest, WarpedArtwork, WarpedResult, Which};
 use super::folds::{self, Fold};
-use super::read::{display, read_options};
+use super::read::{display, not_a_drawing, read_options};
 use super::{preview, surface};
 use crate::advice;
 use crate::bitmap::Bender;
@@ -17,7 +17,9 @@ use crate::units::units_per_px;
 use pathwarp::budget::{Budget, Limit};
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::Rect;
+use pathwarp::map::Map;
 use pathwarp::param::Frame;
+use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit;
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_svg::{
@@ -26,7 +28,7 @@ use pathwarp_svg::{
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -42,6 +44,9 @@ pub(crate) struct SvgArtwork {
     doc: Document,
     read: ReadOptions,
     selection: Selection,
+    /// What each step holds for, and what each set of steps does; empty if all hold for everything.
+    steps: Vec<Selection>,
+    parts: Vec<Selection>,
     /// The format of the result.
     format: Format,
 }
@@ -55,16 +60,20 @@ impl SvgArtwork {
     ) -> Result<Self, Failure> {
         let format = format(options, input, target)?;
         let (name, read) = (display(input), read_options(input, &options.reading));
-        let doc = Document::read(bytes, &name, &read)?;
-        let selection =
-            Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() };
+        let doc = Document::read(bytes, &name, &read).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
+        let selection = selection(options);
         doc.check_selection(&selection)?;
-        Ok(Self { name, doc, read, selection, format })
+        Ok(Self { name, doc, read, selection, steps: Vec::new(), parts: Vec::new(), format })
     }
 
     /// Counts the work from here on anew, for a drawing that is bent again and again.
     pub(crate) fn renew_budget(&mut self) {
         self.doc.renew_budget();
+    }
+
+    /// Undoes a division into parts.
+    pub(crate) fn restore(&mut self, options: &CommonOptions) {
+        (self.selection, self.steps, self.parts) = (selection(options), Vec::new(), Vec::new());
     }
 
     pub(crate) fn document(&self) -> &Document {
@@ -75,19 +84,45 @@ impl SvgArtwork {
     /// and bitmaps in the coarse.
     /// Returns it with the page that it would have.
     pub(crate) fn draft(&self, request: &WarpRequest<'_>) -> Result<(String, Option<Rect>), Failure> {
-        let WarpRequest { built, .. } = request;
-        let mut options = self.warp_options(request).with_gradients(Gradients::Fit).with_overhang(false);
-        options.refit = options.refit.with_merge(false);
-        if let Images::Warp(_) = options.images {
-            let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
-            options.images = Images::Warp(Arc::new(bender.with_budget(self.doc.budget().clone())));
-        }
-        let warped = self.doc.warp(&built.map, &options)?;
+        let draft = |k: usize, built: &BuiltRecipe| {
+            let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
+            options.refit = options.refit.with_merge(false);
+            if let Images::Warp(_) = options.images {
+                let bender = Bender::new(Arc::new(built.map.clone()), Some(DRAFT_DPI));
+                options.images = Images::Warp(Arc::new(bender.with_budget(self.doc.budget().clone())));
+            }
+            options
+        };
+        let warped = self.bent(&request.built.parts, draft)?.1;
         Ok((warped.svg, warped.page.map(|[_, after]| after)))
     }
 
-    fn warp_options(&self, request: &WarpRequest<'_>) -> WarpOptions {
-        let WarpRequest { built, options, tolerance, .. } = request;
+    /// The selection that is meant.
+    fn selection(&self, which: Which) -> &Selection {
+        let own = match which {
+            Which::All => None,
+            Which::Step(i) => self.steps.get(i),
+            Which::Part(k) => self.parts.get(k),
+        };
+        own.unwrap_or(&self.selection)
+    }
+
+    /// Bends every part of the drawing. Returns the options for each, too.
+    fn bent(
+        &self,
+        parts: &[BuiltRecipe],
+        options: impl Fn(usize, &BuiltRecipe) -> WarpOptions,
+    ) -> Result<(Vec<WarpOptions>, WarpedDocument), Error> {
+        let options: Vec<WarpOptions> = parts.iter().enumerate().map(|(k, built)| options(k, built)).collect();
+        let bends: Vec<(&dyn Map, &WarpOptions)> =
+            parts.iter().zip(&options).map(|(built, options)| (&built.map as &dyn Map, options)).collect();
+        let warped = self.doc.warp_each(&bends)?;
+        Ok((options, warped))
+    }
+
+    /// The options for a part of the drawing.
+    fn warp_options(&self, request: &WarpRequest<'_>, k: usize, built: &BuiltRecipe) -> WarpOptions {
+        let WarpRequest { options, tolerance, .. } = request;
         let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
         let bender = Arc::new(bender);
         let gradients = match options.gradients {
@@ -96,7 +131,8 @@ impl SvgArtwork {
             GradientChoice::Exact => Gradients::Exact(bender.clone()),
             GradientChoice::Keep => Gradients::Keep,
         };
-        let letters = LetterPlaces { places: built.placement.letters.clone(), after: built.after.clone() };
+        let first = built.indices.first().map(|&i| self.selection(Which::Step(i)).clone());
+        let letters = LetterPlaces { places: built.placement.letters.clone(), of: first, after: built.after.clone() };
         let refit = refit::Options::new(*tolerance).with_certify(options.certify).with_merge(options.merge);
         let refit = refit.with_budget(self.doc.budget().clone());
         WarpOptions::new(refit)
@@ -104,7 +140,7 @@ impl SvgArtwork {
             .with_strokes(options.strokes)
             .with_text(options.text)
             .with_structure(options.structure)
-            .with_selection(self.selection.clone())
+            .with_selection(self.selection(Which::Part(k)).clone())
             .with_on_error(options.on_failure.of_shapes())
             .with_gradients(gradients)
             .with_patterns(options.patterns)
@@ -122,13 +158,14 @@ impl SvgArtwork {
         may_grow.then(|| page::stays(&self.doc, request.options, request.recipe)).flatten()
     }
 
-    /// Every selected shape's orientation under the map.
+    /// The orientation under the map of every shape of a part.
     fn orientations(
         &self,
-        request: &WarpRequest<'_>,
+        k: usize,
+        built: &BuiltRecipe,
         options: &WarpOptions,
     ) -> Result<Vec<(&str, Orientation)>, Error> {
-        let WarpRequest { built, bounds, .. } = request;
+        let bounds = self.bounding_box(Which::Part(k));
         let copies = &built.placement.copies;
         let shapes: Vec<_> = self.doc.selected(&options.selection).collect();
         let segments: usize = shapes.iter().map(|s| s.outline.segs().count()).sum();
@@ -154,44 +191,72 @@ impl SvgArtwork {
         Ok(shapes.iter().map(|s| s.id.as_str()).zip(all).collect())
     }
 
-    /// The report of every shape, and the fold warnings.
-    fn shape_reports(
+    /// The folds of the shapes of a part, by their ids, and the warnings about them.
+    fn folds(
         &self,
-        request: &WarpRequest<'_>,
+        k: usize,
+        built: &BuiltRecipe,
         options: &WarpOptions,
         warped: &WarpedDocument,
-    ) -> Result<(Vec<ReportedShape>, Vec<String>), Error> {
+    ) -> Result<(HashMap<&str, Fold>, Vec<String>), Error> {
         // Parts of one text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
-        for (id, o) in self.orientations(request, options)? {
+        for (id, o) in self.orientations(k, built, options)? {
             all = all.and(&o);
             let sum = by_id.entry(id).or_default();
             *sum = sum.and(&o);
         }
-        let (mut shapes, mut warnings) = (Vec::with_capacity(warped.shapes.len()), Vec::new());
-        let mut warned = HashSet::new();
-        let places = &request.built.placement;
-        let survey = LazyCell::new(|| Survey::new(&request.built.map, None, 1));
-        let lettering = LazyCell::new(|| self.doc.lettering(&self.selection));
+        let (mut out, mut warnings) = (HashMap::new(), Vec::new());
+        let places = &built.placement;
+        let survey = LazyCell::new(|| Survey::new(&built.map, None, 1));
+        let lettering = LazyCell::new(|| self.doc.lettering(&options.selection));
         let letters = LazyCell::new(|| {
             // Letters that are placed one by one do not follow the map.
             let letters = if places.letters.is_empty() { lettering.letters() } else { &[] };
             folds::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
         });
         for s in &warped.shapes {
-            let fold = Fold::of(&by_id.get(s.id.as_str()).copied().unwrap_or_default(), &all);
-            if let Some(at) = fold.at
-                && warned.insert(&s.id)
-            {
+            let Some((&id, o)) = by_id.get_key_value(s.id.as_str()).filter(|(id, _)| !out.contains_key(**id)) else {
+                continue;
+            };
+            let fold = Fold::of(o, &all);
+            if let Some(at) = fold.at {
                 let orientation = |o: &Outline| survey.orientation_of_copies(o, &places.copies, true);
-                let letters = folds::folded(letters.get(&*s.id), &all, orientation);
-                warnings.push(folds::warning(&s.id, &letters, at));
+                let letters = folds::folded(letters.get(id), &all, orientation);
+                warnings.push(folds::warning(id, &letters, at));
             }
-            shapes.push(shape_report(s, &fold));
+            out.insert(id, fold);
         }
-        Ok((shapes, warnings))
+        Ok((out, warnings))
     }
+
+    /// The report of every shape, and the fold warnings.
+    fn shape_reports(
+        &self,
+        parts: &[BuiltRecipe],
+        options: &[WarpOptions],
+        warped: &WarpedDocument,
+    ) -> Result<(Vec<ReportedShape>, Vec<String>), Error> {
+        let (mut folds, mut warnings) = (Vec::new(), Vec::new());
+        for (k, (built, options)) in parts.iter().zip(options).enumerate() {
+            let (of_part, warned) = self.folds(k, built, options, warped)?;
+            folds.push(of_part);
+            warnings.extend(warned);
+        }
+        let report = |s: &pathwarp_svg::ShapeReport| {
+            let own = folds.iter().enumerate().find_map(|(k, folds)| Some((k, folds.get(s.id.as_str())?)));
+            let steps =
+                own.filter(|_| !self.parts.is_empty()).map(|(k, _)| parts[k].indices.iter().map(|i| i + 1).collect());
+            shape_report(s, own.map(|(_, fold)| fold), steps)
+        };
+        Ok((warped.shapes.iter().map(report).collect(), warnings))
+    }
+}
+
+/// The selection that holds for all steps.
+fn selection(options: &CommonOptions) -> Selection {
+    Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() }
 }
 
 /// The format of the result. An extension that says none may be the input's own, which then is SVG, too.
@@ -206,7 +271,7 @@ fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Resul
     Ok(format)
 }
 
-fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ReportedShape {
+fn shape_report(s: &pathwarp_svg::ShapeReport, fold: Option<&Fold>, steps: Option<Vec<usize>>) -> ReportedShape {
     ReportedShape {
         id: s.id.clone(),
         copies: s.copies,
@@ -215,8 +280,9 @@ fn shape_report(s: &pathwarp_svg::ShapeReport, fold: &Fold) -> ReportedShape {
         max_error: s.max_error,
         certified: s.assurance != refit::Assurance::Checked,
         assurance: assurance_word(s.assurance),
-        folds: fold.count,
-        folded_at: fold.place(),
+        steps,
+        folds: fold.map_or(0, |f| f.count),
+        folded_at: fold.and_then(Fold::place),
         over_budget: s.over_budget.iter().map(|p| [p.x, p.y]).collect(),
         unresolved: s.unresolved,
         paint_residual: s.paint_residual,
@@ -239,15 +305,45 @@ impl Artwork for SvgArtwork {
         self.selection.guides = guides;
     }
 
-    fn bounding_box(&self) -> Option<Rect> {
-        self.doc.seen_box(&self.selection)
+    fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
+        let guides = &self.selection.guides;
+        let own = |s: &Step| Selection {
+            select: s.select.clone(),
+            exclude: s.exclude.clone(),
+            guides: guides.clone(),
+            ..Selection::default()
+        };
+        let mut all: Vec<Selection> = steps.iter().map(own).collect();
+        all.iter().try_for_each(|s| self.doc.check_selection(s))?;
+        // What is selected for the whole recipe restricts every step.
+        let whole = all.len();
+        all.push(self.selection.clone());
+        let mut divisions = self.doc.divide(&all);
+        divisions.retain_mut(|d| d.among.pop_if(|last| *last == whole).is_some() && !d.among.is_empty());
+        let of_step =
+            |i: usize| self.doc.united(divisions.iter().filter(|d| d.among.contains(&i)).map(|d| &d.selection));
+        self.steps = (0..whole).map(of_step).collect();
+        let (among, parts) = divisions.into_iter().map(|d| (d.among, d.selection)).unzip();
+        self.parts = parts;
+        self.selection = self.doc.united(self.parts.iter());
+        Ok(among)
     }
 
-    fn uncut_box(&self, bounds: Rect) -> Option<Rect> {
-        self.doc.uncut_box(&self.selection, bounds)
+    fn bounding_box(&self, which: Which) -> Option<Rect> {
+        self.doc.seen_box(self.selection(which))
     }
 
-    fn frame(&self, choice: FrameChoice, bounds: Option<Rect>, baseline: Baseline) -> Result<Frame, Failure> {
+    fn uncut_box(&self, which: Which, bounds: Rect) -> Option<Rect> {
+        self.doc.uncut_box(self.selection(which), bounds)
+    }
+
+    fn frame(
+        &self,
+        which: Which,
+        choice: FrameChoice,
+        bounds: Option<Rect>,
+        baseline: Baseline,
+    ) -> Result<Frame, Failure> {
         let artwork = || Frame::new(bounds.unwrap_or_else(|| self.doc.view_box()));
         let plain = match choice {
             FrameChoice::Default | FrameChoice::Artwork => Some(artwork()),
@@ -258,7 +354,7 @@ impl Artwork for SvgArtwork {
         // Finding the lettering takes longer than reading the drawing.
         let lettering = match (&plain, baseline) {
             (Some(frame), Baseline::None) => return Ok(frame.clone()),
-            _ => self.doc.lettering(&self.selection),
+            _ => self.doc.lettering(self.selection(which)),
         };
         let frame = match (choice, plain) {
             (FrameChoice::Lettering(kind), _) => {
@@ -280,20 +376,19 @@ impl Artwork for SvgArtwork {
         self.doc.budget()
     }
 
-    fn outlines(&self) -> Vec<&Outline> {
-        self.doc.selected(&self.selection).map(|s| &*s.outline).collect()
+    fn outlines(&self, which: Which) -> Vec<&Outline> {
+        self.doc.selected(self.selection(which)).map(|s| &*s.outline).collect()
     }
 
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure> {
         let WarpRequest { built, options: common, .. } = request;
-        let options = self.warp_options(request);
-        let mut warped = self.doc.warp(&built.map, &options)?;
-        let page = PageNews::of(&mut warped, options.page, self.stays(request));
+        let (options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
+        let page = PageNews::of(&mut warped, common.page, self.stays(request));
         if let Some(recipe) = &request.embedded_recipe {
             let origin = Origin { recipe: recipe.clone(), source: self.doc.source().to_vec() };
             warped.svg = origin.embed(&warped.svg)?;
         }
-        let (shapes, folds) = self.shape_reports(request, &options, &warped)?;
+        let (shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
         let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         let empty = !self.doc.has_artwork(&self.selection);
         if empty {
@@ -301,7 +396,10 @@ impl Artwork for SvgArtwork {
         }
         warnings.extend(folds);
         warnings.extend(advice::outside(&self.doc.unread_images()));
-        let surfaces = surface::files(&self.doc, built, &options)?;
+        surface::check(built)?;
+        let parts = built.parts.iter().zip(&options);
+        let surfaces = parts.map(|(part, options)| surface::files(&self.doc, part, options));
+        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?.concat();
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;
         let preview = common.preview.as_deref();
@@ -316,7 +414,7 @@ impl Artwork for SvgArtwork {
             warnings,
             files,
             preview: preview.transpose()?,
-            partial: empty || page.is_blank,
+            partial: empty,
             page,
         })
     }

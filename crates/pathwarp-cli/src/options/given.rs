@@ -93,6 +93,21 @@ impl Given {
         kept.overridden_by(self)
     }
 
+    pub(crate) fn inputs(&self) -> &[PathBuf] {
+        &self.inputs
+    }
+
+    /// Returns `true` if the option is given.
+    pub(crate) fn gives(&self, name: &str) -> bool {
+        self.values.iter().any(|(o, _)| o.name == name)
+    }
+
+    /// Removes an option and returns its values.
+    pub(crate) fn take(&mut self, name: &str) -> Vec<String> {
+        let taken = self.values.extract_if(.., |(o, _)| o.name == name).flat_map(|(_, values)| values);
+        taken.map(|v| v.to_string_lossy().into_owned()).collect()
+    }
+
     /// The names of the options given.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
         self.values.iter().map(|(o, _)| o.name)

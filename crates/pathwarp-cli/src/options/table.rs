@@ -162,7 +162,8 @@ pub(crate) static OPTIONS: &[CommonOption] = &[
                 Ok(())
             },
         },
-        "Warp only these: #id, .class, an element's tag, or a label; may be given several times",
+        "Warp only these: #id, .class, an element's tag, or a label; may be given several times. In several parts of a chain, each \
+         holds for its own step",
     ),
     stored(
         "exclude",

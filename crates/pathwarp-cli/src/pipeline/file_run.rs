@@ -4,17 +4,17 @@ use super::beyond;
 use super::plan::Job;
 use crate::advice::{self, Flags};
 use crate::failure::Failure;
-use crate::input::{Baseline, Input, WarpRequest, WarpedResult};
+use crate::input::{Artwork, Baseline, Input, WarpRequest, WarpedResult, Which};
 use crate::options::{CommonOptions, FrameChoice, Given};
 use crate::output::PendingFile;
 use crate::page::PageNews;
-use crate::report::{FileReport, ReportedShape};
+use crate::report::{FileReport, ReportedShape, StepSelection};
 use crate::units::MM_PER_PX;
 use crate::{recipe_file, references};
 use pathwarp::deform::{Explanation, Registry, SavedFile};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::recipe::{BuiltParts, BuiltRecipe, Portion, Recipe, Step};
 use std::path::Path;
 
 /// The work that all inputs share.
@@ -83,58 +83,56 @@ impl Batch<'_> {
         let guides = references::resolve_names(registry, &mut recipe, |name| artwork.path_named(name))?;
         artwork.remove_guides(guides);
 
-        let bounds = artwork.bounding_box();
-        let frame = artwork.frame(options.frame, bounds, first_baseline(registry, &recipe))?;
-        let frame = frame.with_units_per_px(artwork.units_per_px());
-        let (frame_box, baseline) = (frame.rect, frame.baseline);
-        let framed = frame_note(options.frame, &frame, bounds.is_some());
-        let tolerance = options.tolerance_for(bounds, &frame)?;
-        let built = recipe
-            .build_within(registry, frame, &artwork.outlines().iter().copied(), artwork.budget())
-            .map_err(Failure::of_recipe)?;
+        let parts = divided(artwork, &recipe)?;
+        let bounds = artwork.bounding_box(Which::All);
+        let starts = starts(registry, &recipe, artwork, &parts, options.frame, None)?;
+        let first = starts.iter().flatten().next().cloned().unwrap_or_else(|| Frame::new(Rect::ZERO));
+        let tolerance = options.tolerance_for(bounds, &first)?;
+        let built = build(registry, &recipe, artwork, &parts, &starts)?;
+        let whole = &built.whole;
         // The map of a plug-in may fail at any time. Nothing that was computed with it is used, not even another error.
-        let sound = || built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
+        let sound = || whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)));
         sound()?;
 
-        let uncut = bounds.filter(|b| *b == frame_box).and_then(|b| artwork.uncut_box(b));
-        let stretched = uncut.and_then(|uncut| Some((uncut, beyond::stretch(&built.map, frame_box, uncut)?)));
+        let stretch = |(k, part): (usize, &BuiltRecipe)| {
+            let (which, frame) = (Which::Part(k), part.frames.first()?.rect);
+            let uncut =
+                artwork.bounding_box(which).filter(|b| *b == frame).and_then(|b| artwork.uncut_box(which, b))?;
+            Some((uncut, beyond::stretch(&part.map, frame, uncut)?))
+        };
+        let stretched: Vec<_> = built.parts.iter().enumerate().filter_map(stretch).collect();
 
         let embed = || recipe_file::write(*registry, &recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
-        let request = WarpRequest {
-            recipe: self.recipe,
-            built: &built,
-            options,
-            bounds,
-            tolerance,
-            embedded_recipe,
-            same_view: false,
-        };
+        let request =
+            WarpRequest { recipe: self.recipe, built: &built, options, tolerance, embedded_recipe, same_view: false };
         let warped = artwork.warp(&request);
         sound()?;
         let warped = warped.map_err(|f| explained(f, &built))?;
 
-        let mut warnings: Vec<String> = self.in_flags(&built, |e| &e.warnings).chain(warped.warnings).collect();
-        warnings.extend(stretched.map(|(uncut, stretch)| advice::stretched(uncut, stretch)));
+        let mut warnings: Vec<String> = self.in_flags(whole, |e| &e.warnings).chain(warped.warnings).collect();
+        warnings.extend(stretched.into_iter().map(|(uncut, stretch)| advice::stretched(uncut, stretch)));
         warnings.extend(warped.page.warnings());
+        let frame = first.rect;
         let report = FileReport {
             file: artwork.file_name(),
             output: None,
             error: None,
             tolerance: Some(tolerance),
-            frame: Some([frame_box.x0, frame_box.y0, frame_box.width(), frame_box.height()]),
-            baseline,
+            frame: Some([frame.x0, frame.y0, frame.width(), frame.height()]),
+            selections: selections(&recipe, whole),
+            baseline: first.baseline,
             page: warped.page.change.map(|[_, r]| [r.x0, r.y0, r.width(), r.height()]),
             shapes: warped.shapes,
             skipped: warped.skipped,
             warnings,
         };
         let partial = warped.partial || report.is_partial();
-        let notes = self.notes(&built, framed, &report.shapes);
+        let notes = self.notes(whole, &frames(options.frame, &recipe, &starts, bounds.is_some()), &report.shapes);
         Ok(WarpedInput {
             result: warped.result,
             page: warped.page,
-            saves: built.steps.into_iter().flat_map(|s| s.saves).collect(),
+            saves: built.whole.steps.into_iter().flat_map(|s| s.saves).collect(),
             files: warped.files,
             preview: warped.preview,
             report,
@@ -144,11 +142,11 @@ impl Batch<'_> {
     }
 
     /// The decisions made on the user's behalf.
-    fn notes(&self, built: &BuiltRecipe, framed: String, shapes: &[ReportedShape]) -> Vec<String> {
+    fn notes(&self, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
         if !self.options.explain {
             return Vec::new();
         }
-        let mut notes = vec![framed];
+        let mut notes = framed.to_vec();
         notes.extend(self.in_flags(built, |e| &e.notes));
         notes.extend(strokes(shapes));
         notes
@@ -162,6 +160,79 @@ impl Batch<'_> {
     ) -> impl Iterator<Item = String> {
         built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| self.flags.in_text(m))
     }
+}
+
+/// The steps of every part of the artwork.
+pub(crate) fn divided(artwork: &mut dyn Artwork, recipe: &Recipe) -> Result<Vec<Vec<usize>>, Failure> {
+    if recipe.steps.iter().any(Step::is_selective) {
+        return artwork.divide(&recipe.steps);
+    }
+    Ok(vec![(0..recipe.steps.len()).collect()])
+}
+
+/// The frames of the steps whose artwork no other step has moved before. `known` is that of all artwork.
+pub(crate) fn starts(
+    registry: &Registry,
+    recipe: &Recipe,
+    artwork: &dyn Artwork,
+    parts: &[Vec<usize>],
+    choice: FrameChoice,
+    known: Option<&Frame>,
+) -> Result<Vec<Option<Frame>>, Failure> {
+    let portions: Vec<Portion<'_>> =
+        parts.iter().map(|steps| Portion { steps: steps.clone(), outlines: Vec::new() }).collect();
+    let frame = |i: usize| -> Result<Option<Frame>, Failure> {
+        let which = Which::Step(i);
+        match known {
+            _ if !recipe.starts(i, &portions) => Ok(None),
+            Some(known) => Ok(Some(known.clone())),
+            None => {
+                let baseline = baseline(registry, &recipe.steps[i]);
+                let frame = artwork.frame(which, choice, artwork.bounding_box(which), baseline)?;
+                Ok(Some(frame.with_units_per_px(artwork.units_per_px())))
+            }
+        }
+    };
+    (0..recipe.steps.len()).map(frame).collect()
+}
+
+/// Builds the steps of every part of the artwork.
+pub(crate) fn build(
+    registry: &Registry,
+    recipe: &Recipe,
+    artwork: &dyn Artwork,
+    parts: &[Vec<usize>],
+    starts: &[Option<Frame>],
+) -> Result<BuiltParts, Failure> {
+    let portion =
+        |(k, steps): (usize, &Vec<usize>)| Portion { steps: steps.clone(), outlines: artwork.outlines(Which::Part(k)) };
+    let portions: Vec<Portion<'_>> = parts.iter().enumerate().map(portion).collect();
+    recipe.build_parts(registry, starts, &portions, artwork.budget()).map_err(Failure::of_recipe)
+}
+
+/// What the steps hold for, for the report.
+fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
+    if !recipe.steps.iter().any(Step::is_selective) {
+        return Vec::new();
+    }
+    let of_step = |(step, frame): (&Step, &Frame)| StepSelection {
+        deformation: step.deformation.clone(),
+        select: step.select.clone(),
+        exclude: step.exclude.clone(),
+        frame: [frame.rect.x0, frame.rect.y0, frame.rect.width(), frame.rect.height()],
+    };
+    recipe.steps.iter().zip(&built.frames).map(of_step).collect()
+}
+
+/// The notes about the frames of the steps that start.
+fn frames(choice: FrameChoice, recipe: &Recipe, starts: &[Option<Frame>], seen: bool) -> Vec<String> {
+    let several = recipe.steps.iter().any(Step::is_selective);
+    let note = |(i, (step, frame)): (usize, (&Step, &Option<Frame>))| {
+        let note = frame_note(choice, frame.as_ref()?, seen);
+        let of = if step.select.is_empty() { String::new() } else { format!(" for {}", step.select.join(", ")) };
+        Some(if several { format!("step {}, {}{of}: {note}", i + 1, step.deformation) } else { note })
+    };
+    recipe.steps.iter().zip(starts).enumerate().filter_map(note).collect()
 }
 
 /// The frame: the box, and the reason for it. `seen` is `true` if any artwork is visible.
@@ -201,24 +272,27 @@ fn strokes(shapes: &[ReportedShape]) -> Option<String> {
 }
 
 /// Adds to an error where the map is undefined which operation is, if a step can say so.
-pub(crate) fn explained(failure: Failure, built: &BuiltRecipe) -> Failure {
+pub(crate) fn explained(failure: Failure, built: &BuiltParts) -> Failure {
     let Some((shape, at)) = failure.infinity() else { return failure };
-    let mut p = at;
-    for step in &built.steps {
-        if let Some(why) = step.undefined.as_ref().and_then(|why| why(p)) {
+    let reason = |part: &BuiltRecipe| {
+        let mut p = at;
+        part.steps.iter().find_map(|step| {
+            let why = step.undefined.as_ref().and_then(|why| why(p));
+            p = step.map.point(p);
+            why
+        })
+    };
+    match built.parts.iter().find_map(reason) {
+        Some(why) => {
             let place = format!("{shape} cannot be warped: at {:.4},{:.4} {why}", at.x, at.y);
-            return Failure::Geometry(format!(
-                "{place}; change the formula, or leave this shape out (--on-error skip)"
-            ));
+            Failure::Geometry(format!("{place}; change the formula, or leave this shape out (--on-error skip)"))
         }
-        p = step.map.point(p);
+        None => failure,
     }
-    failure
 }
 
-/// The baseline of a recipe's first step.
-pub(crate) fn first_baseline(registry: &Registry, recipe: &Recipe) -> Baseline {
-    let Some(step) = recipe.steps.first() else { return Baseline::None };
+/// The baseline of a step.
+pub(crate) fn baseline(registry: &Registry, step: &Step) -> Baseline {
     let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
     match info.baseline {
         None if info.letters => Baseline::Given,

@@ -21,7 +21,7 @@ use crate::output::{self, Draft, PendingFile};
 use crate::status::Status;
 use crate::{recipe_file, references, temporaries, watch};
 use file_run::{Batch, FileRun};
-pub(crate) use file_run::{explained, first_baseline};
+pub(crate) use file_run::{baseline, build, divided, explained, starts};
 pub(crate) use folders::Folders;
 use indicatif::ProgressBar;
 pub(crate) use inputs::InputFile;
@@ -64,7 +64,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
         PREVIEW.format(Some(preview), None)?;
     }
     if options.dry_run {
-        output::to_stdout(plan::listing(&options, &jobs).as_bytes())?;
+        output::to_stdout(plan::listing(recipe, &options, &jobs).as_bytes())?;
         return Ok(Status::Complete);
     }
     let mut resolved = recipe.clone();

@@ -11,6 +11,14 @@ pub(super) fn is_pattern(name: &Path) -> bool {
     name.to_string_lossy().contains(STEM)
 }
 
+/// The first `{word}` in a name that stands for nothing.
+pub(super) fn unknown_placeholder(name: &Path) -> Option<String> {
+    let name = name.to_string_lossy();
+    let inner = name.split('{').skip(1).filter_map(|rest| Some(rest.split_once('}')?.0));
+    let is_word = |w: &&str| w.chars().all(|c| c.is_alphanumeric() || "_-.:".contains(c));
+    inner.filter(is_word).find(|w| format!("{{{w}}}") != STEM).map(|w| format!("{{{w}}}"))
+}
+
 /// The folders of a pattern before the first with `{stem}`: the same for every input.
 pub(super) fn fixed_folder(pattern: &Path) -> PathBuf {
     let is_fixed = |c: &Component<'_>| !is_pattern(Path::new(c.as_os_str()));

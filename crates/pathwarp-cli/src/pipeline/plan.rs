@@ -1,16 +1,17 @@
 //! The plan of a run: which output each input gets, checked before anything is read or written.
 
 use super::inputs::InputFile;
-use super::naming::{by_pattern, in_folder, is_pattern};
+use super::naming::{by_pattern, in_folder, is_pattern, unknown_placeholder};
 use crate::catalogue::Catalogue;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::input::unreadable;
 use crate::options::CommonOptions;
 use crate::output::is_device;
 use crate::readable;
 use crate::references::{files_read, files_written};
 use crate::sources::Files;
-use pathwarp::recipe::Recipe;
+use pathwarp::recipe::{Recipe, Step};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -45,6 +46,12 @@ impl Inputs<'_> {
         options: &CommonOptions,
         from: Option<&Path>,
     ) -> Result<Vec<Job>, Failure> {
+        for (option, name) in [("-o", &options.out), ("--out-dir", &options.out_dir), ("--preview", &options.preview)] {
+            if let Some(word) = name.as_deref().and_then(unknown_placeholder) {
+                let problem = "stands for nothing; {stem} stands for the input's name without its extension";
+                return Err(Failure::usage(format!("{option}: {word} {problem}")));
+            }
+        }
         if self.files.len() > 1 {
             self.check_several(catalogue, recipe, options)?;
         }
@@ -92,8 +99,18 @@ impl Inputs<'_> {
             return Err(Failure::usage("--into writes one file; give one XCF"));
         }
         if !(options.out_dir.is_some() || own_name || options.in_place && options.out.is_none()) {
+            let exists =
+                |f: &&InputFile| f.path.as_os_str() == "-" || f.path.exists() || f.path.to_string_lossy().contains('#');
+            if let Some(missing) = self.files.iter().find(|f| !exists(f)) {
+                let e = missing.path.metadata().err().unwrap_or_else(|| std::io::ErrorKind::NotFound.into());
+                return Err(Failure::file(&missing.path, unreadable(&missing.path, &e)));
+            }
+            let hint = match self.files {
+                [_, to] if options.out.is_none() => format!("; to write to {0}: -o {0}", to.path.display()),
+                _ => String::new(),
+            };
             return Err(Failure::usage(format!(
-                "several {kind}s need --out-dir DIR, or -o with {{stem}} in the name; their results cannot share one file"
+                "several {kind}s need --out-dir DIR, or -o with {{stem}} in the name; their results cannot share one file{hint}"
             )));
         }
         if options.preview.as_deref().is_some_and(|p| !is_pattern(p)) {
@@ -132,9 +149,16 @@ impl Inputs<'_> {
     }
 }
 
-/// The list that `--dry-run` prints: every input with its output.
-pub(super) fn listing(options: &CommonOptions, jobs: &[Job]) -> String {
+/// The list that `--dry-run` prints: what each step holds for, if that differs, and every input with its output.
+pub(super) fn listing(recipe: &Recipe, options: &CommonOptions, jobs: &[Job]) -> String {
     let mut out = String::new();
+    let selective = recipe.steps.iter().any(Step::is_selective);
+    for (i, step) in recipe.steps.iter().enumerate().filter(|_| selective) {
+        let select = if step.select.is_empty() { "everything".to_owned() } else { step.select.join(", ") };
+        let except =
+            if step.exclude.is_empty() { String::new() } else { format!(" without {}", step.exclude.join(", ")) };
+        let _ = writeln!(out, "step {}, {}: {}", i + 1, step.deformation, readable::name(&(select + &except)));
+    }
     let name = |path: &Path| readable::name(&path.display().to_string()).into_owned();
     for job in jobs {
         let input = name(&job.input);

@@ -26,7 +26,8 @@ pub(super) struct Session<'a> {
     pub(super) inputs: usize,
     /// Outputs that appear at the end.
     pub(super) pending: Vec<PendingFile>,
-    partial: bool,
+    /// The inputs of which something was left out.
+    partial: Vec<String>,
     done: usize,
     failed: usize,
     failures: Vec<String>,
@@ -41,7 +42,7 @@ impl<'a> Session<'a> {
             report,
             inputs,
             pending: Vec::new(),
-            partial: false,
+            partial: Vec::new(),
             done: 0,
             failed: 0,
             failures: Vec::new(),
@@ -65,10 +66,12 @@ impl<'a> Session<'a> {
             // The warnings about pages come last.
             let counted = if several { run.page.warnings().len() } else { 0 };
             messages::warn(&run.report, run.report.warnings.len() - counted);
-            self.pages.add(&run.page, &run.report.file);
         }
+        self.pages.add(&run.page, &run.report.file);
         self.done += 1;
-        self.partial |= run.partial;
+        if run.partial {
+            self.partial.push(run.report.file.clone());
+        }
         self.pending.extend(run.files);
         self.report.as_mut().map_or(Ok(()), |r| r.add(&run.report))
     }
@@ -93,11 +96,28 @@ impl<'a> Session<'a> {
             self.pages.warnings(self.inputs).iter().filter(|_| self.inputs > 1).for_each(|w| terminal::warning(w));
         }
         self.summarise();
-        Ok(Status::partial_if(self.partial || self.failed > 0))
+        Ok(Status::partial_if(!self.partial.is_empty() || self.failed > 0 || self.pages.are_blank()))
+    }
+
+    /// Names the inputs of which something was left out, as the exit code tells of them.
+    fn tell_partial(&self) {
+        const NAMED: usize = 5;
+        if self.partial.is_empty() || self.inputs < 2 || self.options.quiet {
+            return;
+        }
+        let names: Vec<&str> = self.partial.iter().take(NAMED).map(String::as_str).collect();
+        let more = self.partial.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let (n, all) = (self.partial.len(), self.inputs);
+        terminal::warning(&format!(
+            "{n} of {all} inputs were not warped in full, so the exit code is 1: {}{more}; the warnings and --report FILE say what was left",
+            names.join(", ")
+        ));
     }
 
     /// Lists the failures and counts them.
     fn summarise(&self) {
+        self.tell_partial();
         if self.failed == 0 {
             return;
         }

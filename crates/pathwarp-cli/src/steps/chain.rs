@@ -15,6 +15,26 @@ pub(crate) struct ChainPart {
     pub(crate) options: Given,
 }
 
+/// Where a step keeps the values of an option.
+type OfStep = fn(&mut Step) -> &mut Vec<String>;
+
+/// Options that apply to the whole chain if one part gives them, and else to the step of each part that does.
+const OF_STEPS: [(&str, OfStep); 2] = [("select", |s| &mut s.select), ("exclude", |s| &mut s.exclude)];
+
+/// Gives the steps of parts what is theirs alone: the selection, if several parts have one.
+pub(crate) fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mut Given)>) {
+    let mut parts: Vec<_> = parts.into_iter().collect();
+    for (name, of) in OF_STEPS {
+        if parts.iter().filter(|(_, options)| options.gives(name)).count() < 2 {
+            continue;
+        }
+        for (steps, options) in &mut parts {
+            let values = options.take(name);
+            steps.iter_mut().for_each(|step| of(step).extend(values.iter().cloned()));
+        }
+    }
+}
+
 /// Parses the parts after each `+`, which take these common options.
 pub(crate) fn parts(
     catalogue: &dyn Catalogue,

@@ -1,8 +1,9 @@
 //! The image of a drawing: all parts, in parallel, with slots and bitmaps.
 
+use super::bends::{Bend, Bends};
 use super::bitmap::{self, EmbeddedImage};
 use super::letters;
-use super::options::{OnError, TextMode, WarpOptions};
+use super::options::OnError;
 use super::outcome::{PartOutcome, Skipped, WarpedDocument, WarpedPart};
 use super::part;
 use super::shading::Shading;
@@ -11,14 +12,15 @@ use super::task::{PartContext, PartTask, ROUNDING};
 use super::warning::Warning;
 use crate::scene::affine::is_invertible;
 use crate::scene::drawing::Drawing;
-use crate::scene::model::{Bitmap, Part, PartRole};
+use crate::scene::model::{Bitmap, Part};
 use crate::source::parallel::map_parallel;
 use crate::source::tags::ElementId;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::{Class, Gathered, Map};
-use pathwarp::refit::KnownShapes;
-use pathwarp::{Error, GeometryError};
+use pathwarp::map::{Gathered, Map};
+use pathwarp::refit::{self, KnownShapes};
+use pathwarp::{Error, GeometryError, Outline};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Width of a hairline in millimetres: a quarter of a point is 0.088 mm, and laser and plotter programs take lines up to 0.1 mm for
 /// paths to follow. There is room for the rounding of the page's size and the width.
@@ -32,24 +34,16 @@ pub(crate) struct BentDrawing {
     pub(crate) images: Vec<EmbeddedImage>,
     /// One for each slot.
     pub(crate) slots: Vec<PlacedSlot>,
-}
-
-/// Returns `true` if nothing moves.
-pub(crate) fn is_identity(map: &dyn Map, options: &WarpOptions) -> bool {
-    map.class() == Class::Affine(Affine::IDENTITY) && options.copies.is_empty() && options.letters.places.is_empty()
+    /// For each part, the index of what bends it.
+    pub(crate) of: Vec<Option<usize>>,
 }
 
 /// Bends everything in a drawing and reports to `out`.
-pub(crate) fn bend(
-    drawing: &Drawing,
-    map: &dyn Map,
-    options: &WarpOptions,
-    out: &mut WarpedDocument,
-) -> Result<BentDrawing, Error> {
-    let scene = drawing.scene();
-    let selected = bent_parts(drawing, options);
-    let slots = slots::place(drawing, map, &selected, &options.selection);
-    let results = warp_parts(drawing, map, options, &selected, &slots);
+pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocument) -> Result<BentDrawing, Error> {
+    let (scene, options) = (drawing.scene(), &bends.options);
+    let of = bends.of_parts(drawing);
+    let slots = slots::place(drawing, bends, &of);
+    let results = warp_parts(drawing, bends, &of, &slots);
     let mut outcomes = Vec::with_capacity(scene.parts.len());
     // Index of each element's report: tiles and markers may come between the parts of an element.
     let mut reports: HashMap<ElementId, usize> = HashMap::new();
@@ -67,7 +61,8 @@ pub(crate) fn bend(
                 }
                 let element = part.element();
                 let known = element.and_then(|e| reports.get(&e).copied());
-                let report = out.report(id.clone(), &warped, options.copies.len().max(1), known);
+                let copies = of[i].map_or(0, |k| bends.each[k].options.copies.len());
+                let report = out.report(id.clone(), &warped, copies.max(1), known);
                 reports.extend(element.map(|e| (e, report)));
                 PartOutcome::Warped(Box::new(warped))
             }
@@ -86,55 +81,71 @@ pub(crate) fn bend(
         });
     }
     out.skipped.extend(drawing.far().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
-    warn(drawing, options, &outcomes, &slots, out);
-    let elements = options.selection.resolve(&drawing.source);
-    let is_selected = |b: &Bitmap| b.owner.map_or(options.selection.is_everything(), |e| elements[e]);
-    let bend = |b: &Bitmap| bitmap::bend(b, scene, &slots, is_selected(b), map, &options.images);
+    warn(drawing, bends, &outcomes, &slots, out);
+    let bend = |b: &Bitmap| bitmap::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
     let images = scene.bitmaps.iter().map(bend).collect();
-    Ok(BentDrawing { outcomes, images, slots })
+    Ok(BentDrawing { outcomes, images, slots, of })
 }
 
-/// Warps the selected parts; `None` for the others.
+/// Warps the parts that are bent, by the maps of these indices; `None` for the others.
 fn warp_parts(
     drawing: &Drawing,
-    map: &dyn Map,
-    options: &WarpOptions,
-    selected: &[bool],
+    bends: &Bends<'_>,
+    of: &[Option<usize>],
     slots: &[PlacedSlot],
 ) -> Vec<Option<Result<WarpedPart, GeometryError>>> {
     /// With fewer segments, starting threads takes longer than the work.
     const WORTH_IT: usize = 1000;
     let scene = drawing.scene();
     let (parts, shapes) = (&scene.parts, drawing.shapes());
-    let pieces = letters::pieces(drawing, options);
-    let gradients = if options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
+    let each: Vec<Bend<'_>> = bends.each.iter().enumerate().map(|(k, b)| shared(drawing, b, of, k)).collect();
+    let pieces: Vec<_> = each.iter().map(|b| letters::pieces(drawing, &b.options)).collect();
+    let known: Vec<_> = each.iter().enumerate().map(|(k, b)| known_shapes(drawing, b, of, k)).collect();
+    let gradients = if bends.options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
     let hairline = drawing.millimetre().map_or(0.0, |mm| HAIRLINE * mm);
-    let identity = is_identity(map, options);
-    let known = if identity { KnownShapes::default() } else { known_shapes(drawing, map, options, selected) };
-    let context = PartContext { map, options, known: &known, to_px: scene.to_px, gradients, hairline };
     let warp = |i: usize| {
-        let p = &parts[i];
-        let gathered = map.prefers_batches().then(|| Gathered::new(map));
-        let context = PartContext { map: gathered.as_ref().map_or(map, |g| g as &dyn Map), ..context };
+        let k = of[i].filter(|&k| !each[k].is_identity())?;
+        let (p, Bend { map, options }) = (&parts[i], &each[k]);
+        let gathered = map.prefers_batches().then(|| Gathered::new(*map));
+        let map = gathered.as_ref().map_or(*map, |g| g as &dyn Map);
+        let context = PartContext { map, options, known: &known[k], to_px: scene.to_px, gradients, hairline };
         let write = written(scene, slots, p.slot, p.frame);
-        (selected[i] && !identity && is_invertible(p.frame) && is_invertible(write))
-            .then(|| part::warp(&PartTask::new(p, shapes[i].outline.clone(), write, &context, &pieces[i])))
+        (is_invertible(p.frame) && is_invertible(write))
+            .then(|| part::warp(&PartTask::new(p, shapes[i].outline.clone(), write, &context, &pieces[k][i])))
     };
-    let segments =
-        || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * options.copies.len().max(1) };
-    if identity || segments() < WORTH_IT {
+    let copies = each.iter().map(|b| b.options.copies.len()).max().unwrap_or_default();
+    let segments = || -> usize { parts.iter().map(|p| p.local.segs().count()).sum::<usize>() * copies.max(1) };
+    if bends.is_identity() || segments() < WORTH_IT {
         (0..parts.len()).map(warp).collect()
     } else {
         map_parallel(parts.len(), |i| warp(i).map(|warped| warped.map(WarpedPart::with_data)))
     }
 }
 
+/// The outlines that bend `k` bends.
+fn bent<'a>(drawing: &'a Drawing, of: &[Option<usize>], k: usize) -> impl Iterator<Item = &'a Outline> {
+    drawing.shapes().iter().zip(of).filter(move |(_, of)| **of == Some(k)).map(|(s, _)| &*s.outline)
+}
+
+/// A bend that knows the edges that shapes under it share: these keep their own pieces. An edge that another map bends on its other
+/// side is not shared.
+fn shared<'a>(drawing: &Drawing, bend: &Bend<'a>, of: &[Option<usize>], k: usize) -> Bend<'a> {
+    let mut bend = bend.clone();
+    if bend.options.refit.merge && !bend.is_identity() {
+        bend.options.refit.shared = Arc::new(refit::SharedEdges::among(bent(drawing, of, k)));
+    }
+    bend
+}
+
 /// The shapes that come again from one part to the next.
-fn known_shapes(drawing: &Drawing, map: &dyn Map, options: &WarpOptions, selected: &[bool]) -> KnownShapes {
-    let bent = drawing.shapes().iter().zip(selected).filter(|(_, bent)| **bent);
+fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> KnownShapes {
+    if bend.is_identity() {
+        return KnownShapes::default();
+    }
     // Most parts have less than the whole tolerance, because they are rounded.
-    let finer = options.refit.clone().with_tolerance((1.0 - ROUNDING) * options.refit.tolerance);
-    KnownShapes::among(bent.map(|(s, _)| &*s.outline), map, &finer)
+    let refit = &bend.options.refit;
+    let finer = refit.clone().with_tolerance((1.0 - ROUNDING) * refit.tolerance);
+    KnownShapes::among(bent(drawing, of, k), bend.map, &finer)
 }
 
 /// Number of gradients on a part.
@@ -145,38 +156,21 @@ fn gradients(p: &Part) -> usize {
 
 fn warn(
     drawing: &Drawing,
-    options: &WarpOptions,
+    bends: &Bends<'_>,
     outcomes: &[PartOutcome],
     slots: &[PlacedSlot],
     out: &mut WarpedDocument,
 ) {
-    if options.copies.len() > 1 && outcomes.iter().any(|o| o.warped().is_some_and(|d| d.fit.is_some())) {
+    let repeats = bends.each.iter().any(|b| b.options.copies.len() > 1);
+    if repeats && outcomes.iter().any(|o| o.warped().is_some_and(|d| d.fit.is_some())) {
         out.warnings.push(Warning::SharedPaints);
     }
-    if options.copies.len() > 1 && slots.iter().any(|s| s.fit != Affine::IDENTITY) {
+    if repeats && slots.iter().any(|s| s.fit != Affine::IDENTITY) {
         out.warnings.push(Warning::SharedImages);
     }
-    if !drawing.missed.fonts.is_empty() {
+    let bends_text =
+        || drawing.scene().texts.iter().any(|t| outcomes.get(t.first).is_some_and(|o| o.warped().is_some()));
+    if !drawing.missed.fonts.is_empty() && bends_text() {
         out.warnings.push(Warning::MissingFonts(drawing.missed.fonts.clone()));
     }
-}
-
-/// Determines the parts to warp. Clip paths and masks follow the elements that refer to them.
-pub(crate) fn bent_parts(drawing: &Drawing, options: &WarpOptions) -> Vec<bool> {
-    let scene = drawing.scene();
-    let mut selected = drawing.selected_parts(&options.selection);
-    let all = options.selection.is_everything();
-    let elements = options.selection.resolve(&drawing.source);
-    let clips = scene.clips.iter().map(|c| (&c.parts, &c.referrers));
-    let masks = scene.masks.iter().map(|m| (&m.parts, &m.referrers));
-    for (parts, referrers) in clips.chain(masks) {
-        let any = all || referrers.iter().any(|r| r.owner.or(r.element).is_some_and(|e| elements[e]));
-        selected[parts.clone()].fill(any);
-    }
-    let far = drawing.far();
-    for (i, (s, p)) in selected.iter_mut().zip(&scene.parts).enumerate() {
-        let text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
-        *s &= !far.holds(i) && p.role != PartRole::Pattern && !(text && options.text == TextMode::Skip);
-    }
-    selected
 }

@@ -36,7 +36,7 @@ pub(crate) fn pieces(drawing: &Drawing, options: &WarpOptions) -> Vec<Vec<Letter
         let places = places.get(l.letter).filter(|p| !p.is_empty())?.clone();
         Some(LetterPiece { range: l.range, places })
     };
-    letters_by_part(drawing, &options.selection)
+    letters_by_part(drawing, options.letters.of.as_ref().unwrap_or(&options.selection))
         .into_iter()
         .map(|of_part| of_part.into_iter().filter_map(piece).collect())
         .collect()

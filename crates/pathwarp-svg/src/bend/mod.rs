@@ -1,6 +1,7 @@
 //! The drawing under a map: images of outlines, strokes, gradients and bitmaps.
 
 mod arcs;
+pub(crate) mod bends;
 mod bent_gradient;
 pub(crate) mod bitmap;
 pub(crate) mod drawing;

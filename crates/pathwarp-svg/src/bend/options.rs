@@ -226,6 +226,11 @@ impl WarpOptions {
         }
     }
 
+    /// Returns `true` if text stays as it is.
+    pub(crate) fn skips_text(&self) -> bool {
+        self.text == TextMode::Skip
+    }
+
     /// Returns `true` if `gradients` allows for pictures.
     pub(crate) fn paints_gradients(&self) -> bool {
         matches!(self.gradients, Gradients::Exact(_) | Gradients::Auto(_))

@@ -1,12 +1,11 @@
 //! Slots under a map, and frames in the result.
 
+use super::bends::Bends;
 use super::paint;
 use crate::scene::affine::is_invertible;
 use crate::scene::drawing::Drawing;
 use crate::scene::model::{PartRole, Scene};
-use crate::source::select::Selection;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::Map;
 
 /// A slot under a map.
 #[derive(Debug, Clone, Copy)]
@@ -25,23 +24,22 @@ pub(crate) fn written(scene: &Scene, placed: &[PlacedSlot], slot: Option<usize>,
     }
 }
 
-/// Places filtered groups and images by the affine fit of the map over each.
-pub(super) fn place(drawing: &Drawing, map: &dyn Map, selected: &[bool], selection: &Selection) -> Vec<PlacedSlot> {
+/// Places filtered groups and images by the affine fit over each of the map that bends all of it. `of` has the index of what bends
+/// each part.
+pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) -> Vec<PlacedSlot> {
     let scene = drawing.scene();
     let mut out: Vec<PlacedSlot> = Vec::with_capacity(scene.slots.len());
-    let elements = selection.resolve(&drawing.source);
     for s in &scene.slots {
         let outer = written(scene, &out, s.outer, s.frame);
         // Parts of tiles and of filters' pictures are never bent and do not count.
-        let mut own = s.parts.clone().filter(|&i| scene.parts[i].role != PartRole::Pattern).peekable();
-        let moves = if own.peek().is_some() {
-            own.all(|i| selected[i])
-        } else {
-            s.owner.or(s.element).map_or(selection.is_everything(), |e| elements[e])
+        let mut own = s.parts.clone().filter(|&i| scene.parts[i].role != PartRole::Pattern);
+        let bend = match own.next() {
+            Some(first) => of[first].filter(|k| own.all(|i| of[i] == Some(*k))),
+            None => bends.of(s.owner.or(s.element)),
         };
-        let fit = (moves && is_invertible(s.frame) && is_invertible(outer))
-            .then(|| paint::fit(s.area, s.frame, outer, map))
-            .flatten()
+        let fit = bend
+            .filter(|_| is_invertible(s.frame) && is_invertible(outer))
+            .and_then(|k| paint::fit(s.area, s.frame, outer, bends.each[k].map))
             .filter(|f| is_invertible(f.affine) && !f.is_identity(s.area));
         let fit = fit.map_or(Affine::IDENTITY, |f| f.affine);
         out.push(PlacedSlot { fit, write: outer * fit });

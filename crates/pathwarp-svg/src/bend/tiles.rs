@@ -1,31 +1,34 @@
 //! Chooses the patterns whose tiles are bent one by one.
 
-use super::options::{Patterns, Strokes, WarpOptions};
+use super::bends::{Bend, Bends};
+use super::options::{Patterns, Strokes};
 use super::paint;
 use crate::scene::drawing::Drawing;
-use crate::scene::resolve::Tiling;
+use crate::scene::resolve::{Painted, Tiling};
 use pathwarp::Error;
 use pathwarp::kurbo::{Affine, Rect};
-use pathwarp::map::Map;
 
 /// Lays out pattern tiles as geometry if they are to be warped one by one. Returns `None` if nothing changes.
-pub(crate) fn laid_out(drawing: &Drawing, map: &dyn Map, options: &WarpOptions) -> Result<Option<Drawing>, Error> {
+pub(crate) fn laid_out(drawing: &Drawing, bends: &Bends<'_>) -> Result<Option<Drawing>, Error> {
     /// Visible error as a fraction of the page's diagonal: half a pixel if the page is drawn a thousand pixels across.
     const VISIBLE: f64 = 5e-4;
-    let view = drawing.view_box();
-    let visible = match options.patterns {
-        Patterns::Fit | Patterns::Keep => return Ok(None),
-        Patterns::Auto if options.copies.len() <= 1 => Some(VISIBLE * view.width().hypot(view.height())),
-        Patterns::Auto | Patterns::Instantiate => None,
-    };
-    if drawing.scene().tiles.is_empty() {
+    let patterns = bends.options.patterns;
+    if matches!(patterns, Patterns::Fit | Patterns::Keep) || drawing.scene().tiles.is_empty() {
         return Ok(None);
     }
-    let strokes = matches!(options.strokes, Strokes::Auto | Strokes::Outline);
-    let selected = options.selection.resolve(&drawing.source);
-    let needed = |area: Rect, frame: Affine| {
-        let follows = |v: f64| paint::fit(area, frame, Affine::IDENTITY, map).is_none_or(|f| f.miss <= v);
-        !visible.is_some_and(follows)
+    let view = drawing.view_box();
+    let visible = VISIBLE * view.width().hypot(view.height());
+    let shows = |bend: &Bend<'_>, area: Rect, frame: Affine| {
+        let follows = || paint::fit(area, frame, Affine::IDENTITY, bend.map).is_some_and(|f| f.miss <= visible);
+        patterns == Patterns::Instantiate || bend.options.copies.len() > 1 || !follows()
     };
-    drawing.tiled(Tiling::new(&needed, strokes, selected, options.selection.is_everything())).map(Some)
+    let needed = |painted: Painted, area: Rect, frame: Affine| {
+        let bend = match painted {
+            Painted::Element(e) => bends.of(e),
+            Painted::Mask(bend) => bend.or(Some(0)),
+        };
+        bend.and_then(|k| bends.each.get(k)).is_some_and(|bend| shows(bend, area, frame))
+    };
+    let strokes = matches!(bends.options.strokes, Strokes::Auto | Strokes::Outline);
+    drawing.tiled(Tiling::new(&needed, strokes)).map(Some)
 }

@@ -37,6 +37,8 @@ pub(crate) struct Drawing {
     shallow: bool,
     pub(crate) tree: Arc<usvg::Tree>,
     letters: Arc<letters::Owners>,
+    /// For every element, the index of what bends it, if clip paths and masks are there once for each.
+    division: Vec<Option<usize>>,
     dpi: f64,
     /// Counts the work that the drawing causes.
     pub(crate) budget: Arc<Budget>,
@@ -55,7 +57,7 @@ impl Drawing {
                 let letters = letters::owners(source, name, options)?;
                 let scene = OnceLock::new();
                 if !shallow {
-                    scene.get_or_init(|| resolve::build(&tree, source, &letters, dpi, None));
+                    scene.get_or_init(|| resolve::build(&tree, source, &letters, dpi, None, &[]));
                 }
                 Ok((tree, letters, missed, scene))
             };
@@ -75,6 +77,7 @@ impl Drawing {
             shallow,
             tree: Arc::new(tree),
             letters: Arc::new(letters),
+            division: Vec::new(),
             dpi,
             budget: options.budget.clone(),
         })
@@ -82,7 +85,16 @@ impl Drawing {
 
     /// Resolves the drawing again, with pattern tiles laid out as geometry.
     pub(crate) fn tiled(&self, tiling: Tiling<'_>) -> Result<Self, Error> {
-        let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.letters, self.dpi, Some(tiling)));
+        self.resolved_again(Some(tiling), self.division.clone())
+    }
+
+    /// Resolves the drawing again, with clip paths and masks for each of the bends that their users have.
+    pub(crate) fn divided(&self, division: Vec<Option<usize>>) -> Result<Self, Error> {
+        self.resolved_again(None, division)
+    }
+
+    fn resolved_again(&self, tiling: Option<Tiling<'_>>, division: Vec<Option<usize>>) -> Result<Self, Error> {
+        let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.letters, self.dpi, tiling, &division));
         let scene = self.with_stack(resolve)?;
         Ok(Self {
             name: self.name.clone(),
@@ -96,6 +108,7 @@ impl Drawing {
             shallow: self.shallow,
             tree: self.tree.clone(),
             letters: self.letters.clone(),
+            division,
             dpi: self.dpi,
             budget: self.budget.clone(),
         })
@@ -108,7 +121,8 @@ impl Drawing {
     }
 
     pub(crate) fn scene(&self) -> &Scene {
-        self.scene.get_or_init(|| resolve::build(&self.tree, &self.source, &self.letters, self.dpi, None))
+        self.scene
+            .get_or_init(|| resolve::build(&self.tree, &self.source, &self.letters, self.dpi, None, &self.division))
     }
 
     /// The shapes, one for each part of the scene.

@@ -226,6 +226,8 @@ pub(crate) struct Clip {
     pub(crate) clip: Option<usize>,
     pub(crate) root: Group,
     pub(crate) referrers: Vec<Referrer>,
+    /// Of a divided drawing, the index of what bends those who refer to it.
+    pub(crate) bend: Option<usize>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
     /// `true` if the source has no such definition: in laid-out tiles, in a drawing shown as an image.
@@ -241,6 +243,7 @@ impl Clip {
             clip: None,
             root,
             referrers: vec![Referrer { element: None, owner }],
+            bend: None,
             parts,
             foreign: true,
         }
@@ -259,6 +262,8 @@ pub(crate) struct Mask {
     pub(crate) frame: Affine,
     pub(crate) slot: Option<usize>,
     pub(crate) referrers: Vec<Referrer>,
+    /// Of a divided drawing, the index of what bends those who refer to it.
+    pub(crate) bend: Option<usize>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
     /// `true` if the source has no such definition.

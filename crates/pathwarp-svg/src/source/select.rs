@@ -2,7 +2,8 @@
 
 use super::tags::ElementId;
 use super::text::SourceText;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 /// The part of a document to warp. By default, everything.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -14,17 +15,65 @@ pub struct Selection {
     pub exclude: Vec<String>,
     /// Names of cages, bases and targets. They are left unchanged and do not count as artwork.
     pub guides: Vec<String>,
+    /// The elements themselves, of [`Document::divide`](crate::Document::divide): `select` and `exclude` do not count then.
+    pub part: Option<Elements>,
+}
+
+/// A set of a document's elements.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Elements(Arc<[bool]>);
+
+/// A part of a document that the same ones of several selections hold.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Division {
+    /// The indices of those selections.
+    pub among: Vec<usize>,
+    /// The part.
+    pub selection: Selection,
+}
+
+/// Divides a document by selections. What none of them holds is in no part.
+pub(crate) fn divide(source: &SourceText, selections: &[Selection]) -> Vec<Division> {
+    let each: Vec<Vec<bool>> = selections.iter().map(|s| s.resolve(source)).collect();
+    let among = |e: ElementId| -> Vec<usize> { (0..each.len()).filter(|&i| each[i][e]).collect() };
+    let mut parts: BTreeMap<Vec<usize>, Vec<bool>> = BTreeMap::new();
+    for e in 0..source.elements.len() {
+        let among = among(e);
+        if !among.is_empty() {
+            parts.entry(among).or_insert_with(|| vec![false; source.elements.len()])[e] = true;
+        }
+    }
+    let guides = selections.first().map(|s| s.guides.clone()).unwrap_or_default();
+    let selection = |elements: Vec<bool>| Selection {
+        guides: guides.clone(),
+        part: Some(Elements(elements.into())),
+        ..Selection::default()
+    };
+    parts.into_iter().map(|(among, elements)| Division { among, selection: selection(elements) }).collect()
 }
 
 impl Selection {
     /// Returns `true` if everything is selected.
     #[must_use]
     pub fn is_everything(&self) -> bool {
-        self.select.is_empty() && self.exclude.is_empty() && self.guides.is_empty()
+        self.part.is_none() && self.select.is_empty() && self.exclude.is_empty() && self.guides.is_empty()
+    }
+
+    /// The elements of all these selections.
+    pub(crate) fn union<'a>(source: &SourceText, all: impl Iterator<Item = &'a Self>) -> Self {
+        let mut sum = Self { part: Some(Elements(vec![false; source.elements.len()].into())), ..Self::default() };
+        for one in all {
+            let elements = std::iter::zip(sum.resolve(source), one.resolve(source)).map(|(a, b)| a || b).collect();
+            sum = Self { guides: one.guides.clone(), part: Some(Elements(elements)), ..sum };
+        }
+        sum
     }
 
     /// Determines for every element whether it is selected.
     pub(crate) fn resolve(&self, source: &SourceText) -> Vec<bool> {
+        if let Some(Elements(part)) = &self.part {
+            return part.to_vec();
+        }
         let hits = |list: &[String], e: ElementId| list.iter().any(|s| matches(source, e, s));
         let mut selected = Vec::with_capacity(source.elements.len());
         let mut excluded: Vec<bool> = Vec::with_capacity(source.elements.len());

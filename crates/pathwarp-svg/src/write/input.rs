@@ -1,5 +1,6 @@
 //! Everything that is to be written.
 
+use crate::bend::bends::{Bend, Bends};
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::drawing::BentDrawing;
 use crate::bend::options::WarpOptions;
@@ -10,7 +11,6 @@ use crate::scene::drawing::Drawing;
 use crate::scene::model::{Group, Node, Part, Scene, Tiles};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::Affine;
-use pathwarp::map::Map;
 use std::ops::Range;
 use usvg::Paint;
 use usvg::filter::{Filter, Kind};
@@ -24,12 +24,14 @@ pub(crate) struct WriteInput<'a> {
     pub(super) outcomes: &'a [PartOutcome],
     pub(super) images: &'a [EmbeddedImage],
     pub(super) slots: &'a [PlacedSlot],
-    pub(super) map: &'a dyn Map,
+    pub(super) bends: &'a Bends<'a>,
+    pub(super) of: &'a [Option<usize>],
+    /// For the document.
     pub(super) options: &'a WarpOptions,
 }
 
 impl<'a> WriteInput<'a> {
-    pub(crate) fn new(drawing: &'a Drawing, bent: &'a BentDrawing, map: &'a dyn Map, options: &'a WarpOptions) -> Self {
+    pub(crate) fn new(drawing: &'a Drawing, bent: &'a BentDrawing, bends: &'a Bends<'a>) -> Self {
         Self {
             drawing,
             source: &drawing.source,
@@ -37,13 +39,19 @@ impl<'a> WriteInput<'a> {
             outcomes: &bent.outcomes,
             images: &bent.images,
             slots: &bent.slots,
-            map,
-            options,
+            bends,
+            of: &bent.of,
+            options: &bends.options,
         }
     }
 
     pub(super) fn part(&self, i: usize) -> &'a Part {
         &self.scene.parts[i]
+    }
+
+    /// What bends the first of these parts that is bent.
+    pub(super) fn bend(&self, parts: Range<usize>) -> Option<&'a Bend<'a>> {
+        self.of[parts].iter().find_map(|k| k.map(|k| &self.bends.each[k]))
     }
 
     /// The image of a part; `None` if it is unchanged.

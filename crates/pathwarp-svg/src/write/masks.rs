@@ -2,6 +2,7 @@
 
 use super::input::WriteInput;
 use super::values::{part_box, stroke_scale};
+use crate::bend::bends::Bend;
 use crate::source::number::{path_data, short};
 use pathwarp::kurbo::{Rect, Shape as _};
 use pathwarp::outline::Builder;
@@ -51,8 +52,9 @@ pub(super) fn edge(input: &WriteInput<'_>, i: usize) -> Option<String> {
     if inside || !input.changes(m.parts.clone()) {
         return None;
     }
-    let border = border(m.rect).finish().transformed(m.frame).repeated(&input.options.copies);
-    let warped = refit::warp_path(&border, input.map, &input.options.refit).ok()?;
+    let Bend { map, options } = input.bend(m.parts.clone())?;
+    let border = border(m.rect).finish().transformed(m.frame).repeated(&options.copies);
+    let warped = refit::warp_path(&border, *map, &options.refit).ok()?;
     let mut path = warped.path;
     path.apply_affine(input.written(m.slot, m.frame).inverse());
     Some(path_data(&path, DECIMALS))

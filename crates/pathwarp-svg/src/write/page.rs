@@ -3,6 +3,7 @@
 use super::boxes::{bound, box_under, painted_box, paints_in, path};
 use super::filter_region;
 use super::input::WriteInput;
+use crate::bend::bends::Bend;
 use crate::bend::bitmap::EmbeddedImage;
 use crate::bend::options::PageFit;
 use crate::bend::outcome::{Overhang, PartOutcome};
@@ -175,25 +176,20 @@ fn from_page(input: &WriteInput<'_>, i: usize, frame: Affine, page: Rect) -> Opt
     let cheap = bound(p, None, p.frame);
     let painted = if holds(nearly, cheap) { cheap } else { painted_box(p, None, p.frame) };
     // Letters placed one by one do not go through the whole map.
-    let whole = holds(nearly, painted) || !input.options.letters.places.is_empty();
-    image_from_page(input, painted, whole, page, input.warped(i).is_none().then(|| frame * p.frame.inverse()))
+    let bend = input.bend(i..i + 1).filter(|_| input.warped(i).is_some());
+    let whole = holds(nearly, painted) || bend.is_some_and(|b| !b.options.letters.places.is_empty());
+    image_from_page(bend, painted, whole, page, frame * p.frame.inverse())
 }
 
 /// Does the same for anything whose box before the warp is `painted` and that the page shows as a `whole` or not. It goes through the
-/// map, or by `fit` if there is one.
-fn image_from_page(
-    input: &WriteInput<'_>,
-    painted: Rect,
-    whole: bool,
-    page: Rect,
-    fit: Option<Affine>,
-) -> Option<Rect> {
+/// map of `bend`, or else by `fit`.
+fn image_from_page(bend: Option<&Bend<'_>>, painted: Rect, whole: bool, page: Rect, fit: Affine) -> Option<Rect> {
     let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
     let shown = overlap(painted, page)?;
-    match fit {
+    match bend {
         _ if whole => Some(everything),
-        Some(fit) => Some(fit.transform_rect_bbox(shown)),
-        None => image_box(input, shown),
+        Some(bend) => image_box(bend, shown),
+        None => Some(fit.transform_rect_bbox(shown)),
     }
 }
 
@@ -207,7 +203,7 @@ fn holds(outer: Rect, inner: Rect) -> bool {
 }
 
 /// Bounding box of the image of an area of root user space.
-fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
+fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
     /// Samples along a side. Between them, the image bulges by less than is noticed.
     const N: u32 = 64;
     /// Steps between samples inside, which can be extreme only where the map folds.
@@ -219,14 +215,14 @@ fn image_box(input: &WriteInput<'_>, area: Rect) -> Option<Rect> {
         is_edge(*i) || is_edge(*j) || i % INSIDE == 0 && j % INSIDE == 0
     };
     let copies = |q: Point| {
-        let all = &input.options.copies;
+        let all = &bend.options.copies;
         let first = all.is_empty().then_some(Affine::IDENTITY);
         all.iter().copied().chain(first).map(move |c| c * q)
     };
     let grid = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j))).filter(is_sampled);
     let places: Vec<Point> = grid.flat_map(|k| copies(point(k))).collect();
     let mut images = places.clone();
-    input.map.points(&places, &mut images);
+    bend.map.points(&places, &mut images);
     images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
 }
 
@@ -298,10 +294,11 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         Node::Image(i) => {
             let (before, after) = image_boxes(input, *i)?;
             let Some(page) = m.page else { return Some(after) };
-            let bent = matches!(input.images[*i], EmbeddedImage::Bent(_));
+            let is_bent = matches!(input.images[*i], EmbeddedImage::Bent(_));
             let b = &scene.bitmaps[*i];
-            let fit = (!bent).then(|| input.written(b.slot, b.frame) * b.frame.inverse());
-            overlap(after, image_from_page(input, before, holds(nearly(page), before), page, fit)?)
+            let bend = input.bends.of(b.owner).map(|k| &input.bends.each[k]).filter(|_| is_bent);
+            let fit = input.written(b.slot, b.frame) * b.frame.inverse();
+            overlap(after, image_from_page(bend, before, holds(nearly(page), before), page, fit)?)
         }
     };
     let mut all: Option<Rect> = None;
@@ -331,7 +328,13 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         });
         all = overlap(all, boxes.reduce(|a, b| a.union(b))?)?;
         let region = m.frame.transform_rect_bbox(m.rect);
-        all = overlap(all, if input.changes(m.parts.clone()) { image_box(input, region)? } else { region })?;
+        all = overlap(
+            all,
+            match input.bend(m.parts.clone()).filter(|_| input.changes(m.parts.clone())) {
+                Some(bend) => image_box(bend, region)?,
+                None => region,
+            },
+        )?;
     }
     (all.width() >= 0.0 && all.height() >= 0.0).then_some(all)
 }

@@ -4,10 +4,10 @@
 
 use super::built::Built;
 use super::entry::{Case, Deformation, Example, Info, Law};
-use crate::error::{Error, GeometryError};
+use crate::error::Error;
 use crate::map::AffineMap;
-use crate::param::{Axis, Frame, Kind, Param, Settings};
-use kurbo::{Affine as Matrix, Point, Rect, Vec2};
+use crate::param::{Axis, Kind, Param, Settings};
+use kurbo::{Affine as Matrix, Point, Vec2};
 use std::sync::Arc;
 
 /// An affine map: a matrix, or scale, skew, rotation and shift, in this order, about a fixed point.
@@ -27,8 +27,6 @@ pub struct Affine {
     rotate: f64,
     shift: Vec2,
     about: Point,
-    /// The box that an error about a singular matrix shows.
-    frame: Rect,
 }
 
 impl Default for Affine {
@@ -55,7 +53,6 @@ impl Affine {
             rotate: 0.0,
             shift: Vec2::ZERO,
             about: Point::ORIGIN,
-            frame: Rect::new(0.0, 0.0, 1.0, 1.0),
         }
     }
 
@@ -89,10 +86,30 @@ impl Affine {
         Self { about: point.into(), ..self }
     }
 
+    /// The error that the matrix leaves no area: by the parameter that is to blame.
+    fn flat(&self, m: Matrix) -> Error {
+        let scales = [("scale-x", self.scale.x, "width"), ("scale-y", self.scale.y, "height")];
+        let zero = scales.into_iter().find(|(_, scale, _)| self.matrix.is_none() && *scale == 0.0);
+        match zero {
+            Some((name, _, side)) => {
+                Error::usage(name, "0", format!("leaves the artwork without {side}; 1 keeps it, and -1 mirrors it"))
+            }
+            None if self.matrix.is_some() => {
+                let text = m.as_coeffs().map(|c| c.to_string()).join(",");
+                Error::usage("matrix", text, "leaves the artwork without area: its determinant a·d - b·c is 0")
+            }
+            None => Error::usage(
+                "skew-x",
+                self.skew.x.to_string(),
+                "leaves the artwork without area, together with `skew-y`",
+            ),
+        }
+    }
+
     /// Builds the map.
     ///
     /// # Errors
-    /// [`GeometryError::Collinear`] for a singular matrix.
+    /// [`Error::Usage`] for a singular matrix.
     pub fn build(&self) -> Result<Built, Error> {
         let m = self.matrix.unwrap_or_else(|| {
             let o = self.about.to_vec2();
@@ -104,9 +121,7 @@ impl Affine {
                 * Matrix::translate(-o)
         });
         if m.determinant() == 0.0 {
-            let points = Frame::new(self.frame).corners().map(|c| m * c).to_vec();
-            let path = "the image of the artwork's box".into();
-            return Err(GeometryError::Collinear { path, which: [1, 2, 3], points }.into());
+            return Err(self.flat(m));
         }
         Ok(Built::new(Arc::new(AffineMap(m))))
     }
@@ -178,7 +193,6 @@ impl Deformation for Entry {
             rotate: s.number("rotate")?,
             shift: Vec2::new(s.number("move-x")?, s.number("move-y")?),
             about: s.point("about")?,
-            frame: s.frame().rect,
         };
         affine.build()
     }

@@ -95,8 +95,17 @@ impl Expr {
         };
         let (x, y) = (read("x", &self.x)?, read("y", &self.y)?);
         let program = Arc::new(program);
-        let mut built = Built::new(Arc::new(ExprMap { program: Arc::clone(&program), x, y }));
-        built.undefined = Some(Arc::new(move |p| program.undefined_at(p.x, p.y)));
+        let map = ExprMap { program: Arc::clone(&program), x, y };
+        let mut built = Built::new(Arc::new(map.clone()));
+        let texts =
+            [("x", &self.x), ("y", &self.y)].map(|(name, text)| text.clone().unwrap_or_else(|| name.to_owned()));
+        // Constants are computed when a formula is read, and no operation is left to blame.
+        let whole = move |p: Point| {
+            let image = map.point(p);
+            let blamed = if image.x.is_finite() { &texts[1] } else { &texts[0] };
+            (!image.is_finite()).then(|| format!("{blamed} has no finite value"))
+        };
+        built.undefined = Some(Arc::new(move |p| program.undefined_at(p.x, p.y).or_else(|| whole(p))));
         Ok(built)
     }
 }

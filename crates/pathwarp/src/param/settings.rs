@@ -7,6 +7,9 @@ use crate::error::Error;
 use crate::outline::Outline;
 use kurbo::{Point, Rect};
 
+/// A number out of range that is at least this large may be meant as a percentage.
+const LIKELY_PERCENT: f64 = 5.0;
+
 /// The parameters of a deformation with their values, from which it is built.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a> {
@@ -89,7 +92,7 @@ impl<'a> Settings<'a> {
         let value = value.map_err(|e| usage(name, text, &e))?;
         let (least, most) = param.range;
         if value < least || value > most {
-            let percent = param.kind == Kind::Number && !text.contains('%');
+            let percent = param.kind == Kind::Number && !text.contains('%') && value.abs() >= LIKELY_PERCENT;
             let meant = percent && (least..=most).contains(&(value / 100.0));
             let advice = if meant { format!("; for {text} per cent write {text}%") } else { String::new() };
             return Err(Error::usage(name, text, format!("is out of range: {least} to {most}{advice}")));

@@ -38,6 +38,15 @@ impl Wanted {
         self.weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(font, &["wght"]))
     }
 
+    /// The weight that a font has instead of the one asked for.
+    pub(super) fn other_weight(&self, font: &Font<'_>) -> Option<f64> {
+        let wanted = f64::from(self.weight?);
+        let axis = font.axes().into_iter().find(|a| a.tag == "wght");
+        let has = axis.map_or(font.weight(), |a| wanted.max(a.min).min(a.max));
+        let made = self.synthesize && self.weight_lacking(font).is_some();
+        ((has - wanted).abs() >= 1.0 && !made).then_some(has)
+    }
+
     /// Returns `true` if a font should be italic, and has neither that nor an axis for it.
     fn italic_lacking(&self, font: &Font<'_>) -> bool {
         self.italic && !font.is_italic() && !has_axis(font, &["ital", "slnt"])

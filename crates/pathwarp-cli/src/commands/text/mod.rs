@@ -6,6 +6,7 @@ mod style;
 mod words;
 
 use super::file_args;
+use crate::advice::mistakes;
 use crate::export;
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS};
@@ -17,6 +18,7 @@ use fonts::Wanted;
 use pathwarp::budget::{Exceeded, Limit};
 use pathwarp_svg::{FontFile, LetteringOptions, bundled_font, write_lettering};
 use pathwarp_text::{Font, Quantity, TextLimits, layout_within};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use style::Em;
 
@@ -30,7 +32,7 @@ pub(super) fn command() -> Command {
 }
 
 /// Sets the text and writes the drawing.
-pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
+pub(super) fn run(m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
     let read = m.get_one::<PathBuf>("file").map(PathBuf::as_path).into_iter();
     let names: Vec<&str> = m.get_many::<String>("font").into_iter().flatten().map(String::as_str).collect();
     let target = file_args::target(m, read.chain(names.iter().map(Path::new)))?;
@@ -51,6 +53,11 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     chosen.push(Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))?);
     let first = names.first().copied().unwrap_or("the bundled font");
     fonts::check_style(&chosen[0], first, &Wanted { weight, italic, synthesize }, &read)?;
+    let wanted = Wanted { weight, italic, synthesize };
+    if let Some(has) = wanted.other_weight(&chosen[0]).filter(|_| !m.get_flag("quiet")) {
+        let asked = m.get_one::<String>("weight").map_or("", String::as_str);
+        terminal::warning(&format!("--weight {asked}: {first} has no such weight; {has:.0} is used"));
+    }
     let chosen = fonts::with_variations(chosen, &fonts::axis_positions(m)?, &Wanted { weight, italic, synthesize })?;
 
     let limits = options.reading.limits.for_input(text.len());
@@ -60,6 +67,10 @@ pub(super) fn run(m: &ArgMatches) -> Result<Status, Failure> {
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
     let margin = em.length(m, "margin")?.unwrap_or(0.0);
     let svg = write_lettering(&set, &LetteringOptions { fill, margin, unit: em.unit })?;
+    let lines: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
+    if let Some(warning) = mistakes::unit_as_text(words, &lines).filter(|_| !m.get_flag("quiet")) {
+        terminal::warning(&warning);
+    }
     if !set.missing.is_empty() && !m.get_flag("quiet") {
         terminal::warning(&missing(&set.missing, &names));
     }

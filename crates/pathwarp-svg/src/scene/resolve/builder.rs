@@ -3,7 +3,7 @@
 use crate::scene::affine::{affine, f32_bits, is_near};
 use crate::scene::geometry::GeometryReader;
 use crate::scene::letters::Owners;
-use crate::scene::model::{Clip, PartRole, Scene};
+use crate::scene::model::{Clip, PartRole, Referrer, Scene};
 use crate::scene::resolve::tiling::Tiling;
 use crate::source::cascade;
 use crate::source::tags::ElementId;
@@ -13,8 +13,8 @@ use pathwarp::Outline;
 use pathwarp::kurbo::Affine;
 use std::collections::{HashMap, HashSet};
 
-/// Key of a definition in one frame: its address, the frame, the slot.
-pub(super) type DefKey = (usize, [u64; 6], Option<usize>);
+/// Key of a definition in one frame: its address, the frame, the slot, and what bends those who refer to it.
+pub(super) type DefKey = (usize, [u64; 6], Option<usize>, Option<usize>);
 
 /// A scene under construction.
 pub(super) struct SceneBuilder<'a> {
@@ -23,6 +23,8 @@ pub(super) struct SceneBuilder<'a> {
     pub(super) letters: &'a Owners,
     /// The patterns to lay out as geometry, if any.
     pub(super) tiling: Option<Tiling<'a>>,
+    /// For every element, the index of what bends it; empty if the drawing is not divided.
+    division: &'a [Option<usize>],
     /// Source elements by their id in usvg's tree.
     ids: &'a HashMap<String, Vec<ElementId>>,
     /// Transforms in the source by their f32 value; `None` where two different ones round to the same value.
@@ -53,23 +55,31 @@ pub(super) struct Context {
     pub(super) slot: Option<usize>,
     /// The enclosing `image` element.
     pub(super) image: Option<ElementId>,
+    /// In a definition, the index of what bends those who refer to it.
+    pub(super) bend: Option<usize>,
 }
 
 impl Context {
     /// Outside of owners, slots and images.
     pub(super) fn top(role: PartRole) -> Self {
-        Self { owner: None, role, slot: None, image: None }
+        Self { owner: None, role, slot: None, image: None, bend: None }
     }
 }
 
 impl<'a> SceneBuilder<'a> {
-    pub(super) fn new(reader: GeometryReader<'a>, letters: &'a Owners, tiling: Option<Tiling<'a>>) -> Self {
+    pub(super) fn new(
+        reader: GeometryReader<'a>,
+        letters: &'a Owners,
+        tiling: Option<Tiling<'a>>,
+        division: &'a [Option<usize>],
+    ) -> Self {
         let source = reader.source;
         Self {
             scene: Scene::empty(source.unpatchable.clone()),
             reader,
             letters,
             tiling,
+            division,
             ids: source.by_tree_id(),
             exact: exact_transforms(&reader),
             starts: None,
@@ -82,6 +92,14 @@ impl<'a> SceneBuilder<'a> {
             foreign_depth: 0,
             fixed_widths: fixed_widths(source),
         }
+    }
+
+    /// The index of what bends a reference: that of its element, or in a definition that of those who refer to it.
+    pub(super) fn bend_of(&self, referrer: Referrer, context: Context) -> Option<usize> {
+        if matches!(context.role, PartRole::Clip | PartRole::Mask) {
+            return context.bend;
+        }
+        referrer.owner.or(referrer.element).and_then(|e| self.division.get(e).copied().flatten())
     }
 
     /// The source elements with an id of usvg's tree.

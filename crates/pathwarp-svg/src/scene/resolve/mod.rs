@@ -10,7 +10,7 @@ mod tiling;
 mod trace;
 mod walk;
 
-pub(crate) use tiling::Tiling;
+pub(crate) use tiling::{Painted, Tiling};
 
 use super::affine::{affine, f32_bits, is_near, linear_part};
 use super::geometry::GeometryReader;
@@ -21,17 +21,19 @@ use builder::{Context, SceneBuilder};
 use pathwarp::kurbo::{Affine, Size};
 use std::collections::HashMap;
 
-/// Resolves the drawing. Patterns become geometry as far as `tiling` asks for it.
+/// Resolves the drawing. Patterns become geometry as far as `tiling` asks for it. Clip paths and masks
+/// are there once for each of the bends in `division` that those who refer to them have.
 pub(crate) fn build(
     tree: &usvg::Tree,
     source: &SourceText,
     letters: &Owners,
     dpi: f64,
     tiling: Option<Tiling<'_>>,
+    division: &[Option<usize>],
 ) -> Scene {
     let page = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
     let reader = GeometryReader { source, dpi, page };
-    let mut b = SceneBuilder::new(reader, letters, tiling);
+    let mut b = SceneBuilder::new(reader, letters, tiling, division);
     let (top, to_px) = root_group(&b, tree, page);
     b.top = Some(std::ptr::from_ref(top));
     let root = walk::group(&mut b, top, Affine::IDENTITY, Context::top(PartRole::Paint));

@@ -5,6 +5,7 @@
 
 use super::builder::{Context, SceneBuilder};
 use super::cut;
+use super::tiling::Painted;
 use super::trace::known_outline;
 use crate::scene::affine::{affine, is_invertible, stretch};
 use crate::scene::expand::stroke_outline;
@@ -78,11 +79,7 @@ pub(super) fn tiles(
     };
     let Paint::Pattern(pattern) = paint else { return None };
     let tiling = b.tiling.as_ref()?;
-    let selected = tiling.all
-        || context.role == PartRole::Mask
-        || context.owner.and_then(|e| tiling.selected.get(e)).is_some_and(|c| *c);
     if !p.is_visible()
-        || !selected
         || of == PaintOf::Stroke && !tiling.strokes
         || matches!(context.role, PartRole::Clip | PartRole::Pattern)
     {
@@ -91,7 +88,9 @@ pub(super) fn tiles(
     let area = Rect::new(f64::from(r.left()), f64::from(r.top()), f64::from(r.right()), f64::from(r.bottom()));
     let margin = MARGIN * area.width().max(area.height());
     let area = area.inflate(margin, margin);
-    if !(tiling.needed)(area, frame) {
+    let is_mask = context.role == PartRole::Mask;
+    let painted = if is_mask { Painted::Mask(context.bend) } else { Painted::Element(context.owner) };
+    if !(tiling.needed)(painted, area, frame) {
         return None;
     }
     match tiles_over(b, pattern, area, frame, context) {

@@ -26,8 +26,9 @@ pub(super) fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, m
     let slot = slot(b, &at, Context { owner, ..context });
     context.slot = slot.or(context.slot);
     let referrer = Referrer { element, owner: context.owner };
-    let clip = g.clip_path().map(|c| clip(b, c, frame, referrer, context.slot));
-    let mask = g.mask().map(|m| mask(b, m, frame, referrer, context.slot));
+    let bent = Context { bend: b.bend_of(referrer, context), ..context };
+    let clip = g.clip_path().map(|c| clip(b, c, frame, referrer, bent));
+    let mask = g.mask().map(|m| mask(b, m, frame, referrer, bent));
     context.owner = owner;
     context.image = source.filter(|&e| b.tag(e) == "image").or(context.image);
     for p in g.filters().iter().flat_map(|f| f.primitives()) {
@@ -216,8 +217,9 @@ fn image_edge(b: &mut SceneBuilder<'_>, w: f64, h: f64, frame: Affine, context: 
     b.push_clip(Clip::foreign("image-edge", root, context.owner, first..first + 1))
 }
 
-fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, slot: Option<usize>) -> usize {
-    let key = (std::ptr::from_ref(c) as usize, bits(frame), slot);
+fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, outside: Context) -> usize {
+    let Context { slot, bend, .. } = outside;
+    let key = (std::ptr::from_ref(c) as usize, bits(frame), slot, bend);
     if let Some(&i) = b.clip_index.get(&key) {
         b.scene.clips[i].referrers.push(referrer);
         return i;
@@ -226,14 +228,15 @@ fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: R
     let def = b.definition(c.id(), "clipPath");
     let transform = b.exact_transform(c.transform(), def);
     let chained = Referrer { element: def, owner: None };
-    let clip = c.clip_path().map(|c| clip(b, c, frame, chained, slot));
-    let root = definition(b, c.root(), frame * transform, Context { slot, ..Context::top(PartRole::Clip) });
+    let clip = c.clip_path().map(|c| clip(b, c, frame, chained, outside));
+    let root = definition(b, c.root(), frame * transform, Context { slot, bend, ..Context::top(PartRole::Clip) });
     let i = b.push_clip(Clip {
         id: c.id().to_owned(),
         transform,
         clip,
         root,
         referrers: vec![referrer],
+        bend,
         parts: first..b.scene.parts.len(),
         foreign: b.foreign_depth > 0,
     });
@@ -241,16 +244,17 @@ fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: R
     i
 }
 
-fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Referrer, slot: Option<usize>) -> usize {
-    let key = (std::ptr::from_ref(m) as usize, bits(frame), slot);
+fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Referrer, outside: Context) -> usize {
+    let Context { slot, bend, .. } = outside;
+    let key = (std::ptr::from_ref(m) as usize, bits(frame), slot, bend);
     if let Some(&i) = b.mask_index.get(&key) {
         b.scene.masks[i].referrers.push(referrer);
         return i;
     }
     let first = b.scene.parts.len();
     let chained = Referrer { element: b.definition(m.id(), "mask"), owner: None };
-    let mask = m.mask().map(|m| mask(b, m, frame, chained, slot));
-    let root = definition(b, m.root(), frame, Context { slot, ..Context::top(PartRole::Mask) });
+    let mask = m.mask().map(|m| mask(b, m, frame, chained, outside));
+    let root = definition(b, m.root(), frame, Context { slot, bend, ..Context::top(PartRole::Mask) });
     let (r, c) = (m.rect(), m.root().stroke_bounding_box());
     let rect = |l, t, r, b| Rect::new(f64::from(l), f64::from(t), f64::from(r), f64::from(b));
     b.scene.masks.push(Mask {
@@ -262,6 +266,7 @@ fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Refer
         frame,
         slot,
         referrers: vec![referrer],
+        bend,
         parts: first..b.scene.parts.len(),
         foreign: b.foreign_depth > 0,
         content: rect(c.left(), c.top(), c.right(), c.bottom()),

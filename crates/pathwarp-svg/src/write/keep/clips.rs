@@ -14,7 +14,10 @@ use std::ops::Range;
 /// Patches the clip paths. For a clip path used in several frames, the first stays in its place and the others get
 /// definitions of their own.
 pub(super) fn clips(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
-    let mut patched = BTreeSet::new();
+    let clips = || k.input.scene.clips.iter().filter(|c| !c.foreign);
+    // What is not bent keeps its definition.
+    let kept = clips().filter(|c| !k.input.changes(c.parts.clone()));
+    let mut patched: BTreeSet<ElementId> = kept.filter_map(|c| k.definition(&c.id, "clipPath")).collect();
     for (i, c) in k.input.scene.clips.iter().enumerate().filter(|c| !c.1.foreign) {
         let def = k.definition(&c.id, "clipPath");
         if !k.input.changes(c.parts.clone()) {
@@ -50,7 +53,8 @@ fn clip(k: &mut Keeper<'_, '_>, i: usize, c: &Clip, def: ElementId) {
 
 /// Patches the masks, in the same way.
 pub(super) fn masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
-    let mut patched = BTreeSet::new();
+    let kept = k.input.scene.masks.iter().filter(|m| !m.foreign && !k.input.changes(m.parts.clone()));
+    let mut patched: BTreeSet<ElementId> = kept.filter_map(|m| k.definition(&m.id, "mask")).collect();
     for (i, m) in k.input.scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
         let def = k.definition(&m.id, "mask");
         // A mask in box units hides a box without area completely. The result's box may have an area, so write a new mask.

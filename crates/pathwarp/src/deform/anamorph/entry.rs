@@ -188,7 +188,11 @@ impl Deformation for Entry {
             local: s.flag("local")?,
             files: files("mesh", true).chain(files("curves", false)).collect(),
         };
-        anamorph.build()
+        // The surface as typed, rather than in user units.
+        anamorph.build().map_err(|e| match (e, s.texts("onto").pop()) {
+            (Error::Usage { param, problem, .. }, Some(text)) if param == "onto" => Error::usage("onto", text, problem),
+            (e, _) => e,
+        })
     }
 }
 

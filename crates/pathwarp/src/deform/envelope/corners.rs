@@ -65,7 +65,7 @@ pub(super) fn ring(
         sides = mirrored(sides);
         notes.push("reverse: the bottom side runs the other way, so that the result is mirrored".into());
     }
-    Ok(Ring { sides, notes })
+    Ok(Ring { sides, notes, warnings: Vec::new() })
 }
 
 /// Returns the lowest side on the screen among those that run to the right.

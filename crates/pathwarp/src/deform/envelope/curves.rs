@@ -53,6 +53,7 @@ impl Curves<'_> {
         };
         let (at_start, at_end) = (join(0, a, c)?, join(1, b, d)?);
         let Facing { lying, first, second, .. } = facing;
+        let warnings = self.exchanged(lying, &first, &second).into_iter().collect();
         let mut sides = if lying {
             [first, at_end, reversed(&second), reversed(&at_start)]
         } else {
@@ -70,7 +71,28 @@ impl Curves<'_> {
         }
         let corners = sides.each_ref().map(|s| show(start(s))).join(" ");
         notes.insert(0, format!("corners: {corners} (bottom left, bottom right, top right, top left)"));
-        Ok(Ring { sides, notes })
+        Ok(Ring { sides, notes, warnings })
+    }
+
+    /// Warns if each of two facing curves is where the other should be.
+    fn exchanged(&self, lying: bool, first: &[Seg], second: &[Seg]) -> Option<String> {
+        let middle = |c: &[Seg]| {
+            let sum = c.iter().map(|s| s.start().to_vec2() + s.end().to_vec2()).fold(Vec2::ZERO, |a, b| a + b);
+            sum / (2.0 * c.len().max(1) as f64)
+        };
+        let (a, b) = (middle(first), middle(second));
+        let (wrong, what) = if lying {
+            (
+                b.y > a.y,
+                "the top curve lies below the bottom curve, so that the artwork is upside down; exchange `bottom` and `top`",
+            )
+        } else {
+            (
+                b.x < a.x,
+                "the right curve lies left of the left curve, so that the artwork is turned over; exchange `left` and `right`",
+            )
+        };
+        (wrong && !self.reverse).then(|| format!("envelope: {what}"))
     }
 
     /// Returns the pair of curves drawn on both sides, the second a copy of the first if it is drawn alone.

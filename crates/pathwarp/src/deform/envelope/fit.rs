@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// A side that strays from the line between its ends by no more than this share of its length is straight.
 const STRAIGHT: f64 = 1e-9;
 
+/// Least lean that is worth a warning, in degrees.
+const VISIBLE_LEAN: f64 = 0.05;
+
 /// The lines of the artwork that stay straight in an envelope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
@@ -94,6 +97,7 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
     ]);
     let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
     built.explanation.notes.clone_from(&ring.notes);
+    built.explanation.warnings.clone_from(&ring.warnings);
     built.overlay(Role::Cage, ring.path());
 
     if keep == Keep::Lines {
@@ -158,7 +162,7 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
     built.note(format!(
         "kept: {what} are straight and lean by at most {lean:.3}°, by the ruled map between the two curves"
     ));
-    if given.is_none() && !is_exact {
+    if given.is_none() && !is_exact && lean >= VISIBLE_LEAN {
         built.warn(format!(
             "envelope: {what} stay straight but lean by up to {lean:.1}°: a curve turns back, or is too steep for even steps across the screen"
         ));

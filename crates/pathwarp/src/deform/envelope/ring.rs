@@ -13,6 +13,7 @@ pub(in crate::deform) struct Ring {
     /// Bottom (left to right), right (upwards), top (right to left), left (downwards).
     pub(in crate::deform) sides: [Vec<Seg>; 4],
     pub(in crate::deform) notes: Vec<String>,
+    pub(in crate::deform) warnings: Vec<String>,
 }
 
 /// The four corners of a closed path.

@@ -50,6 +50,9 @@ enum Source {
     Quilt(Quilt),
 }
 
+/// Least jump of the slope at a joint that is worth a warning, as a share of it.
+const VISIBLE_KINK: f64 = 0.005;
+
 /// Distance by which artwork may extend past the mesh's box, in shares of it, without a warning.
 const BEYOND: f64 = 0.5;
 
@@ -106,7 +109,7 @@ impl Mesh {
             Class::Projective(_) | Class::Smooth => map,
         };
         let mut built = Built::new(map);
-        let joints = if kinks == 0 { "smooth" } else { "kinked" };
+        let joints = if most < VISIBLE_KINK { "smooth" } else { "kinked" };
         built.note(format!("mesh: {columns} by {rows} patches; joints: {joints}"));
         let beyond = r.inflate(BEYOND * r.width(), BEYOND * r.height());
         if !matches!(built.map.class(), Class::Affine(_)) && frame.union(beyond) != beyond {
@@ -116,7 +119,7 @@ lays it onto the artwork",
                 r.x0, r.y0, r.x1, r.y1
             ));
         }
-        if kinks > 0 {
+        if most >= VISIBLE_KINK {
             built.warn(format!(
                 "mesh: {kinks} pairs of control points beside joints make kinks (by up to {:.0} % of the slope); `smooth` evens them out",
                 100.0 * most

@@ -155,7 +155,11 @@ fn sides(net: &Net) -> Ring {
     let column = |c: usize| [net[0][c], net[1][c], net[2][c], net[3][c]];
     let seg = |[a, b, c, d]: [Point; 4]| vec![Seg::Cubic(CubicBez::new(a, b, c, d))];
     let back = |[a, b, c, d]: [Point; 4]| [d, c, b, a];
-    Ring { sides: [seg(row(3)), seg(back(column(3))), seg(back(row(0))), seg(column(0))], notes: Vec::new() }
+    Ring {
+        sides: [seg(row(3)), seg(back(column(3))), seg(back(row(0))), seg(column(0))],
+        notes: Vec::new(),
+        warnings: Vec::new(),
+    }
 }
 
 /// Builds the map of one net over a box; the net's origin is the box's top left corner.

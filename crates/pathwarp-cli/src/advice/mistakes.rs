@@ -1,0 +1,294 @@
+//! Words that new users type: commands and options of other programs, values apart from their units, names without quotes.
+
+use crate::catalogue::Catalogue;
+use crate::format::Format;
+use crate::input::split_reference;
+use pathwarp::param::Kind;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// Other names of commands.
+const ALIASES: [(&str, &str); 1] = [("perspective", "projective")];
+
+/// Words for what a command does, and that command on a drawing.
+const WORDS: [(&[&str], &str); 22] = [
+    (&["rotate", "turn", "spin"], "affine IN.svg --rotate 15 -o OUT.svg"),
+    (&["skew", "shear", "lean", "slant", "oblique", "italic"], "affine IN.svg --skew-x -12 -o OUT.svg"),
+    (
+        &["scale", "resize", "size", "zoom", "enlarge", "shrink", "stretch"],
+        "affine IN.svg --scale-x 2 --scale-y 2 -o OUT.svg",
+    ),
+    (&["move", "translate", "shift", "offset"], "affine IN.svg --move-x 10mm -o OUT.svg"),
+    (&["mirror", "flip", "reflect"], "affine IN.svg --scale-x -1 -o OUT.svg"),
+    (
+        &["circle", "round", "curve", "textpath", "text-on-path", "text-on-circle", "path", "badge"],
+        "bend IN.svg --along circle:r=60mm -o OUT.svg",
+    ),
+    (
+        &["distort", "free-distort", "keystone", "corners", "trapezoid", "quad"],
+        "projective IN.svg --target '0%,100% 100%,100% 75%,0% 25%,0%' -o OUT.svg",
+    ),
+    (&["twirl", "twist", "vortex", "whirl", "spiral"], "swirl IN.svg -o OUT.svg"),
+    (&["ripple", "waves", "sine", "wobble", "zigzag"], "wave IN.svg -o OUT.svg"),
+    (&["pinch", "punch", "bloat", "pucker", "spherize"], "bulge IN.svg -o OUT.svg"),
+    (
+        &["puppet", "puppet-warp", "pin", "pins", "liquify"],
+        "mls IN.svg --pin 0%,100% --pin 100%,100% --pair 50%,0%:55%,-20% -o OUT.svg",
+    ),
+    (&["cage", "distort-mesh", "bezier"], "shaper IN.svg --shaper CAGE.svg -o OUT.svg"),
+    (&["grid", "lattice", "gridwarp"], "ffd IN.svg -o OUT.svg"),
+    (
+        &["cylinder", "mug", "bottle", "can", "label", "cone", "sphere"],
+        "anamorph IN.svg --distance 50cm --onto cylinder:radius=42mm -o OUT.svg",
+    ),
+    (&["formula", "equation", "function"], "expr IN.svg --x 'x + 4*sin(y/16)' -o OUT.svg"),
+    (
+        &["png", "jpg", "jpeg", "webp", "rasterize", "draw", "picture", "preview", "thumbnail"],
+        "render IN.svg -o OUT.png",
+    ),
+    (&["pdf", "dxf", "svg", "export", "save", "save-as", "print"], "affine IN.svg -o OUT.pdf"),
+    (&["open", "gui", "ui", "view", "editor", "interactive", "browser"], "edit IN.svg"),
+    (&["info", "inspect", "ls", "show", "query"], "paths IN.svg"),
+    (&["styles", "presets", "samples", "sheet"], "gallery IN.svg -o SHEET.png"),
+    (&["undo", "unbend", "restore", "revert", "original"], "unwarp WARPED.svg -o OUT.svg"),
+    (&["font", "fonts", "word", "words", "letter", "letters", "lettering", "type"], "text 'WORDS' -o OUT.svg"),
+];
+
+/// Words for what pathwarp does not do, and who does.
+const ELSEWHERE: [(&[&str], &str); 3] = [
+    (
+        &["trace", "vectorize", "vectorise", "image-trace", "potrace"],
+        "pathwarp warps pictures as they are and traces none; Inkscape does: Path › Trace Bitmap",
+    ),
+    (
+        &["simplify", "smooth", "clean", "optimize", "optimise", "svgo"],
+        "pathwarp writes few nodes where it bends, and has no command that only simplifies",
+    ),
+    (
+        &["union", "join", "merge", "combine", "unite", "boolean"],
+        "pathwarp joins no drawings; open one in an editor and paste the other",
+    ),
+];
+
+/// Other names of options; the last of them that the command has is meant.
+const OPTIONS: [(&[&str], &str); 10] = [
+    (&["output", "outfile", "out-file", "export-filename", "to", "o"], "out"),
+    (&["angle", "rotation", "turn", "degrees"], "rotate"),
+    (&["amount", "strength", "intensity", "curve", "percent"], "bend"),
+    (&["preset", "shape", "type", "name", "kind", "effect"], "style"),
+    (&["path", "curve", "on", "circle", "onto"], "along"),
+    (&["to", "corners", "destination", "dst", "quad"], "target"),
+    (&["cage", "mesh", "path"], "shaper"),
+    (&["only", "id", "layer", "object", "ids"], "select"),
+    (&["dpi", "resolution"], "image-dpi"),
+    (&["amplitude", "amp"], "height"),
+];
+
+/// The command that an alias stands for.
+pub(crate) fn alias(word: &str) -> Option<&'static str> {
+    ALIASES.iter().find(|(alias, _)| *alias == word).map(|(_, name)| *name)
+}
+
+/// What an unknown command may mean.
+pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
+    let path = Path::new(word);
+    let lower = word.to_lowercase();
+    if path.is_file() || path.extension().is_some_and(|_| Format::of(path).is_some()) || lower.contains("://") {
+        return Some(format!(
+            "{word} is a drawing, not a command; say what to do with it, such as `pathwarp warp {word} --style flag -o OUT.svg`; \
+             `pathwarp edit {word}` opens it in the browser, `pathwarp list` shows all deformations"
+        ));
+    }
+    if path.is_dir() {
+        return Some(format!(
+            "{word} is a folder, not a command; `pathwarp warp -r {word} --style flag --out-dir OUT` warps the drawings in it"
+        ));
+    }
+    let named: Vec<String> = catalogue
+        .infos()
+        .into_iter()
+        .flat_map(|info| info.params.iter().map(move |p| (info, p)))
+        .filter(|(_, p)| matches!(p.kind, Kind::NameOrFile(names) if names.contains(&lower.as_str())))
+        .map(|(info, p)| {
+            format!("a {} of {}: pathwarp {} IN.svg --{} {lower} -o OUT.svg", p.name, info.name, info.name, p.name)
+        })
+        .collect();
+    let plain = lower.replace(['_', ' '], "-");
+    let is = |words: &&[&str]| words.contains(&plain.as_str());
+    let known = WORDS.iter().find(|(words, _)| is(words)).map(|(_, command)| command);
+    if !named.is_empty() {
+        let other = known.map(|command| format!("; or use `pathwarp {command}`")).unwrap_or_default();
+        return Some(format!("{word} is {}{other}", named.join("; or ")));
+    }
+    if let Some(command) = known {
+        return Some(format!("there is no command {word}; use `pathwarp {command}`"));
+    }
+    ELSEWHERE.iter().find(|(words, _)| is(words)).map(|(_, text)| format!("there is no command {word}; {text}"))
+}
+
+/// The options that an unknown one may mean, of those that the command has: those that begin with it, or are its synonyms.
+pub(crate) fn options<'a>(unknown: &str, known: &[&'a str]) -> Vec<&'a str> {
+    let unknown = unknown.trim_start_matches('-').to_lowercase();
+    let longer = |k: &&&str| k.strip_prefix(unknown.as_str()).is_some_and(|rest| rest.starts_with('-'));
+    let longer: Vec<&str> = known.iter().filter(longer).copied().collect();
+    if !longer.is_empty() {
+        return longer;
+    }
+    let synonyms = OPTIONS.iter().filter(|(words, _)| words.contains(&unknown.as_str()));
+    synonyms.filter_map(|(_, name)| known.iter().copied().find(|k| k == name)).take(1).collect()
+}
+
+/// A value that a space has torn from its option: the option with the whole value.
+struct Torn {
+    /// The word that stands alone.
+    word: String,
+    /// As it has to be written.
+    whole: String,
+}
+
+/// Returns `true` for a unit alone.
+fn is_unit(word: &str) -> bool {
+    ["%", "mm", "cm", "in", "inch", "inches", "pt", "px", "pc", "m", "deg", "degrees", "°", "rad", "turn"]
+        .contains(&word)
+}
+
+fn is_number(word: &str) -> bool {
+    word.parse::<f64>().is_ok_and(f64::is_finite)
+}
+
+/// Returns `true` for a number, with a unit or not, or a point.
+fn is_measure(word: &str) -> bool {
+    let one = |part: &str| {
+        let number = part.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%' || c == '°');
+        is_number(number) && (number.len() == part.len() || is_unit(&part[number.len()..]))
+    };
+    word.split([',', ':']).all(one)
+}
+
+/// Finds the words of a command line that belong to the value of an option before them: `--size 40 mm`, `--target 0,0 9,0 9,9`.
+fn torn(words: &[String]) -> Option<Torn> {
+    for (i, option) in words.iter().enumerate().filter(|(_, w)| w.len() > 2 && w.starts_with("--")) {
+        let (option, first) = match option.split_once('=') {
+            Some((option, value)) => (option, value),
+            None => (option.as_str(), words.get(i + 1)?.as_str()),
+        };
+        let rest = i + 1 + usize::from(!words[i].contains('='));
+        let Some(next) = words.get(rest) else { continue };
+        if is_number(first) && is_unit(next) {
+            return Some(Torn { word: next.clone(), whole: format!("{option} {first}{next}") });
+        }
+        let points = words[rest..].iter().take_while(|w| is_measure(w) && !Path::new(w).exists());
+        let points: Vec<&str> = points.map(String::as_str).collect();
+        if is_measure(first) && points.iter().any(|p| p.contains(',')) && first.contains(',') {
+            return Some(Torn {
+                word: points[0].to_owned(),
+                whole: format!("{option} '{first} {}'", points.join(" ")),
+            });
+        }
+        // Path data: M 0,0 C 1,2 …
+        let is_data = |w: &str| w.starts_with(['M', 'm']) && (w.len() == 1 || is_measure(&w[1..]));
+        if is_data(first)
+            && (is_measure(next) || next.starts_with(['L', 'C', 'Q', 'A', 'H', 'V', 'l', 'c', 'q', 'a', 'h', 'v']))
+        {
+            return Some(Torn { word: next.clone(), whole: format!("{option} '{first} {next} …'") });
+        }
+    }
+    None
+}
+
+/// A unit that is set as text: the warning about it.
+pub(crate) fn unit_as_text(words: &[OsString], text: &[&str]) -> Option<String> {
+    let words: Vec<String> = words.iter().map(|w| w.to_string_lossy().into_owned()).collect();
+    let Torn { word, whole } = torn(&words).filter(|t| text.contains(&t.word.as_str()))?;
+    Some(format!("“{word}” is set as a line of text; if it is the unit, write it without a space: {whole}"))
+}
+
+/// What is wrong with inputs that do not exist: parts of a value or of a name, or the output.
+pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> Option<String> {
+    let exists = |p: &Path| p.as_os_str() == "-" || p.exists() || split_reference(&p.to_string_lossy()).0.exists();
+    let missing = inputs.iter().position(|p| !exists(p))?;
+    let name = inputs[missing].display().to_string();
+    let words: Vec<String> = words.iter().map(|w| w.to_string_lossy().into_owned()).collect();
+    if let Some(Torn { whole, .. }) = torn(&words).filter(|t| inputs.iter().any(|i| *i == *t.word)) {
+        let quotes = if whole.contains('\'') {
+            "a value with spaces needs quotes"
+        } else {
+            "a number and its unit are one word"
+        };
+        return Some(format!("{name} is no file; {quotes}: {whole}"));
+    }
+    if inputs.len() < 2 {
+        return None;
+    }
+    // `my logo.svg`: the words around it make a name that exists.
+    for (from, to) in
+        (0..=missing).flat_map(|from| (missing..inputs.len()).map(move |to| (from, to))).filter(|(a, b)| a < b)
+    {
+        let parts = inputs[from..=to].iter().map(|p| p.display().to_string());
+        let joined = parts.collect::<Vec<_>>().join(" ");
+        if Path::new(&joined).exists() {
+            return Some(format!("{name}: there is no such file; a name with spaces needs quotes: '{joined}'"));
+        }
+    }
+    let is_last = missing + 1 == inputs.len() && inputs[..missing].iter().all(|p| exists(p));
+    if is_last && !has_out && Format::of(&inputs[missing]).is_some() {
+        return Some(format!("{name}: there is no such file; if the result is to be written there: -o {name}"));
+    }
+    if is_last && matches!(inputs[missing].to_str(), Some("to" | "into" | "as" | "->" | "=>")) {
+        return Some(format!("{name} is no file; the result is named with -o OUT.svg"));
+    }
+    None
+}
+
+/// A tip for a word that a command takes no more of.
+pub(crate) fn surplus(word: &str, known: &[&str]) -> Option<String> {
+    let is_output = known.contains(&"out") && Path::new(word).extension().is_some();
+    if is_output {
+        return Some(format!("to write to {word}: -o {word}; a name with spaces needs quotes"));
+    }
+    if is_unit(word) {
+        return Some("a number and its unit are one word, such as 40mm".to_owned());
+    }
+    is_measure(word).then(|| "a value with spaces needs quotes".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_put_together_again() {
+        let whole = |line: &str| {
+            let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+            torn(&words).map(|t| t.whole)
+        };
+        for (line, expected) in [
+            ("text A --size 40 mm", "--size 40mm"),
+            ("warp a.svg --bend -40 %", "--bend -40%"),
+            ("warp a.svg --bend=-40 %", "--bend -40%"),
+            ("projective --target 0%,100% 100%,100% 75%,0% a.svg", "--target '0%,100% 100%,100% 75%,0%'"),
+            ("bend a.svg --along M0,100 Q150,20 300,100", "--along 'M0,100 Q150,20 …'"),
+            ("bend a.svg --along M 0,100", "--along 'M 0,100 …'"),
+        ] {
+            assert_eq!(whole(line).as_deref(), Some(expected), "{line}");
+        }
+        for line in [
+            "text 40 mm",
+            "warp a.svg --bend 40% b.svg",
+            "affine --scale-x 2 a.svg",
+            "mls --pin 0,0 a.svg",
+            "text A --size",
+        ] {
+            assert_eq!(whole(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn options_by_their_beginning_and_other_names() {
+        let known = ["scale-x", "scale-y", "skew-x", "rotate", "out"];
+        assert_eq!(options("--scale", &known), ["scale-x", "scale-y"]);
+        assert_eq!(options("--angle", &known), ["rotate"]);
+        assert_eq!(options("--output", &known), ["out"]);
+        assert!(options("--wobble", &known).is_empty());
+    }
+}

@@ -1,0 +1,98 @@
+//! The maps of a drawing, each with the part of the drawing that it bends.
+
+use super::options::WarpOptions;
+use crate::scene::drawing::Drawing;
+use crate::scene::model::{PartRole, Referrer, Scene};
+use crate::source::select::Selection;
+use crate::source::tags::ElementId;
+use crate::source::text::SourceText;
+use pathwarp::Error;
+use pathwarp::kurbo::Affine;
+use pathwarp::map::{Class, Map};
+use std::ops::Range;
+
+/// A map with the options for what it bends.
+#[derive(Clone)]
+pub(crate) struct Bend<'a> {
+    pub(crate) map: &'a dyn Map,
+    pub(crate) options: WarpOptions,
+}
+
+impl Bend<'_> {
+    /// Returns `true` if nothing moves.
+    pub(crate) fn is_identity(&self) -> bool {
+        let WarpOptions { copies, letters, .. } = &self.options;
+        self.map.class() == Class::Affine(Affine::IDENTITY) && copies.is_empty() && letters.places.is_empty()
+    }
+}
+
+/// The maps of a drawing. What two of them select, the first bends.
+#[derive(Clone)]
+pub(crate) struct Bends<'a> {
+    pub(crate) each: Vec<Bend<'a>>,
+    /// The options for the document; their selection is all that is bent.
+    pub(crate) options: WarpOptions,
+    /// For every element, the index of what bends it.
+    of_element: Vec<Option<usize>>,
+    /// The map that bends everything, parts without an element as well.
+    everything: Option<usize>,
+}
+
+impl<'a> Bends<'a> {
+    pub(crate) fn new(source: &SourceText, each: Vec<Bend<'a>>, document: &WarpOptions) -> Self {
+        let mut options = document.clone();
+        if each.len() > 1 {
+            options.selection = Selection::union(source, each.iter().map(|b| &b.options.selection));
+        }
+        let mut of_element = vec![None; source.elements.len()];
+        for (k, bend) in each.iter().enumerate() {
+            for (of, selected) in of_element.iter_mut().zip(bend.options.selection.resolve(source)) {
+                *of = of.or(selected.then_some(k));
+            }
+        }
+        let everything = each.iter().position(|b| b.options.selection.is_everything());
+        Self { each, options, of_element, everything }
+    }
+
+    /// Returns `true` if nothing moves.
+    pub(crate) fn is_identity(&self) -> bool {
+        self.each.iter().all(Bend::is_identity)
+    }
+
+    /// The index of what bends an element.
+    pub(crate) fn of(&self, e: Option<ElementId>) -> Option<usize> {
+        e.map_or(self.everything, |e| self.of_element.get(e).copied().flatten())
+    }
+
+    fn of_referrers(&self, all: &[Referrer]) -> Option<usize> {
+        self.everything.or_else(|| all.iter().find_map(|r| r.owner.or(r.element).and_then(|e| self.of(Some(e)))))
+    }
+
+    /// The drawing with its own clip paths and masks for what each map bends, if some are shared.
+    pub(crate) fn divided(&self, drawing: &Drawing) -> Result<Option<Drawing>, Error> {
+        let Scene { clips, masks, .. } = drawing.scene();
+        let mut all = clips.iter().map(|c| &c.referrers).chain(masks.iter().map(|m| &m.referrers));
+        let of = |r: &Referrer| self.of(r.owner.or(r.element));
+        let is_shared = |all: &[Referrer]| all.windows(2).any(|pair| of(&pair[0]) != of(&pair[1]));
+        let divides = self.everything.is_none() && all.any(|referrers| is_shared(referrers));
+        divides.then(|| drawing.divided(self.of_element.clone())).transpose()
+    }
+
+    /// For every part of the drawing, the index of what bends it. Clip paths and masks follow the elements that refer to them.
+    pub(crate) fn of_parts(&self, drawing: &Drawing) -> Vec<Option<usize>> {
+        let (scene, far) = (drawing.scene(), drawing.far());
+        let mut of: Vec<Option<usize>> = scene.parts.iter().map(|p| self.of(p.element())).collect();
+        let mut fill = |parts: &Range<usize>, bend: Option<usize>, referrers: &[Referrer]| {
+            of[parts.clone()].fill(bend.or_else(|| self.of_referrers(referrers)));
+        };
+        scene.clips.iter().for_each(|c| fill(&c.parts, c.bend, &c.referrers));
+        scene.masks.iter().for_each(|m| fill(&m.parts, m.bend, &m.referrers));
+        for (i, (of, p)) in of.iter_mut().zip(&scene.parts).enumerate() {
+            let text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
+            if far.holds(i) || p.role == PartRole::Pattern || text && self.options.skips_text() {
+                *of = None;
+            }
+        }
+        of
+    }
+}
